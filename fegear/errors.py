@@ -1,0 +1,47 @@
+"""What fegear says when it cannot go on: the value, the rule, the remedy."""
+
+from __future__ import annotations
+
+
+class FegearError(Exception):
+    """Base of every error that fegear raises on purpose; its text is meant for the user as it is."""
+
+
+class InputError(FegearError):
+    """An input breaks a rule.
+
+    Parameters
+    ----------
+    key : str
+        Where the value came from, as the user wrote it (``gear.a.teeth``).
+    value : object
+        The value received.
+    rule : str
+        The rule that it breaks, as a clause ("must be a whole number of at least 5").
+    remedy : str, optional
+        What to do instead, as a sentence fragment.
+    """
+
+    def __init__(self, key: str, value: object, rule: str, remedy: str = "") -> None:
+        self.key, self.value, self.rule, self.remedy = key, value, rule, remedy
+        super().__init__(f"{key} = {value}: {rule}" + (f"; {remedy}" if remedy else "") + ".")
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str, str]]:
+        """Rebuild from the four parts, so that the error crosses process boundaries."""
+        return (type(self), (self.key, self.value, self.rule, self.remedy))
+
+
+class GeometryError(InputError):
+    """A gear or a pair of gears that cannot exist as described."""
+
+
+class RangeError(InputError):
+    """An argument outside the range in which a formula or a method holds."""
+
+
+class MissingLibraryError(FegearError):
+    """A system library or an optional package is missing; the text names what to install."""
+
+
+class ConvergenceError(FegearError):
+    """An iteration did not reach its tolerance; the text says by how much and what to change."""

@@ -1,0 +1,121 @@
+"""The one place where units enter and leave: SI floats inside, text with units outside.
+
+Inside fegear every number is a plain float in SI (m, N, Pa, kg, s, rad). Case files write
+``"3.175 mm"``; tables name the unit in the column head.
+"""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING
+
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    import pint
+
+#: SI unit of each dimension that a case file may ask for, with an example for error messages.
+DIMENSIONS: dict[str, tuple[str, str]] = {
+    "length": ("m", "3.175 mm"),
+    "angle": ("rad", "20 deg"),
+    "force": ("N", "1615 N"),
+    "torque": ("N*m", "68 N*m"),
+    "pressure": ("Pa", "206.8 GPa"),
+    "density": ("kg/m^3", "7850 kg/m^3"),
+    "line_load": ("N/m", "250 N/mm"),
+    "speed": ("rad/s", "10000 rpm"),
+    "frequency": ("Hz", "3500 Hz"),
+    "inertia": ("kg*m^2", "0.002 kg*m^2"),
+    "torsional_stiffness": ("N*m/rad", "2.18e4 N*m/rad"),
+    "torsional_damping": ("N*m*s/rad", "12.6 N*m*s"),
+    "stiffness": ("N/m", "300 N/um"),
+    "damping": ("N*s/m", "1000 N*s/m"),
+    "inverse_length": ("1/m", "8 / inch"),
+    "compliance": ("m/N", "1.26e-8 m/N"),
+    "time": ("s", "0.1 s"),
+    "viscosity": ("Pa*s", "0.02 Pa*s"),
+    "temperature": ("K", "350 K"),
+    "dimensionless": ("", "0.3"),
+}
+
+
+@functools.lru_cache(maxsize=1)
+def registry() -> pint.UnitRegistry[float]:
+    """Pint's registry, made at first use (importing it costs a fifth of a second)."""
+    import pint
+
+    return pint.UnitRegistry(cache_folder=":auto:", autoconvert_offset_to_baseunit=True)
+
+
+def to_si(text: str | float, dimension: str, key: str = "value") -> float:
+    """Parse a quantity written by a user and return it in SI.
+
+    Parameters
+    ----------
+    text : str or float
+        For example ``"3.175 mm"``. A bare number is accepted for dimensionless values only.
+    dimension : str
+        A key of `DIMENSIONS`.
+    key : str
+        Name of the input for the error message.
+
+    Returns
+    -------
+    float
+        The value in the SI unit of `dimension`.
+
+    Raises
+    ------
+    InputError
+        If the text is no quantity, has no unit, or has the wrong dimension.
+    """
+    unit, example = DIMENSIONS[dimension]
+    kind = dimension.replace("_", " ")
+    if isinstance(text, bool) or not isinstance(text, (str, int, float)):
+        raise InputError(key, repr(text), f"must be a {kind} with its unit", f'write for example "{example}"')
+    if isinstance(text, (int, float)):
+        if dimension == "dimensionless":
+            return float(text)
+        raise InputError(key, text, f"is a bare number, but a {kind} needs a unit", f'write for example "{example}"')
+    import pint
+
+    try:
+        quantity = registry().Quantity(text)
+        value = float(quantity.to(unit or "dimensionless").magnitude)
+    except pint.DimensionalityError:
+        raise InputError(key, f'"{text}"', f"is not a {kind}", f'write for example "{example}"') from None
+    except Exception as problem:  # noqa: BLE001  (pint raises a dozen kinds, tokenizer errors among them)
+        detail = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
+        raise InputError(
+            key, f'"{text}"', f"is not a quantity that can be read ({detail})", f'write for example "{example}"'
+        ) from None
+    if value != value or value in (float("inf"), float("-inf")):
+        raise InputError(key, f'"{text}"', "must be finite")
+    return value
+
+
+#: What one SI unit is in the units of tables and pictures, so that writing a table needs no pint.
+PER_SI: dict[str, float] = {
+    "mm": 1e3,
+    "um": 1e6,
+    "deg": 57.29577951308232,
+    "rad": 1.0,
+    "N": 1.0,
+    "s": 1.0,
+    "MPa": 1e-6,
+    "GPa": 1e-9,
+    "N/mm": 1e-3,
+    "N/um": 1e-6,
+    "um.mm/N": 1e9,
+    "MPa.mm/N": 1e-3,
+    "Hz": 1.0,
+    "rpm": 9.549296585513721,
+    "arcsec": 206264.80624709636,
+    "N/(mm.um)": 1e-9,
+    "1/mm": 1e-3,
+}
+
+
+def from_si(unit: str) -> float:
+    """Factor that turns an SI number into `unit`, one of the units used in tables."""
+    return PER_SI[unit]
