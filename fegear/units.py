@@ -80,7 +80,7 @@ def to_si(text: str | float, dimension: str, key: str = "value") -> float:
     import pint
 
     try:
-        quantity = registry().Quantity(text)
+        quantity: pint.Quantity[float] = registry().Quantity(text)
         value = float(quantity.to(unit or "dimensionless").magnitude)
     except pint.DimensionalityError:
         raise InputError(key, f'"{text}"', f"is not a {kind}", f'write for example "{example}"') from None

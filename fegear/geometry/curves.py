@@ -1,0 +1,260 @@
+"""The exact pieces of a generated tooth's outline, each with points, normals and curvatures.
+
+All live in the tooth's own frame: gear centre at the origin, tooth centre line along +y, the right flank at x > 0;
+lengths in modules. A piece is described on the right side; the left side is its mirror image. Every piece maps its own
+parameter to arrays of shape (2, N) and runs from the tooth space toward the tooth's centre line.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from fegear.geometry.involute import polar_angle
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+
+class Curve(Protocol):
+    """A smooth piece of the outline with parameter running from `start` to `end`."""
+
+    @property
+    def start(self) -> float:
+        """Parameter at the end nearer the tooth space."""
+
+    @property
+    def end(self) -> float:
+        """Parameter at the end nearer the tooth's centre line."""
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """Points [modules], shape (2, N)."""
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """Unit normals out of the material, shape (2, N)."""
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """Curvature [1/modules], shape (N,); positive where the outline is convex, negative in the fillet."""
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """Arc length per parameter [modules], shape (N,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Involute:
+    """Right involute flank, parameter roll angle t = tan(alpha) [rad] (ISO 21771, 4.3).
+
+    Parameters
+    ----------
+    base_radius : float
+        r_b [modules].
+    base_half_angle : float
+        psi_b, half the tooth's angle on the base circle [rad].
+    start, end : float
+        Roll angles between which the flank exists [rad].
+    """
+
+    base_radius: float
+    base_half_angle: float
+    start: float
+    end: float
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """r_b e(phi) + r_b t n(phi), phi = psi_b - t: unwinding the string from the base circle."""
+        t = np.asarray(parameter, dtype=float)
+        s, c = np.sin(self.base_half_angle - t), np.cos(self.base_half_angle - t)
+        return self.base_radius * np.stack([s + t * c, c - t * s])
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """The normal is the line of action: tangent to the base circle."""
+        phi = self.base_half_angle - np.asarray(parameter, dtype=float)
+        return np.stack([np.cos(phi), -np.sin(phi)])
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """1 / (r_b t), infinite on the base circle."""
+        t = np.asarray(parameter, dtype=float)
+        with np.errstate(divide="ignore"):
+            return 1.0 / (self.base_radius * t)
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """ds/dt = r_b t."""
+        return self.base_radius * np.abs(np.asarray(parameter, dtype=float))
+
+    def polar(self, radius: ArrayLike) -> Array:
+        """Angle from the tooth's centre line [rad] of the flank at `radius` [modules], shape of `radius`."""
+        r = np.asarray(radius, dtype=float)
+        return self.base_half_angle - polar_angle(
+            np.sqrt((r - self.base_radius) * (r + self.base_radius)) / self.base_radius
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Trochoid:
+    """Right fillet, cut by the rack's tip rounding; parameter beta [rad] is the angle from the rounding's lowest point.
+
+    The rounding's centre lies `centre_offset` beside the rack tooth's centre line and `centre_height` above the
+    gear's pitch line (negative: below). Rolling angle of the gear when the point at beta is cut:
+    phi(beta) = (-centre_height tan(beta) - centre_offset) / r: the common normal passes through the pitch point.
+
+    Parameters
+    ----------
+    pitch_radius, rounding, centre_offset, centre_height : float
+        r, rho_fP, u_c, v_c [modules].
+    space_half_angle : float
+        pi/z, angle between tooth and space centre lines [rad].
+    start, end : float
+        Range of beta [rad]: 0 on the root circle, pi/2 - alpha where the rack's straight flank begins.
+    """
+
+    pitch_radius: float
+    rounding: float
+    centre_offset: float
+    centre_height: float
+    space_half_angle: float
+    start: float
+    end: float
+
+    def rolling(self, parameter: ArrayLike) -> Array:
+        """Angle by which the gear has rolled when beta is cut [rad]."""
+        return (-self.centre_height * np.tan(parameter) - self.centre_offset) / self.pitch_radius
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """Envelope of the rounding in the gear's frame."""
+        b = np.asarray(parameter, dtype=float)
+        x = -self.centre_height * np.tan(b) + self.rounding * np.sin(b)
+        y = self.pitch_radius + self.centre_height - self.rounding * np.cos(b)
+        return _mirror_turn(x, y, self.rolling(b), self.space_half_angle)
+
+    def centres(self, parameter: ArrayLike) -> Array:
+        """Centre of the rounding in the gear's frame when beta is cut, shape (2, N); the fillet runs beside it."""
+        b = np.asarray(parameter, dtype=float)
+        x = -self.centre_height * np.tan(b)
+        y = np.broadcast_to(self.pitch_radius + self.centre_height, b.shape)
+        return _mirror_turn(x, y, self.rolling(b), self.space_half_angle)
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """Outward normals: from the material toward the rounding's centre."""
+        b = np.asarray(parameter, dtype=float)
+        return _mirror_turn(-np.sin(b), np.cos(b), self.rolling(b), self.space_half_angle)
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """Minus one over the fillet's radius rho + v^2 / (cos b (r cos^2 b - v)) (Euler and Savary)."""
+        b, v = np.asarray(parameter, dtype=float), self.centre_height
+        c = np.cos(b)
+        turn = 1.0 - v / (self.pitch_radius * c * c)
+        return -turn / (self.rounding * turn + v * v / (self.pitch_radius * c**3))
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """ds/dbeta = rho (1 + phi') + v^2 / (r cos^3 beta)."""
+        b, v = np.asarray(parameter, dtype=float), self.centre_height
+        c = np.cos(b)
+        return self.rounding * (1.0 - v / (self.pitch_radius * c * c)) + v * v / (self.pitch_radius * c**3)
+
+
+def _mirror_turn(x: Array, y: Array, phi: Array, space_half_angle: float) -> Array:
+    """Bring (x, y), cut after rolling by phi beside the space's centre line, to the tooth on the space's left.
+
+    Rolling back turns the point counterclockwise by phi; mirroring about the space's centre line puts it on the
+    left tooth's right flank; turning clockwise by pi/z makes that tooth's centre line the y axis.
+    """
+    s, c = np.sin(phi), np.cos(phi)
+    mirrored_x, turned_y = -(c * x - s * y), s * x + c * y
+    sa, ca = math.sin(space_half_angle), math.cos(space_half_angle)
+    return np.stack([ca * mirrored_x + sa * turned_y, ca * turned_y - sa * mirrored_x])
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """Circular arc; parameter is the angle of the outward radius from +y, clockwise [rad].
+
+    Parameters
+    ----------
+    centre : (float, float)
+        [modules].
+    radius : float
+        [modules].
+    start, end : float
+        Angles [rad]; the arc runs from `start` down to `end`.
+    """
+
+    centre: tuple[float, float]
+    radius: float
+    start: float
+    end: float
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """Points at the angles given."""
+        return np.array(self.centre).reshape(2, *[1] * np.ndim(parameter)) + self.radius * self.normals(parameter)
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """Radial directions."""
+        a = np.asarray(parameter, dtype=float)
+        return np.stack([np.sin(a), np.cos(a)])
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """One over the radius; zero for a vanishing arc would be infinite, so such arcs are never made."""
+        return np.full(np.shape(parameter), 1.0 / self.radius)
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """The radius."""
+        return np.full(np.shape(parameter), self.radius)
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """Straight piece from `a` to `b` (a tip chamfer); parameter is the length from `a` [modules]."""
+
+    a: tuple[float, float]
+    b: tuple[float, float]
+
+    @property
+    def start(self) -> float:
+        """Zero."""
+        return 0.0
+
+    @property
+    def end(self) -> float:
+        """The length."""
+        return math.dist(self.a, self.b)
+
+    def _direction(self) -> Array:
+        return (np.array(self.b) - np.array(self.a)) / self.end
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """Points at the lengths given."""
+        s = np.asarray(parameter, dtype=float)
+        return np.multiply.outer(self._direction(), s) + np.array(self.a).reshape(2, *[1] * s.ndim)
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """The direction turned to the right-hand side of inward travel: out of the material."""
+        d = self._direction()
+        return np.multiply.outer(np.array([d[1], -d[0]]), np.ones(np.shape(parameter)))
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """Zero."""
+        return np.zeros(np.shape(parameter))
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """One."""
+        return np.ones(np.shape(parameter))
+
+
+def arc_length(curve: Curve, intervals: int = 400) -> tuple[Array, Array]:
+    """Parameters and arc lengths from the start of a curve, by composite Gauss quadrature of its speed.
+
+    Returns
+    -------
+    parameter, length : ndarray, shape (intervals + 1,)
+        Monotone tables for interpolation; lengths in modules.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    u = np.linspace(curve.start, curve.end, intervals + 1)
+    half = 0.5 * np.diff(u)
+    mid = 0.5 * (u[1:] + u[:-1])
+    pieces = (curve.speed(mid[:, None] + half[:, None] * nodes) * weights).sum(axis=1) * np.abs(half)
+    return u, np.concatenate([[0.0], np.cumsum(pieces)])

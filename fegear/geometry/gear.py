@@ -1,0 +1,150 @@
+"""A gear: a tooth in its real size, with bore, face width and material."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from fegear.errors import GeometryError, InputError
+
+if TYPE_CHECKING:
+    from fegear.geometry.tooth import Tooth
+
+Plane = Literal["strain", "stress"]
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A linear elastic, isotropic material.
+
+    Parameters
+    ----------
+    young_modulus : float
+        E [Pa].
+    poisson_ratio : float
+        nu, inside (-1, 0.5).
+    density : float
+        rho [kg/m^3].
+    """
+
+    young_modulus: float = 206.8e9
+    poisson_ratio: float = 0.3
+    density: float = 7850.0
+
+    def __post_init__(self) -> None:
+        """Refuse materials that are unstable."""
+        if not (math.isfinite(self.young_modulus) and self.young_modulus > 0.0):
+            raise InputError("material.young_modulus", self.young_modulus, "must be positive")
+        if not -1.0 < self.poisson_ratio < 0.5:
+            raise InputError(
+                "material.poisson_ratio", self.poisson_ratio, "must lie inside (-1, 0.5)", "steel has about 0.3"
+            )
+        if not (math.isfinite(self.density) and self.density > 0.0):
+            raise InputError("material.density", self.density, "must be positive")
+
+    def plane_modulus(self, plane: Plane) -> float:
+        """E / (1 - nu^2) in plane strain, E in plane stress [Pa]."""
+        return self.young_modulus / (1.0 - self.poisson_ratio**2) if plane == "strain" else self.young_modulus
+
+
+@dataclass(frozen=True)
+class Gear:
+    """A spur gear in SI.
+
+    Parameters
+    ----------
+    tooth : Tooth
+        Shape in modules.
+    module : float
+        m [m].
+    bore_radius : float
+        Radius at which the body is held fast [m], inside (0, root radius).
+    face_width : float
+        b [m].
+    material : Material
+    plane : {"strain", "stress", "auto"}
+        Plane assumption; "auto" is strain when the face is at least five tooth thicknesses (at the pitch circle) wide.
+
+    Raises
+    ------
+    GeometryError
+        If module, bore or face width break their rules.
+    """
+
+    tooth: Tooth
+    module: float
+    bore_radius: float
+    face_width: float = 1e-3
+    material: Material = field(default_factory=Material)
+    plane: Literal["strain", "stress", "auto"] = "strain"
+
+    def __post_init__(self) -> None:
+        """Refuse sizes that cannot be and settle the plane assumption."""
+        for name in ("module", "face_width", "bore_radius"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise GeometryError(name, value, "must be positive and finite")
+        if self.bore_radius >= self.root_radius:
+            raise GeometryError(
+                "bore_radius",
+                f"{self.bore_radius * 1e3:.6g} mm",
+                f"must lie inside (0, root radius = {self.root_radius * 1e3:.6g} mm)",
+                f"half the root radius, {self.root_radius * 500:.4g} mm, is a usual start",
+            )
+        if self.plane not in ("strain", "stress", "auto"):
+            raise InputError("plane", f'"{self.plane}"', 'must be "strain", "stress" or "auto"')
+        if self.plane == "auto":
+            t = self.tooth
+            thickness = 2.0 * self.pitch_radius * float(t.half_thickness_angle(max(t.pitch_radius, t.base_radius)))
+            object.__setattr__(self, "plane", "strain" if self.face_width >= 5.0 * thickness else "stress")
+
+    @property
+    def plane_assumption(self) -> Plane:
+        """Either "strain" or "stress": "auto" is settled at construction."""
+        return "strain" if self.plane == "strain" else "stress"
+
+    @property
+    def teeth(self) -> int:
+        """Number of teeth z."""
+        return self.tooth.teeth
+
+    @property
+    def pitch_radius(self) -> float:
+        """Pitch radius r [m]."""
+        return self.tooth.pitch_radius * self.module
+
+    @property
+    def base_radius(self) -> float:
+        """r_b [m]."""
+        return self.tooth.base_radius * self.module
+
+    @property
+    def root_radius(self) -> float:
+        """r_f [m]."""
+        return self.tooth.root_radius * self.module
+
+    @property
+    def tip_radius(self) -> float:
+        """r_a [m]."""
+        return self.tooth.tip_radius * self.module
+
+    @property
+    def form_radius(self) -> float:
+        """r_Ff, where the involute starts [m]."""
+        return self.tooth.form_radius * self.module
+
+    @property
+    def involute_tip_radius(self) -> float:
+        """r_Fa, where the involute ends [m]."""
+        return self.tooth.involute_tip_radius * self.module
+
+    @property
+    def base_pitch(self) -> float:
+        """p_b [m]."""
+        return self.tooth.base_pitch * self.module
+
+    @property
+    def plane_modulus(self) -> float:
+        """E / (1 - nu^2) in plane strain, E in plane stress [Pa]."""
+        return self.material.plane_modulus(self.plane_assumption)

@@ -1,0 +1,180 @@
+"""Two gears in mesh: working data, path of contact, contact ratio, interference (ISO 21771, 5.4)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.errors import GeometryError
+from fegear.geometry.involute import inv, pressure_angle_of_inv
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.geometry.gear import Gear
+
+    Array = NDArray[np.float64]
+
+Member = Literal["driver", "driven"]
+
+
+@dataclass(frozen=True)
+class GearPair:
+    """An external spur gear pair; x runs along the line of action from the pitch point toward the driver's tip.
+
+    Parameters
+    ----------
+    driver, driven : Gear
+        The gear that pushes and the one that is pushed.
+    centre_distance : float
+        Working centre distance [m]; NaN, the default, is replaced by the one that the nominal profile shifts give
+        without backlash.
+
+    Raises
+    ------
+    GeometryError
+        If the base pitches differ, the teeth jam or never meet.
+    """
+
+    driver: Gear
+    driven: Gear
+    centre_distance: float = math.nan
+
+    def __post_init__(self) -> None:
+        """Fill in the centre distance and refuse pairs that cannot run."""
+        a, b = self.driver, self.driven
+        if abs(a.base_pitch - b.base_pitch) > 1e-9 * a.base_pitch:
+            raise GeometryError(
+                "pair",
+                f"base pitches {a.base_pitch * 1e3:.6g} mm and {b.base_pitch * 1e3:.6g} mm",
+                "must be equal for the gears to mesh",
+                "give both gears the same module and pressure angle",
+            )
+        tight = self.tight_centre_distance
+        if math.isnan(self.centre_distance):
+            nominal = (a.base_radius + b.base_radius) / math.cos(self._working_angle(allowance=False))
+            object.__setattr__(self, "centre_distance", nominal)
+        distance = self.centre_distance
+        if not (math.isfinite(distance) and distance > 0.0):
+            raise GeometryError("centre_distance", distance, "must be positive and finite")
+        if distance < tight * (1.0 - 1e-9):
+            raise GeometryError(
+                "centre_distance",
+                f"{distance * 1e3:.6g} mm",
+                f"jams the teeth: they touch on both flanks at {tight * 1e3:.6g} mm",
+                "raise the centre distance, lower the profile shifts or give a thickness allowance",
+            )
+        if self.x_end <= self.x_start:
+            raise GeometryError(
+                "centre_distance", f"{distance * 1e3:.6g} mm", "is so large that the flanks never meet", "lower it"
+            )
+
+    def _working_angle(self, *, allowance: bool) -> float:
+        a, b = self.driver.tooth, self.driven.tooth
+        alpha = a.rack.pressure_angle
+        shifts = a.generating_shift + b.generating_shift if allowance else a.profile_shift + b.profile_shift
+        value = float(inv(alpha)) + 2.0 * shifts * math.tan(alpha) / (a.teeth + b.teeth)
+        if value <= 0.0:
+            raise GeometryError(
+                "profile_shift", f"sum {shifts:.6g}", "is so negative that the pair has no working pressure angle"
+            )
+        return float(pressure_angle_of_inv(value))
+
+    @cached_property
+    def tight_centre_distance(self) -> float:
+        """Centre distance at which both flanks touch [m] (ISO 21771, 5.4.4)."""
+        return (self.driver.base_radius + self.driven.base_radius) / math.cos(self._working_angle(allowance=True))
+
+    @cached_property
+    def working_pressure_angle(self) -> float:
+        """alpha_w [rad]."""
+        return math.acos(min((self.driver.base_radius + self.driven.base_radius) / self.centre_distance, 1.0))
+
+    @property
+    def normal_backlash(self) -> float:
+        """Gap between the back flanks along the line of action when the front flanks touch [m] (ISO 21771, 5.4.6)."""
+        turn = float(inv(self.working_pressure_angle)) - float(inv(self._working_angle(allowance=True)))
+        return 2.0 * (self.driver.base_radius + self.driven.base_radius) * turn
+
+    @property
+    def base_pitch(self) -> float:
+        """p_b [m], the distance of successive contacts along the line of action."""
+        return self.driver.base_pitch
+
+    @property
+    def ratio(self) -> float:
+        """Gear ratio u = z_driven / z_driver."""
+        return self.driven.teeth / self.driver.teeth
+
+    def gear(self, member: Member) -> Gear:
+        """Driver or driven."""
+        return self.driver if member == "driver" else self.driven
+
+    def _curvature_at_pitch(self, member: Member) -> float:
+        return self.gear(member).base_radius * math.tan(self.working_pressure_angle)
+
+    def flank_curvature_radius(self, x: ArrayLike, member: Member) -> Array:
+        """Radius of curvature rho = r_b tan(alpha_w) +- x of a flank at the contact point x [m]; linear in x."""
+        sign = 1.0 if member == "driver" else -1.0
+        return self._curvature_at_pitch(member) + sign * np.asarray(x, dtype=float)
+
+    def roll_angle(self, x: ArrayLike, member: Member) -> Array:
+        """Roll angle [rad] of a gear's contact point at x [m]."""
+        return self.flank_curvature_radius(x, member) / self.gear(member).base_radius
+
+    def radius(self, x: ArrayLike, member: Member) -> Array:
+        """Radius [m] of a gear's contact point at x [m]."""
+        return np.hypot(self.gear(member).base_radius, self.flank_curvature_radius(x, member))
+
+    def x_of_radius(self, radius: ArrayLike, member: Member) -> Array:
+        """Contact position x [m] at which a gear touches at `radius` [m]."""
+        r, rb = np.asarray(radius, dtype=float), self.gear(member).base_radius
+        sign = 1.0 if member == "driver" else -1.0
+        return sign * (np.sqrt((r - rb) * (r + rb)) - self._curvature_at_pitch(member))
+
+    @cached_property
+    def x_start(self) -> float:
+        """Start of the path of contact [m], negative: the driven tip, or the driver's form circle if higher."""
+        by_tip = float(self.x_of_radius(self.driven.involute_tip_radius, "driven"))
+        by_form = float(self.x_of_radius(self.driver.form_radius, "driver"))
+        return max(by_tip, by_form)
+
+    @cached_property
+    def x_end(self) -> float:
+        """End of the path of contact [m]: the driver's tip, or the driven gear's form circle where that ends first."""
+        by_tip = float(self.x_of_radius(self.driver.involute_tip_radius, "driver"))
+        by_form = float(self.x_of_radius(self.driven.form_radius, "driven"))
+        return min(by_tip, by_form)
+
+    @property
+    def path_length(self) -> float:
+        """g_alpha [m]."""
+        return self.x_end - self.x_start
+
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio epsilon_alpha."""
+        return self.path_length / self.base_pitch
+
+    @property
+    def x_lpstc(self) -> float:
+        """Lowest point of single tooth contact of the driver [m] (contact ratio between 1 and 2)."""
+        return self.x_end - self.base_pitch
+
+    @property
+    def x_hpstc(self) -> float:
+        """Highest point of single tooth contact of the driver [m] (contact ratio between 1 and 2)."""
+        return self.x_start + self.base_pitch
+
+    def tip_clearance(self, member: Member) -> float:
+        """Room between the tip circle of `member` and the root circle of its mate [m]."""
+        mate = self.driven if member == "driver" else self.driver
+        return self.centre_distance - self.gear(member).tip_radius - mate.root_radius
+
+    def reversed(self) -> GearPair:
+        """The same gears with driver and driven exchanged; x changes sign."""
+        return GearPair(self.driven, self.driver, self.centre_distance)

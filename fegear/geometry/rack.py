@@ -1,0 +1,104 @@
+"""The basic rack tooth profile that generates a gear (ISO 53), in modules."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from fegear.errors import GeometryError
+
+#: ISO 53:1998, Table 1: addendum, dedendum, root fillet radius (in modules) of the profiles A to D.
+ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.30), "C": (1.0, 1.25, 0.25), "D": (1.0, 1.40, 0.39)}
+
+
+@dataclass(frozen=True, slots=True)
+class BasicRack:
+    """Basic rack tooth profile: what the tool that cuts the gear looks like, counted from the gear's side.
+
+    Parameters
+    ----------
+    addendum : float
+        h_aP, the gear tooth's addendum [modules].
+    dedendum : float
+        h_fP, the gear tooth's dedendum [modules]; the tool reaches this far below its reference line.
+    tip_radius : float
+        rho_fP, radius of the tool's tip rounding [modules]; it generates the trochoidal fillet.
+    pressure_angle : float
+        alpha_P [rad].
+
+    Raises
+    ------
+    GeometryError
+        If a value lies outside its range or the tool's tip rounding is wider than the tool's tip.
+    """
+
+    addendum: float = 1.0
+    dedendum: float = 1.25
+    tip_radius: float = 0.25
+    pressure_angle: float = math.radians(20.0)
+
+    def __post_init__(self) -> None:
+        """Refuse profiles that no tool can have."""
+        for name in ("addendum", "dedendum", "tip_radius", "pressure_angle"):
+            if not math.isfinite(getattr(self, name)):
+                raise GeometryError(f"rack.{name}", getattr(self, name), "must be finite")
+        if not math.radians(5.0) <= self.pressure_angle <= math.radians(45.0):
+            raise GeometryError(
+                "rack.pressure_angle", f"{math.degrees(self.pressure_angle):.6g} deg", "must lie between 5 and 45 deg"
+            )
+        if not self.addendum > 0.0:
+            raise GeometryError("rack.addendum", self.addendum, "must be positive (in modules)", "1.0 is usual")
+        if not self.dedendum > 0.0:
+            raise GeometryError("rack.dedendum", self.dedendum, "must be positive (in modules)", "1.25 is usual")
+        if self.tip_radius < 0.0:
+            raise GeometryError("rack.tip_radius", self.tip_radius, "must not be negative", "0.25 or 0.38 is usual")
+        if self.tip_centre_offset < -1e-12:
+            fits = self.full_fillet_radius
+            if fits <= 0.0:
+                raise GeometryError(
+                    "rack.dedendum",
+                    self.dedendum,
+                    "makes the rack tooth pointed before it reaches its full depth",
+                    f"choose at most {math.pi / 4 / math.tan(self.pressure_angle):.4f} modules",
+                )
+            raise GeometryError(
+                "rack.tip_radius",
+                self.tip_radius,
+                f"is wider than the rack's tip, which has room for {fits:.6f} modules (full fillet)",
+                f"choose a tip radius of at most {fits:.6f} or a smaller dedendum",
+            )
+        if self.tip_radius > self.dedendum:
+            raise GeometryError("rack.tip_radius", self.tip_radius, "must not exceed the dedendum")
+
+    @classmethod
+    def named(cls, name: str, pressure_angle: float = math.radians(20.0)) -> BasicRack:
+        """Return the ISO 53 profile A, B, C or D (also "ISO 53 A")."""
+        letter = name.upper().removeprefix("ISO").strip().removeprefix("53").strip(" .-_")
+        if letter not in ISO_53:
+            raise GeometryError("rack", f'"{name}"', "is no ISO 53 profile", 'choose "A", "B", "C" or "D"')
+        return cls(*ISO_53[letter], pressure_angle)
+
+    @classmethod
+    def full_fillet(
+        cls, addendum: float = 1.0, dedendum: float = 1.25, pressure_angle: float = math.radians(20.0)
+    ) -> BasicRack:
+        """Return the rack whose tip is one arc: the largest tip radius that fits."""
+        probe = cls(addendum, dedendum, 0.0, pressure_angle)
+        return cls(addendum, dedendum, probe.full_fillet_radius, pressure_angle)
+
+    @property
+    def full_fillet_radius(self) -> float:
+        """Largest tip radius that fits between the rack's flanks [modules]."""
+        a = self.pressure_angle
+        return (math.pi / 4 - self.dedendum * math.tan(a)) * math.cos(a) / (1.0 - math.sin(a))
+
+    @property
+    def tip_centre_offset(self) -> float:
+        """Distance of the tip rounding's centre from the rack tooth's centre line [modules], 0 for a full fillet."""
+        a = self.pressure_angle
+        return math.pi / 4 - self.dedendum * math.tan(a) - self.tip_radius * (1.0 - math.sin(a)) / math.cos(a)
+
+    @property
+    def tip_centre_depth(self) -> float:
+        """Depth of the tip rounding's centre below the reference line [modules]."""
+        return self.dedendum - self.tip_radius

@@ -1,0 +1,316 @@
+"""The generated tooth of module 1: what the basic rack leaves standing, as exact curves (ISO 21771, 5)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import GeometryError
+from fegear.geometry.curves import Arc, Curve, Involute, Line, Trochoid
+from fegear.geometry.involute import inv, polar_angle, roll_of_polar_angle
+from fegear.geometry.rack import BasicRack
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Tooth:
+    """A generated external spur tooth; every length in modules, so that one tooth serves every size.
+
+    Parameters
+    ----------
+    teeth : int
+        z, number of teeth of the gear, 5 to 1000.
+    rack : BasicRack
+        Basic rack tooth profile.
+    profile_shift : float
+        x, profile shift coefficient.
+    thickness_allowance : float
+        A_s, reduction of the tooth's thickness at the pitch circle [modules]; made, as on the machine, by feeding
+        the rack deeper by A_s / (2 tan alpha) (ISO 21771, generating profile shift coefficient x_E).
+    tip_radius : float
+        Radius of the tip circle [modules]; NaN, the default, is replaced by z/2 + x + h_aP.
+    tip_rounding : float
+        Radius of the rounding between flank and tip circle [modules].
+    tip_chamfer : float
+        Height of a tip chamfer [modules]: a straight cut that takes as much off the tip's width as off its height.
+
+    Raises
+    ------
+    GeometryError
+        If the tooth cannot exist: pointed, tip below the form circle, negative root land, rounding too large.
+    """
+
+    teeth: int
+    rack: BasicRack = field(default_factory=BasicRack)
+    profile_shift: float = 0.0
+    thickness_allowance: float = 0.0
+    tip_radius: float = math.nan
+    tip_rounding: float = 0.0
+    tip_chamfer: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Fill in the tip radius and refuse teeth that cannot exist."""
+        z = self.teeth
+        if isinstance(z, bool) or int(z) != z:
+            raise GeometryError("teeth", z, "must be a whole number")
+        if not 5 <= z <= 1000:
+            raise GeometryError("teeth", z, "must lie between 5 and 1000", "model a rack as a gear with many teeth")
+        object.__setattr__(self, "teeth", int(z))
+        for name in ("profile_shift", "thickness_allowance", "tip_rounding", "tip_chamfer"):
+            if not math.isfinite(getattr(self, name)):
+                raise GeometryError(name, getattr(self, name), "must be finite")
+        if math.isnan(self.tip_radius):
+            object.__setattr__(self, "tip_radius", z / 2 + self.profile_shift + self.rack.addendum)
+        if math.isinf(self.tip_radius):
+            raise GeometryError("tip_radius", self.tip_radius, "must be finite")
+        for name in ("tip_rounding", "tip_chamfer"):
+            if getattr(self, name) < 0.0:
+                raise GeometryError(name, getattr(self, name), "must not be negative")
+        if self.tip_rounding > 0.0 and self.tip_chamfer > 0.0:
+            raise GeometryError(
+                "tip_chamfer", self.tip_chamfer, "contradicts a tip rounding", "give either the rounding or the chamfer"
+            )
+        self._check_root()
+        self._check_tip()
+
+    def _check_root(self) -> None:
+        if self.base_half_angle <= 0.0:
+            raise GeometryError(
+                "profile_shift", self.profile_shift, "leaves a tooth of no thickness", "raise the profile shift"
+            )
+        if self.root_radius <= 0.0:
+            raise GeometryError("rack.dedendum", self.rack.dedendum, "cuts through the gear's centre")
+        if self.root_land_half_angle > math.pi / self.teeth or self.root_land_half_angle < -1e-12:
+            raise GeometryError("rack.tip_radius", self.rack.tip_radius, "leaves a negative root land")
+        fillet = self._full_trochoid()
+        if np.min(fillet.speed(np.linspace(fillet.start, fillet.end, 65))) < 0.0:
+            raise GeometryError(
+                "profile_shift",
+                self.profile_shift,
+                "is so large that the rack's tip rounding loops over the pitch line",
+                f"choose a profile shift below {self.rack.tip_centre_depth:.4f} or a larger rack tip radius",
+            )
+
+    def _check_tip(self) -> None:
+        if self.tip_radius <= self.base_radius:
+            raise GeometryError(
+                "tip_radius", self.tip_radius, f"must exceed the base radius {self.base_radius:.6g} (in modules)"
+            )
+        pointed = self.base_radius * math.hypot(1.0, float(roll_of_polar_angle(self.base_half_angle)))
+        if self.tip_radius >= pointed:
+            raise GeometryError(
+                "tip_radius",
+                f"{self.tip_radius:.6g}",
+                f"is beyond the point where the flanks meet, {pointed:.6g} modules: the tooth is pointed",
+                f"choose a tip diameter below {2 * pointed:.6g} modules or a smaller profile shift",
+            )
+        if self.tip_radius <= self.form_radius:
+            raise GeometryError(
+                "tip_radius",
+                f"{self.tip_radius:.6g}",
+                f"leaves no involute: it starts at {self.form_radius:.6g} modules",
+                "raise the tip diameter or the profile shift",
+            )
+        key = "tip_rounding" if self.tip_rounding > 0.0 else "tip_chamfer"
+        if self.involute_tip_radius <= self.form_radius:
+            raise GeometryError(key, getattr(self, key), "takes away the whole involute", "choose a smaller one")
+        if self.tip_half_angle <= 0.0:
+            raise GeometryError(key, getattr(self, key), "is wider than the tip allows", "choose a smaller one")
+
+    # ---- circles and angles -------------------------------------------------------------------------------------
+    @property
+    def pitch_radius(self) -> float:
+        """Pitch radius r = z/2 [modules]."""
+        return self.teeth / 2
+
+    @cached_property
+    def base_radius(self) -> float:
+        """r_b = r cos(alpha) [modules]."""
+        return self.pitch_radius * math.cos(self.rack.pressure_angle)
+
+    @property
+    def base_pitch(self) -> float:
+        """p_b = pi cos(alpha) [modules]."""
+        return math.pi * math.cos(self.rack.pressure_angle)
+
+    @property
+    def generating_shift(self) -> float:
+        """x_E, generating profile shift coefficient: the shift less what the thickness allowance takes."""
+        return self.profile_shift - self.thickness_allowance / (2.0 * math.tan(self.rack.pressure_angle))
+
+    @property
+    def root_radius(self) -> float:
+        """r_f [modules]."""
+        return self.pitch_radius + self.generating_shift - self.rack.dedendum
+
+    @cached_property
+    def base_half_angle(self) -> float:
+        """psi_b, half the tooth's angle on the base circle [rad]."""
+        alpha = self.rack.pressure_angle
+        thickness = math.pi / 2 + 2.0 * self.generating_shift * math.tan(alpha)
+        return thickness / self.teeth + float(inv(alpha))
+
+    @property
+    def root_land_half_angle(self) -> float:
+        """Half the angle of the root land between the two fillets of one tooth space [rad]."""
+        return self.rack.tip_centre_offset / self.pitch_radius
+
+    def roll(self, radius: ArrayLike) -> Array:
+        """Roll angle tan(alpha_r) [rad] of the involute at `radius` [modules] (>= base radius)."""
+        r = np.asarray(radius, dtype=float)
+        return np.sqrt((r - self.base_radius) * (r + self.base_radius)) / self.base_radius
+
+    def radius_of_roll(self, roll: ArrayLike) -> Array:
+        """Radius [modules] of the involute at a roll angle [rad]."""
+        return self.base_radius * np.hypot(1.0, np.asarray(roll, dtype=float))
+
+    def half_thickness_angle(self, radius: ArrayLike) -> Array:
+        """Half the tooth's angle [rad] between its two involutes at `radius` [modules]."""
+        return self.base_half_angle - polar_angle(self.roll(radius))
+
+    # ---- where fillet and involute meet -----------------------------------------------------------------------
+    def _full_trochoid(self) -> Trochoid:
+        return Trochoid(
+            pitch_radius=self.pitch_radius,
+            rounding=self.rack.tip_radius,
+            centre_offset=self.rack.tip_centre_offset,
+            centre_height=self.generating_shift - self.rack.tip_centre_depth,
+            space_half_angle=math.pi / self.teeth,
+            start=0.0,
+            end=math.pi / 2 - self.rack.pressure_angle,
+        )
+
+    @cached_property
+    def _tangent_roll(self) -> float:
+        """Roll angle at which the rack's straight flank ends on the line of action; negative means undercut."""
+        alpha = self.rack.pressure_angle
+        height = self.generating_shift - self.rack.tip_centre_depth - self.rack.tip_radius * math.sin(alpha)
+        return math.tan(alpha) + height / (self.base_radius * math.sin(alpha))
+
+    @property
+    def undercut(self) -> bool:
+        """Whether the rack's tip cuts away part of the involute."""
+        return self._tangent_roll < 0.0
+
+    @cached_property
+    def _junction(self) -> tuple[float, float]:
+        """Trochoid parameter and roll angle where fillet and involute meet."""
+        fillet = self._full_trochoid()
+        if not self.undercut:
+            return fillet.end, self._tangent_roll
+        from scipy.optimize import brentq
+
+        def radius(beta: float) -> float:
+            return float(np.hypot(*fillet.points(beta)))
+
+        def outside(beta: float) -> float:
+            x, y = fillet.points(beta)
+            t = math.sqrt(max(math.hypot(x, y) ** 2 / self.base_radius**2 - 1.0, 0.0))
+            return float(np.arctan2(x, y) - (self.base_half_angle - polar_angle(t)))
+
+        # The trochoid's radius grows with beta; below the base circle there is no involute to meet.
+        low = fillet.start
+        if radius(low) < self.base_radius:
+            low = brentq(lambda b: radius(b) - self.base_radius, low, fillet.end, xtol=1e-15, rtol=1e-15)
+        beta = fillet.end if outside(low) >= 0.0 else brentq(outside, low, fillet.end, xtol=1e-15, rtol=9e-16)
+        return beta, float(self.roll(max(radius(beta), self.base_radius)))
+
+    @cached_property
+    def form_radius(self) -> float:
+        """r_Ff, where the involute starts on the generated flank [modules]."""
+        return float(self.radius_of_roll(self._junction[1]))
+
+    # ---- where the involute ends ---------------------------------------------------------------------------------
+    @cached_property
+    def involute_tip_radius(self) -> float:
+        """Radius at which the involute ends: the tip circle, or where its rounding or chamfer starts [modules]."""
+        if self.tip_rounding > 0.0:
+            inner = self.tip_radius - self.tip_rounding
+            if inner <= self.base_radius:
+                raise GeometryError("tip_rounding", self.tip_rounding, "reaches below the base circle")
+            # The rounding's centre lies on the parallel involute (same base circle, roll length less the rounding).
+            length = self.tip_rounding + math.sqrt((inner - self.base_radius) * (inner + self.base_radius))
+            return math.hypot(self.base_radius, length)
+        return self.tip_radius - self.tip_chamfer
+
+    @cached_property
+    def tip_half_angle(self) -> float:
+        """Half the angle of the tip land that is left [rad]."""
+        if self.tip_rounding > 0.0:
+            t = float(self.roll(self.involute_tip_radius))
+            phi = self.base_half_angle - t
+            x, y = self.involute.points(t) - self.tip_rounding * np.array([math.cos(phi), -math.sin(phi)])
+            return math.atan2(x, y)
+        if self.tip_chamfer > 0.0:
+            return float(self.half_thickness_angle(self.involute_tip_radius)) - self.tip_chamfer / self.tip_radius
+        return float(self.half_thickness_angle(self.tip_radius))
+
+    # ---- curves ----------------------------------------------------------------------------------------------------
+    @cached_property
+    def involute(self) -> Involute:
+        """The usable right flank, from form circle to tip (or its rounding, chamfer)."""
+        end = float(self.roll(self.involute_tip_radius))
+        return Involute(self.base_radius, self.base_half_angle, self._junction[1], end)
+
+    @cached_property
+    def fillet(self) -> Trochoid:
+        """The right fillet, from the root circle to the involute."""
+        whole = self._full_trochoid()
+        return Trochoid(
+            whole.pitch_radius,
+            whole.rounding,
+            whole.centre_offset,
+            whole.centre_height,
+            whole.space_half_angle,
+            0.0,
+            self._junction[0],
+        )
+
+    @cached_property
+    def root_land(self) -> Arc | None:
+        """The right half of the root land, or None with a full fillet."""
+        if self.root_land_half_angle <= 1e-12:
+            return None
+        middle = math.pi / self.teeth
+        return Arc((0.0, 0.0), self.root_radius, middle, middle - self.root_land_half_angle)
+
+    @cached_property
+    def tip_edge(self) -> Arc | Line | None:
+        """Rounding or chamfer between flank and tip circle, or None."""
+        t = self.involute.end
+        if self.tip_rounding > 0.0:
+            phi = self.base_half_angle - t
+            x, y = self.involute.points(t) - self.tip_rounding * np.array([math.cos(phi), -math.sin(phi)])
+            return Arc((float(x), float(y)), self.tip_rounding, math.pi / 2 + phi, self.tip_half_angle)
+        if self.tip_chamfer > 0.0:
+            a, b = (
+                self.involute.points(t),
+                self.tip_radius * np.array([math.sin(self.tip_half_angle), math.cos(self.tip_half_angle)]),
+            )
+            return Line((float(a[0]), float(a[1])), (float(b[0]), float(b[1])))
+        return None
+
+    @cached_property
+    def tip_land(self) -> Arc:
+        """The right half of the tip circle's arc."""
+        return Arc((0.0, 0.0), self.tip_radius, self.tip_half_angle, 0.0)
+
+    @property
+    def outline(self) -> dict[str, Curve]:
+        """The right half of the outline from the middle of the tooth space to the tooth's centre line, by name."""
+        pieces: dict[str, Curve | None] = {
+            "root_land": self.root_land,
+            "fillet": self.fillet,
+            "flank": self.involute,
+            "tip_edge": self.tip_edge,
+            "tip_land": self.tip_land,
+        }
+        return {name: piece for name, piece in pieces.items() if piece is not None}
