@@ -7,6 +7,8 @@ Inside fegear every number is a plain float in SI (m, N, Pa, kg, s, rad). Case f
 from __future__ import annotations
 
 import functools
+import math
+import re
 from typing import TYPE_CHECKING
 
 from fegear.errors import InputError
@@ -37,6 +39,42 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
     "temperature": ("K", "350 K"),
     "dimensionless": ("", "0.3"),
 }
+
+_INCH = 0.0254
+
+#: Everyday units and their size in SI, by dimension. A case file written in these is read without pint, whose import
+#: alone would take a quarter of a cold run; any other unit goes to pint. A test holds every entry against pint.
+EVERYDAY: dict[str, dict[str, float]] = {
+    "length": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "cm": 1e-2, "inch": _INCH, "in": _INCH},
+    "angle": {"rad": 1.0, "deg": math.pi / 180.0, "degree": math.pi / 180.0},
+    "force": {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605},
+    "torque": {"N*m": 1.0, "kN*m": 1e3},
+    "pressure": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    "density": {"kg/m^3": 1.0, "g/cm^3": 1e3},
+    "line_load": {"N/m": 1.0, "N/mm": 1e3},
+    "speed": {"rad/s": 1.0, "rpm": math.pi / 30.0},
+    "frequency": {"Hz": 1.0, "kHz": 1e3},
+    "inertia": {"kg*m^2": 1.0},
+    "torsional_stiffness": {"N*m/rad": 1.0},
+    "torsional_damping": {"N*m*s/rad": 1.0, "N*m*s": 1.0},
+    "stiffness": {"N/m": 1.0, "N/mm": 1e3, "N/um": 1e6},
+    "damping": {"N*s/m": 1.0},
+    "inverse_length": {"/inch": 1.0 / _INCH, "/in": 1.0 / _INCH, "/mm": 1e3, "/m": 1.0},
+    "compliance": {"m/N": 1.0, "um/N": 1e-6},
+    "time": {"s": 1.0, "ms": 1e-3},
+    "viscosity": {"Pa*s": 1.0},
+    "temperature": {"K": 1.0},
+    "dimensionless": {},
+}
+
+_NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)\s*")
+
+
+def _everyday(text: str, dimension: str) -> float | None:
+    """Return the quantity in SI if it is a number and one of the everyday units of its dimension."""
+    match = _NUMBER_AND_UNIT.fullmatch(text)
+    size = EVERYDAY[dimension].get(match[2].replace(" ", "")) if match else None
+    return None if match is None or size is None else float(match[1]) * size
 
 
 @functools.lru_cache(maxsize=1)
@@ -77,6 +115,9 @@ def to_si(text: str | float, dimension: str, key: str = "value") -> float:
         if dimension == "dimensionless":
             return float(text)
         raise InputError(key, text, f"is a bare number, but a {kind} needs a unit", f'write for example "{example}"')
+    everyday = _everyday(text, dimension)
+    if everyday is not None and math.isfinite(everyday):
+        return everyday
     import pint
 
     try:
@@ -89,7 +130,7 @@ def to_si(text: str | float, dimension: str, key: str = "value") -> float:
         raise InputError(
             key, f'"{text}"', f"is not a quantity that can be read ({detail})", f'write for example "{example}"'
         ) from None
-    if value != value or value in (float("inf"), float("-inf")):
+    if not math.isfinite(value):
         raise InputError(key, f'"{text}"', "must be finite")
     return value
 

@@ -1,0 +1,25 @@
+"""``[accuracy]``: a tolerance that picks the settings, or the settings themselves."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from fegear.scene.case.part import Number, Part, refuse
+
+
+def _tolerance(value: float) -> float:
+    if not 1e-6 <= value <= 0.5:
+        raise refuse("must lie between 1e-6 and 0.5 (a relative error)", "1e-3 is the default", value=value)
+    return value
+
+
+class AccuracyPart(Part):
+    """Relative tolerance of the results, or explicit settings with lengths in modules."""
+
+    tolerance: Annotated[Number, AfterValidator(_tolerance)] = 1e-3
+    order: Annotated[int, Field(ge=2, le=4)] | None = None
+    root_edge_length: Annotated[Number, Field(gt=0.0, le=1.0)] | None = None
+    flank_edge_length: Annotated[Number, Field(gt=0.0, le=1.0)] | None = None
+    patch_half_width: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None

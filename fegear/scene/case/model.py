@@ -1,0 +1,26 @@
+"""A whole case: what is wanted, and the parts that describe it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from fegear.scene.case.accuracy import AccuracyPart
+from fegear.scene.case.effects import EffectsPart
+from fegear.scene.case.gear import GearPart
+from fegear.scene.case.pair import PairPart
+from fegear.scene.case.part import Part
+from fegear.scene.case.stiffness import StiffnessPart
+
+
+class Case(Part):
+    """One case file."""
+
+    title: str = ""
+    results: Annotated[list[str], Field(min_length=1)]
+    gear: dict[str, GearPart] = Field(default_factory=dict)
+    pair: dict[str, PairPart] = Field(default_factory=dict)
+    stiffness: StiffnessPart = Field(default_factory=StiffnessPart)
+    effects: EffectsPart = Field(default_factory=EffectsPart)
+    accuracy: AccuracyPart = Field(default_factory=AccuracyPart)

@@ -1,0 +1,71 @@
+"""``[pair.NAME]``: two gears of a scene in mesh."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.errors import InputError
+from fegear.geometry import GearPair
+from fegear.scene.case.part import Part, PositiveForce, PositiveLength, PositiveTorque, at, refuse
+
+if TYPE_CHECKING:
+    from fegear.geometry import Gear
+
+
+class CompliancePart(Part):
+    """``compliance = { source = "fe" }``: where a pair's tooth compliances come from."""
+
+    source: Literal["fe", "cornell", "weber-banaschek", "potential-energy", "table"] = "fe"
+    file: str | None = None
+    of: Literal["tooth", "pair"] | None = None
+    fit: Literal["linear", "cubic"] | None = None
+
+    @model_validator(mode="after")
+    def _table_needs_file(self) -> Self:
+        if self.source == "table" and self.file is None:
+            raise refuse(
+                "is missing, but the compliance source is a table", 'name its file: file = "c.csv"', key="file"
+            )
+        if self.source != "table":
+            for key in ("file", "of", "fit"):
+                if getattr(self, key) is not None:
+                    raise refuse(
+                        f'has no meaning with source = "{self.source}"', 'remove it or set source = "table"', key=key
+                    )
+        return self
+
+
+class PairPart(Part):
+    """Two gears in mesh and the load between them."""
+
+    driver: str
+    driven: str
+    centre_distance: PositiveLength | None = None
+    load: PositiveForce | None = None
+    torque: PositiveTorque | None = None
+    compliance: CompliancePart = Field(default_factory=CompliancePart)
+
+    @model_validator(mode="after")
+    def _one_load(self) -> Self:
+        if self.load is not None and self.torque is not None:
+            raise refuse(
+                "contradicts load", "give either the load along the line of action or the torque", key="torque"
+            )
+        return self
+
+    def build(self, gears: dict[str, Gear], prefix: str) -> GearPair:
+        """Make the pair from the scene's gears."""
+        distance = math.nan if self.centre_distance is None else self.centre_distance
+        try:
+            return GearPair(gears[self.driver], gears[self.driven], distance)
+        except InputError as error:
+            raise at(prefix, error, {"pair": ""}) from None
+
+    def normal_load(self, pair: GearPair) -> float | None:
+        """Load along the line of action [N], from the load or the driver's torque; None if neither is given."""
+        if self.torque is not None:
+            return self.torque / pair.driver.base_radius
+        return self.load

@@ -1,0 +1,78 @@
+"""What every part of a case file shares: strict keys, quantities with units, and errors that name their key."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic_core import PydanticCustomError
+
+from fegear.errors import FegearError, InputError
+from fegear.units import to_si
+
+
+class Part(BaseModel):
+    """A table of a case file: unknown keys are refused, values are not converted silently, nothing changes later."""
+
+    model_config = ConfigDict(
+        extra="forbid", strict=True, frozen=True, allow_inf_nan=False, arbitrary_types_allowed=True
+    )
+
+
+def refuse(rule: str, remedy: str = "", *, value: object = None, key: str = "") -> PydanticCustomError:
+    """Make the error that a validator raises; `key` goes below the place where pydantic found it."""
+    return PydanticCustomError("fegear", "{rule}", {"rule": rule, "remedy": remedy, "shown": value, "key": key})
+
+
+def quantity(dimension: str, *, positive: bool = False, not_negative: bool = False) -> BeforeValidator:
+    """Validator that reads a quantity of `dimension` into SI and holds it against its range."""
+
+    def read(value: object) -> float:
+        if not isinstance(value, (str, int, float)):
+            value = str(value)
+        try:
+            number = to_si(value, dimension, "value")
+        except InputError as error:
+            raise refuse(error.rule, error.remedy, value=error.value) from None
+        shown = f'"{value}"' if isinstance(value, str) else value
+        if positive and number <= 0.0:
+            raise refuse("must be greater than zero", value=shown)
+        if not_negative and number < 0.0:
+            raise refuse("must not be negative", value=shown)
+        return number
+
+    return BeforeValidator(read)
+
+
+def _number(value: object) -> object:
+    """Let a whole number stand for a float, as TOML users write ``addendum = 1``."""
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+Number = Annotated[float, BeforeValidator(_number)]
+Length = Annotated[float, quantity("length")]
+PositiveLength = Annotated[float, quantity("length", positive=True)]
+LengthOrZero = Annotated[float, quantity("length", not_negative=True)]
+Angle = Annotated[float, quantity("angle")]
+Force = Annotated[float, quantity("force")]
+PositiveForce = Annotated[float, quantity("force", positive=True)]
+PositiveTorque = Annotated[float, quantity("torque", positive=True)]
+PositiveLineLoad = Annotated[float, quantity("line_load", positive=True)]
+PositivePressure = Annotated[float, quantity("pressure", positive=True)]
+PositiveDensity = Annotated[float, quantity("density", positive=True)]
+PositiveInverseLength = Annotated[float, quantity("inverse_length", positive=True)]
+
+
+def at(prefix: str, error: InputError, names: dict[str, str] | None = None) -> FegearError:
+    """Return the error of a lower layer under the key that the user wrote.
+
+    Parameters
+    ----------
+    prefix : str
+        Where in the case the object stands (``gear.a``).
+    error : InputError
+    names : dict, optional
+        Keys of the lower layer that have another name in case files.
+    """
+    key = (names or {}).get(error.key, error.key)
+    return type(error)(f"{prefix}.{key}" if key else prefix, error.value, error.rule, error.remedy)

@@ -1,0 +1,223 @@
+"""From a case file and ``--set`` options to a checked scene; every error is one sentence with key, value and remedy."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from types import UnionType
+from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from fegear.errors import InputError
+from fegear.scene.case import Case
+from fegear.scene.names import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from pydantic_core import ErrorDetails
+
+    from fegear.geometry import Gear, GearPair
+
+_KINDS = {
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "float_type": "must be a number",
+    "string_type": "must be a text in quotes",
+    "bool_type": "must be true or false",
+    "list_type": "must be a list in square brackets",
+    "dict_type": "must be a table",
+    "model_type": "must be a table of keys and values",
+    "finite_number": "must be finite",
+    "too_short": "must not be empty",
+}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A checked case with its gears and pairs built.
+
+    Attributes
+    ----------
+    case : Case
+        What the user wrote, in SI.
+    name : str
+        Name of the case, from its file.
+    folder : Path
+        Where relative file names in the case start.
+    gears : dict of str to Gear
+    pairs : dict of str to GearPair
+    """
+
+    case: Case
+    name: str
+    folder: Path
+    gears: dict[str, Gear]
+    pairs: dict[str, GearPair]
+
+    def file(self, text: str, key: str) -> Path:
+        """Return the path of a file that the case names, or refuse if it is not there."""
+        path = self.folder / text
+        if not path.is_file():
+            raise InputError(key, f'"{text}"', "is no file", f"looked for it as {path}")
+        return path
+
+
+def read_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
+    """Read a case file, apply ``--set`` options, check everything.
+
+    Parameters
+    ----------
+    path : path of a TOML case file
+    overrides : sequence of "dotted.key=value"
+        Values are TOML; what is no TOML is taken as text.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or anything in it breaks a rule.
+    """
+    path = Path(path)
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError("case", f'"{path}"', "does not exist", "check the path of the case file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError("case", f'"{path}"', f"cannot be read ({error})") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError("case", f'"{path}"', f"is no valid TOML: {error}", "quantities stand in quotes") from None
+    for override in overrides:
+        apply_override(document, override)
+    return build_scene(document, path.stem, path.parent)
+
+
+def build_scene(document: Mapping[str, object], name: str, folder: Path) -> Scene:
+    """Check a case given as a plain mapping and build its gears and pairs."""
+    try:
+        case = Case.model_validate(document)
+    except ValidationError as error:
+        raise _sentence(error.errors(include_url=False)[0]) from None
+    gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items()}
+    for key, pair in case.pair.items():
+        for role in ("driver", "driven"):
+            _known(f"pair.{key}.{role}", getattr(pair, role), gears, "gear")
+    pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
+    if case.stiffness.gear is not None:
+        _known("stiffness.gear", case.stiffness.gear, gears, "gear")
+    if case.stiffness.pair is not None:
+        _known("stiffness.pair", case.stiffness.pair, pairs, "pair")
+    return Scene(case, name, folder, gears, pairs)
+
+
+def _known(key: str, name: str, known: Iterable[str], kind: str) -> None:
+    if name not in known:
+        raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known))
+
+
+# ---- errors ------------------------------------------------------------------------------------------------------
+def _sentence(error: ErrorDetails) -> InputError:
+    """Turn one of pydantic's errors into fegear's."""
+    kind, context, value = error["type"], error.get("ctx", {}), error.get("input")
+    loc = [str(step) for step in error["loc"]]
+    if kind == "fegear" and context["key"]:
+        loc.append(context["key"])
+    key = _dotted(loc)
+    if kind == "fegear":
+        shown = context["shown"]
+        if shown is None:
+            shown = value.get(loc[-1], "(not given)") if isinstance(value, dict) and context["key"] else _show(value)
+        return InputError(key, shown, context["rule"], context["remedy"])
+    if kind == "extra_forbidden":
+        known = _keys_at(loc[:-1])
+        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known))
+    if kind == "missing":
+        return InputError(key, "(not given)", "is required")
+    if kind == "literal_error":
+        return InputError(key, _show(value), f"must be {context['expected']}")
+    rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
+    return InputError(key, _show(value), rule[0].lower() + rule[1:])
+
+
+def _dotted(loc: list[str]) -> str:
+    text = ""
+    for step in loc:
+        text += f"[{step}]" if step.isdigit() else f".{step}"
+    return text.removeprefix(".") or "case"
+
+
+def _show(value: object) -> str:
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (dict, list)) and len(str(value)) > 60:
+        return "(a table)" if isinstance(value, dict) else "(a list)"
+    return str(value)
+
+
+# ---- what keys exist ---------------------------------------------------------------------------------------------
+def _models(annotation: object) -> list[type[BaseModel]]:
+    """Tables that an annotation allows: ``Part``, ``Part | None``, ``Annotated[Part, ...]``."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    if get_origin(annotation) is Annotated:
+        return _models(get_args(annotation)[0])
+    if get_origin(annotation) in (Union, UnionType):
+        return [model for argument in get_args(annotation) for model in _models(argument)]
+    return []
+
+
+def _named_tables(annotation: object) -> list[type[BaseModel]]:
+    """Model of the values in ``dict[str, Part]``."""
+    return _models(get_args(annotation)[1]) if get_origin(annotation) is dict else []
+
+
+def _keys_at(loc: Sequence[str]) -> list[str]:
+    """Known keys of the table at `loc`; an empty list where the tables carry names of the user's choice."""
+    models: list[type[BaseModel]] = [Case]
+    steps = list(loc)
+    while steps:
+        step = steps.pop(0)
+        annotations = [model.model_fields[step].annotation for model in models if step in model.model_fields]
+        named = [model for annotation in annotations for model in _named_tables(annotation)]
+        if named and steps:
+            steps.pop(0)
+        models = [model for annotation in annotations for model in _models(annotation)] or named or models
+    return sorted({name for model in models for name in model.model_fields})
+
+
+def apply_override(document: dict[str, Any], override: str) -> None:
+    """Set one ``dotted.key=value`` in a case document, or refuse a path that does not exist.
+
+    Parameters
+    ----------
+    document : dict
+        Changed in place.
+    override : str
+    """
+    path, equals, text = override.partition("=")
+    steps = path.strip().split(".")
+    if not equals or not all(steps):
+        raise InputError("--set", f'"{override}"', "must read KEY=VALUE", "for example --set gear.a.teeth=30")
+    try:
+        value = tomllib.loads(f"value = {text.strip()}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text.strip()
+    table = document
+    for depth, step in enumerate(steps[:-1]):
+        if step not in table:
+            if steps[depth - 1 : depth] in (["gear"], ["pair"]):
+                raise InputError("--set", f'"{path}"', f'"{step}" is not in this case', nearest(step, table))
+            known = _keys_at(steps[:depth])
+            if step not in known:
+                raise InputError("--set", f'"{path}"', f'"{step}" is an unknown key', nearest(step, known))
+            table[step] = {}
+        if not isinstance(table[step], dict):
+            raise InputError("--set", f'"{path}"', f'"{step}" is no table in this case, so nothing can be set in it')
+        table = table[step]
+    known = _keys_at(steps[:-1])
+    if known and steps[-1] not in known and steps[-1] not in table:
+        raise InputError("--set", f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known))
+    table[steps[-1]] = value

@@ -1,0 +1,108 @@
+"""The plan: which tasks the wanted results need, in order, why each runs and why the others do not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.errors import InputError
+from fegear.scene.names import nearest
+from fegear.scene.stage import Stage, Task
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.scene.load import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One task of the plan and the reasons for it."""
+
+    task: Task
+    stage: Stage
+    reasons: tuple[str, ...]
+    effects: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What will be computed, in order, and what not.
+
+    Attributes
+    ----------
+    steps : tuple of Step
+    skipped : tuple of (stage name, reason)
+    idle_effects : tuple of str
+        Effects that are on but that no step uses.
+    """
+
+    steps: tuple[Step, ...]
+    skipped: tuple[tuple[str, str], ...]
+    idle_effects: tuple[str, ...]
+
+
+def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
+    """Derive the tasks from the wanted results.
+
+    Parameters
+    ----------
+    scene : Scene
+    stages : sequence of Stage
+
+    Raises
+    ------
+    InputError
+        If a result is unknown, or the scene lacks what a stage needs.
+    """
+    by_name = {stage.name: stage for stage in stages}
+    by_result: dict[str, list[Stage]] = {}
+    for stage in stages:
+        for result in stage.results:
+            by_result.setdefault(result, []).append(stage)
+
+    reasons: dict[Task, list[str]] = {}
+    order: list[Task] = []
+
+    def require(task: Task, reason: str) -> None:
+        if task in reasons:
+            if reason not in reasons[task]:
+                reasons[task].append(reason)
+            return
+        stage = by_name[task.stage]
+        stage.check(scene, task.subject)
+        reasons[task] = [reason]
+        for need in stage.needs(scene, task.subject):
+            require(need, f"{task} needs it")
+        order.append(task)
+
+    for result in scene.case.results:
+        if result not in by_result:
+            raise InputError("results", f'"{result}"', "is no result that fegear knows", nearest(result, by_result))
+        for stage in by_result[result]:
+            subjects = stage.subjects(scene)
+            if not subjects:
+                raise InputError(
+                    "results",
+                    f'"{result}"',
+                    "asks for something that this case does not describe",
+                    "add the gear, pair or train that it is about",
+                )
+            for subject in subjects:
+                require(Task(stage.name, subject), f'results asks for "{result}"')
+
+    on = scene.case.effects.on()
+    steps = tuple(
+        Step(task, by_name[task.stage], tuple(reasons[task]), tuple(e for e in by_name[task.stage].effects if e in on))
+        for task in order
+    )
+    running = {step.stage.name for step in steps}
+    skipped = tuple((stage.name, _why_not(stage)) for stage in stages if stage.name not in running)
+    used = {effect for step in steps for effect in step.effects}
+    return Plan(steps, skipped, tuple(effect for effect in on if effect not in used))
+
+
+def _why_not(stage: Stage) -> str:
+    if not stage.results:
+        return "no wanted result needs it"
+    return f'nothing asks for it (results does not name "{stage.results[0]}")'

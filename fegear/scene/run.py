@@ -1,0 +1,101 @@
+"""Run a plan: every task once, in order, with its seconds."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.scene.load import Scene
+    from fegear.scene.outcome import Outcome, Table, Value
+    from fegear.scene.plan import Plan
+    from fegear.scene.stage import Task
+
+
+class Watcher(Protocol):
+    """Who is told how a run goes on (a progress bar, a log)."""
+
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Tell that a task starts."""
+
+    def advance(self, fraction: float) -> None:
+        """Tell how far the task is."""
+
+    def end(self, seconds: float) -> None:
+        """Tell that the task is finished."""
+
+
+class Silence:
+    """A watcher that says nothing."""
+
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Say nothing."""
+
+    def advance(self, fraction: float) -> None:
+        """Say nothing."""
+
+    def end(self, seconds: float) -> None:
+        """Say nothing."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything that a run found.
+
+    Attributes
+    ----------
+    scene : Scene
+    plan : Plan
+    outcomes : mapping of Task to Outcome
+        In the order of the plan.
+    seconds : mapping of Task to float
+    """
+
+    scene: Scene
+    plan: Plan
+    outcomes: Mapping[Task, Outcome]
+    seconds: Mapping[Task, float]
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        """All tables."""
+        return tuple(table for outcome in self.outcomes.values() for table in outcome.tables)
+
+    @property
+    def values(self) -> tuple[Value, ...]:
+        """All single values."""
+        return tuple(value for outcome in self.outcomes.values() for value in outcome.values)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """All remarks, each once."""
+        return tuple(dict.fromkeys(remark for outcome in self.outcomes.values() for remark in outcome.remarks))
+
+
+def run_plan(scene: Scene, plan: Plan, watcher: Watcher | None = None) -> Results:
+    """Run every task of a plan.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan
+    watcher : Watcher, optional
+
+    Returns
+    -------
+    Results
+    """
+    watcher = watcher or Silence()
+    outcomes: dict[Task, Outcome] = {}
+    seconds: dict[Task, float] = {}
+    for number, step in enumerate(plan.steps, start=1):
+        title = f"{step.stage.title} ({step.task.subject})" if step.task.subject else step.stage.title
+        watcher.begin(title, number, len(plan.steps))
+        start = time.perf_counter()
+        outcomes[step.task] = step.stage.run(scene, step.task.subject, outcomes, watcher.advance)
+        seconds[step.task] = time.perf_counter() - start
+        watcher.end(seconds[step.task])
+    return Results(scene, plan, outcomes, seconds)

@@ -1,0 +1,13 @@
+"""The stages that fegear knows, one module per topic; each imports its heavy libraries only when it runs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.scene.stages import geometry
+
+if TYPE_CHECKING:
+    from fegear.scene.stage import Stage
+
+#: Every stage, in the order in which plans list those that they skip.
+STAGES: tuple[Stage, ...] = (geometry.GEOMETRY,)

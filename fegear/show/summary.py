@@ -1,0 +1,54 @@
+"""``summary.json``: single values with their errors, settings, seconds, version."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING
+
+import fegear
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fegear.scene.run import Results
+
+
+def _finite(number: float | None) -> float | None:
+    """JSON knows no infinity; a value that is not finite is told as null."""
+    return number if number is not None and math.isfinite(number) else None
+
+
+def summary(results: Results, files: list[str]) -> dict[str, object]:
+    """Collect what the summary holds.
+
+    Parameters
+    ----------
+    results : Results
+    files : list of str
+        Names of all files of the run.
+    """
+    case = results.scene.case
+    return {
+        "title": case.title,
+        "case": results.scene.name,
+        "results": {
+            value.name: {"value": _finite(value.shown), "unit": value.unit, "error": _finite(value.shown_error)}
+            for value in results.values
+        },
+        "settings": {
+            "tolerance": case.accuracy.tolerance,
+            "effects": list(case.effects.on()),
+            "stages": {str(task): dict(outcome.settings) for task, outcome in results.outcomes.items()},
+        },
+        "timings": {str(task): round(seconds, 6) for task, seconds in results.seconds.items()}
+        | {"total": round(sum(results.seconds.values()), 6)},
+        "remarks": list(results.remarks),
+        "files": files,
+        "version": fegear.__version__,
+    }
+
+
+def write_summary(path: Path, results: Results, files: list[str]) -> None:
+    """Write the summary as JSON."""
+    path.write_text(json.dumps(summary(results, files), indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")

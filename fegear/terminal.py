@@ -1,0 +1,67 @@
+"""How a run tells what it is doing: a progress bar on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rich.progress import Progress, TaskID
+
+    from fegear.scene.run import Watcher
+
+
+class PlainLines:
+    """One line per finished stage, for logs and pipes."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream, self._title = stream, ""
+
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Remember the title; a line appears when the stage is finished."""
+        self._title = f"[{number}/{count}] {title}"
+
+    def advance(self, fraction: float) -> None:
+        """Say nothing: a log needs no percentages."""
+
+    def end(self, seconds: float) -> None:
+        """Write the line."""
+        self._stream.write(f"{self._title}: {seconds:.2f} s\n")
+        self._stream.flush()
+
+
+class Bar:
+    """A bar per stage that stays on the terminal with the stage's seconds."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._task: TaskID | None = None
+
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Add a bar."""
+        self._task = self._progress.add_task(f"[{number}/{count}] {title}".replace("[", r"\["), total=1.0)
+
+    def advance(self, fraction: float) -> None:
+        """Move the bar."""
+        if self._task is not None:
+            self._progress.update(self._task, completed=fraction)
+
+    def end(self, seconds: float) -> None:  # noqa: ARG002  (rich shows the seconds it measured itself)
+        """Fill the bar."""
+        self.advance(1.0)
+
+
+@contextlib.contextmanager
+def watcher(stream: TextIO) -> Iterator[Watcher]:
+    """Give the watcher that suits a stream."""
+    if not stream.isatty():
+        yield PlainLines(stream)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(bar_width=30), TimeElapsedColumn())
+    with Progress(*columns, console=Console(file=stream)) as progress:
+        yield Bar(progress)

@@ -1,0 +1,9 @@
+#!/bin/sh
+# All tests: ./test.sh [options of pytest]. Sets itself up in .venv on first use.
+set -eu
+root=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
+. "$root/setup.sh"
+fegear_setup "${FEGEAR_VENV:-$root/.venv}" test
+cd "$root"
+# Each worker is one process of one thread: the solves are too small for threads to help.
+OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 exec "${FEGEAR_VENV:-$root/.venv}/bin/python" -m pytest -n 2 "$@"

@@ -1,0 +1,183 @@
+"""The house is layered: data flow one way, each heavy library has one door, `import fegear` is light."""
+
+from __future__ import annotations
+
+import fnmatch
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+_spec = importlib.util.spec_from_file_location("source_tree", Path(__file__).with_name("source_tree.py"))
+assert _spec is not None
+assert _spec.loader is not None
+source_tree = importlib.util.module_from_spec(_spec)
+sys.modules["source_tree"] = source_tree
+_spec.loader.exec_module(source_tree)
+
+#: Layer of each package or top-level module; an import must go to a lower layer or stay in its own package.
+LAYERS = {
+    "fegear": 0,
+    "errors": 0,
+    "units": 0.5,
+    "geometry": 1,
+    "formulas": 2,
+    "fem": 2,
+    "contact": 3,
+    "design": 4,
+    "helical": 4,
+    "dynamics": 5,
+    "scene": 6,
+    "show": 7,
+    "terminal": 7,
+    "cli": 8,
+}
+
+#: Where each heavy library may be imported.
+DOORS = {
+    "gmsh": ["fegear.fem.sector"],
+    "skfem": ["fegear.fem.*"],
+    "meshio": ["fegear.fem.imported"],
+    "pint": ["fegear.units"],
+    "pydantic": ["fegear.scene.case.*", "fegear.scene.case", "fegear.scene.load"],
+    "typer": ["fegear.cli"],
+    "rich": ["fegear.terminal"],
+    "dask": ["fegear.scene.executor"],
+    "distributed": ["fegear.scene.executor"],
+    "numba": ["fegear.dynamics.*", "fegear.contact.*"],
+    "pyvista": ["fegear.show.*"],
+    "vtk": [],
+    "matplotlib": ["fegear.show.*"],
+    "plotly": ["fegear.show.*"],
+    "ezdxf": ["fegear.show.*"],
+    "xarray": ["fegear.show.*", "fegear.scene.sweep*"],
+}
+
+#: What `import fegear` may not load.
+HEAVY = ("gmsh", "pyvista", "matplotlib", "dask", "skfem", "pint", "meshio", "plotly", "numba", "xarray", "scipy")
+
+
+def _package(module: str) -> str:
+    parts = module.split(".")
+    return parts[1] if len(parts) > 1 else "fegear"
+
+
+def layer_faults(imports: list) -> list[str]:
+    faults = []
+    for one in imports:
+        if one.imported.split(".")[0] != "fegear" or one.imported == "fegear":
+            continue
+        here, there = _package(one.importer), _package(one.imported)
+        if here == there:
+            continue
+        if there not in LAYERS or here not in LAYERS:
+            faults.append(f"{one}: not in the list of layers")
+        elif LAYERS[there] >= LAYERS[here]:
+            faults.append(f"{one}: layer {LAYERS[here]} must not import layer {LAYERS[there]}")
+    return faults
+
+
+def door_faults(imports: list) -> list[str]:
+    faults = []
+    for one in imports:
+        library = one.imported.split(".")[0]
+        doors = DOORS.get(library)
+        if doors is None or one.typing_only:
+            continue
+        if not any(fnmatch.fnmatchcase(one.importer, door) for door in doors):
+            faults.append(f"{one}: its door is {', '.join(doors) or 'nowhere'}")
+    return faults
+
+
+def cycles(edges: dict[str, set[str]]) -> list[list[str]]:
+    """Elementary cycles found by depth-first search; empty when the graph is acyclic."""
+    found: list[list[str]] = []
+    state: dict[str, int] = {}
+
+    def visit(node: str, path: list[str]) -> None:
+        state[node] = 1
+        for neighbour in sorted(edges.get(node, ())):
+            if state.get(neighbour) == 1:
+                found.append([*path[path.index(neighbour) :], neighbour])
+            elif neighbour not in state:
+                visit(neighbour, [*path, neighbour])
+        state[node] = 2
+
+    for node in sorted(edges):
+        if node not in state:
+            visit(node, [node])
+    return found
+
+
+@pytest.fixture(scope="module")
+def imports() -> list:
+    return source_tree.all_imports()
+
+
+def test_no_module_imports_from_its_own_layer_or_above(imports):
+    assert layer_faults(imports) == []
+
+
+def test_every_heavy_library_is_imported_at_its_door_only(imports):
+    assert door_faults(imports) == []
+
+
+def test_there_are_no_import_cycles(imports):
+    edges: dict[str, set[str]] = {}
+    for one in imports:
+        if one.imported.startswith("fegear") and not one.typing_only and one.imported != one.importer:
+            edges.setdefault(one.importer, set()).add(one.imported)
+    assert cycles(edges) == []
+
+
+def test_results_know_no_pictures(imports):
+    faults = [str(one) for one in imports if _package(one.imported) == "show" and _package(one.importer) != "show"]
+    assert [fault for fault in faults if not fault.startswith("fegear.cli")] == []
+
+
+@pytest.mark.parametrize(
+    ("importer", "source", "fault"),
+    [
+        ("fegear.geometry.tooth", "def f():\n    from fegear.fem import ring", "layer"),
+        ("fegear.fem.ring", "import fegear.formulas.hertz", "layer"),
+        (
+            "fegear.scene.plan",
+            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from fegear import show",
+            "layer",
+        ),
+        ("fegear.fem.ring", "import gmsh", "door"),
+        ("fegear.contact.sharing", "def f():\n    import matplotlib.pyplot as plt", "door"),
+        ("fegear.contact.sharing", "import importlib\nimportlib.import_module('pyvista')", "door"),
+        ("fegear.geometry.tooth", "from .. import cli", "layer"),
+    ],
+)
+def test_the_walk_finds_what_it_must_find(importer, source, fault):
+    known = {"fegear.fem", "fegear.fem.ring", "fegear.formulas.hertz", "fegear.show", "fegear.cli"}
+    found = source_tree.imports_of(importer, source, known, is_package=False)
+    assert (layer_faults(found) if fault == "layer" else door_faults(found)) != []
+
+
+def test_the_cycle_search_finds_a_cycle():
+    assert cycles({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == [["a", "b", "c", "a"]]
+
+
+def test_importing_fegear_is_light_and_quick():
+    probe = (
+        "import sys, time; start = time.perf_counter(); import fegear; seconds = time.perf_counter() - start;"
+        f"print(seconds, *[name for name in {HEAVY!r} if name in sys.modules])"
+    )
+    runs = [
+        subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True).stdout.split()
+        for _ in range(3)
+    ]
+    assert [run[1:] for run in runs] == [[], [], []]
+    # The best of three: other work on the machine delays a run, nothing makes one faster than it is.
+    assert min(float(run[0]) for run in runs) < 0.4
+
+
+def test_the_command_line_starts_without_the_heavy_libraries():
+    probe = f"import sys, fegear.cli, fegear.terminal; print(*[name for name in {HEAVY!r} if name in sys.modules])"
+    run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []

@@ -1,0 +1,165 @@
+"""Bad input: one sentence that names the key, the value, the rule and the remedy."""
+
+from __future__ import annotations
+
+import copy
+from pathlib import Path
+
+import pytest
+
+from fegear.errors import GeometryError, InputError
+from fegear.scene.load import apply_override, build_scene, read_scene
+
+CASE = {
+    "title": "One gear",
+    "results": ["stiffness"],
+    "gear": {
+        "a": {
+            "teeth": 28,
+            "module": "1 mm",
+            "rack": {"addendum": 1, "dedendum": 1.25, "tip_radius": 0.25},
+            "bore_radius": "6.375 mm",
+            "face_width": "10 mm",
+            "material": {"young_modulus": "206.8 GPa", "poisson_ratio": 0.3},
+        },
+        "b": {"teeth": 35, "module": "1 mm"},
+    },
+    "pair": {"I": {"driver": "a", "driven": "b", "load": "100 N"}},
+    "stiffness": {"gear": "a"},
+}
+
+
+def scene_with(*overrides: str):
+    document = copy.deepcopy(CASE)
+    for override in overrides:
+        apply_override(document, override)
+    return build_scene(document, "case", Path())
+
+
+def test_a_case_is_read_into_si():
+    scene = scene_with()
+    assert scene.gears["a"].module == pytest.approx(1e-3, rel=1e-15)
+    assert scene.gears["a"].material.young_modulus == pytest.approx(206.8e9, rel=1e-15)
+    assert scene.pairs["I"].contact_ratio == pytest.approx(1.68, abs=0.05)
+    assert scene.case.pair["I"].load == 100.0
+    assert scene.gears["b"].bore_radius == pytest.approx(0.5 * scene.gears["b"].root_radius)
+
+
+def test_diametral_pitch_gives_the_module():
+    document = copy.deepcopy(CASE)
+    document["gear"]["a"].pop("module")
+    document["gear"]["a"] |= {"diametral_pitch": "8 / inch", "bore_radius": "20 mm"}
+    document["pair"] = {}
+    assert build_scene(document, "case", Path()).gears["a"].module == pytest.approx(25.4e-3 / 8, rel=1e-15)
+
+
+def test_named_and_full_racks():
+    assert scene_with("gear.a.rack=ISO 53 A").gears["a"].tooth.rack.tip_radius == 0.38
+    full = scene_with("gear.a.rack.tip_radius=full").gears["a"].tooth
+    assert full.root_land is None
+
+
+def test_torque_becomes_a_load_along_the_line_of_action():
+    document = copy.deepcopy(CASE)
+    document["pair"]["I"] = {"driver": "a", "driven": "b", "torque": "1 N*m"}
+    scene = build_scene(document, "case", Path())
+    load = scene.case.pair["I"].normal_load(scene.pairs["I"])
+    assert load == pytest.approx(1.0 / scene.gears["a"].base_radius, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("override", "key", "words"),
+    [
+        ("gear.a.teth=3", "--set", 'nearest known name is "teeth"'),
+        ("gear.a.material.poisson=0.3", "--set", 'nearest known name is "poisson_ratio"'),
+        ("gear.a.material={poisson=0.3}", "gear.a.material.poisson", 'nearest known name is "poisson_ratio"'),
+        ("gear.a.rack={adendum=1.0}", "gear.a.rack.adendum", 'nearest known name is "addendum"'),
+        ("gera.a.teeth=3", "--set", 'nearest known name is "gear"'),
+        ("gear.c.teeth=3", "--set", "not in this case"),
+        ("title.x=3", "--set", "no table"),
+        ("teeth", "--set", "KEY=VALUE"),
+        ("gear.a.module=3 N", "gear.a.module", "is not a length"),
+        ("gear.a.module=3", "gear.a.module", "needs a unit"),
+        ("gear.a.module=-3 mm", "gear.a.module", "greater than zero"),
+        ("gear.a.diametral_pitch=8 / inch", "gear.a.diametral_pitch", "contradicts module"),
+        ("gear.a.teeth=28.5", "gear.a.teeth", "whole number"),
+        ('gear.a.teeth="28"', "gear.a.teeth", "whole number"),
+        ("gear.a.teeth=4", "gear.a.teeth", "between 5 and 1000"),
+        ("gear.a.teeth=true", "gear.a.teeth", "whole number"),
+        ("gear.a.material.poisson_ratio=0.5", "gear.a.material.poisson_ratio", r"inside \(-1, 0.5\)"),
+        ("gear.a.material.poisson_ratio=-1.0", "gear.a.material.poisson_ratio", r"inside \(-1, 0.5\)"),
+        ("gear.a.bore_radius=13 mm", "gear.a.bore_radius", r"inside \(0, root radius = 12.75 mm\)"),
+        ("gear.a.bore_radius=0 mm", "gear.a.bore_radius", "greater than zero"),
+        ("gear.a.rack.tip_radius=0.6", "gear.a.rack.tip_radius", "room for 0.47"),
+        ("gear.a.rack=ISO 53 E", "gear.a.rack", "is no ISO 53 profile"),
+        ("gear.a.pressure_angle=60 deg", "gear.a.pressure_angle", "between 5 and 45"),
+        ("gear.a.profile_shift=2.5", "gear.a.profile_shift", "pointed"),
+        ("gear.a.tip_diameter=40 mm", "gear.a.tip_diameter = 40 mm", "pointed"),
+        ("gear.a.tip_radius_rounding=3 mm", "gear.a.tip_radius_rounding = 3 mm", "below the base"),
+        ("gear.a.plane=stres", "gear.a.plane", "'strain', 'stress' or 'auto'"),
+        ("gear.b.plane=auto", "gear.b.face_width", "missing"),
+        ("gear.a.profile_shift=nan", "gear.a.profile_shift", "finite"),
+        ("gear.b.module=2 mm", "pair.I", "base pitches"),
+        ("pair.I.driver=c", "pair.I.driver", "known here: a, b"),
+        ("pair.I.centre_distance=20 mm", "pair.I.centre_distance", "jams"),
+        ("pair.I.centre_distance=60 mm", "pair.I.centre_distance", "never meet"),
+        ("pair.I.torque=1 N*m", "pair.I.torque", "contradicts load"),
+        ("pair.I.compliance.source=fem", "pair.I.compliance.source", "'fe'"),
+        ("pair.I.compliance.source=table", "pair.I.compliance.file", "missing"),
+        ("stiffness.gear=c", "stiffness.gear", "known here: a, b"),
+        ('stiffness.radii=["3 N"]', "stiffness.radii[0]", "is not a length"),
+        ("stiffness.radii=[]", "stiffness.radii", "empty"),
+        ("stiffness.positions=1", "stiffness.positions", "greater than or equal to 2"),
+        ("accuracy.tolerance=0", "accuracy.tolerance", "between"),
+        ("accuracy.order=5", "accuracy.order", "less than or equal to 4"),
+        ("effects.friction=1", "effects.friction", "true or false"),
+        ("effects.hertz=non-linear", "effects.hertz", "'load-dependent'"),
+        ("results=[]", "results", "empty"),
+    ],
+)
+def test_a_refusal_names_key_and_rule(override, key, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        scene_with(override)
+    assert str(refusal.value).startswith(key)
+    assert "\n" not in str(refusal.value)
+
+
+def test_geometry_keeps_its_kind_of_error():
+    with pytest.raises(GeometryError):
+        scene_with("gear.a.bore_radius=13 mm")
+
+
+@pytest.mark.parametrize("missing", ["results", "gear.a.teeth", "gear.a.module", "pair.I.driver"])
+def test_what_is_required_is_named(missing):
+    document = copy.deepcopy(CASE)
+    table = document
+    *steps, last = missing.split(".")
+    for step in steps:
+        table = table[step]
+    table.pop(last)
+    with pytest.raises(InputError, match=r"required|missing") as refusal:
+        build_scene(document, "case", Path())
+    assert refusal.value.key == missing
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    with pytest.raises(InputError, match="does not exist"):
+        read_scene(tmp_path / "none.toml")
+    broken = tmp_path / "broken.toml"
+    broken.write_text("gear = {")
+    with pytest.raises(InputError, match="no valid TOML"):
+        read_scene(broken)
+    broken.write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match="cannot be read"):
+        read_scene(broken)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_scene(tmp_path)
+
+
+def test_override_values_are_toml_and_else_text():
+    document: dict = copy.deepcopy(CASE)
+    for override in ("gear.a.teeth=30", 'gear.a.module="2 mm"', "gear.b.module=2 mm", "accuracy.tolerance=1e-2"):
+        apply_override(document, override)
+    assert document["gear"]["a"]["teeth"] == 30
+    assert document["gear"]["a"]["module"] == document["gear"]["b"]["module"] == "2 mm"
+    assert document["accuracy"] == {"tolerance": 0.01}

@@ -1,0 +1,109 @@
+"""The plan holds what the wanted results need, in order, and nothing else; the runner does each task once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.errors import InputError
+from fegear.scene.load import build_scene
+from fegear.scene.outcome import Column, Outcome, Table, Value
+from fegear.scene.plan import make_plan
+from fegear.scene.run import run_plan
+from fegear.scene.stage import Stage, Task
+
+GEARS = {"a": {"teeth": 28, "module": "1 mm"}, "b": {"teeth": 35, "module": "1 mm"}}
+
+
+def scene(*results: str, **parts):
+    return build_scene({"results": list(results), "gear": GEARS, **parts}, "case", Path())
+
+
+class Workshop:
+    """Three stages that only write down that they ran."""
+
+    def __init__(self):
+        self.log = []
+
+        def work(name):
+            def run(scene, subject, done, progress):
+                progress(0.5)
+                self.log.append((name, subject, tuple(done)))
+                return Outcome(data=name, values=(Value(f"{name}.{subject}", 2e-3, "mm", 1e-6),))
+
+            return run
+
+        def gears(scene):
+            return tuple(scene.gears)
+
+        self.stages = (
+            Stage("blank", "Blank", (), gears, work("blank")),
+            Stage(
+                "tooth",
+                "Tooth",
+                ("teeth",),
+                gears,
+                work("tooth"),
+                lambda s, g: (Task("blank", g),),
+                effects=("relief",),
+            ),
+            Stage(
+                "pair",
+                "Pair",
+                ("pairs", "both"),
+                lambda s: ("I",),
+                work("pair"),
+                lambda s, p: (Task("tooth", "a"), Task("tooth", "b")),
+            ),
+            Stage("noise", "Noise", ("noise",), lambda s: tuple(s.pairs), work("noise")),
+        )
+
+
+def test_needs_come_first_and_each_task_runs_once():
+    shop = Workshop()
+    plan = make_plan(scene("pairs", "teeth", "both"), shop.stages)
+    tasks = [step.task for step in plan.steps]
+    assert tasks == [Task("blank", "a"), Task("tooth", "a"), Task("blank", "b"), Task("tooth", "b"), Task("pair", "I")]
+    results = run_plan(scene("pairs"), plan)
+    assert [entry[:2] for entry in shop.log] == [tuple(task) for task in tasks]
+    assert shop.log[-1][2] == tuple(tasks[:-1])
+    assert list(results.seconds) == tasks
+    assert {value.name: value.shown for value in results.values}["pair.I"] == 2.0
+
+
+def test_nothing_is_computed_that_nothing_asks_for():
+    shop = Workshop()
+    plan = make_plan(scene("teeth"), shop.stages)
+    assert {step.stage.name for step in plan.steps} == {"blank", "tooth"}
+    assert dict(plan.skipped).keys() == {"pair", "noise"}
+    assert 'results does not name "noise"' in dict(plan.skipped)["noise"]
+    assert plan.steps[0].reasons == ("tooth of a needs it",)
+    assert plan.steps[1].reasons == ('results asks for "teeth"',)
+
+
+def test_effects_are_assigned_to_the_steps_that_use_them():
+    plan = make_plan(scene("teeth", effects={"relief": True, "friction": True}), Workshop().stages)
+    assert {step.task: step.effects for step in plan.steps}[Task("tooth", "a")] == ("relief",)
+    assert plan.idle_effects == ("friction",)
+
+
+def test_unknown_results_show_the_nearest():
+    with pytest.raises(InputError, match='nearest known name is "teeth"'):
+        make_plan(scene("teet"), Workshop().stages)
+
+
+def test_a_result_about_something_that_is_not_there_is_refused():
+    with pytest.raises(InputError, match="does not describe"):
+        make_plan(scene("noise"), Workshop().stages)
+
+
+def test_tables_are_read_only_and_rectangular():
+    column = Column("r", np.array([1e-3, 2e-3]), "mm")
+    assert column.head == "r [mm]"
+    assert column.shown == pytest.approx([1.0, 2.0])
+    with pytest.raises(ValueError, match="read-only"):
+        column.values[0] = 0.0
+    with pytest.raises(ValueError, match="different length"):
+        Table("t", (column, Column("n", np.arange(3))))
