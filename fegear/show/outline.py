@@ -1,0 +1,55 @@
+"""The outline of a tooth and of a gear as points, to a chord tolerance, from the exact curves."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.geometry import Gear, Tooth
+    from fegear.geometry.curves import Curve
+
+    Array = NDArray[np.float64]
+
+_LARGEST_COUNT = 1 << 14
+
+
+def along(curve: Curve, tolerance: float) -> Array:
+    """Points on a curve whose chords stay within `tolerance` [modules] of it, ends included, shape (2, N)."""
+    count = 8
+    while True:
+        u = np.linspace(curve.start, curve.end, 2 * count + 1)
+        p = curve.points(u)
+        a, middle, b = p[:, :-1:2], p[:, 1::2], p[:, 2::2]
+        chord = b - a
+        length = np.maximum(np.hypot(*chord), 1e-300)
+        off = np.abs(chord[0] * (middle[1] - a[1]) - chord[1] * (middle[0] - a[0])) / length
+        if off.max() <= tolerance or count >= _LARGEST_COUNT:
+            return p[:, ::2]
+        count *= 2
+
+
+def turned(points: Array, angle: float) -> Array:
+    """Points turned clockwise about the gear's centre by `angle` [rad], shape (2, N)."""
+    s, c = math.sin(angle), math.cos(angle)
+    return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
+
+
+def tooth_outline(tooth: Tooth, tolerance: float = 1e-4) -> Array:
+    """One tooth from the middle of its left space over the tip to the middle of its right space [modules], (2, N)."""
+    pieces = [along(curve, tolerance) for curve in tooth.outline.values()]
+    right = np.hstack([pieces[0], *[piece[:, 1:] for piece in pieces[1:]]])
+    right[0, -1] = 0.0  # the tooth's centre line, free of round-off
+    left = right * np.array([[-1.0], [1.0]])
+    return np.hstack([left, right[:, -2::-1]])
+
+
+def gear_outline(gear: Gear, tolerance: float = 1e-4) -> Array:
+    """The closed outline of all teeth [m], clockwise from tooth 0's left space; the first point is not repeated."""
+    one = tooth_outline(gear.tooth, tolerance)[:, :-1] * gear.module
+    pitch = 2.0 * math.pi / gear.teeth
+    return np.hstack([turned(one, k * pitch) for k in range(gear.teeth)])

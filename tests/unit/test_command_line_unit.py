@@ -1,0 +1,139 @@
+"""The command line as users meet it: what it prints, its exit codes, and what it leaves behind when something fails."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+CASE = """
+title = "One gear"
+results = ["geometry"]
+[gear.a]
+teeth = 28
+module = "3.175 mm"
+bore_radius = "20 mm"
+[gear.b]
+teeth = 35
+module = "3.175 mm"
+[pair.I]
+driver = "a"
+driven = "b"
+[effects]
+friction = true
+"""
+
+
+def fegear(
+    *arguments: object, cwd, program: str = "from fegear.cli import main; main()"
+) -> subprocess.CompletedProcess:
+    command = [sys.executable, "-c", program, *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
+
+
+@pytest.fixture
+def case(tmp_path):
+    path = tmp_path / "one.toml"
+    path.write_text(CASE)
+    return path
+
+
+def test_run_writes_what_it_says(case, tmp_path):
+    done = fegear("run", case, cwd=tmp_path)
+    assert (done.returncode, done.stderr.count("\n")) == (0, 1)
+    assert "[1/1] Geometry" in done.stderr
+    assert "I.contact_ratio = 1.66231749" in done.stdout
+    out = tmp_path / "results" / "one"
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["results"]["I.centre_distance"]["value"] == pytest.approx(63 / 2 * 3.175)
+    assert all((out / name).is_file() for name in summary["files"])
+
+
+def test_plan_tells_what_and_why_and_what_not(case, tmp_path):
+    done = fegear("plan", case, cwd=tmp_path)
+    assert done.returncode == 0
+    assert 'geometry: results asks for "geometry"' in done.stdout
+    assert "friction" in done.stdout.splitlines()[-1]
+    assert not (tmp_path / "results").exists()
+
+
+def test_set_changes_the_case(case, tmp_path):
+    done = fegear("run", case, "--set", "gear.a.teeth=30", "--set", "gear.b.teeth=30", "--out", "o", cwd=tmp_path)
+    assert done.returncode == 0
+    summary = json.loads((tmp_path / "o" / "summary.json").read_text())
+    assert summary["results"]["I.centre_distance"]["value"] == pytest.approx(30 * 3.175)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run", "none.toml"), 'case = "none.toml": does not exist'),
+        (("run", "one.toml", "--set", "gear.a.teth=3"), "teeth"),
+        (("run", "one.toml", "--set", "gear.a.module=3 N"), 'gear.a.module = "3 N": is not a length'),
+        (("run", "one.toml", "--set", 'results=["geometri"]'), 'the nearest known name is "geometry"'),
+        (("plan", "one.toml", "--set", "gear.a.bore_radius=90 mm"), "gear.a.bore_radius = 90 mm"),
+        (("run", "one.toml", "--out", "one.toml"), "is a file"),
+        (("run", "one.toml", "--out", "/proc/none/out"), "cannot be written"),
+        (("run", "one.toml", "--colour"), "No such option"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_exit_code_2(arguments, words, case, tmp_path):
+    before = sorted(tmp_path.rglob("*"))
+    done = fegear(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
+    assert fegear("run", case, cwd=tmp_path).returncode == 0
+    out = tmp_path / "results" / "one"
+    before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    slow = (
+        "import time, fegear.scene.stages.geometry as g\n"
+        "g.interference = lambda *a: (print('working', flush=True), time.sleep(60))\n"
+        "from fegear.cli import main; main()"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", slow, "run", str(case), "--set", "gear.a.teeth=20"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "working\n"
+    time.sleep(0.1)
+    os.kill(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert errors == "fegear: interrupted; results of earlier runs are as they were.\n"
+    assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
+    assert [path.name for path in out.parent.iterdir()] == ["one"]
+
+
+def test_a_terminal_gets_a_bar(case, tmp_path):
+    import pty
+
+    master, slave = pty.openpty()
+    command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(case)]
+    done = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=slave, check=True, timeout=60)
+    os.close(slave)
+    text = os.read(master, 65536).decode()
+    os.close(master)
+    assert "Geometry" in text
+    assert "━" in text
+    assert b"Wrote" in done.stdout
+
+
+def test_version(tmp_path):
+    import fegear as package
+
+    assert fegear("--version", cwd=tmp_path).stdout == f"fegear {package.__version__}\n"
