@@ -1,0 +1,176 @@
+"""Where the nodes of the sector's boundary lie: graded toward the fillets, the loaded flank and its corners.
+
+The sector of one tooth runs from side A (clockwise angle -pi/z from the tooth's centre line) to side B (+pi/z), from
+the bore to the outline. Side B's nodes are side A's turned by one pitch, so that the sectors fit together exactly. The
+right flank is the loaded one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.geometry.curves import Curve, arc_length
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fegear.fem.settings import MeshSettings
+    from fegear.geometry.tooth import Tooth
+
+    Array = NDArray[np.float64]
+    #: Edge length as a function of arc length, both in modules.
+    Law = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A run of boundary edges: vertices in order, with the points in the middle of each edge on the exact curve.
+
+    Parameters
+    ----------
+    name : str
+        One of bore, side_a, side_b, root_land, fillet, flank, tip, back_flank, back_fillet.
+    vertices : ndarray, shape (2, n + 1)
+        [modules], in counterclockwise order round the sector.
+    middles : ndarray, shape (2, n)
+        [modules].
+    """
+
+    name: str
+    vertices: Array
+    middles: Array
+
+
+def graded(length: float, size: Law, samples: int = 513) -> Array:
+    """Arc lengths of nodes whose spacing follows `size`, from 0 to `length`, shape (n + 1,)."""
+    s = np.linspace(0.0, length, samples)
+    density = 1.0 / size(s)
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
+    edges = max(1, round(float(count[-1])))
+    nodes = np.interp(np.linspace(0.0, count[-1], edges + 1), count, s)
+    nodes[0], nodes[-1] = 0.0, length
+    return nodes
+
+
+def _on_curve(name: str, curve: Curve, size: Law) -> Chain:
+    parameter, length = arc_length(curve)
+    nodes = graded(float(length[-1]), size)
+    halves = np.sort(np.concatenate([nodes, 0.5 * (nodes[1:] + nodes[:-1])]))
+    points = curve.points(np.interp(halves, length, parameter))
+    points[:, 0], points[:, -1] = curve.points(curve.start), curve.points(curve.end)
+    return Chain(name, points[:, ::2], points[:, 1::2])
+
+
+def _mirrored(chain: Chain, name: str) -> Chain:
+    flip = np.array([[-1.0], [1.0]])
+    return Chain(name, (flip * chain.vertices)[:, ::-1], (flip * chain.middles)[:, ::-1])
+
+
+def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> list[Chain]:
+    """Discretise the closed boundary of one sector, counterclockwise from the bore on side A.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    bore_radius : float
+        [modules].
+    settings : MeshSettings
+        Edge lengths in modules.
+
+    Returns
+    -------
+    list of Chain
+        Consecutive chains share their end points exactly.
+    """
+    pieces = tooth.outline
+    pitch_angle = 2.0 * math.pi / tooth.teeth
+    land = [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings))] if tooth.root_land else []
+    front_laws = _front_sizes(tooth, settings)
+    front = [_on_curve(_BOUNDARY[piece], pieces[piece], law) for piece, law in front_laws.items() if piece in pieces]
+    back_tip = [_mirrored(chain, "tip") for chain in reversed(front) if chain.name == "tip"]
+    back_flank = _mirrored(_on_curve("flank", tooth.involute, _back_size(settings)), "back_flank")
+    back_fillet = _mirrored(
+        _on_curve("fillet", tooth.fillet, lambda s: np.full_like(s, settings.root_edge_length)), "back_fillet"
+    )
+    top = (land + front)[0].vertices
+    first = float(np.hypot(*(top[:, 1] - top[:, 0])))
+    outer = float(np.hypot(*top[:, 0]))
+
+    def body_size(depth: Array) -> Array:
+        width = settings.body_fraction * pitch_angle * (outer - depth)
+        return np.minimum(first + settings.side_growth * depth, width)
+
+    side_b = _side(top[:, 0], bore_radius, body_size)
+    turn = _rotation(pitch_angle)
+    side_a = Chain("side_a", (turn @ side_b.vertices)[:, ::-1], (turn @ side_b.middles)[:, ::-1])
+    bore_edges = max(1, round(pitch_angle * bore_radius / float(body_size(np.array(outer - bore_radius)))))
+    bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
+    back_land = [_mirrored(chain, "root_land") for chain in land]
+    return [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]
+
+
+#: Boundary that each piece of the outline belongs to.
+_BOUNDARY = {"fillet": "fillet", "flank": "flank", "tip_edge": "tip", "tip_land": "tip"}
+
+
+def _length(curve: Curve) -> float:
+    return float(arc_length(curve)[1][-1])
+
+
+def _land_size(tooth: Tooth, settings: MeshSettings) -> Law:
+    """Edges on the root land grow away from the fillet."""
+    length = tooth.root_radius * tooth.root_land_half_angle
+    return lambda s: settings.root_edge_length + settings.growth * (length - s)
+
+
+def _back_size(settings: MeshSettings) -> Law:
+    """Edges on the unloaded flank grow away from its fillet."""
+    return lambda s: np.minimum(settings.root_edge_length + settings.growth * s, settings.back_edge_length)
+
+
+def _front_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
+    """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""
+    grow, root, corner = settings.growth, settings.root_edge_length, settings.tip_edge_length
+    fillet, flank = _length(tooth.fillet), _length(tooth.involute)
+    edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
+    joint = min(settings.junction_edge_length, root)
+
+    def flank_size(s: Array) -> Array:
+        by_ends = np.minimum(joint + grow * s, corner + settings.tip_growth * (flank - s))
+        return np.minimum(settings.flank_edge_length, by_ends)
+
+    return {
+        "fillet": lambda s: np.minimum(root, joint + grow * (fillet - s)),
+        "flank": flank_size,
+        "tip_edge": lambda s: np.minimum(corner + grow * s, 0.5 * settings.flank_edge_length),
+        "tip_land": lambda s: np.minimum(corner + grow * (s + edge), settings.back_edge_length),
+    }
+
+
+def _rotation(angle: float) -> Array:
+    """Matrix that turns counterclockwise."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+def _side(top: Array, bore_radius: float, size: Law) -> Chain:
+    outer = float(np.hypot(*top))
+    radii = outer - graded(outer - bore_radius, size)[::-1]
+    direction = top / outer
+    middles = np.multiply.outer(direction, 0.5 * (radii[1:] + radii[:-1]))
+    return Chain("side_b", np.multiply.outer(direction, radii), middles)
+
+
+def _bore(right: Array, bore_radius: float, edges: int, pitch_angle: float) -> Chain:
+    half = math.atan2(right[0], right[1])
+    angle = np.linspace(-half, half, 2 * edges + 1)
+    points = bore_radius * np.stack([np.sin(angle), np.cos(angle)])
+    points[:, -1] = right
+    points[:, 0] = _rotation(pitch_angle) @ right
+    return Chain("bore", points[:, ::2], points[:, 1::2])

@@ -1,0 +1,121 @@
+"""Mesh one tooth sector with gmsh (its only door): the boundary's nodes are given, gmsh fills the inside."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.errors import FegearError, MissingLibraryError
+from fegear.fem.boundary import sector_boundary
+from fegear.fem.mesh import SectorMesh, with_middle_nodes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.fem.settings import MeshSettings
+    from fegear.geometry.tooth import Tooth
+
+#: What gmsh's wheel needs from the system, for the error message.
+SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
+
+
+def load_gmsh() -> Any:
+    """Import gmsh, or say which system packages it misses.
+
+    Raises
+    ------
+    MissingLibraryError
+        If gmsh or one of its shared libraries is not there.
+    """
+    try:
+        import gmsh
+    except (ImportError, OSError) as problem:
+        raise MissingLibraryError(
+            f"gmsh cannot be loaded ({problem}); on Debian or Ubuntu run: apt-get install {SYSTEM_PACKAGES}"
+        ) from problem
+    return gmsh
+
+
+def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> SectorMesh:
+    """Mesh the sector of one tooth.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    bore_radius : float
+        [modules].
+    settings : MeshSettings
+
+    Returns
+    -------
+    SectorMesh
+        Side B's nodes are side A's, turned by one pitch.
+    """
+    started = time.perf_counter()
+    chains = sector_boundary(tooth, bore_radius, settings)
+    polygon = np.hstack([chain.vertices[:, :-1] for chain in chains])
+    vertices, triangles = _fill(polygon)
+    starts = np.cumsum([0] + [chain.vertices.shape[1] - 1 for chain in chains])
+    total = int(starts[-1])
+    runs: dict[str, list[NDArray[np.int64]]] = {}
+    middles: dict[str, list[NDArray[np.float64]]] = {}
+    for chain, start in zip(chains, starts, strict=False):
+        n = chain.vertices.shape[1]
+        runs.setdefault(chain.name, []).append(np.arange(start, start + n) % total)
+        middles.setdefault(chain.name, []).append(chain.middles)
+    edges: dict[str, NDArray[np.int64]] = {}
+    flat = {f"{name}:{i}": run for name, parts in runs.items() for i, run in enumerate(parts)}
+    flat_middles = {f"{name}:{i}": m for name, parts in middles.items() for i, m in enumerate(parts)}
+    points, six, numbered = with_middle_nodes(vertices, triangles, flat, flat_middles)
+    for name, parts in runs.items():
+        edges[name] = np.hstack([numbered[f"{name}:{i}"] for i in range(len(parts))])
+    return SectorMesh(points, six, edges, tooth.teeth, "generated", time.perf_counter() - started)
+
+
+def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Triangulate the inside of a closed polygon whose corners stay the only boundary nodes."""
+    gmsh = load_gmsh()
+    n = polygon.shape[1]
+    own = not gmsh.isInitialized()
+    if own:
+        gmsh.initialize(interruptible=False)
+    try:
+        for option, value in {
+            "General.Terminal": 0,
+            "General.NumThreads": 1,
+            "Mesh.Algorithm": 6,
+            "Mesh.MeshSizeExtendFromBoundary": 1,
+        }.items():
+            gmsh.option.setNumber(option, value)
+        gmsh.model.add("fegear sector")
+        geo = gmsh.model.geo
+        for tag, (x, y) in enumerate(polygon.T, start=1):
+            geo.addPoint(x, y, 0.0, tag=tag)
+        for tag in range(1, n + 1):
+            geo.addLine(tag, tag % n + 1, tag)
+            geo.mesh.setTransfiniteCurve(tag, 2)
+        geo.addCurveLoop(list(range(1, n + 1)), 1)
+        geo.addPlaneSurface([1], 1)
+        geo.synchronize()
+        gmsh.model.mesh.generate(2)
+        tags, coordinates, _ = gmsh.model.mesh.getNodes()
+        _, _, connectivity = gmsh.model.mesh.getElements(2)
+    except Exception as problem:
+        raise FegearError(f"gmsh could not mesh the sector: {problem}") from problem
+    finally:
+        gmsh.model.remove()
+        if own:
+            gmsh.finalize()
+    position = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    order = np.argsort(tags)  # boundary corners carry the lowest tags, in the polygon's order
+    position[tags[order].astype(np.int64)] = np.arange(tags.size)
+    vertices = coordinates.reshape(-1, 3)[order, :2].T.copy()
+    vertices[:, :n] = polygon
+    triangles = position[connectivity[0].astype(np.int64)].reshape(-1, 3).T.copy()
+    a, b, c = vertices[:, triangles[0]], vertices[:, triangles[1]], vertices[:, triangles[2]]
+    area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    flipped = area < 0.0
+    triangles[1:, flipped] = triangles[:0:-1, flipped]
+    return vertices, triangles

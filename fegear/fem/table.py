@@ -1,0 +1,142 @@
+"""The stiffness and root-stress table of one gear: what most users come for first."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import RangeError
+from fegear.fem.gear import solve_gear
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.fem.gear import GearInfluence, Progress
+    from fegear.fem.settings import MeshSettings
+    from fegear.geometry.gear import Gear
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StiffnessTable:
+    """Compliance and root stress of a gear's tooth over load positions, per unit face width, SI; arrays of shape (P,).
+
+    Parameters
+    ----------
+    radius : ndarray
+        Load radius [m].
+    roll_angle : ndarray
+        [rad].
+    c_self, c_prev, c_next : ndarray
+        Deflection per unit line load [m^2/N] of the loaded tooth at its contact, and of its neighbours -1 and +1
+        at the same radius. Tooth +1 is the one that the loaded flank faces.
+    half_width : ndarray
+        Contact half-width that `c_self` is for [m].
+    root_tension, root_compression : ndarray
+        Largest tangential stress (tension: positive) of the fillet below the loaded flank, and the most negative of
+        the other fillet, per unit line load [1/m].
+    root_tension_radius, root_compression_radius : ndarray
+        Where they sit: distance from the gear's centre [m].
+    root_tension_angle, root_compression_angle : ndarray
+        Angle between the fillet's tangent there and the tooth's centre line [rad] (ISO 6336-3 looks at 30 deg).
+    errors : mapping of str to ndarray
+        Estimated absolute error of c_self, c_neighbour, root_tension, root_compression.
+    influence : GearInfluence
+        What the table was made from.
+    seconds : float
+        For the whole table.
+    """
+
+    radius: Array
+    roll_angle: Array
+    c_self: Array
+    c_prev: Array
+    c_next: Array
+    half_width: Array
+    root_tension: Array
+    root_tension_radius: Array
+    root_tension_angle: Array
+    root_compression: Array
+    root_compression_radius: Array
+    root_compression_angle: Array
+    errors: Mapping[str, Array]
+    influence: GearInfluence
+    seconds: float
+
+
+def stiffness_table(
+    gear: Gear,
+    radii: ArrayLike,
+    half_width: ArrayLike,
+    settings: MeshSettings | None = None,
+    *,
+    influence: GearInfluence | None = None,
+    progress: Progress | None = None,
+) -> StiffnessTable:
+    """Tabulate one gear's compliance and root stress.
+
+    Parameters
+    ----------
+    gear : Gear
+    radii : array_like, shape (P,)
+        Load radii [m], on the flank.
+    half_width : array_like
+        Contact half-width [m], one or one for each radius.
+    settings : MeshSettings, optional
+    influence : GearInfluence, optional
+        If the gear has been solved already.
+    progress : callable, optional
+
+    Returns
+    -------
+    StiffnessTable
+
+    Raises
+    ------
+    RangeError
+        If a radius lies off the flank or a half-width is not positive.
+    """
+    started = time.perf_counter()
+    r = np.atleast_1d(np.asarray(radii, dtype=float))
+    b = np.broadcast_to(np.asarray(half_width, dtype=float), r.shape).copy()
+    low, high = gear.form_radius, gear.involute_tip_radius
+    off = ~((r >= low * (1 - 1e-9)) & (r <= high * (1 + 1e-9)))
+    if off.any():
+        raise RangeError(
+            "radii",
+            f"{r[off][0] * 1e3:.6g} mm",
+            f"lies off the involute flank, which runs from {low * 1e3:.6g} to {high * 1e3:.6g} mm",
+        )
+    if not (np.isfinite(b) & (b > 0.0)).all():
+        raise RangeError("contact_half_width", f"{b[~(b > 0.0)][:1]}", "must be positive and finite")
+    known = influence or solve_gear(gear, settings, progress=progress)
+    c_self = known.self_compliance(r, b)
+    neighbours = {k: np.diagonal(known.neighbour(k, r, r)) for k in (-1, 1)}
+    errors = {
+        "c_self": known.self_error(r, b),
+        "c_neighbour": np.diagonal(known.neighbour_error(1, r, r)),
+    }
+    places = {}
+    for side in ("tension", "compression"):
+        value, arc = known.largest_root_stress(0, side, r)
+        fillet = known.fine.fillets[side]
+        arc_modules = arc / gear.module
+        places[side] = (
+            value,
+            np.interp(arc_modules, fillet.arc, fillet.radius) * gear.module,
+            np.interp(arc_modules, fillet.arc, fillet.tangent_angle),
+        )
+        errors[f"root_{side}"] = known.root_stress_error(0, side, r)
+    for array in (r, b, c_self, *neighbours.values(), *errors.values()):
+        array.flags.writeable = False
+    return StiffnessTable(
+        r, np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius,
+        c_self, neighbours[-1], neighbours[1], b,
+        *places["tension"], *places["compression"], errors, known, time.perf_counter() - started,
+    )  # fmt: skip
