@@ -1,0 +1,131 @@
+"""A tooth as a beam of varying depth: the integrals that every cantilever formula is made of.
+
+Heights y run along the tooth's centre line from the gear's centre, half thicknesses x(y) follow the exact outline
+(involute and trochoid) without a table or a polygon. Each smooth piece of the outline is integrated in its own
+parameter, in which it is analytic, by Gauss-Legendre quadrature: the error falls geometrically with the nodes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.formulas.load_line import LoadLine
+    from fegear.geometry import Tooth
+    from fegear.geometry.curves import Curve
+
+    Array = NDArray[np.float64]
+
+#: Nodes per smooth piece; 32 leave 1e-12 of every integral even under sharp fillets (tests hold it to that).
+NODES = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Sections:
+    """Quadrature sections below each load, shape (N, M): N loads, M sections.
+
+    Parameters
+    ----------
+    height : ndarray
+        y of the sections [modules].
+    half_thickness : ndarray
+        x of the sections [modules].
+    weight : ndarray
+        Quadrature weights dy [modules].
+    """
+
+    height: Array
+    half_thickness: Array
+    weight: Array
+
+
+@dataclass(frozen=True, slots=True)
+class BeamIntegrals:
+    """Integrals over the sections between the root section and the load, shape (N,), of the tooth of module 1.
+
+    With u = arm height - y and the section's depth 2 x per unit width: area A = 2 x, moment of inertia I = (2 x)^3/12.
+
+    Parameters
+    ----------
+    bending_2, bending_1, bending_0 : ndarray
+        Integrals of u^2 / I, u / I and 1 / I dy.
+    area : ndarray
+        Integral of 1 / A dy.
+    """
+
+    bending_2: Array
+    bending_1: Array
+    bending_0: Array
+    area: Array
+
+
+@lru_cache(maxsize=8)
+def _gauss(nodes: int) -> tuple[Array, Array]:
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    return x, w
+
+
+def _piece(curve: Curve, start: Array, end: Array, nodes: int) -> Sections:
+    """Sections along one curve from parameter `start` to `end`, shape (N, nodes)."""
+    g, w = _gauss(nodes)
+    half = 0.5 * (end - start)
+    u = (0.5 * (end + start))[:, None] + half[:, None] * g
+    x, y = curve.points(u)
+    # travelling from the tooth space to the tip the outward normal is the tangent turned clockwise: dy/ds = n_x
+    return Sections(y, x, np.abs(half[:, None] * w * curve.speed(u)) * curve.normals(u)[0])
+
+
+def sections(tooth: Tooth, load: LoadLine, root_parameter: float, nodes: int = NODES) -> Sections:
+    """Sections from the fillet's point `root_parameter` up to each load.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    load : LoadLine
+        N loads on the involute.
+    root_parameter : float
+        Parameter of `Tooth.fillet` at which the beam is built in [rad].
+    nodes : int
+        Gauss nodes on the fillet, and as many on the involute.
+    """
+    fillet, involute = tooth.fillet, tooth.involute
+    one = np.array([root_parameter]), np.array([fillet.end])
+    low = _piece(fillet, *one, nodes)
+    high = _piece(involute, np.full_like(load.roll, involute.start), np.maximum(load.roll, involute.start), nodes)
+    shape = (load.roll.size, nodes)
+    return Sections(
+        *(
+            np.concatenate([np.broadcast_to(getattr(low, name), shape), getattr(high, name)], axis=1)
+            for name in ("height", "half_thickness", "weight")
+        )
+    )
+
+
+def integrals(cut: Sections, arm_height: Array) -> BeamIntegrals:
+    """Integrate over the sections with arms measured from `arm_height`, shape (N,) [modules]."""
+    u = arm_height[:, None] - cut.height
+    inertia = cut.weight * 12.0 / (2.0 * cut.half_thickness) ** 3
+    return BeamIntegrals(
+        np.sum(u * u * inertia, axis=1),
+        np.sum(u * inertia, axis=1),
+        np.sum(inertia, axis=1),
+        np.sum(cut.weight / (2.0 * cut.half_thickness), axis=1),
+    )
+
+
+def root_circle_chord(tooth: Tooth) -> tuple[float, float]:
+    """Half thickness and height [modules] of the section where the fillet meets the root circle."""
+    x, y = tooth.fillet.points(tooth.fillet.start)
+    return float(x), float(y)
+
+
+def root_half_angle(tooth: Tooth) -> float:
+    """Half the tooth's angle on the root circle, theta_f [rad]: pi/z less half the root land."""
+    return math.pi / tooth.teeth - tooth.root_land_half_angle

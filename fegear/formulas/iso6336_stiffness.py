@@ -1,0 +1,158 @@
+"""ISO 6336-1 method B: tooth stiffness c'_th, c', mesh stiffness c_gamma_alpha, c_gamma_beta.
+
+Source: ISO 6336-1:2006, Calculation of load capacity of spur and helical gears - Part 1, clause 9 (external gears,
+steel, basic rack 20 deg; theory of Weber and Banaschek for discs, C_M = 0.8 from measurements). All stiffnesses are per
+unit face width, N/(m m) = Pa; 1 N/(mm um) = 1e9 Pa.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from fegear.errors import RangeError
+from fegear.formulas.iso6336_root_stress import virtual_teeth
+
+#: Table 9 of the standard: q' in mm um/N.
+_C = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
+#: 1 N/(mm um) in Pa.
+UNIT = 1e9
+#: E of the steel behind q' [Pa].
+STEEL = 206e9
+
+
+@dataclass(frozen=True, slots=True)
+class Stiffness:
+    """ISO 6336-1 stiffnesses per unit face width [Pa]; 1e9 Pa is 1 N/(mm um).
+
+    Parameters
+    ----------
+    theoretical : float
+        c'_th of one tooth pair.
+    single : float
+        c', greatest stiffness of one tooth pair.
+    mesh_alpha : float
+        c_gamma_alpha, mean stiffness of the teeth in mesh.
+    mesh_beta : float
+        c_gamma_beta, for the face load factors.
+    """
+
+    theoretical: float
+    single: float
+    mesh_alpha: float
+    mesh_beta: float
+
+
+def theoretical_stiffness(z_n1: float, z_n2: float, x_1: float = 0.0, x_2: float = 0.0) -> float:
+    """c'_th = 1/q' [Pa] (ISO 6336-1:2006, Eqs. 82 and 83).
+
+    Parameters
+    ----------
+    z_n1, z_n2 : float
+        Virtual numbers of teeth of pinion and wheel; inf for a rack.
+    x_1, x_2 : float
+        Profile shift coefficients, x_1 >= x_2 and -0.5 <= x_1 + x_2 <= 2.
+
+    Raises
+    ------
+    RangeError
+        Outside the range of the series.
+    """
+    for name, z in (("z_n1", z_n1), ("z_n2", z_n2)):
+        if not z > 0.0:
+            raise RangeError(name, z, "must be positive: the series is for external gears (inf for a rack)")
+    if not -0.5 <= x_1 + x_2 <= 2.0:
+        raise RangeError("x_1 + x_2", f"{x_1 + x_2:.4g}", "must lie between -0.5 and 2 (ISO 6336-1, 9.3.1.1)")
+    if x_1 < x_2:
+        raise RangeError("x_1", x_1, f"must not be below x_2 = {x_2} (ISO 6336-1, 9.3.1.1)")
+    terms = (1.0, 1.0 / z_n1, 1.0 / z_n2, x_1, x_1 / z_n1, x_2, x_2 / z_n2, x_1 * x_1, x_2 * x_2)
+    q = sum(c * t for c, t in zip(_C, terms, strict=True))
+    if not q > 0.0:
+        raise RangeError("q'", f"{q:.4g} mm um/N", "is not positive: the series does not hold for these gears")
+    return UNIT / q
+
+
+def blank_factor(web_ratio: float | None, rim_ratio: float = math.inf) -> float:
+    """C_R: 1 for solid discs, else 1 + ln(b_s/b) / (5 exp(s_R / (5 m_n))) (ISO 6336-1:2006, 9.3.1.3).
+
+    Parameters
+    ----------
+    web_ratio : float or None
+        b_s/b; None for a solid disc; taken as 0.2 below and 1.2 above those bounds, as the standard says.
+    rim_ratio : float
+        s_R/m_n, taken as at least 1.
+    """
+    if web_ratio is None:
+        return 1.0
+    if not web_ratio > 0.0:
+        raise RangeError("web ratio b_s/b", web_ratio, "must be positive", "leave it out for a solid disc")
+    if not rim_ratio > 0.0:
+        raise RangeError("rim ratio s_R/m_n", rim_ratio, "must be positive")
+    return 1.0 + math.log(min(max(web_ratio, 0.2), 1.2)) / (5.0 * math.exp(max(rim_ratio, 1.0) / 5.0))
+
+
+def rack_factor(dedendum: float, pressure_angle: float = math.radians(20.0)) -> float:
+    """C_B = [1 + 0.5 (1.2 - h_fP/m_n)] [1 - 0.02 (20 deg - alpha_Pn)] (ISO 6336-1:2006, 9.3.1.4)."""
+    factor = (1.0 + 0.5 * (1.2 - dedendum)) * (1.0 - 0.02 * (20.0 - math.degrees(pressure_angle)))
+    if not factor > 0.0:
+        raise RangeError("dedendum h_fP/m_n", dedendum, "is beyond the range of C_B")
+    return factor
+
+
+def stiffness(
+    teeth: tuple[int, int],
+    contact_ratio: float,
+    *,
+    helix_angle: float = 0.0,
+    profile_shift: tuple[float, float] = (0.0, 0.0),
+    dedendum: tuple[float, float] = (1.2, 1.2),
+    pressure_angle: float = math.radians(20.0),
+    blank: float = 1.0,
+    specific_load: float = math.inf,
+    young_modulus: tuple[float, float] = (STEEL, STEEL),
+) -> Stiffness:
+    """Stiffnesses of an external gear pair (ISO 6336-1:2006, 9.3, method B).
+
+    Parameters
+    ----------
+    teeth : (int, int)
+        z_1, z_2.
+    contact_ratio : float
+        Transverse contact ratio epsilon_alpha, at least 1 and below 2.5 for spur gears.
+    helix_angle : float
+        beta [rad], at most 45 deg.
+    profile_shift, dedendum : (float, float)
+        x_1, x_2; h_fP/m_n of each gear's basic rack. C_B is the mean of both.
+    pressure_angle : float
+        alpha_Pn [rad].
+    blank : float
+        C_R, see `blank_factor`.
+    specific_load : float
+        F_t K_A / b [N/m]; below 100 N/mm c' falls with its fourth root.
+    young_modulus : (float, float)
+        E of both gears [Pa]; other than steel scales c' by 2 E_1 E_2 / ((E_1 + E_2) E_steel).
+
+    Raises
+    ------
+    RangeError
+        Outside the range of the method.
+    """
+    if not 0.0 <= helix_angle <= math.radians(45.0):
+        raise RangeError("helix angle", f"{math.degrees(helix_angle):.4g} deg", "must lie between 0 and 45 deg")
+    if not contact_ratio >= 1.0:
+        raise RangeError("contact ratio", f"{contact_ratio:.4g}", "must be at least 1")
+    if helix_angle == 0.0 and contact_ratio >= 2.5:
+        raise RangeError(
+            "contact ratio", f"{contact_ratio:.4g}", "must be below 2.5 for spur gears (ISO 6336-1, 9.3.2)"
+        )
+    if not specific_load > 0.0:
+        raise RangeError("specific load", specific_load, "must be positive")
+    z_n = [virtual_teeth(z, helix_angle, pressure_angle) for z in teeth]
+    theoretical = theoretical_stiffness(z_n[0], z_n[1], *profile_shift)
+    c_b = 0.5 * (rack_factor(dedendum[0], pressure_angle) + rack_factor(dedendum[1], pressure_angle))
+    e_1, e_2 = young_modulus
+    material = 2.0 * e_1 * e_2 / (e_1 + e_2) / STEEL
+    low_load = min(specific_load / 1e5, 1.0) ** 0.25
+    single = theoretical * 0.8 * blank * c_b * math.cos(helix_angle) * low_load * material
+    alpha = single * (0.75 * contact_ratio + 0.25)
+    return Stiffness(theoretical, single, alpha, 0.85 * alpha)

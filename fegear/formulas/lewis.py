@@ -1,0 +1,49 @@
+"""The Lewis parabola: the section at which a beam of uniform strength, hung from the load, touches the fillet.
+
+Source: W. Lewis, Investigation of the Strength of Gear Teeth, Proc. Engineers' Club of Philadelphia (1892); with the
+apex where the line of action crosses the tooth's centre line, as in AGMA 908-B89, section 5.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from fegear.errors import RangeError
+from fegear.formulas.fillet_section import FilletPoint, fillet_parameter, fillet_point, tangent_range
+from fegear.formulas.load_line import LoadLine, load_line
+
+if TYPE_CHECKING:
+    from fegear.geometry import Tooth
+
+
+def lewis_section(tooth: Tooth, radius: float) -> tuple[FilletPoint, LoadLine]:
+    """Section where the parabola through the load apex touches the fillet, for a load at `radius` [modules].
+
+    On a parabola with its apex h above the section the tangent makes atan(x / (2 h)) with the axis.
+
+    Raises
+    ------
+    RangeError
+        If the parabola touches the tooth elsewhere than on the fillet.
+    """
+    from scipy.optimize import brentq
+
+    load = load_line(tooth, radius)
+    apex = float(load.apex[0])
+
+    def excess(gamma: float) -> float:
+        p = fillet_point(tooth, fillet_parameter(tooth, gamma))
+        return math.tan(gamma) * 2.0 * (apex - p.height) - p.half_thickness
+
+    low, high = tangent_range(tooth)
+    high = min(high, 0.5 * math.pi - 1e-9)
+    if excess(low) > 0.0 or excess(high) < 0.0:
+        raise RangeError(
+            "load radius",
+            f"{radius:.6g} modules",
+            "gives a Lewis parabola that does not touch the fillet",
+            "the formula has no critical section here",
+        )
+    gamma = brentq(excess, low, high, xtol=1e-13)
+    return fillet_point(tooth, fillet_parameter(tooth, gamma)), load

@@ -1,0 +1,30 @@
+"""The root-stress formulas by name, and their table over load positions."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.formulas import agma908, cornell_heywood, dolan_broghamer, heywood, iso6336_root_stress
+from fegear.formulas.outcome import Outcome, attempt
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.formulas.root_stress import RootStress, RootStressSource
+    from fegear.geometry import Tooth
+
+ROOT_STRESS_SOURCES: dict[str, RootStressSource] = {
+    m.SOURCE.name: m.SOURCE for m in (cornell_heywood, heywood, iso6336_root_stress, agma908, dolan_broghamer)
+}
+
+
+def root_stress_table(tooth: Tooth, radii: ArrayLike) -> dict[str, tuple[Outcome[RootStress], ...]]:
+    """Every root-stress formula at every load radius [modules]; a point out of range carries its reason in words."""
+    points = [float(r) for r in np.atleast_1d(np.asarray(radii, dtype=float))]
+    return {
+        name: tuple(attempt(partial(source.formula, tooth, r)) for r in points)
+        for name, source in ROOT_STRESS_SOURCES.items()
+    }
