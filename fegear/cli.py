@@ -1,4 +1,4 @@
-"""The command line: ``fegear run``, ``fegear plan``."""
+"""The command line: ``fegear run``, ``fegear plan``, ``fegear export``."""
 
 from __future__ import annotations
 
@@ -84,10 +84,36 @@ def plan(case: CaseFile, overrides: Overrides = None) -> None:
     from fegear.scene.stages import STAGES
 
     scene = read_scene(case, overrides or ())
-    typer.echo("\n".join(_plannedlines(make_plan(scene, STAGES))))
+    typer.echo("\n".join(_plan_lines(make_plan(scene, STAGES))))
 
 
-def _plannedlines(planned: Plan) -> list[str]:
+@app.command()
+def export(
+    case: CaseFile,
+    overrides: Overrides = None,
+    gear: Annotated[list[str] | None, typer.Option("--gear", help="Name of a gear; default all of them.")] = None,
+    formats: Annotated[
+        str, typer.Option("--format", help="Any of dxf, msh, vtu, inp, separated by commas.")
+    ] = "dxf,msh,vtu,inp",
+    out: Out = None,
+) -> None:
+    """Write drawings (DXF) and meshes of the whole gear (gmsh, VTU, Abaqus/CalculiX) for other programs."""
+    from fegear.scene.load import read_scene
+    from fegear.show.export import export_gears
+    from fegear.show.folder import whole_or_nothing
+
+    try:
+        scene = read_scene(case, overrides or ())
+        target = out or Path("results") / scene.name / "export"
+        with whole_or_nothing(target) as scratch:
+            written = export_gears(scene, scratch, gear or list(scene.gears), formats)
+    except KeyboardInterrupt:
+        _leave(_INTERRUPTED, 130)
+    for name in written:
+        typer.echo(f"Wrote {target / name}")
+
+
+def _plan_lines(planned: Plan) -> list[str]:
     lines = ["Will compute:"]
     for number, step in enumerate(planned.steps, start=1):
         effects = f"; effects: {', '.join(step.effects)}" if step.effects else ""

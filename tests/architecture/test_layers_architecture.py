@@ -39,7 +39,7 @@ LAYERS = {
 DOORS = {
     "gmsh": ["fegear.fem.sector"],
     "skfem": ["fegear.fem.*"],
-    "meshio": ["fegear.fem.imported"],
+    "meshio": ["fegear.fem.mesh_files"],
     "pint": ["fegear.units"],
     "pydantic": ["fegear.scene.case.*", "fegear.scene.case", "fegear.scene.load"],
     "typer": ["fegear.cli"],

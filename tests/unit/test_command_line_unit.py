@@ -58,6 +58,7 @@ def test_plan_tells_what_and_why_and_what_not(case, tmp_path):
     done = fegear("plan", case, cwd=tmp_path)
     assert done.returncode == 0
     assert 'geometry: results asks for "geometry"' in done.stdout
+    assert 'stiffness: nothing asks for it (results does not name "stiffness")' in done.stdout
     assert "friction" in done.stdout.splitlines()[-1]
     assert not (tmp_path / "results").exists()
 
@@ -75,7 +76,7 @@ def test_set_changes_the_case(case, tmp_path):
         (("run", "none.toml"), 'case = "none.toml": does not exist'),
         (("run", "one.toml", "--set", "gear.a.teth=3"), "teeth"),
         (("run", "one.toml", "--set", "gear.a.module=3 N"), 'gear.a.module = "3 N": is not a length'),
-        (("run", "one.toml", "--set", 'results=["geometri"]'), 'the nearest known name is "geometry"'),
+        (("run", "one.toml", "--set", 'results=["stifness"]'), 'the nearest known name is "stiffness"'),
         (("plan", "one.toml", "--set", "gear.a.bore_radius=90 mm"), "gear.a.bore_radius = 90 mm"),
         (("run", "one.toml", "--out", "one.toml"), "is a file"),
         (("run", "one.toml", "--out", "/proc/none/out"), "cannot be written"),
@@ -90,6 +91,21 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments, words, case, tmp_p
     assert "Traceback" not in done.stderr
     assert done.stdout == ""
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_export_writes_drawings_and_meshes(case, tmp_path):
+    done = fegear("export", case, "--gear", "a", "--format", "dxf, msh", "--out", "o", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert {p.name for p in (tmp_path / "o").iterdir()} == {
+        "a.msh",
+        "a_gear_polyline.dxf",
+        "a_gear_spline.dxf",
+        "a_tooth_polyline.dxf",
+        "a_tooth_spline.dxf",
+    }
+    for arguments, words in ((("--gear", "c"), "known here: a, b"), (("--format", "step"), "no format")):
+        done = fegear("export", case, *arguments, "--out", "new", cwd=tmp_path)
+        assert (done.returncode, words in done.stderr, (tmp_path / "new").exists()) == (2, True, False)
 
 
 def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):

@@ -15,11 +15,22 @@ def _tolerance(value: float) -> float:
     return value
 
 
+EdgeLength = Annotated[Number, Field(gt=0.0, le=2.0)]
+
+
 class AccuracyPart(Part):
-    """Relative tolerance of the results, or explicit settings with lengths in modules."""
+    """Relative tolerance of the results, or explicit settings with lengths in modules (see `MeshSettings`)."""
 
     tolerance: Annotated[Number, AfterValidator(_tolerance)] = 1e-3
     order: Annotated[int, Field(ge=2, le=4)] | None = None
-    root_edge_length: Annotated[Number, Field(gt=0.0, le=1.0)] | None = None
-    flank_edge_length: Annotated[Number, Field(gt=0.0, le=1.0)] | None = None
+    root_edge_length: EdgeLength | None = None
+    flank_edge_length: EdgeLength | None = None
+    tip_edge_length: EdgeLength | None = None
+    junction_edge_length: EdgeLength | None = None
+    back_edge_length: EdgeLength | None = None
+    growth: EdgeLength | None = None
+    tip_growth: EdgeLength | None = None
+    side_growth: EdgeLength | None = None
+    body_fraction: Annotated[Number, Field(gt=0.0, le=10.0)] | None = None
+    corner_distance: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None
     patch_half_width: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fegear.scene.stages import geometry
+from fegear.scene.stages import geometry, stiffness
 
 if TYPE_CHECKING:
     from fegear.scene.stage import Stage
 
 #: Every stage, in the order in which plans list those that they skip.
-STAGES: tuple[Stage, ...] = (geometry.GEOMETRY,)
+STAGES: tuple[Stage, ...] = (geometry.GEOMETRY, stiffness.STIFFNESS, stiffness.ROOT_STRESS)

@@ -1,0 +1,111 @@
+"""Displacement and stress of the whole gear under one contact, for pictures and exports; dimensionless."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.elasticity import assemble, lame
+from fegear.fem.ring import close_ring
+from fegear.fem.trace import loaded_flank
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.fem.mesh import SectorMesh
+    from fegear.geometry.gear import Plane
+    from fegear.geometry.tooth import Tooth
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class GearField:
+    """What a unit line load on tooth 0 does to the whole gear; module 1, Young's modulus 1.
+
+    Attributes
+    ----------
+    mesh : SectorMesh
+    displacement : ndarray, shape (z, 2, N)
+        Of every node of every sector, each in its own frame (its tooth along +y), sectors clockwise from tooth 0.
+    stress : ndarray, shape (z, 4, N)
+        sigma_xx, sigma_yy, sigma_xy, sigma_zz in the same frames, averaged over the elements around a node.
+    forces : ndarray, shape (2, N)
+        The nodal forces on tooth 0 that the contact's pressure amounts to.
+    """
+
+    mesh: SectorMesh
+    displacement: Array
+    stress: Array
+    forces: Array
+
+    @property
+    def von_mises(self) -> Array:
+        """Equivalent stress, shape (z, N)."""
+        xx, yy, xy, zz = (self.stress[:, i] for i in range(4))
+        return np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * xy**2)
+
+
+def gear_field(
+    tooth: Tooth, mesh: SectorMesh, poisson_ratio: float, plane: Plane, radius: float, half_width: float
+) -> GearField:
+    """Solve the whole gear under one semi-elliptic contact pressure on tooth 0.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    mesh : SectorMesh
+    poisson_ratio : float
+    plane : {"strain", "stress"}
+    radius, half_width : float
+        Place and half-width of the contact [modules].
+
+    Returns
+    -------
+    GearField
+    """
+    z = mesh.teeth
+    elasticity = assemble(mesh, poisson_ratio, plane, order=2)
+    ring = close_ring(mesh, elasticity, reach=z // 2)
+    flank = loaded_flank(mesh, elasticity, tooth, margin=0.15)
+    loads = np.zeros((ring.size, 1))
+    loads[flank.dofs] = flank.patches(flank.arc_of_radius(np.array([radius])), np.array([half_width]))
+    sectors = [(k + z // 2) % z - z // 2 for k in range(z)]  # clockwise from tooth 0, within the reach
+    response = ring.field(loads, sectors)
+    displacement = np.stack([response[k][:, 0][elasticity.node_dofs] for k in sectors])
+    stress = _nodal_stress(mesh, displacement, poisson_ratio, plane)
+    return GearField(mesh, displacement, stress, loads[:, 0][elasticity.node_dofs])
+
+
+def _nodal_stress(mesh: SectorMesh, displacement: Array, poisson_ratio: float, plane: Plane) -> Array:
+    """Stress at the elements' own nodes, averaged where elements meet within a sector, shape (z, 4, N)."""
+    lam, mu = lame(poisson_ratio, plane)
+    du, dv = _slopes_at_nodes()
+    nodes = mesh.points[:, mesh.triangles]
+    a, b = np.einsum("cim,iq->cqm", nodes, du), np.einsum("cim,iq->cqm", nodes, dv)
+    determinant = a[0] * b[1] - a[1] * b[0]
+    total = np.zeros((displacement.shape[0], 4, mesh.points.shape[1]))
+    count = np.zeros(mesh.points.shape[1])
+    np.add.at(count, mesh.triangles, 1.0)
+    for sector, u in enumerate(displacement):
+        ue = u[:, mesh.triangles]
+        ua, ub = np.einsum("cim,iq->cqm", ue, du), np.einsum("cim,iq->cqm", ue, dv)
+        gx = (ua * b[1] - ub * a[1]) / determinant
+        gy = (ub * a[0] - ua * b[0]) / determinant
+        xx, yy, shear = gx[0], gy[1], gx[1] + gy[0]
+        trace = lam * (xx + yy)
+        zz = trace if plane == "strain" else 0.0 * trace
+        for i, part in enumerate((trace + 2 * mu * xx, trace + 2 * mu * yy, mu * shear, zz)):
+            np.add.at(total[sector, i], mesh.triangles, part)
+    return total / count
+
+
+def _slopes_at_nodes() -> tuple[Array, Array]:
+    """Derivatives of the six shape functions along both reference axes at the six nodes, shape (6, 6) each."""
+    u, v = np.array([0.0, 1.0, 0.0, 0.5, 0.5, 0.0]), np.array([0.0, 0.0, 1.0, 0.0, 0.5, 0.5])
+    w = 1.0 - u - v
+    du = np.array([1 - 4 * w, 4 * u - 1, 0 * u, 4 * (w - u), 4 * v, -4 * v])
+    dv = np.array([1 - 4 * w, 0 * u, 4 * v - 1, -4 * u, 4 * u, 4 * (w - v)])
+    return du, dv
