@@ -284,9 +284,30 @@ def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:
     return RootStress(float(stress[0]), p.half_thickness, p.height, p.fillet_radius, gamma, remark)
 
 
+def radial_root_stress(tooth: Tooth, radius: float) -> RootStress:
+    """Cornell's root stress of a generated tooth replaced by his own: radial flank and sharpest fillet radius.
+
+    The load at `radius` [modules] must lie on the true involute. The place returned is the one on the circle.
+    """
+    section = RootSection.radial_of(tooth)
+    roll = load_line(tooth, radius).roll
+    found = root_stress(section, roll)
+    g, r = float(found.angle[0]), section.fillet_radius
+    x = 0.5 * section.root_thickness + r * (1.0 - math.cos(g))
+    return RootStress(float(found.stress[0]), x, section.fillet_height - r * math.sin(g), r, g)
+
+
+_CITATION = "Cornell 1981; Mark, NASA CR-3626 (1982), Eqs. B.1-B.10"
 SOURCE = RootStressSource(
-    "cornell-heywood",
+    "cornell",
+    radial_root_stress,
+    _CITATION,
+    "Cornell's tooth: radial flank below the base circle, circular fillet of the trochoid's smallest radius; place by "
+    "B.2; radial compression subtracted",
+)
+TROCHOID_SOURCE = RootStressSource(
+    "cornell-trochoid",
     tooth_root_stress,
-    "Cornell 1981; Mark, NASA CR-3626 (1982), Eqs. B.1-B.10",
-    "section and fillet radius at the place that B.2 gives on the true fillet; radial compression subtracted",
+    _CITATION,
+    "the true section and its local fillet radius at the place that B.2 gives; radial compression subtracted",
 )

@@ -16,7 +16,8 @@ from fegear.errors import ConvergenceError, RangeError
 from fegear.formulas.root_stress import RootStress, RootStressSource
 
 if TYPE_CHECKING:
-    from fegear.geometry import Tooth
+    from fegear.geometry import GearPair, Tooth
+    from fegear.geometry.pair import Member
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,13 +251,35 @@ def nominal_root_stress(
     return tangential_load / (face_width * module) * form.Y_F * form.Y_S * helix * rim * deep_tooth
 
 
+def rack_tooth(tooth: Tooth) -> RackTooth:
+    """Return a generated spur tooth as ISO 6336-3 sees it (generating profile shift, thinning included)."""
+    r = tooth.rack
+    return RackTooth(tooth.teeth, tooth.generating_shift, r.dedendum, r.tip_radius, r.pressure_angle)
+
+
+def pair_root_form(pair: GearPair, member: Member) -> RootForm:
+    """Section and factors of one gear of a spur pair, loaded at its outer point of single pair contact.
+
+    Raises
+    ------
+    RangeError
+        If the contact ratio is not between 1 and 2.
+    """
+    if not 1.0 <= pair.contact_ratio < 2.0:
+        raise RangeError(
+            "contact ratio", f"{pair.contact_ratio:.4g}", "must be between 1 and 2 for a single contact point"
+        )
+    gear = pair.gear(member)
+    at = pair.x_hpstc if member == "driver" else pair.x_lpstc
+    return root_form(rack_tooth(gear.tooth), 2.0 * float(pair.radius(at, member)) / gear.module)
+
+
 def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:
     """ISO 6336-3 root stress of a generated spur tooth under a load at `radius` [modules], Y_F and Y_S only."""
     rack = tooth.rack
     if not tooth.form_radius * (1.0 - 1e-9) <= radius <= tooth.involute_tip_radius * (1.0 + 1e-9):
         raise RangeError("load radius", f"{radius:.6g} modules", "is not on the involute")
-    gear = RackTooth(tooth.teeth, tooth.generating_shift, rack.dedendum, rack.tip_radius, rack.pressure_angle)
-    f = root_form(gear, 2.0 * max(radius, tooth.base_radius))
+    f = root_form(rack_tooth(tooth), 2.0 * max(radius, tooth.base_radius))
     stress = f.Y_F * f.Y_S * math.cos(rack.pressure_angle)
     return RootStress(stress, 0.5 * f.root_chord, f.height, f.fillet_radius, math.pi / 6)
 

@@ -9,9 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
 from fegear.formulas.iso6336_root_stress import virtual_teeth
+
+if TYPE_CHECKING:
+    from fegear.geometry import GearPair
 
 #: Table 9 of the standard: q' in mm um/N.
 _C = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
@@ -156,3 +160,27 @@ def stiffness(
     single = theoretical * 0.8 * blank * c_b * math.cos(helix_angle) * low_load * material
     alpha = single * (0.75 * contact_ratio + 0.25)
     return Stiffness(theoretical, single, alpha, 0.85 * alpha)
+
+
+def pair_stiffness(pair: GearPair, line_load: float = math.inf, blank: float = 1.0) -> Stiffness:
+    """Stiffnesses of a spur gear pair; the pinion is the gear with fewer teeth, or the larger profile shift.
+
+    Parameters
+    ----------
+    pair : GearPair
+    line_load : float
+        F_t K_A / b [N/m].
+    blank : float
+        C_R; 1 for solid discs. The standard knows nothing of a bore.
+    """
+    pinion, wheel = sorted((pair.driver, pair.driven), key=lambda g: (g.teeth, -g.tooth.profile_shift))
+    return stiffness(
+        (pinion.teeth, wheel.teeth),
+        pair.contact_ratio,
+        profile_shift=(pinion.tooth.profile_shift, wheel.tooth.profile_shift),
+        dedendum=(pinion.tooth.rack.dedendum, wheel.tooth.rack.dedendum),
+        pressure_angle=pinion.tooth.rack.pressure_angle,
+        blank=blank,
+        specific_load=line_load,
+        young_modulus=(pinion.material.young_modulus, wheel.material.young_modulus),
+    )

@@ -17,7 +17,15 @@ if TYPE_CHECKING:
     from fegear.geometry import Tooth
 
 ROOT_STRESS_SOURCES: dict[str, RootStressSource] = {
-    m.SOURCE.name: m.SOURCE for m in (cornell_heywood, heywood, iso6336_root_stress, agma908, dolan_broghamer)
+    s.name: s
+    for s in (
+        cornell_heywood.SOURCE,
+        cornell_heywood.TROCHOID_SOURCE,
+        heywood.SOURCE,
+        iso6336_root_stress.SOURCE,
+        agma908.SOURCE,
+        dolan_broghamer.SOURCE,
+    )
 }
 
 

@@ -18,6 +18,8 @@ from fegear.geometry import BasicRack, Tooth
 R_B = 1.75 * 2.54 * math.cos(math.radians(20.0))
 BETA = math.radians(3.98222)
 PAPER = cornell.RootSection(R_B, BETA, 0.1016, 4.0909406, 0.56958151)
+THINNING = 28 * (Tooth(28).base_half_angle - BETA)
+PAPER_TOOTH = Tooth(28, BasicRack(1.0, 1.32005, 0.23354), thickness_allowance=THINNING)
 #: from the base circle to the tip circle, 1.875 in
 ROLLS = np.linspace(0.0, math.sqrt((1.875 * 2.54 / R_B) ** 2 - 1.0), 21)
 
@@ -77,14 +79,14 @@ def test_stress_scales_as_one_over_length():
 
 
 def test_generated_tooth_resembles_the_papers_inputs():
-    # The paper's rack is not given. A 1.0/1.35 rack with tip radius 0.25 (a usual 8-pitch hob) reproduces its root
-    # within the few percent that its backlash and rounded values allow: a check of meaning, not of digits.
-    tooth = Tooth(28, BasicRack(1.0, 1.35, 0.25))
-    section = cornell.RootSection.radial_of(tooth)
+    # The paper gives no rack. The generated tooth with its beta (thinning 0.04204 modules), its fillet radius (rack
+    # tip radius 0.23354) and the root circle of the circle (R_m, r) must give its R_m and h_0: to the digits of r.
+    section = cornell.RootSection.radial_of(PAPER_TOOTH)
     module = 0.3175
-    assert section.fillet_radius * module == pytest.approx(0.1016, rel=0.08)
-    assert section.fillet_height * module == pytest.approx(4.0909406, rel=0.01)
-    assert section.root_thickness * module == pytest.approx(0.56958151, rel=0.03)
+    assert PAPER_TOOTH.base_half_angle == pytest.approx(BETA, abs=1e-8)
+    assert section.fillet_radius * module == pytest.approx(0.1016, abs=5e-5)
+    assert section.fillet_height * module == pytest.approx(4.0909406, abs=5e-5)
+    assert section.root_thickness * module == pytest.approx(0.56958151, abs=2e-5)
 
 
 @pytest.mark.parametrize("z", [8, 12, 17, 28, 60, 300])

@@ -50,6 +50,10 @@ def test_form_and_stress_correction_factor_at_the_outer_single_contact_point():
     f = root.root_form(gear, d)
     product = f.Y_F * f.Y_S
     assert product == pytest.approx(2.848, abs=5e-4)
+    for member in ("driver", "driven"):
+        same = root.pair_root_form(p, member)
+        both = same.Y_F * same.Y_S
+        assert both == pytest.approx(product, rel=1e-12)
 
 
 @pytest.mark.parametrize("z", [9, 12, 17, 25, 60, 200, 1000])
@@ -64,6 +68,16 @@ def test_the_standards_section_is_the_30_degree_tangent_of_the_generated_fillet(
     assert f.root_chord == pytest.approx(p.thickness, rel=1e-11)
     assert f.fillet_radius == pytest.approx(p.fillet_radius, rel=1e-11)
     assert f.height == pytest.approx(p.height, rel=1e-11)
+
+
+def test_pair_stiffness_takes_the_pinion_first():
+    a, b = (Gear(Tooth(z, BasicRack.named("A"), x), 1e-3, 1e-3) for z, x in ((40, 0.0), (20, 0.3)))
+    p = GearPair(a, b)
+    expected = stiff.stiffness(
+        (20, 40), p.contact_ratio, profile_shift=(0.3, 0.0), dedendum=(1.25, 1.25), young_modulus=(206.8e9, 206.8e9)
+    )
+    assert stiff.pair_stiffness(p) == expected
+    assert stiff.pair_stiffness(p.reversed()).single == expected.single
 
 
 def test_low_load_and_material_follow_the_standard():
