@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -53,3 +53,19 @@ def write_mesh_file(
         field_data=names,
     )
     mesh.write(path, file_format="gmsh22", binary=False)
+
+
+def read_mesh_file(path: Path) -> Any:
+    """Read a mesh of any format that meshio knows.
+
+    Raises
+    ------
+    ValueError
+        If meshio cannot read it; the text is meshio's.
+    """
+    import meshio
+
+    try:
+        return meshio.read(path)
+    except (Exception, SystemExit) as problem:  # noqa: BLE001  (each of its formats raises its own; unknown ones exit)
+        raise ValueError(str(problem) or type(problem).__name__) from None

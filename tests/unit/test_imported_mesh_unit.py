@@ -1,0 +1,108 @@
+"""A user's own tooth mesh: the same answers, and clear words when something is missing."""
+
+import hashlib
+import re
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from fegear.errors import InputError
+from fegear.fem import solve_gear, stiffness_table
+from fegear.fem.imported import read_sector_mesh
+from fegear.geometry import BasicRack, Gear, Tooth
+
+MESHES = Path(__file__).parents[2] / "meshes"
+
+
+def four_square():
+    tooth = Tooth(28, BasicRack(1.0, 1.25, 0.25))
+    return Gear(tooth, 3.175e-3, 0.5 * tooth.root_radius * 3.175e-3)
+
+
+def shifted():
+    tooth = Tooth(40, BasicRack.named("A"), 0.2)
+    return Gear(tooth, 2e-3, 0.8 * tooth.root_radius * 2e-3)
+
+
+def test_meshes_are_the_ones_their_page_describes():
+    page = (MESHES / "README.md").read_text()
+    for name, digest in re.findall(r"`([\w.]+\.(?:msh|inp))` \|.*?`([0-9a-f]{64})`", page):
+        assert hashlib.sha256((MESHES / name).read_bytes()).hexdigest() == digest
+
+
+@pytest.mark.parametrize(
+    ("make", "name"), [(four_square, "four_square_test_gear.msh"), (shifted, "shifted_40_teeth.inp")]
+)
+def test_a_foreign_mesh_gives_the_generated_mesh_s_answers_within_both_error_estimates(make, name):
+    gear = make()
+    mesh = read_sector_mesh(MESHES / name, gear.tooth, gear.module)
+    radii = np.linspace(gear.form_radius + 0.1 * gear.module, gear.tip_radius, 7)
+    own = stiffness_table(gear, radii, 0.025 * gear.module)
+    foreign = stiffness_table(gear, radii, 0.025 * gear.module, influence=solve_gear(gear, mesh=mesh))
+    # The foreign fillets have edges of about 0.07 module, which is good for 1 % in stress, not for 0.5 %.
+    for quantity, column, limit in (
+        ("c_self", "c_self", 3e-3),
+        ("c_next", "c_neighbour", 3e-4),
+        ("root_tension", "root_tension", 1e-2),
+    ):
+        a, b = getattr(own, quantity), getattr(foreign, quantity)
+        scale = np.abs(own.c_self if quantity == "c_next" else a)
+        assert (np.abs(a - b) < limit * scale).all()
+        assert (np.abs(a - b) < own.errors[column] + foreign.errors[column] + 2e-3 * scale).all()
+
+
+def _written(tmp_path, change):
+    data = meshio.read(MESHES / "shifted_40_teeth.inp")
+    change(data)
+    data.write(tmp_path / "bad.inp", float_fmt=".12e")
+    return tmp_path / "bad.inp"
+
+
+def _drop_fillet(data):
+    del data.point_sets["fillet"]
+
+
+def _invert(data):
+    data.cells[0].data[7] = data.cells[0].data[7][[0, 2, 1, 5, 4, 3]]
+
+
+def _move_side(data):
+    nodes = data.point_sets["side_b"]
+    inside = nodes[np.argsort(np.hypot(*data.points[nodes, :2].T))[4]]
+    data.points[inside, :2] *= 1.01
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [(_drop_fillet, 'no group "fillet"'), (_invert, "inverted"), (_move_side, "same nodes")],
+)
+def test_broken_meshes_are_refused_in_words(tmp_path, change, words):
+    gear = shifted()
+    with pytest.raises(InputError, match=words):
+        solve_gear(gear, mesh=read_sector_mesh(_written(tmp_path, change), gear.tooth, gear.module))
+
+
+def test_a_mesh_of_another_gear_or_none_at_all_is_refused():
+    gear = four_square()
+    with pytest.raises(InputError, match="involute"):
+        read_sector_mesh(MESHES / "shifted_40_teeth.inp", gear.tooth, gear.module)
+    with pytest.raises(InputError, match="not there"):
+        read_sector_mesh(MESHES / "nothing.msh", gear.tooth, gear.module)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_sector_mesh(MESHES / "README.md", gear.tooth, gear.module)
+
+
+def test_three_node_triangles_are_read_too(tmp_path):
+    gear = shifted()
+    data = meshio.read(MESHES / "shifted_40_teeth.inp")
+    straight = meshio.Mesh(data.points, [("triangle", data.cells[0].data[:, :3])], point_sets=data.point_sets)
+    for name, nodes in straight.point_sets.items():
+        straight.point_sets[name] = np.intersect1d(nodes, np.unique(straight.cells[0].data))
+        assert straight.point_sets[name].size
+    straight.write(tmp_path / "straight.inp", float_fmt=".12e")
+    mesh = read_sector_mesh(tmp_path / "straight.inp", gear.tooth, gear.module)
+    radius = [gear.pitch_radius]
+    linear = solve_gear(gear, mesh=mesh, estimate_error=False).self_compliance(radius, 5e-5)
+    assert linear == pytest.approx(solve_gear(gear).self_compliance(radius, 5e-5), rel=5e-3)
