@@ -1,0 +1,1 @@
+"""Loaded teeth: compliance sources, load sharing, transmission error, spacing errors, root-stress histories."""

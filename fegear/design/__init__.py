@@ -1,0 +1,1 @@
+"""Profile relief that removes the transmission error: loading families, design equations, charts, optimisation."""

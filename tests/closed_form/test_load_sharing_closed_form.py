@@ -1,0 +1,144 @@
+"""Load sharing against brute force and closed forms, on arrays: no gear needed."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+
+from fegear.contact.load_sharing import share_load
+from fegear.errors import InputError, RangeError
+
+
+def own(w, c, kappa, ref):
+    return c * w - (0.5 * kappa * w * np.log(w / ref) if w > 0 else 0.0)
+
+
+def brute_force(c, e, total, kappa, ref):
+    """Every set of loaded pairs, its equations solved by a general root finder in high-level form; small n only."""
+    from scipy.optimize import root
+
+    n = len(e)
+    answers = []
+    scale = float(np.max(np.diag(c)) * total)
+    for bits in product((0, 1), repeat=n):
+        s = [j for j in range(n) if bits[j]]
+        if not s or not all(np.isfinite(e[s])):
+            continue
+
+        def equations(y, s=s):
+            w, z = np.abs(y[:-1]) * total, y[-1] * scale
+            rows = []
+            for a, j in enumerate(s):
+                others = sum(c[j, k] * w[b] for b, k in enumerate(s) if k != j)
+                rows.append((own(w[a], c[j, j], kappa[j], ref[j]) + others + e[j] - z) / scale)
+            return np.array([*rows, np.sum(y[:-1]) - 1.0])
+
+        c_mean = np.diag(c)[s]
+        guess = (1 / c_mean) / (1 / c_mean).sum()
+        solution = root(equations, [*guess, (guess @ c_mean + np.mean(e[s]) / total) * total / scale], tol=1e-15)
+        if np.abs(equations(solution.x)).max() > 1e-11 or (solution.x[:-1] < 0).any():
+            continue
+        w = np.zeros(n)
+        w[s] = solution.x[:-1] * total
+        z = solution.x[-1] * scale
+        gaps = [c[j] @ w + e[j] - z for j in range(n) if not bits[j] and np.isfinite(e[j])]
+        if all(g >= -1e-13 * scale for g in gaps):
+            answers.append((w, z))
+    return answers
+
+
+@st.composite
+def problems(draw):
+    n = draw(st.integers(1, 4))
+    own_c = np.array([draw(st.floats(0.5, 4.0)) for _ in range(n)])
+    coupling = draw(st.sampled_from([0.0, 0.1, 0.3]))
+    c = np.diag(own_c)
+    for j in range(n):
+        for k in range(j):
+            c[j, k] = c[k, j] = coupling ** (j - k) * np.sqrt(own_c[j] * own_c[k]) * draw(st.floats(-0.3, 1.0))
+    e = np.array([draw(st.floats(-2.0, 2.0)) for _ in range(n)])
+    total = 10.0 ** draw(st.floats(-3.0, 1.0))
+    kappa = np.full(n, draw(st.sampled_from([0.0, 0.02, 0.1])))
+    return c, e, total, kappa, np.ones(n)
+
+
+@given(problems())
+@settings(max_examples=150, deadline=None)
+def test_agrees_with_brute_force(problem):
+    c, e, total, kappa, ref = problem
+    got = share_load(c[:, :, None], e[:, None], [total], kappa[:, None], ref[:, None])
+    w, z = got.loads[:, 0, 0], got.transmission_error[0, 0]
+    answers = brute_force(c, e, total, kappa, ref)
+    assert answers, "brute force found nothing"
+    assert min(np.abs(w - a[0]).max() for a in answers) <= 1e-10 * total
+    assert min(abs(z - a[1]) for a in answers) <= 1e-10 * (np.diag(c).max() * total + np.abs(e).max())
+    assert w.sum() == pytest.approx(total, rel=1e-14)
+    assert (w >= 0).all()
+    deflection = [own(w[j], c[j, j], kappa[j], 1.0) + sum(c[j, k] * w[k] for k in range(len(w)) if k != j)
+                  for j in range(len(w))]  # fmt: skip
+    gap = np.array(deflection) + e - z
+    scale = np.diag(c).max() * total + np.abs(e).max()
+    assert gap.min() >= -1e-12 * scale  # no penetration
+    assert np.abs(gap[w > 1e-9 * total]).max() <= 1e-12 * scale  # contact where loaded
+
+
+@given(problems(), st.integers(0, 10**6))
+@settings(max_examples=60, deadline=None)
+def test_the_order_of_the_pairs_does_not_matter(problem, seed):
+    c, e, total, kappa, ref = problem
+    order = np.random.default_rng(seed).permutation(len(e))
+    a = share_load(c[:, :, None], e[:, None], [total], kappa[:, None], ref[:, None])
+    b = share_load(c[np.ix_(order, order)][:, :, None], e[order][:, None], [total], kappa[:, None], ref[:, None])
+    np.testing.assert_allclose(b.loads[:, 0, 0], a.loads[order, 0, 0], atol=1e-12 * total)
+
+
+@given(st.floats(-3, 7), st.floats(-7, -4), st.floats(0.0, 1.0))
+@settings(max_examples=60, deadline=None)
+def test_two_pairs_with_a_logarithm_over_ten_decades_of_load(log_load, log_error, skew):
+    """Two uncoupled pairs: one monotone equation in the first load, solved by bracketing."""
+    total, e2 = 10.0**log_load, 10.0**log_error * skew  # [N/m], [m]
+    c1, c2, kappa, ref = 8e-11, 9e-11, 5.6e-12, 3.5e5
+    got = share_load(np.diag([c1, c2])[:, :, None], [[0.0], [e2]], [total], kappa, ref)
+
+    def misfit(w):
+        return own(w, c1, kappa, ref) - own(total - w, c2, kappa, ref) - e2
+
+    w1 = total if misfit(total) <= 0 else brentq(misfit, 0.0, total, xtol=1e-16 * total, rtol=1e-15)
+    assert got.loads[0, 0, 0] == pytest.approx(w1, abs=1e-12 * total)
+    assert got.transmission_error[0, 0] == pytest.approx(own(w1, c1, kappa, ref), rel=1e-10)
+
+
+def test_many_positions_and_loads_are_the_same_as_one_by_one():
+    rng = np.random.default_rng(3)
+    n, positions, loads = 3, 7, np.array([1e-3, 0.1, 1.0, 5.0])
+    c = np.zeros((n, n, positions))
+    for p in range(positions):
+        a = rng.random((n, n))
+        c[:, :, p] = np.eye(n) * 2 + 0.1 * (a + a.T)
+    e = rng.normal(size=(n, positions))
+    e[2, :3] = np.inf
+    together = share_load(c, e, loads, 0.05, 1.0)
+    for p in range(positions):
+        for i, w in enumerate(loads):
+            alone = share_load(c[:, :, [p]], e[:, [p]], [w], 0.05, 1.0)
+            np.testing.assert_allclose(together.loads[:, p, i], alone.loads[:, 0, 0], rtol=0, atol=1e-13 * w)
+    assert (together.loads[2, :3] == 0).all()
+
+
+def test_a_small_load_rests_on_the_nearest_pair_alone():
+    got = share_load(np.diag([1.0, 1.0])[:, :, None], [[1e-3], [0.0]], [1e-6], 0.03, 1.0)
+    assert got.loads[0, 0, 0] == 0.0
+    assert got.loads[1, 0, 0] == 1e-6
+    assert got.pairs_in_contact[0, 0] == 1
+
+
+def test_wrong_questions_are_refused():
+    with pytest.raises(InputError, match="must be positive"):
+        share_load(np.ones((1, 1, 1)), [[0.0]], [0.0])
+    with pytest.raises(InputError, match="no tooth pair in reach"):
+        share_load(np.ones((1, 1, 2)), [[0.0, np.inf]], [1.0])
+    with pytest.raises(RangeError, match="so wide"):
+        share_load(np.ones((1, 1, 1)), [[0.0]], [1e30], 0.1, 1.0)
