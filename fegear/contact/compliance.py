@@ -1,0 +1,85 @@
+"""What a source of tooth compliance must answer, whether finite elements, a closed form or a measured table.
+
+Every quantity belongs to one gear, per unit face width, in SI. The Hertzian contact is left to the pair: a source states
+the compliance under the load at a reference half-width b_ref and the slope kappa of its logarithm, so that with the
+pair's Hertzian half-width b(W)
+
+    c_0(W) = own(radius) + kappa ln(b_ref / b(W)).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+Side = Literal["tension", "compression"]
+
+
+class GearCompliance(Protocol):
+    """Influence functions of one gear's teeth."""
+
+    @property
+    def reach(self) -> int:
+        """K: neighbours k = -K..K are coupled; 0 when the source knows only the loaded tooth."""
+
+    @property
+    def log_slope(self) -> float:
+        """kappa = 2 (1 - nu^2)/(pi E) in plane strain [m^2/N]; 0 when the source has a fixed contact compliance."""
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii [m] at which `own` has a kink (knots of a linear table); empty for smooth sources."""
+
+    def own(self, radius: ArrayLike) -> Array:
+        """Deflection under the load's own centre per unit line load at the reference half-width, shape (P,) [m^2/N]."""
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """b_ref, shape (P,) [m]."""
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k(p, q), shape of the broadcast radii [m^2/N]: deflection at p of tooth k per unit line load at q of tooth 0.
+
+        Tooth k = +1 is the one on the side that the load comes from: ahead of a driving tooth, behind a driven one.
+        """
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Stress along a fillet of tooth k per unit line load at q of tooth 0, shape (points, Q) [1/m]; None if unknown."""
+
+    def describe(self) -> str:
+        """Return one sentence: what this source includes and what not."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rigid:
+    """A gear that does not deflect: for pairs whose whole compliance is given on the other gear."""
+
+    reach: int = 0
+    log_slope: float = 0.0
+    kinks: tuple[float, ...] = ()
+
+    def own(self, radius: ArrayLike) -> Array:
+        """Zero."""
+        return np.zeros(np.shape(radius))
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """One: it never matters, since the logarithm's slope is zero."""
+        return np.ones(np.shape(radius))
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
+        """Zero."""
+        return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
+        """Unknown."""
+        return None
+
+    def describe(self) -> str:
+        """Return what it is."""
+        return "no deflection"

@@ -1,0 +1,259 @@
+"""Tooth loading functions that add up to the design load at every roll position (Mark, Eqs. 4.9 to 4.14, Fig. 8).
+
+A pair's load is W(x) = W_d sum_k w_k (rect_kA * p_k)(x): a plateau of k base pitches smeared by a ramp density p_k.
+Since plateaus of k base pitches, repeated every base pitch, add up to k, the loads of all pairs add up to W_d exactly
+whatever the ramps. For a contact ratio between n and n + 1 there are two such terms, k = n with ramps as wide as
+a = L - n A and k = n - 1 with ramps as wide as A - a (Fig. 8 for n = 2; for n = 1 the second is empty).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.design.spectra import polynomial_factor, sinusoidal_factor
+from fegear.errors import InputError, RangeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Ramp:
+    """How a tooth is loaded from 0 (x = -1) to 1 (x = 1): odd about the middle, monotone.
+
+    Parameters
+    ----------
+    slope : float
+        s, dimensionless slope at both ends: 0 to 2 for the sinusoidal family, 0 to r for the polynomial one; 1 with
+        either is the straight line.
+    exponent : int or None
+        r, odd and at least 3, of the polynomial family (4.14); None for the sinusoidal family (4.12).
+    """
+
+    slope: float = 1.0
+    exponent: int | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse loadings that are not monotone."""
+        r = self.exponent
+        if r is not None and (int(r) != r or r < 3 or r % 2 == 0):
+            raise InputError("design.exponent", r, "must be an odd whole number of at least 3", "choose 3, 5, 7, ...")
+        top = 2.0 if r is None else float(r)
+        if not 0.0 <= self.slope <= top:
+            raise InputError(
+                "design.slope",
+                self.slope,
+                f"must lie between 0 and {top:g} for the loading to rise all the way",
+                "choose the polynomial family with a larger exponent for steeper loading",
+            )
+
+    def load(self, x: ArrayLike) -> Array:
+        """Dimensionless load w(x), -1 to 1, for x from -1 to 1 (clipped outside) (4.12, 4.14)."""
+        t, s, r = np.clip(np.asarray(x, dtype=float), -1.0, 1.0), self.slope, self.exponent
+        if r is None:
+            return np.asarray(t + (1.0 - s) / math.pi * np.sin(math.pi * t))
+        return np.asarray(((r - s) * t + (s - 1.0) * t**r) / (r - 1.0))
+
+    def slope_at(self, x: ArrayLike) -> Array:
+        """dw/dx for x from -1 to 1."""
+        t, s, r = np.asarray(x, dtype=float), self.slope, self.exponent
+        if r is None:
+            return np.asarray(1.0 + (1.0 - s) * np.cos(math.pi * t))
+        return np.asarray(((r - s) + (s - 1.0) * r * t ** (r - 1)) / (r - 1.0))
+
+    def spectrum_factor(self, q: ArrayLike) -> Array:
+        """Fourier transform of the ramp's density, q in cycles per ramp width: the braces of (4.15b) and (4.16)."""
+        if self.exponent is None:
+            return sinusoidal_factor(q, self.slope)
+        return polynomial_factor(q, self.slope, self.exponent)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadingFunction:
+    """Load of one tooth pair over its path of contact as a fraction of the design load.
+
+    Parameters
+    ----------
+    length : float
+        L, length of the path over which a pair is loaded [m]; L / A is the design contact ratio.
+    base_pitch : float
+        A [m].
+    centre : float
+        Middle of the path [m].
+    ramp : Ramp
+        Loading at the ends of contact.
+    inner_ramp : Ramp
+        Loading between the lower and the upper level for contact ratios above 2 (second box of Fig. 8).
+    peak : float
+        F, the largest load of a pair as a fraction of the design load: between 1/n and 1/(n - 1) for a contact ratio
+        from n to n + 1; 1 for a contact ratio below 2. NaN, the default, takes the middle of that range.
+
+    Raises
+    ------
+    RangeError
+        If the contact ratio is below 1, or the peak outside its range.
+    """
+
+    length: float
+    base_pitch: float
+    centre: float = 0.0
+    ramp: Ramp = Ramp()
+    inner_ramp: Ramp = Ramp()
+    peak: float = math.nan
+
+    def __post_init__(self) -> None:
+        """Refuse loadings that cannot carry the load at every position."""
+        ratio = self.length / self.base_pitch
+        if not ratio >= 1.0 - 1e-12:
+            raise RangeError(
+                "design.length",
+                f"{self.length * 1e3:.6g} mm",
+                f"is {ratio:.4f} base pitches: below 1 no pair is left to carry the load at some positions",
+                f"choose at least the base pitch, {self.base_pitch * 1e3:.6g} mm",
+            )
+        low, high = self.peak_range
+        if math.isnan(self.peak):
+            object.__setattr__(self, "peak", 0.5 * (low + high))
+        if not low - 1e-12 <= self.peak <= high + 1e-12:
+            raise RangeError(
+                "design.peak", self.peak, f"must lie between {low:.6g} and {high:.6g} at contact ratio {ratio:.4f}"
+            )
+
+    @property
+    def order(self) -> int:
+        """n: between n and n + 1 pairs share the load."""
+        return max(math.floor(self.length / self.base_pitch * (1.0 + 1e-12)), 1)
+
+    @property
+    def peak_range(self) -> tuple[float, float]:
+        """Smallest and largest F for which the loading stays monotone."""
+        n = self.order
+        return (1.0, 1.0) if n == 1 else (1.0 / n, 1.0 / (n - 1))
+
+    @property
+    def terms(self) -> tuple[tuple[float, int, float, Ramp], ...]:
+        """(weight w_k, k, ramp width, ramp) of the plateaus."""
+        n = self.order
+        outer = max(self.length - n * self.base_pitch, 0.0)
+        terms = [(1.0 - (n - 1) * self.peak if n > 1 else 1.0, n, outer, self.ramp)]
+        if n > 1:
+            terms.append((n * self.peak - 1.0, n - 1, self.base_pitch - outer, self.inner_ramp))
+        return tuple(terms)
+
+    @property
+    def x_start(self) -> float:
+        """Where loading starts [m]."""
+        return self.centre - 0.5 * self.length
+
+    @property
+    def x_end(self) -> float:
+        """Where loading ends [m]."""
+        return self.centre + 0.5 * self.length
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Positions [m] where a ramp starts or ends."""
+        places = set()
+        for _, k, width, _ in self.terms:
+            for side in (-1.0, 1.0):
+                for end in (-0.5, 0.5):
+                    places.add(self.centre + side * 0.5 * k * self.base_pitch + end * width)
+        return tuple(sorted(places))
+
+    def fraction(self, x: ArrayLike) -> Array:
+        """W(x) / W_d, shape of x [m]; zero outside the path."""
+        distance = np.abs(np.asarray(x, dtype=float) - self.centre)
+        total = np.zeros_like(distance)
+        for weight, k, width, ramp in self.terms:
+            edge = 0.5 * k * self.base_pitch - distance  # positive inside the plateau
+            if width > 0.0:
+                total += weight * 0.5 * (1.0 + ramp.load(2.0 * edge / width))
+            else:
+                total += weight * (edge >= 0.0)
+        return np.maximum(total, 0.0)
+
+    def initial_slope(self) -> float:
+        """Slope d(W / W_d)/dx at contact initiation [1/m] (4.21); infinite for a path that starts with a jump."""
+        weight, _, width, ramp = self.terms[0]
+        return weight * ramp.slope / width if width > 0.0 else (math.inf if weight > 0.0 else 0.0)
+
+    def spectrum(self, g: ArrayLike) -> NDArray[np.complex128]:
+        """Fourier transform of W(x) / W_d [m] at g [cycles/m]: the integral of W exp(-2 pi i g x) (4.15b, 4.16).
+
+        Closed form for every g, zero and the removable singularities included. At g = n/A all but n = 0 vanish: the
+        loads of all pairs add up to a constant.
+        """
+        orders = np.asarray(g, dtype=float)
+        total = np.zeros(orders.shape)
+        for weight, k, width, ramp in self.terms:
+            plateau = k * self.base_pitch
+            total = total + weight * plateau * np.sinc(plateau * orders) * ramp.spectrum_factor(width * orders)
+        return np.asarray(total * np.exp(-2j * math.pi * orders * self.centre))
+
+    def asymptote(self, g: ArrayLike) -> NDArray[np.complex128]:
+        """What `spectrum` tends to at high frequency [m]: proportional to the slope at initiation (4.20)."""
+        orders = np.asarray(g, dtype=float)
+        total = np.zeros(orders.shape)
+        for weight, k, width, ramp in self.terms:
+            plateau = k * self.base_pitch
+            total = total + weight * plateau * np.sinc(plateau * orders) * ramp.slope * np.sinc(width * orders)
+        return np.asarray(total * np.exp(-2j * math.pi * orders * self.centre))
+
+    def envelope(self, g: ArrayLike) -> Array:
+        """Envelope of the high-frequency spectrum [m]: initial slope / (pi g)^2 (4.22), contact ratio 1 to 2."""
+        return np.asarray(self.initial_slope() / (math.pi * np.asarray(g, dtype=float)) ** 2)
+
+
+@dataclass(frozen=True, slots=True)
+class SlopeTradeOff:
+    """What the initial slope buys and costs (Mark, after Eq. 4.22).
+
+    Parameters
+    ----------
+    slope : ndarray, shape (S,)
+        s.
+    initial_slope : ndarray, shape (S,)
+        d(W / W_d)/dx at contact initiation [1/m].
+    length_per_load : ndarray, shape (S,)
+        Rough change of the loaded length when the load grows by its own size, 2 / initial slope [m]: with relief from
+        (4.6) the relief's slope follows the loading's.
+    high_frequency_content : ndarray, shape (S,)
+        Root mean square of the spectrum above the frequency asked for, in plateau areas W_d A.
+    """
+
+    slope: Array
+    initial_slope: Array
+    length_per_load: Array
+    high_frequency_content: Array
+
+
+def slope_trade_off(
+    length: float, base_pitch: float, slopes: ArrayLike, above: float, family: Literal["sinusoidal"] | int = 7
+) -> SlopeTradeOff:
+    """Compare initial slopes by how steady the loaded length is and how much they excite tooth resonances.
+
+    Parameters
+    ----------
+    length, base_pitch : float
+        L and A [m].
+    slopes : array_like, shape (S,)
+        s of each candidate.
+    above : float
+        Frequency from which content counts [tooth-mesh orders]; to ten times that.
+    family : "sinusoidal" or int
+        The sinusoidal family, or the exponent r of the polynomial one.
+    """
+    s = np.atleast_1d(np.asarray(slopes, dtype=float))
+    g = np.linspace(above, 10.0 * above, 4001) / base_pitch
+    exponent = None if family == "sinusoidal" else family
+    functions = [LoadingFunction(length, base_pitch, ramp=Ramp(float(value), exponent)) for value in s]
+    initial = np.array([f.initial_slope() for f in functions])
+    content = np.array([math.sqrt(float(np.mean(np.abs(f.spectrum(g)) ** 2))) for f in functions]) / base_pitch
+    with np.errstate(divide="ignore"):
+        return SlopeTradeOff(s, initial, 2.0 / initial, content)
