@@ -1,8 +1,8 @@
 """What a source of tooth compliance must answer, whether finite elements, a closed form or a measured table.
 
-Every quantity belongs to one gear, per unit face width, in SI. The Hertzian contact is left to the pair: a source states
-the compliance under the load at a reference half-width b_ref and the slope kappa of its logarithm, so that with the
-pair's Hertzian half-width b(W)
+Every quantity belongs to one gear, per unit face width, in SI. The Hertzian contact is left to the pair: a source
+states the compliance under the load at a reference half-width b_ref and the slope kappa of its logarithm, so that with
+the pair's Hertzian half-width b(W)
 
     c_0(W) = own(radius) + kappa ln(b_ref / b(W)).
 """
@@ -44,13 +44,13 @@ class GearCompliance(Protocol):
         """b_ref, shape (P,) [m]."""
 
     def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
-        """c_k(p, q), shape of the broadcast radii [m^2/N]: deflection at p of tooth k per unit line load at q of tooth 0.
+        """c_k(p, q) [m^2/N]: deflection at p of tooth k per unit line load at q of tooth 0; radii are broadcast.
 
         Tooth k = +1 is the one on the side that the load comes from: ahead of a driving tooth, behind a driven one.
         """
 
     def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
-        """Stress along a fillet of tooth k per unit line load at q of tooth 0, shape (points, Q) [1/m]; None if unknown."""
+        """Stress along a fillet of tooth k per unit line load at q of tooth 0, (points, Q) [1/m]; None if unknown."""
 
     def describe(self) -> str:
         """Return one sentence: what this source includes and what not."""

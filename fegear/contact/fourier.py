@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -67,7 +68,7 @@ def panels(start: float, period: float, breaks: ArrayLike = (), waves: int = 12,
     t, w = np.polynomial.legendre.leggauss(order)
     t, w = 0.5 * (t + 1.0), 0.5 * w
     xs, ws = [], []
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         parts = max(1, math.ceil(1.5 * waves * (b - a) / period / (0.16 * order)))
         s = (np.arange(parts)[:, None] + t).ravel() / parts
         xs.append(a + (b - a) * s * s * (3.0 - 2.0 * s))

@@ -6,7 +6,8 @@ At one roll position the pairs in reach carry loads W_j with
     u_j = sum_j' c_jj' W_j' - (kappa_j / 2) W_j ln(W_j / W_ref,j),
 
 zeta the loaded transmission error, e_j the modifications and spacing errors of pair j (removal positive). The logarithm
-is what the Hertzian half-width b ~ sqrt(W) does to the compliance of both bodies. The problem is the condition of a
+is what the Hertzian half-width b ~ sqrt(W) does to the compliance of both bodies; a contact at or near the corner of a
+tip is narrower (`edge_law`). The problem is the condition of a
 strictly convex minimum, so its solution is unique; it is found by active sets with Newton's method, without relaxation.
 """
 
@@ -68,6 +69,7 @@ def share_load(
     load: ArrayLike,
     log_slope: ArrayLike = 0.0,
     reference_load: ArrayLike = 1.0,
+    tilt: ArrayLike | None = None,
 ) -> SharedLoad:
     """Share total loads among the tooth pairs at many roll positions.
 
@@ -84,6 +86,9 @@ def share_load(
         kappa_j, change of both bodies' approach per unit load with ln(1 / half-width) [m/N]; 0 for a linear contact.
     reference_load : array_like, shape () or (n, P)
         W_ref [N], the load at which the diagonal of `compliance` holds.
+    tilt : array_like, shape (n, P), optional
+        theta_j R_j over the Hertzian half-width at the reference load, theta_j the slope at which the flanks part
+        from the tip corner inward (negative when the contact lies inside the corner); see `edge_law`.
 
     Returns
     -------
@@ -131,6 +136,7 @@ def share_load(
         half_slope=flat(0.5 * kappa),
         gap=flat(np.where(reach, e, 0.0) / total),
         reach=flat(reach.astype(float)) > 0.5,
+        tilt=None if tilt is None else flat(np.asarray(tilt, dtype=float)[:, :, None] * np.sqrt(at / total)),
     )
     v, z, steps = _solve(problem)
     loads = v.reshape(n, positions, cases) * total
@@ -146,6 +152,7 @@ class _Problem:
     half_slope: Array
     gap: Array
     reach: Mask
+    tilt: Array | None
 
     def only(self, index: NDArray[np.int64]) -> _Problem:
         """The problems at `index`."""
@@ -155,7 +162,37 @@ class _Problem:
             self.half_slope[:, index],
             self.gap[:, index],
             self.reach[:, index],
+            None if self.tilt is None else self.tilt[:, index],
         )
+
+
+def edge_law(t: ArrayLike) -> tuple[Array, Array]:
+    """What the corner of a tip adds to the approach of a line contact, per kappa W.
+
+    Both bodies are taken as half-planes; inward from the corner their surfaces part as theta s + s^2/(2R). The
+    contact then covers [0, c] with the pressure (E*/2R) sqrt((c - s)/s) (s + c/2 + theta R), load
+    (pi E*/4)(theta c + 3 c^2/(4R)), and moves at the corner as a Hertzian contact of half-width
+    (c/2) exp(-1/2 + 3 y^2/8) would at its centre, y = c / b (Johnson, Contact Mechanics, 2.7 and 5). With t =
+    theta R / b it is a function of t alone, zero with zero slope at t = -1, where the corner no longer matters.
+
+    Parameters
+    ----------
+    t : array_like
+        theta R / b, b the Hertzian half-width at the present load.
+
+    Returns
+    -------
+    psi, t_slope : ndarray
+        psi(t) and t dpsi/dt.
+    """
+    at = np.asarray(t, dtype=float)
+    near = at > -1.0
+    s = np.where(near, at, -1.0)
+    y = 2.0 / (s + np.sqrt(s * s + 3.0))
+    inside = np.minimum(s, 0.0)
+    psi = np.where(near, 0.5 - 0.375 * y * y - np.log(0.5 * y) + inside * inside, 0.0)
+    slope = np.where(near, s * (2.0 - s * y) / (1.5 * y + s) + 2.0 * inside * inside, 0.0)
+    return psi, slope
 
 
 def _refuse_wide_contact(diagonal: Array, kappa: Array, total: Array) -> None:
@@ -210,6 +247,11 @@ def _newton_step(problem: _Problem, active: Mask, v: Array) -> tuple[Array, Arra
     w = np.maximum(v, _SMALLEST_SHARE)
     slope = problem.diagonal - problem.half_slope * (1.0 + np.log(w))
     constant = problem.gap + problem.half_slope * w
+    if problem.tilt is not None:
+        t = problem.tilt / np.sqrt(w)
+        psi, t_slope = edge_law(t)
+        slope = slope + problem.half_slope * (2.0 * psi - t_slope)
+        constant = constant + problem.half_slope * w * t_slope
     if problem.coupling is None:
         inverse = np.where(active, 1.0 / np.where(active, slope, 1.0), 0.0)
         z = (1.0 + (inverse * constant).sum(axis=0)) / inverse.sum(axis=0)

@@ -46,7 +46,7 @@ class MarkSeries:
     @property
     def converges(self) -> bool:
         """0 < k < 2 everywhere."""
-        return 0.0 < self.smallest and self.largest < 2.0
+        return self.smallest > 0.0 and self.largest < 2.0
 
 
 def reciprocal_series(points: Panels, stiffness: ArrayLike, harmonics: int, terms: int) -> MarkSeries:

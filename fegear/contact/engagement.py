@@ -1,0 +1,181 @@
+"""A loaded gear pair: contacts, compliances, modifications and errors brought together and solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.load_sharing import SharedLoad, share_load
+from fegear.contact.meshing import Contacts, Meshing
+from fegear.geometry.relief import UNMODIFIED, Relief
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.contact.pair_compliance import PairCompliance, PairMatrices
+    from fegear.geometry.pair import GearPair
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RollGrid:
+    """All that load sharing needs at P roll positions, evaluated once.
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+        Roll positions [m].
+    contacts : Contacts
+    matrices : PairMatrices
+    """
+
+    x: Array
+    contacts: Contacts
+    matrices: PairMatrices
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """Load sharing at P roll positions under L loads.
+
+    Parameters
+    ----------
+    grid : RollGrid
+    load : ndarray, shape (L,)
+        [N].
+    shared : SharedLoad
+    separation : ndarray, shape (n, P)
+        e_j [m]: modifications, errors and, off the path, the corner's gap.
+    """
+
+    grid: RollGrid
+    load: Array
+    shared: SharedLoad
+    separation: Array
+
+    @property
+    def x(self) -> Array:
+        """Roll positions, shape (P,) [m]."""
+        return self.grid.x
+
+    @property
+    def pair_x(self) -> Array:
+        """Position of each pair, shape (n, P) [m]."""
+        return self.grid.contacts.x
+
+    @property
+    def loads(self) -> Array:
+        """W_j, shape (n, P, L) [N]."""
+        return self.shared.loads
+
+    @property
+    def transmission_error(self) -> Array:
+        """Loaded static transmission error, shape (P, L) [m]."""
+        return self.shared.transmission_error
+
+    @property
+    def deflection(self) -> Array:
+        """Deflection of loaded pairs, both gears and the contact, shape (n, P, L) [m]; zero where unloaded."""
+        u = self.transmission_error[None] - np.where(self.grid.contacts.present, self.separation, 0.0)[:, :, None]
+        return np.where(self.loads > 0.0, u, 0.0)
+
+    @cached_property
+    def local_stiffness(self) -> Array:
+        """Local mesh stiffness dW/dzeta of the pairs in contact, shape (P, L) [N/m]."""
+        tangent = self.grid.matrices.tangent(self.loads)
+        active = self.loads > 0.0
+        n = active.shape[0]
+        both = active[:, None] & active[None, :]
+        t = np.where(both, tangent, np.eye(n)[:, :, None, None])
+        right = active.astype(float)
+        solution = np.linalg.solve(np.moveaxis(t, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1)[..., None])[..., 0]
+        return np.asarray(solution.sum(axis=-1))
+
+
+@dataclass(frozen=True)
+class Engagement:
+    """A gear pair with its compliances, modifications and spacing errors.
+
+    Parameters
+    ----------
+    compliance : PairCompliance
+    driver_relief, driven_relief : Relief
+        Modifications of all teeth of each gear.
+    driver_spacing, driven_spacing : ndarray
+        Spacing error of each tooth in the order of meshing, removal positive [m]; empty for none.
+    corner_contact : bool
+    """
+
+    compliance: PairCompliance
+    driver_relief: Relief = UNMODIFIED
+    driven_relief: Relief = UNMODIFIED
+    driver_spacing: Array = field(default_factory=lambda: np.empty(0))
+    driven_spacing: Array = field(default_factory=lambda: np.empty(0))
+    corner_contact: bool = False
+
+    @property
+    def pair(self) -> GearPair:
+        """The gears."""
+        return self.compliance.pair
+
+    @cached_property
+    def meshing(self) -> Meshing:
+        """Finds the contacts."""
+        return Meshing(self.pair, self.corner_contact)
+
+    def grid(self, x: ArrayLike) -> RollGrid:
+        """Evaluate contacts and compliances at roll positions, shape (P,) [m], brought into one base pitch."""
+        at = np.atleast_1d(np.asarray(x, dtype=float))
+        start, pitch = self.pair.x_start, self.pair.base_pitch
+        outside = (at < start) | (at > start + pitch)
+        contacts = self.meshing.contacts(np.where(outside, self.meshing.reduced(at), at))
+        return RollGrid(at, contacts, self.compliance.matrices(contacts))
+
+    def modification(self, contacts: Contacts) -> Array:
+        """m_j of both gears together, shape (n, P) [m]."""
+        return self.driver_relief.removal(contacts.roll_driver) + self.driven_relief.removal(contacts.roll_driven)
+
+    def spacing(self, contacts: Contacts, cycle: int) -> Array:
+        """Spacing error of each pair, shape (n, 1) [m], in the base pitch number `cycle`.
+
+        Teeth are numbered in the order in which they come into mesh, so pair j is on teeth cycle - j.
+        """
+        total = np.zeros(contacts.number.size)
+        for errors in (self.driver_spacing, self.driven_spacing):
+            if errors.size:
+                total += errors[np.mod(cycle - contacts.number, errors.size)]
+        return total[:, None]
+
+    def separation(self, contacts: Contacts, cycle: int = 0) -> Array:
+        """e_j, shape (n, P) [m]; infinite where a pair is out of reach."""
+        added = self.modification(contacts) + self.spacing(contacts, cycle)
+        return np.where(contacts.present, contacts.gap + added, np.inf)
+
+    def solve(self, grid: RollGrid, load: ArrayLike, cycle: int = 0) -> Loaded:
+        """Share loads, shape (L,) [N], at the positions of a grid."""
+        e = self.separation(grid.contacts, cycle)
+        loads = np.atleast_1d(np.asarray(load, dtype=float))
+        m = grid.matrices
+        shared = share_load(m.compliance, e, loads, m.log_slope, m.reference_load, m.tilt)
+        return Loaded(grid, loads, shared, e)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Roll positions [m] in one base pitch where pairs enter or leave or a modification has a kink."""
+        pair = self.pair
+        at_pitch1 = float(pair.flank_curvature_radius(0.0, "driver"))
+        at_pitch2 = float(pair.flank_curvature_radius(0.0, "driven"))
+        places = [
+            pair.x_start,
+            pair.x_end,
+            *(roll * pair.driver.base_radius - at_pitch1 for roll in self.driver_relief.kinks),
+            *(at_pitch2 - roll * pair.driven.base_radius for roll in self.driven_relief.kinks),
+            *(float(pair.x_of_radius(radius, "driver")) for radius in self.compliance.driver.kinks),
+            *(float(pair.x_of_radius(radius, "driven")) for radius in self.compliance.driven.kinks),
+        ]
+        inside = [x for x in places if pair.x_start <= x <= pair.x_end]
+        return tuple(sorted({float(x) for x in self.meshing.reduced(inside)}))

@@ -1,0 +1,128 @@
+"""The finite-element influence functions as a compliance source: tabulated once, then cheap anywhere on the flank."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import RangeError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+    from scipy.interpolate import CubicSpline
+
+    from fegear.contact.compliance import Side
+    from fegear.fem.gear import GearInfluence
+
+    Array = NDArray[np.float64]
+
+#: Interpolation points over the flank: splines for the loaded tooth, Chebyshev polynomials for its smooth neighbours.
+_OWN_POINTS = 97
+_NEIGHBOUR_POINTS = 14
+
+
+@dataclass(frozen=True)
+class FiniteElementCompliance:
+    """One gear's influence functions over its flank, interpolated in the roll length.
+
+    Parameters
+    ----------
+    influence : GearInfluence
+    own_spline : scipy CubicSpline
+        c_0 at the patch's half-width [m^2/N] over the roll length [m].
+    neighbours : mapping of int to ndarray, shape (m, m)
+        Chebyshev coefficients of c_k(p, q).
+    lowest, highest : float
+        Roll lengths of the ends of the flank [m].
+    """
+
+    influence: GearInfluence
+    own_spline: CubicSpline
+    neighbours: Mapping[int, Array]
+    lowest: float
+    highest: float
+
+    kinks: tuple[float, ...] = ()
+
+    @property
+    def reach(self) -> int:
+        """K of the finite-element solution."""
+        return self.influence.reach
+
+    @property
+    def log_slope(self) -> float:
+        """kappa [m^2/N]."""
+        return self.influence.log_slope
+
+    def _roll_length(self, radius: ArrayLike) -> Array:
+        r, rb = np.asarray(radius, dtype=float), self.influence.gear.base_radius
+        length = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
+        slack = 1e-6 * self.influence.gear.module
+        off = (length < self.lowest - slack) | (length > self.highest + slack)
+        if off.any():
+            raise RangeError(
+                "radius",
+                f"{float(r[off].flat[0]) * 1e3:.6g} mm",
+                f"is off the flank, which runs from {math.hypot(rb, self.lowest) * 1e3:.6g} mm "
+                f"to {math.hypot(rb, self.highest) * 1e3:.6g} mm",
+            )
+        return np.clip(length, self.lowest, self.highest)
+
+    def own(self, radius: ArrayLike) -> Array:
+        """c_0 at the half-width of the finite-element patch [m^2/N]."""
+        return np.asarray(self.own_spline(self._roll_length(radius)))
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """The patch's half-width [m]."""
+        return np.full(np.shape(radius), self.influence.patch_half_width)
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k(p, q), zero beyond the reach."""
+        if abs(k) > self.reach:
+            return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
+        middle, half = 0.5 * (self.lowest + self.highest), 0.5 * (self.highest - self.lowest)
+        p, q = ((self._roll_length(r) - middle) / half for r in (radius_p, radius_q))
+        p, q = np.broadcast_arrays(p, q)
+        return np.asarray(np.polynomial.chebyshev.chebval2d(p, q, self.neighbours[k]))
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Tangential stress along the fillet of tooth k [1/m], shape (points, Q); zero beyond the reach."""
+        if abs(k) > self.reach:
+            return np.zeros_like(self.influence.fillet_stress(0, side, radius_q))
+        return self.influence.fillet_stress(k, side, radius_q)
+
+    def describe(self) -> str:
+        """Return what it includes."""
+        coupled = f"neighbours up to {self.reach} teeth away" if self.reach else "no neighbours"
+        return f"finite elements of the whole gear, {coupled}, contact by the Hertzian half-width"
+
+
+def finite_element_compliance(influence: GearInfluence) -> FiniteElementCompliance:
+    """Tabulate the influence functions of a solved gear."""
+    from scipy.interpolate import CubicSpline
+
+    gear = influence.gear
+    rb = gear.base_radius
+    bottom = max(influence.lowest_radius, gear.form_radius)
+    top = min(influence.highest_radius, gear.involute_tip_radius)
+    low, high = (math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (bottom, top))
+    # Half cosine spacing: the compliance bends most at the tip, where the patch has to shrink.
+    s = np.sin(0.5 * math.pi * np.linspace(0.0, 1.0, _OWN_POINTS)) * 0.5 + 0.5 * np.linspace(0.0, 1.0, _OWN_POINTS)
+    lengths = low + (high - low) * s
+    radii = np.clip(np.hypot(rb, lengths), bottom, top)
+    own = influence.self_compliance(radii, influence.patch_half_width)
+    m = _NEIGHBOUR_POINTS
+    t = np.cos(math.pi * (np.arange(m) + 0.5) / m)
+    nodes = np.hypot(rb, 0.5 * (low + high) + 0.5 * (high - low) * t)
+    to_coefficients = np.linalg.inv(np.polynomial.chebyshev.chebvander(t, m - 1))
+    neighbours = {}
+    for k in range(1, influence.reach + 1):
+        values = influence.neighbour(k, nodes, nodes)
+        neighbours[k] = to_coefficients @ values @ to_coefficients.T
+        neighbours[-k] = neighbours[k].T  # reciprocity, exact for pressure-weighted deflections
+    return FiniteElementCompliance(influence, CubicSpline(lengths, own), neighbours, low, high)

@@ -1,0 +1,320 @@
+"""Profile modifications as exact functions of the roll angle: tip and root relief, crowning, tables.
+
+The removal is measured along the normal of the involute, which is the line of action, in metres; positive removes
+material. The roll angle of a flank point is its roll length over the base radius, tan(alpha) at its radius.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+import numpy as np
+
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair, Member
+
+    Array = NDArray[np.float64]
+
+Shape = Literal["linear", "parabolic"]
+Interpolation = Literal["linear", "cubic"]
+
+
+class Relief(Protocol):
+    """Removal of material along a flank."""
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Roll angles [rad] where the removal or its slope jumps."""
+
+    def removal(self, roll: ArrayLike) -> Array:
+        """Material removed along the normal [m] at roll angles [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class EndRelief:
+    """Tip or root relief: nothing up to `start`, `amount` at `end`, growing with the given power of the roll angle.
+
+    Parameters
+    ----------
+    amount : float
+        Removal at `end` [m].
+    start, end : float
+        Roll angles [rad]; end > start is a tip relief, end < start a root relief. The curve goes on beyond `end`.
+    power : float
+        1 for linear, 2 for parabolic relief.
+    """
+
+    amount: float
+    start: float
+    end: float
+    power: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse reliefs without length."""
+        if not (math.isfinite(self.amount) and math.isfinite(self.start) and math.isfinite(self.end)):
+            raise InputError("relief", f"amount {self.amount}, from {self.start} to {self.end}", "must be finite")
+        if abs(self.end - self.start) < 1e-12:
+            raise InputError("relief.start", self.start, "coincides with the end of the relief", "give it a length")
+        if not self.power >= 1.0:
+            raise InputError("relief.shape", self.power, "must be a power of at least 1", "1 is linear, 2 parabolic")
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The start."""
+        return (self.start,)
+
+    def removal(self, roll: ArrayLike) -> Array:
+        """amount ((roll - start)/(end - start))^power beyond the start."""
+        s = (np.asarray(roll, dtype=float) - self.start) / (self.end - self.start)
+        return np.asarray(self.amount * np.maximum(s, 0.0) ** self.power)
+
+
+@dataclass(frozen=True, slots=True)
+class Crowning:
+    """Profile crowning: a parabola in the roll angle, zero in the middle and `amount` at both ends.
+
+    Parameters
+    ----------
+    amount : float
+        [m].
+    start, end : float
+        Roll angles of the ends [rad].
+    """
+
+    amount: float
+    start: float
+    end: float
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+    def removal(self, roll: ArrayLike) -> Array:
+        """Amount times the square of the distance from the middle over half the length."""
+        middle, half = 0.5 * (self.start + self.end), 0.5 * (self.end - self.start)
+        return np.asarray(self.amount * ((np.asarray(roll, dtype=float) - middle) / half) ** 2)
+
+
+@dataclass(frozen=True)
+class TabulatedRelief:
+    """A modification given point by point; the end pieces go on as straight lines.
+
+    Parameters
+    ----------
+    roll : ndarray, shape (N,)
+        Ascending roll angles [rad].
+    values : ndarray, shape (N,)
+        Removal [m].
+    interpolation : {"linear", "cubic"}
+        Straight pieces, or the shape-preserving cubic of Fritsch and Carlson (no overshoot between the entries).
+    """
+
+    roll: Array
+    values: Array
+    interpolation: Interpolation = "linear"
+
+    def __post_init__(self) -> None:
+        """Refuse tables that are no function."""
+        roll, values = np.array(self.roll, dtype=float), np.array(self.values, dtype=float)
+        if roll.ndim != 1 or roll.shape != values.shape or roll.size < 2:
+            raise InputError("relief.table", f"{roll.size} entries", "must have two or more roll angles and removals")
+        if not (np.isfinite(roll).all() and np.isfinite(values).all()):
+            raise InputError("relief.table", "an entry", "must be finite")
+        if (np.diff(roll) <= 0.0).any():
+            raise InputError("relief.table", "roll angles", "must ascend without repetition")
+        if self.interpolation not in ("linear", "cubic"):
+            raise InputError("relief.interpolation", f'"{self.interpolation}"', 'must be "linear" or "cubic"')
+        roll.setflags(write=False)
+        values.setflags(write=False)
+        object.__setattr__(self, "roll", roll)
+        object.__setattr__(self, "values", values)
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The entries, at which the slope (linear) or the curvature (cubic) jumps."""
+        return tuple(float(t) for t in self.roll)
+
+    def removal(self, roll: ArrayLike) -> Array:
+        """Interpolate; extrapolate linearly."""
+        at = np.asarray(roll, dtype=float)
+        t, v = self.roll, self.values
+        if self.interpolation == "cubic" and t.size > 2:
+            from scipy.interpolate import PchipInterpolator
+
+            inside = PchipInterpolator(t, v)
+            first, last = float(inside(t[0], 1)), float(inside(t[-1], 1))
+            middle = inside(np.clip(at, t[0], t[-1]))
+        else:
+            first, last = (v[1] - v[0]) / (t[1] - t[0]), (v[-1] - v[-2]) / (t[-1] - t[-2])
+            middle = np.interp(at, t, v)
+        below, above = np.minimum(at - t[0], 0.0), np.maximum(at - t[-1], 0.0)
+        return np.asarray(middle + first * below + last * above)
+
+
+@dataclass(frozen=True, slots=True)
+class CombinedRelief:
+    """The sum of several modifications of one flank; the empty sum leaves the involute as it is."""
+
+    parts: tuple[Relief, ...] = ()
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Those of all parts."""
+        return tuple(sorted({k for part in self.parts for k in part.kinks}))
+
+    def removal(self, roll: ArrayLike) -> Array:
+        """Add the parts."""
+        total = np.zeros(np.shape(roll))
+        for part in self.parts:
+            total = total + part.removal(roll)
+        return total
+
+
+#: The involute as generated.
+UNMODIFIED = CombinedRelief()
+
+
+def roll_of_radius(gear: Gear, radius: ArrayLike) -> Array:
+    """Roll angle [rad] of the flank point at `radius` [m]."""
+    return gear.tooth.roll(np.asarray(radius, dtype=float) / gear.module)
+
+
+def tip_relief(
+    gear: Gear,
+    amount: float,
+    *,
+    start_roll: float | None = None,
+    start_radius: float | None = None,
+    length: float | None = None,
+    shape: Shape = "linear",
+    at_radius: float | None = None,
+) -> EndRelief:
+    """Tip relief of a gear; exactly one of the three ways to say where it starts.
+
+    Parameters
+    ----------
+    gear : Gear
+    amount : float
+        Removal at `at_radius` [m].
+    start_roll : float, optional
+        Roll angle where the relief starts [rad].
+    start_radius : float, optional
+        Radius where it starts [m].
+    length : float, optional
+        Length of the relief along the line of action [m], from `at_radius` inward.
+    shape : {"linear", "parabolic"}
+    at_radius : float, optional
+        Where the amount is measured [m], by default the end of the involute.
+
+    Raises
+    ------
+    InputError
+        If the start is given twice or not at all, or lies off the flank.
+    """
+    end = float(roll_of_radius(gear, gear.involute_tip_radius if at_radius is None else at_radius))
+    start = _start(gear, end, -1.0, start_roll, start_radius, length, "tip")
+    if not start < end:
+        raise InputError("relief.start", f"roll angle {start:.6g} rad", f"must lie below the tip's {end:.6g} rad")
+    return EndRelief(amount, start, end, _power(shape))
+
+
+def root_relief(
+    gear: Gear,
+    amount: float,
+    *,
+    end_radius: float,
+    start_roll: float | None = None,
+    start_radius: float | None = None,
+    length: float | None = None,
+    shape: Shape = "linear",
+) -> EndRelief:
+    """Root relief of a gear, as `tip_relief`; `end_radius` [m] is the inner end where the amount is measured."""
+    end = float(roll_of_radius(gear, end_radius))
+    start = _start(gear, end, 1.0, start_roll, start_radius, length, "root")
+    if not start > end:
+        raise InputError("relief.start", f"roll angle {start:.6g} rad", f"must lie above its end at {end:.6g} rad")
+    return EndRelief(amount, start, end, _power(shape))
+
+
+def _power(shape: Shape) -> float:
+    if shape not in ("linear", "parabolic"):
+        raise InputError("relief.shape", f'"{shape}"', 'must be "linear" or "parabolic"')
+    return 1.0 if shape == "linear" else 2.0
+
+
+def _start(
+    gear: Gear,
+    end: float,
+    sign: float,
+    start_roll: float | None,
+    start_radius: float | None,
+    length: float | None,
+    where: str,
+) -> float:
+    if sum(value is not None for value in (start_roll, start_radius, length)) != 1:
+        raise InputError(
+            f"relief.{where}", "its start", "must be given exactly once", "as roll angle, as radius or as length"
+        )
+    if start_roll is not None:
+        return start_roll
+    if start_radius is not None:
+        if start_radius < gear.base_radius:
+            raise InputError("relief.start_radius", f"{start_radius * 1e3:.6g} mm", "lies inside the base circle")
+        return float(roll_of_radius(gear, start_radius))
+    assert length is not None  # noqa: S101  (the count above leaves no other case)
+    return end + sign * length / gear.base_radius
+
+
+def crowning(gear: Gear, amount: float, start_radius: float, end_radius: float) -> Crowning:
+    """Profile crowning between two radii [m]."""
+    a, b = (float(roll_of_radius(gear, r)) for r in (start_radius, end_radius))
+    if not b > a:
+        raise InputError("relief.crowning", f"{start_radius:.6g} to {end_radius:.6g} m", "must have a length")
+    return Crowning(amount, a, b)
+
+
+def normalised_tip_relief(
+    pair: GearPair, member: Member, amount: float, normalised_length: float, shape: Shape = "linear"
+) -> EndRelief:
+    """Tip relief of `Lin, Townsend, Oswald`: L_n = 1 runs from the tip to the HPSTC in roll angle (TM-89901, Fig. 2).
+
+    Parameters
+    ----------
+    pair : GearPair
+        Its contact ratio lies between 1 and 2.
+    member : {"driver", "driven"}
+    amount : float
+        At the tip [m]; Delta in the source is the combined tooth deflection at the HPSTC plus twice the largest
+        spacing error (Welbourn).
+    normalised_length : float
+        L_n, positive.
+    """
+    if not normalised_length > 0.0:
+        raise InputError("relief.length", normalised_length, "must be positive", "leave the relief out instead")
+    if not 1.0 <= pair.contact_ratio < 2.0:
+        raise InputError(
+            "relief.length",
+            normalised_length,
+            f"is in lengths from tip to HPSTC, which contact ratio {pair.contact_ratio:.4f} does not have",
+            "give the start as a roll angle or radius",
+        )
+    gear = pair.gear(member)
+    highest = pair.x_hpstc if member == "driver" else pair.x_lpstc
+    end = float(roll_of_radius(gear, gear.involute_tip_radius))
+    hpstc = float(pair.roll_angle(highest, member))
+    return EndRelief(amount, end - normalised_length * (end - hpstc), end, _power(shape))
+
+
+def modified_flank(gear: Gear, relief: Relief, roll: ArrayLike) -> Array:
+    """Points of the modified right flank [m], shape (2, N): the involute less the removal along its normal."""
+    involute = gear.tooth.involute
+    t = np.asarray(roll, dtype=float)
+    return np.asarray(involute.points(t) * gear.module - involute.normals(t) * relief.removal(t))
