@@ -1,0 +1,66 @@
+"""What helical gears and pairs refuse, and in which words."""
+
+import math
+
+import pytest
+
+from fegear.errors import GeometryError, InputError, RangeError
+from fegear.helical import HelicalGear, HelicalPair, Misalignment, pair_contact, tooth_contact
+
+DEG = math.pi / 180.0
+
+
+def gear(teeth=30, hand="left", beta=30.0, **more):
+    return HelicalGear(teeth, 5e-3, 20.0 * DEG, beta * DEG, 0.04, hand, **more)
+
+
+@pytest.mark.parametrize(
+    ("build", "error", "words"),
+    [
+        (lambda: gear(teeth=2), InputError, "at least 3"),
+        (lambda: gear(teeth=30.5), InputError, "whole number"),
+        (lambda: gear(hand="spur"), InputError, "contradicts the helix angle"),
+        (lambda: gear(beta=0.0), InputError, "contradicts the helix angle"),
+        (lambda: gear(beta=-30.0), InputError, "the hand carries the sign"),
+        (lambda: gear(hand="both"), InputError, "must be"),
+        (lambda: gear(tip_radius=0.05), GeometryError, "below the base circle"),
+        (lambda: gear(tip_radius=0.2), GeometryError, "flanks meet"),
+        (lambda: gear(flank_depth=-1e-3), InputError, "positive"),
+        (lambda: HelicalGear(30, -1.0, 0.35, 0.5, 0.04, "left"), InputError, "positive"),
+        (lambda: HelicalGear(30, 5e-3, 0.35, 0.5, math.inf, "left"), InputError, "finite"),
+        (lambda: HelicalGear(30, 5e-3, 1.0, 0.5, 0.04, "left"), InputError, "between 5 and 40"),
+        (lambda: HelicalPair(gear(), gear(100, "left")), GeometryError, "opposite hands"),
+        (lambda: HelicalPair(gear(), gear(100, "right", 20.0)), GeometryError, "equal by design"),
+        (lambda: HelicalPair(gear(), gear(100, "right"), axial_offset=0.04), GeometryError, "beside each other"),
+        (lambda: HelicalPair(gear(), gear(100, "right"), Misalignment(centre_distance=0.02)), GeometryError, "no path"),
+        (
+            lambda: HelicalPair(gear(), gear(100, "right"), Misalignment(centre_distance=-0.1)),
+            GeometryError,
+            "base radii",
+        ),
+        (lambda: HelicalPair(gear(), gear(100, "right"), parabola=1e3), GeometryError, "no regular flank"),
+        (lambda: Misalignment(shaft_angle=0.2), RangeError, "no small error"),
+        (lambda: Misalignment(lead_angle=math.nan), RangeError, "no small error"),
+        (lambda: Misalignment(centre_distance=math.nan), InputError, "finite"),
+        (lambda: tooth_contact(HelicalPair(gear(), gear(100, "right")), 1), InputError, "at least 2"),
+        (lambda: pair_contact(HelicalPair(gear(), gear(100, "right")), [math.nan]), InputError, "finite"),
+    ],
+)
+def test_nonsense_is_refused_with_value_and_rule(build, error, words):
+    with pytest.raises(error, match=words):
+        build()
+
+
+def test_results_are_read_only():
+    result = tooth_contact(HelicalPair(gear(), gear(100, "right")), 8)
+    with pytest.raises(ValueError, match="read-only"):
+        result.error[0] = 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        result.mesh.r1[0] = 1.0
+
+
+def test_flanks_out_of_reach_are_named_none():
+    pair = HelicalPair(gear(), gear(100, "right"))
+    far = pair_contact(pair, [1.5])
+    assert far.kind[0] == "none"
+    assert far.error[0] == -math.inf
