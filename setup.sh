@@ -6,7 +6,7 @@ fegear_system_packages() { # prints the Debian packages whose libraries are miss
     libraries=$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null || true)
     [ -n "$libraries" ] || return 0 # no ldconfig, no Debian: the program itself then says what it misses
     for pair in libGLU.so.1:libglu1-mesa libXcursor.so.1:libxcursor1 libXft.so.2:libxft2 libXinerama.so.1:libxinerama1 \
-        libGL.so.1:libgl1 libXrender.so.1:libxrender1 libXfixes.so.3:libxfixes3 libgomp.so.1:libgomp1; do
+        libGL.so.1:libgl1 libEGL.so.1:libegl1 libXrender.so.1:libxrender1 libXfixes.so.3:libxfixes3 libgomp.so.1:libgomp1; do
         case "$libraries" in *"${pair%%:*}"*) ;; *) printf ' %s' "${pair##*:}" ;; esac
     done
     if [ "${1:-}" = test ] && ! command -v ccx >/dev/null 2>&1; then printf ' calculix-ccx'; fi

@@ -30,6 +30,7 @@ Overrides = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key of the case, e.g. --set gear.a.teeth=30."),
 ]
 Out = Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>.")]
+NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw nothing: tables, dataset and report alone.")]
 
 
 def _version(wanted: bool) -> None:
@@ -48,14 +49,14 @@ def _options(
 
 
 @app.command()
-def run(case: CaseFile, overrides: Overrides = None, out: Out = None) -> None:
+def run(case: CaseFile, overrides: Overrides = None, out: Out = None, no_plots: NoPlots = False) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
     from fegear.scene.load import read_scene
     from fegear.scene.plan import make_plan
     from fegear.scene.run import run_plan
     from fegear.scene.stages import STAGES
     from fegear.show.folder import whole_or_nothing
-    from fegear.show.write import write_results
+    from fegear.show.write import STEPS, write_results
     from fegear.terminal import watcher
 
     start = time.perf_counter()
@@ -64,14 +65,14 @@ def run(case: CaseFile, overrides: Overrides = None, out: Out = None) -> None:
         planned = make_plan(scene, STAGES)
         target = out or Path("results") / scene.name
         with whole_or_nothing(target) as scratch, watcher(sys.stderr) as watching:
-            results = run_plan(scene, planned, watching)
-            write_results(results, scratch)
+            results = run_plan(scene, planned, watching, following=STEPS)
+            remarks = write_results(results, scratch, watching, plots=not no_plots)
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         _leave(_INTERRUPTED, 130)
     for value in results.values:
         error = f" +- {value.shown_error:.2g}" if value.shown_error else ""
         typer.echo(f"{value.name} = {value.shown:.9g}{error} {value.unit}".rstrip())
-    for remark in results.remarks:
+    for remark in remarks:
         typer.echo(f"Note: {remark}")
     typer.echo(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
 

@@ -75,7 +75,7 @@ class Results:
         return tuple(dict.fromkeys(remark for outcome in self.outcomes.values() for remark in outcome.remarks))
 
 
-def run_plan(scene: Scene, plan: Plan, watcher: Watcher | None = None) -> Results:
+def run_plan(scene: Scene, plan: Plan, watcher: Watcher | None = None, following: int = 0) -> Results:
     """Run every task of a plan.
 
     Parameters
@@ -83,6 +83,8 @@ def run_plan(scene: Scene, plan: Plan, watcher: Watcher | None = None) -> Result
     scene : Scene
     plan : Plan
     watcher : Watcher, optional
+    following : int
+        Steps that the caller will do after the plan's, so that the watcher counts them.
 
     Returns
     -------
@@ -93,7 +95,7 @@ def run_plan(scene: Scene, plan: Plan, watcher: Watcher | None = None) -> Result
     seconds: dict[Task, float] = {}
     for number, step in enumerate(plan.steps, start=1):
         title = f"{step.stage.title} ({step.task.subject})" if step.task.subject else step.stage.title
-        watcher.begin(title, number, len(plan.steps))
+        watcher.begin(title, number, len(plan.steps) + following)
         start = time.perf_counter()
         outcomes[step.task] = step.stage.run(scene, step.task.subject, outcomes, watcher.advance)
         seconds[step.task] = time.perf_counter() - start

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from fegear.errors import InputError
 from fegear.scene.names import nearest
 from fegear.scene.settings import mesh_settings
+from fegear.scene.tooth_mesh import own_sector_mesh
 from fegear.show.dxf import write_dxf
 
 if TYPE_CHECKING:
@@ -54,5 +55,6 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
         if wanted.difference({"dxf"}):
             from fegear.show.mesh_export import write_meshes
 
-            written += write_meshes(scene.gears[name], folder, name, wanted, mesh_settings(scene.case.accuracy))
+            settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
+            written += write_meshes(scene.gears[name], folder, name, wanted, settings, mesh)
     return [path.name for path in written]

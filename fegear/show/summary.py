@@ -19,12 +19,13 @@ def _finite(number: float | None) -> float | None:
     return number if number is not None and math.isfinite(number) else None
 
 
-def summary(results: Results, files: list[str]) -> dict[str, object]:
+def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str, object]:
     """Collect what the summary holds.
 
     Parameters
     ----------
     results : Results
+    remarks : list of str
     files : list of str
         Names of all files of the run.
     """
@@ -43,12 +44,14 @@ def summary(results: Results, files: list[str]) -> dict[str, object]:
         },
         "timings": {str(task): round(seconds, 6) for task, seconds in results.seconds.items()}
         | {"total": round(sum(results.seconds.values()), 6)},
-        "remarks": list(results.remarks),
+        "remarks": remarks,
         "files": files,
         "version": fegear.__version__,
     }
 
 
-def write_summary(path: Path, results: Results, files: list[str]) -> None:
+def write_summary(path: Path, results: Results, remarks: list[str], files: list[str]) -> None:
     """Write the summary as JSON."""
-    path.write_text(json.dumps(summary(results, files), indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")
+    path.write_text(
+        json.dumps(summary(results, remarks, files), indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8"
+    )

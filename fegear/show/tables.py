@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,15 @@ def cell(value: np.generic) -> str:
     return f"{value:.12g}" if isinstance(value, np.floating) else str(value)
 
 
+def table_text(table: Table) -> str:
+    """Write a table as CSV text."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(column.head for column in table.columns)
+    writer.writerows(zip(*([cell(v) for v in column.shown] for column in table.columns), strict=True))
+    return stream.getvalue()
+
+
 def write_table(folder: Path, table: Table) -> Path:
     """Write ``<name>.csv`` into a folder.
 
@@ -31,8 +41,5 @@ def write_table(folder: Path, table: Table) -> Path:
     Path
     """
     path = folder / f"{table.name}.csv"
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(column.head for column in table.columns)
-        writer.writerows(zip(*([cell(v) for v in column.shown] for column in table.columns), strict=True))
+    path.write_text(table_text(table), encoding="utf-8", newline="")
     return path

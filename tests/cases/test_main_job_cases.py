@@ -107,7 +107,7 @@ def test_compliance_does_not_depend_on_size_and_stress_scales_with_it():
 
 def test_the_command_writes_the_table_that_others_build_on(tmp_path, capsys):
     with pytest.raises(SystemExit) as left:
-        app(["run", str(CASES / "lin_table1.toml"), "--out", str(tmp_path / "o")])
+        app(["run", str(CASES / "lin_table1.toml"), "--out", str(tmp_path / "o"), "--no-plots"])
     assert left.value.code in (0, None)
     with (tmp_path / "o" / "tables" / "stiffness_a.csv").open(newline="", encoding="utf-8") as stream:
         rows = list(csv.reader(stream))
@@ -132,3 +132,16 @@ def test_the_command_writes_the_table_that_others_build_on(tmp_path, capsys):
 def test_what_the_table_cannot_be_made_for_is_refused(overrides, words):
     with pytest.raises(InputError, match=words):
         run("lin_table1", *overrides)
+
+
+def test_a_tooth_mesh_of_the_users_own_takes_the_place_of_the_generated_one():
+    own = 'gear.a.tooth_mesh="../meshes/four_square_test_gear.msh"'
+    table = 'stiffness={gear="a", radii=["44.45 mm"], contact_half_width="0.08 mm"}'
+    _, values, results = run("lin_table1", own, table)
+    _, generated, _ = run("lin_table1", table)
+    for name in ("a.c_self_at_pitch", "a.c_next_at_pitch", "a.largest_root_tension"):
+        assert values[name] == pytest.approx(generated[name], rel=5e-3)
+        assert values[name] != generated[name]
+    assert "four_square_test_gear.msh" in str([outcome.settings for outcome in results.outcomes.values()])
+    with pytest.raises(InputError, match=r"gear.a.tooth_mesh = .*is no file"):
+        run("lin_table1", "gear.a.tooth_mesh=none.msh")

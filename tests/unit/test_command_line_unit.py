@@ -45,8 +45,8 @@ def case(tmp_path):
 
 def test_run_writes_what_it_says(case, tmp_path):
     done = fegear("run", case, cwd=tmp_path)
-    assert (done.returncode, done.stderr.count("\n")) == (0, 1)
-    assert "[1/1] Geometry" in done.stderr
+    assert (done.returncode, done.stderr.count("\n")) == (0, 2)
+    assert "[1/2] Geometry" in done.stderr
     assert "I.contact_ratio = 1.66231749" in done.stdout
     out = tmp_path / "results" / "one"
     summary = json.loads((out / "summary.json").read_text())

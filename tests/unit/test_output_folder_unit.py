@@ -16,7 +16,7 @@ from fegear.errors import InputError
 from fegear.scene.load import build_scene
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.plan import Plan
-from fegear.scene.run import Results
+from fegear.scene.run import Results, Silence
 from fegear.scene.stage import Task
 from fegear.show.folder import whole_or_nothing
 from fegear.show.write import write_results
@@ -119,7 +119,7 @@ def results() -> Results:
 
 
 def test_every_file_holds_the_same_numbers(results, tmp_path):
-    write_results(results, tmp_path)
+    write_results(results, tmp_path, Silence(), plots=False)
     with (tmp_path / "tables" / "demo_a.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.reader(stream))
     assert rows[0] == ["radius [mm]", "count", "kind"]
@@ -131,7 +131,7 @@ def test_every_file_holds_the_same_numbers(results, tmp_path):
     assert summary["results"]["ratio"]["error"] is None
     assert summary["results"]["nothing"]["value"] is None
     assert summary["timings"] == {"demo of a": 0.25, "total": 0.25}
-    assert summary["files"] == ["results.nc", "tables/demo_a.csv", "summary.json"]
+    assert summary["files"] == ["report.html", "results.nc", "tables/demo_a.csv", "summary.json"]
     assert summary["settings"]["stages"] == {"demo of a": {"order": 2}}
 
     with xr.open_dataset(tmp_path / "results.nc") as data:
@@ -148,7 +148,7 @@ def test_every_file_holds_the_same_numbers(results, tmp_path):
 def test_an_empty_table_can_be_written(results, tmp_path):
     empty = Table("none", (Column("x", np.array([]), "mm"),))
     run = Results(results.scene, results.plan, {Task("none"): Outcome(None, (empty,))}, {Task("none"): 0.0})
-    write_results(run, tmp_path)
+    write_results(run, tmp_path, Silence(), plots=False)
     assert (tmp_path / "tables" / "none.csv").read_text() == "x [mm]\n"
     with xr.open_dataset(tmp_path / "results.nc") as data:
         assert data.sizes["none"] == 0

@@ -1,0 +1,1 @@
+"""Pictures of results: colour-blind safe, labelled with units, one module per topic."""

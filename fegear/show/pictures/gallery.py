@@ -1,0 +1,85 @@
+"""Which pictures belong to which stage's results."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from fegear.errors import MissingLibraryError
+from fegear.scene.stage import Task
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from fegear.fem import StiffnessTable
+    from fegear.scene.run import Results
+    from fegear.show.pictures.style import Picture
+
+#: Line load of the deformed gear's picture when the case names none [N/m].
+_USUAL_LINE_LOAD = 100e3
+
+
+def _stiffness(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.stiffness import draw_compliance, draw_root_stress
+    from fegear.show.pictures.tooth import draw_tooth
+
+    outcome, name = results.outcomes[task], task.subject
+    data, gear = cast("StiffnessTable", outcome.data), results.scene.gears[name]
+    yield draw_tooth(gear, data.influence.fine.mesh, folder / f"tooth_{name}.png", name)
+    yield draw_compliance(gear, outcome.tables[0], folder / f"compliance_{name}.png", name)
+    yield draw_root_stress(gear, outcome.tables[0], folder / f"root_stress_{name}.png", name)
+
+
+def _root_stress(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.fem.mesh_files import write_mesh_file
+    from fegear.show.mesh_export import loaded_gear, nodal_fields
+    from fegear.show.pictures.deformed import draw_deformed
+    from fegear.show.pictures.stiffness import draw_fillet
+
+    outcome, name = results.outcomes[task], task.subject
+    yield draw_fillet(outcome.tables[0], cast("float", outcome.data), folder / f"fillet_{name}.png", name)
+    gear, data = results.scene.gears[name], cast("StiffnessTable", results.outcomes[Task("stiffness", name)].data)
+    whole, field = loaded_gear(gear, data.influence.settings, data.influence.fine.mesh)
+    line_load = results.scene.case.stiffness.load or _USUAL_LINE_LOAD
+    fields = nodal_fields(gear, whole, field, line_load)
+    vtu = folder.parent / "fields" / f"{name}.vtu"
+    vtu.parent.mkdir(exist_ok=True)
+    write_mesh_file(vtu, whole.points * gear.module * 1e3, whole.triangles, {}, fields)
+    yield draw_deformed(gear, whole, fields, folder / f"deformed_{name}.png", name, line_load)
+
+
+#: For each stage that has pictures, what draws them; others follow the same shape.
+DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
+    "stiffness": _stiffness,
+    "root-stress": _root_stress,
+}
+
+
+def draw_all(results: Results, folder: Path, advance: Callable[[float], None]) -> tuple[list[Picture], list[str]]:
+    """Draw every picture of a run.
+
+    Parameters
+    ----------
+    results : Results
+    folder : Path
+        Made if needed.
+    advance : callable
+        Told the fraction done.
+
+    Returns
+    -------
+    pictures : list of Picture
+    missing : list of str
+        Sentences about pictures that could not be drawn for want of a system library.
+    """
+    folder.mkdir(exist_ok=True)
+    pictures: list[Picture] = []
+    missing: list[str] = []
+    tasks = [task for task in results.outcomes if task.stage in DRAWERS]
+    for number, task in enumerate(tasks, start=1):
+        try:
+            pictures += DRAWERS[task.stage](results, task, folder)
+        except MissingLibraryError as error:
+            missing.append(f"{error}".rstrip(".") + ".")
+        advance(number / len(tasks))
+    return pictures, missing

@@ -1,0 +1,147 @@
+"""The report and the pictures of a whole run: self-contained, readable, with every number that was computed."""
+
+from __future__ import annotations
+
+import base64
+import html.parser
+import json
+import re
+from pathlib import Path
+
+import matplotlib.image
+import meshio
+import numpy as np
+import pytest
+import xarray as xr
+
+from fegear.errors import MissingLibraryError
+from fegear.scene.load import read_scene
+from fegear.scene.plan import make_plan
+from fegear.scene.run import Silence, run_plan
+from fegear.scene.stages import STAGES
+from fegear.show.pictures import deformed, tooth
+from fegear.show.write import write_results
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+class Page(html.parser.HTMLParser):
+    """Every attribute and every text of a page, and whether its tags close."""
+
+    VOID = ("meta", "img", "br")
+
+    def __init__(self, text: str):
+        super().__init__()
+        self.links, self.texts, self.open = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.links += [value for name, value in attrs if name in ("src", "href")]
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    scene = read_scene(CASES / "lin_table1.toml", ["stiffness.positions=12"])
+    results = run_plan(scene, make_plan(scene, STAGES))
+    folder = tmp_path_factory.mktemp("run")
+    write_results(results, folder, Silence())
+    return results, folder
+
+
+def test_the_page_stands_alone(made):
+    _, folder = made
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    assert page.open == []
+    assert len(page.links) == 5 + 3
+    assert all(link.startswith("data:") for link in page.links)
+    style = (folder / "report.html").read_text(encoding="utf-8").split("</style>")[0]
+    assert "@import" not in style
+    assert "url(" not in style
+    assert "@media print" in style
+
+
+def test_the_page_says_what_was_asked_computed_and_how_well(made):
+    results, folder = made
+    text = " ".join(Page((folder / "report.html").read_text(encoding="utf-8")).texts)
+    for words in (
+        "Wanted: geometry, stiffness, root-stress",
+        "Why",
+        "Seconds",
+        "Estimated error",
+        results.scene.case.title,
+    ):
+        assert words in text
+    for value in results.values:
+        assert value.name in text
+        assert f"{value.shown:.6g}" in text
+    assert all(remark in text for remark in results.remarks)
+
+
+def test_the_tables_in_the_page_are_the_tables(made):
+    _, folder = made
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    csvs = [base64.b64decode(link.split(",")[1]).decode() for link in page.links if link.startswith("data:text/csv")]
+    assert csvs == [
+        (folder / "tables" / f"{name}.csv").read_text() for name in ("geometry", "stiffness_a", "root_stress_a")
+    ]
+
+
+def test_pictures_are_there_and_not_empty(made):
+    _, folder = made
+    names = {path.stem for path in (folder / "plots").iterdir()}
+    assert names == {"tooth_a", "compliance_a", "root_stress_a", "fillet_a", "deformed_a"}
+    for path in (folder / "plots").iterdir():
+        image = matplotlib.image.imread(path)
+        assert min(image.shape[:2]) > 500
+        colours = np.unique((image[::3, ::3, :3].reshape(-1, 3) * 255).astype(int), axis=0)
+        assert len(colours) > 40, path.name
+        assert (image[..., :3].min(axis=2) < 0.97).mean() > 0.02, path.name
+
+
+def test_fields_and_dataset_hold_the_same_run(made):
+    results, folder = made
+    field = meshio.read(folder / "fields" / "a.vtu")
+    # 350 N/mm: the fillets carry about what the table says for a load at the pitch point.
+    radius = np.hypot(field.points[:, 0], field.points[:, 1])
+    below = (field.points[:, 1] > 0) & (radius < 41.5) & (np.abs(field.points[:, 0]) < 5) & (radius > 40.0)
+    assert 200 < field.point_data["von_mises"][below].max() < 400
+    with xr.open_dataset(folder / "results.nc") as data:
+        assert data["stiffness_a.c_self"].sizes == {"stiffness_a": 12}
+        assert data["stiffness_a.c_self"].attrs["units"] == "um.mm/N"
+        for value in results.values:
+            assert float(data[value.name]) == pytest.approx(value.shown, rel=1e-15)
+
+
+def test_the_summary_lists_every_file(made):
+    _, folder = made
+    listed = json.loads((folder / "summary.json").read_text())["files"]
+    assert sorted(listed) == sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file())
+
+
+def test_the_tool_envelops_the_tooth(made):
+    results, _ = made
+    shape = results.scene.gears["a"].tooth
+    fillet = shape.fillet.points(np.linspace(shape.fillet.start, shape.fillet.end, 40))
+    # Over all rolling positions the tool comes to within its own drawing's resolution of the fillet, never inside it.
+    corner = np.hstack([tooth.rack_in_gear(shape, phi)[:, 1:-1] for phi in np.linspace(-0.25, 0.25, 801)])
+    distance = np.hypot(fillet[0][:, None] - corner[0], fillet[1][:, None] - corner[1]).min(axis=1)
+    assert distance.max() < 0.02
+
+
+def test_a_picture_that_cannot_be_drawn_is_a_remark_not_a_failure(made, tmp_path, monkeypatch):
+    def missing():
+        raise MissingLibraryError("the deformed gear cannot be drawn; run: apt-get install libegl1")
+
+    monkeypatch.setattr(deformed, "_pyvista", missing)
+    remarks = write_results(made[0], tmp_path, Silence())
+    assert remarks[-1] == "the deformed gear cannot be drawn; run: apt-get install libegl1."
+    assert re.search("apt-get install libegl1", (tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert not (tmp_path / "plots" / "deformed_a.png").exists()
