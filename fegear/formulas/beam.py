@@ -1,8 +1,8 @@
 """A tooth as a beam of varying depth: the integrals that every cantilever formula is made of.
 
 Heights y run along the tooth's centre line from the gear's centre, half thicknesses x(y) follow the exact outline
-(involute and trochoid) without a table or a polygon. Each smooth piece of the outline is integrated in its own
-parameter, in which it is analytic, by Gauss-Legendre quadrature: the error falls geometrically with the nodes.
+(involute and trochoid) without a table or a polygon. Each smooth piece of the outline is integrated in a parameter
+in which it is analytic, by Gauss-Legendre quadrature: the error falls geometrically with the nodes.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from fegear.geometry.involute import roll_of_polar_angle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -72,14 +74,33 @@ def _gauss(nodes: int) -> tuple[Array, Array]:
     return x, w
 
 
-def _piece(curve: Curve, start: Array, end: Array, nodes: int) -> Sections:
-    """Sections along one curve from parameter `start` to `end`, shape (N, nodes)."""
-    g, w = _gauss(nodes)
-    half = 0.5 * (end - start)
-    u = (0.5 * (end + start))[:, None] + half[:, None] * g
+def _cut(curve: Curve, u: Array, du: Array) -> Sections:
+    """Sections at parameters u of a curve with weights du, shape (N, nodes)."""
     x, y = curve.points(u)
     # travelling from the tooth space to the tip the outward normal is the tangent turned clockwise: dy/ds = n_x
-    return Sections(y, x, np.abs(half[:, None] * w * curve.speed(u)) * curve.normals(u)[0])
+    return Sections(y, x, du * curve.speed(u) * curve.normals(u)[0])
+
+
+def _fillet(tooth: Tooth, root_parameter: float, nodes: int) -> Sections:
+    """Sections from the fillet's point `root_parameter` up to the involute, shape (1, nodes)."""
+    g, w = _gauss(nodes)
+    half = 0.5 * abs(root_parameter - tooth.fillet.end)
+    mid = 0.5 * (root_parameter + tooth.fillet.end)
+    return _cut(tooth.fillet, (mid + half * g)[None], (half * w)[None])
+
+
+def _involute(tooth: Tooth, load: LoadLine, nodes: int) -> Sections:
+    """Sections from the start of the involute up to each load, shape (N, nodes).
+
+    1/x^3 has a pole where the flanks would meet, at the roll angle t_p, which a slender tip comes near. With
+    t = t_p - (t_p - t_0) exp(-lambda s) the pole is moved to infinity and Gauss quadrature in s keeps its accuracy.
+    """
+    g, w = _gauss(nodes)
+    start = tooth.involute.start
+    pole = float(roll_of_polar_angle(tooth.base_half_angle))
+    stretch = np.log((pole - start) / (pole - np.maximum(load.roll, start)))[:, None]
+    gap = (pole - start) * np.exp(-0.5 * stretch * (1.0 + g))
+    return _cut(tooth.involute, pole - gap, 0.5 * w * stretch * gap)
 
 
 def sections(tooth: Tooth, load: LoadLine, root_parameter: float, nodes: int = NODES) -> Sections:
@@ -95,10 +116,7 @@ def sections(tooth: Tooth, load: LoadLine, root_parameter: float, nodes: int = N
     nodes : int
         Gauss nodes on the fillet, and as many on the involute.
     """
-    fillet, involute = tooth.fillet, tooth.involute
-    one = np.array([root_parameter]), np.array([fillet.end])
-    low = _piece(fillet, *one, nodes)
-    high = _piece(involute, np.full_like(load.roll, involute.start), np.maximum(load.roll, involute.start), nodes)
+    low, high = _fillet(tooth, root_parameter, nodes), _involute(tooth, load, nodes)
     shape = (load.roll.size, nodes)
     return Sections(
         *(

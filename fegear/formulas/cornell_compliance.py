@@ -22,7 +22,7 @@ import numpy as np
 
 from fegear.formulas import beam, palmgren
 from fegear.formulas.compliance import ComplianceSource, ToothCompliance
-from fegear.formulas.fillet_section import fillet_parameter, fillet_point, tangent_range
+from fegear.formulas.fillet_section import fillet_parameter, tangent_range
 from fegear.formulas.load_line import load_line
 
 if TYPE_CHECKING:
@@ -81,11 +81,11 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
     plane = gear.plane_assumption
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
     root = fillet_parameter(tooth, min(FOUNDATION_TANGENT, tangent_range(tooth)[1]))
-    base = fillet_point(tooth, root)
+    half, foot = (float(v) for v in tooth.fillet.points(root))
     i = beam.integrals(beam.sections(tooth, load, root, nodes), load.y)
     c, s = np.cos(load.angle), np.sin(load.angle)
     flexibility = 1.0 / gear.plane_modulus
-    k = (load.apex - base.height) / base.thickness
+    k = (load.apex - foot) / (2.0 * half)
     return ToothCompliance(
         radius=load.radius * gear.module,
         bending=flexibility * (c * c * i.bending_2 - c * s * load.x * i.bending_1),

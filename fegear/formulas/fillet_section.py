@@ -10,10 +10,17 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
     from fegear.geometry import Tooth
+
+#: A fillet sharper than this [modules] is a corner.
+SHARPEST = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +60,27 @@ def fillet_point(tooth: Tooth, parameter: float) -> FilletPoint:
     f = tooth.fillet
     x, y = f.points(parameter)
     nx, ny = f.normals(parameter)
-    curvature = float(f.curvatures(parameter))
-    if not (math.isfinite(curvature) and curvature < 0.0):
-        raise RangeError("rack.tip_radius", tooth.rack.tip_radius, "leaves a fillet without a radius")
-    return FilletPoint(float(x), float(y), -1.0 / curvature, math.atan2(float(ny), float(nx)))
+    return FilletPoint(float(x), float(y), float(fillet_radii(tooth, parameter)), math.atan2(float(ny), float(nx)))
+
+
+def fillet_radii(tooth: Tooth, parameter: ArrayLike) -> NDArray[np.float64]:
+    """Radii of curvature [modules] of the fillet at parameters of `Tooth.fillet` [rad].
+
+    Raises
+    ------
+    RangeError
+        If the fillet is a sharp corner: a rack without tip radius whose corner runs on the pitch line.
+    """
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        radii = -1.0 / tooth.fillet.curvatures(np.asarray(parameter, dtype=float))
+    if not np.all(radii > SHARPEST):
+        raise RangeError(
+            "fillet radius",
+            f"{np.min(radii):.3g} modules",
+            "is that of a sharp corner, where no root-stress formula holds",
+            "give the rack a tip radius",
+        )
+    return np.asarray(radii)
 
 
 def tangent_range(tooth: Tooth) -> tuple[float, float]:

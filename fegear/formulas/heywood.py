@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import RangeError
-from fegear.formulas.fillet_section import fillet_point
+from fegear.formulas.fillet_section import fillet_point, fillet_radii
 from fegear.formulas.load_line import load_line
 from fegear.formulas.root_stress import RootStress, RootStressSource
 
@@ -71,7 +71,7 @@ def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:
         x, y = f.points(beta)
         arm = (load.apex[0] - y) * math.cos(load.angle[0])
         distance = np.hypot(load.x[0] - x, load.y[0] - y)
-        return fillet_stress(x, arm, distance, -1.0 / f.curvatures(beta), -math.sin(load.angle[0]))
+        return fillet_stress(x, arm, distance, fillet_radii(tooth, beta), -math.sin(load.angle[0]))
 
     # beside the load itself the last term is singular; only a maximum inside the fillet is one of the fillet
     grid = np.linspace(f.start, f.end - 1e-3 * (f.end - f.start), 129)

@@ -82,8 +82,18 @@ def test_integrals_match_adaptive_quadrature_over_height(z):
         Tooth(28, BasicRack.full_fillet(1.0, 1.4)),
         Tooth(500, RACK),
         Tooth(28, RACK, tip_rounding=0.1),
+        Tooth(14, RACK, 0.6, tip_radius=8.76),
     ],
-    ids=["undercut", "usual", "sharp rack", "nearly sharp rack", "full fillet", "500 teeth", "tip rounding"],
+    ids=[
+        "undercut",
+        "usual",
+        "sharp rack",
+        "nearly sharp rack",
+        "full fillet",
+        "500 teeth",
+        "tip rounding",
+        "pointed tip",
+    ],
 )
 @pytest.mark.parametrize("name", ["cornell", "weber-banaschek", "potential-energy"])
 def test_quadrature_is_spectral_and_good_to_1e_12(tooth, name):

@@ -11,9 +11,10 @@ import math
 import numpy as np
 import pytest
 
-from fegear.formulas import hertz
+from fegear.formulas import hertz, iso6336_stiffness
+from fegear.formulas.pair_compliance import pair_compliance
 from fegear.formulas.sources import SOURCES
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
 
 ROLL = np.array([0.2208, 0.2609, 0.3238, 0.3747, 0.4237, 0.4645, 0.4909, 0.5059])
 LOAD = np.array([93.05, 1018.0, 1615.0, 1615.0, 1615.0, 1077.0, 467.5, 121.7])
@@ -75,3 +76,18 @@ def test_hertz_of_a_textbook_example():
     assert by_hand == pytest.approx(0.1050, abs=5e-5)
     assert float(c.half_width) * 1e3 == pytest.approx(by_hand, rel=1e-12)
     assert float(c.peak_pressure) / 1e6 == pytest.approx(2 * 100.0 / (math.pi * by_hand), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("z1", "z2", "x1"), [(16, 16, 0.0), (30, 30, 0.0), (120, 120, 0.0), (20, 80, 0.0), (20, 80, 0.4)]
+)
+def test_weber_banaschek_gives_the_stiffness_that_iso_fitted_to_it(z1, z2, x1):
+    # ISO 6336-1, 9.3.1.1: c'_th is a series fitted to Weber and Banaschek's theory for solid discs of steel, basic rack
+    # dedendum 1.2, at a mean load of about 300 N/mm. The greatest stiffness of one pair over the path of contact meets
+    # it within 6 %: the series itself is rounded theory, and its root radius (0.2 modules here) is not given.
+    teeth = [Tooth(z, BasicRack(1.0, 1.2, 0.2), x) for z, x in ((z1, x1), (z2, 0.0))]
+    steel = Material(206e9, 0.3)
+    pair = GearPair(*(Gear(t, 1e-3, 0.5e-3 * t.root_radius, 1e-2, steel, plane="strain") for t in teeth))
+    x = np.linspace(pair.x_start, pair.x_end, 41)
+    found = pair_compliance(SOURCES["weber-banaschek"], pair, x, 3e5).stiffness.max()
+    assert found == pytest.approx(iso6336_stiffness.theoretical_stiffness(z1, z2, x1), rel=0.06)

@@ -1,0 +1,87 @@
+"""Two closed-form teeth in contact: what one tooth pair gives way, and how stiff it is.
+
+The pair's deflection along the line of action is the sum of both teeth, both foundations and both contact approaches,
+the contact's half-width being Hertz's. One tooth pair on its own: no neighbours, no load sharing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import RangeError
+from fegear.formulas import hertz
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.formulas.compliance import ComplianceSource
+    from fegear.geometry import GearPair
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class PairCompliance:
+    """Deflection of one tooth pair over contact positions, shape (N,), per unit face width.
+
+    Parameters
+    ----------
+    x : ndarray
+        Distance from the pitch point along the line of action [m], positive toward the driver's tip.
+    line_load : ndarray
+        w [N/m].
+    driver, driven : ndarray
+        Tooth and foundation of each gear per unit line load [m^2/N].
+    contact : ndarray
+        Contact approach of both bodies divided by the load [m^2/N] (secant; it depends on the load).
+    half_width : ndarray
+        Hertzian half-width [m].
+    """
+
+    x: Array
+    line_load: Array
+    driver: Array
+    driven: Array
+    contact: Array
+    half_width: Array
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        for f in fields(self):
+            getattr(self, f.name).setflags(write=False)
+
+    @property
+    def total(self) -> Array:
+        """Deflection of the pair per unit line load [m^2/N]."""
+        return self.driver + self.driven + self.contact
+
+    @property
+    def stiffness(self) -> Array:
+        """Secant stiffness of the pair per unit face width [Pa]; 1e9 Pa is 1 N/(mm um)."""
+        return 1.0 / self.total
+
+
+def pair_compliance(source: ComplianceSource, pair: GearPair, x: ArrayLike, line_load: ArrayLike) -> PairCompliance:
+    """Compliance of one tooth pair at contact positions x [m] under `line_load` > 0 [N/m] along the line of action.
+
+    Raises
+    ------
+    RangeError
+        If a position is off a flank, a load is not positive, or the source's range does not cover a gear.
+    """
+    position, w = np.broadcast_arrays(np.atleast_1d(np.asarray(x, dtype=float)), np.asarray(line_load, dtype=float))
+    a, b = pair.driver, pair.driven
+    radii = pair.radius(position, "driver"), pair.radius(position, "driven")
+    curvature = hertz.relative_curvature(
+        pair.flank_curvature_radius(position, "driver"), pair.flank_curvature_radius(position, "driven")
+    )
+    if not np.all(w > 0.0):
+        raise RangeError("line load", f"{np.min(w):.6g} N/m", "must be positive: no load has no secant")
+    modulus = 1.0 / (1.0 / a.plane_modulus + 1.0 / b.plane_modulus)
+    half_width = hertz.line_contact(w, curvature, modulus).half_width
+    contact = (source.contact(a, radii[0], w, half_width) + source.contact(b, radii[1], w, half_width)) / w
+    driver, driven = (np.array(source.tooth(g, r).total) for g, r in zip((a, b), radii, strict=True))
+    return PairCompliance(position.copy(), w.copy(), driver, driven, contact, half_width)
