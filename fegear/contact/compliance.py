@@ -34,6 +34,10 @@ class GearCompliance(Protocol):
         """kappa = 2 (1 - nu^2)/(pi E) in plane strain [m^2/N]; 0 when the source has a fixed contact compliance."""
 
     @property
+    def power(self) -> float:
+        """q of a further contact deflection q w^0.9 under a line load w (Palmgren) [m (m/N)^0.9]; 0 in general."""
+
+    @property
     def kinks(self) -> tuple[float, ...]:
         """Radii [m] at which `own` has a kink (knots of a linear table); empty for smooth sources."""
 
@@ -62,6 +66,7 @@ class Rigid:
 
     reach: int = 0
     log_slope: float = 0.0
+    power: float = 0.0
     kinks: tuple[float, ...] = ()
 
     def own(self, radius: ArrayLike) -> Array:

@@ -2,7 +2,8 @@
 
 Off the path the corner (or the rounding) of one gear's tip, T, approaches the involute of the other gear, F. With the
 contact at radius rho on F the triangle of the two centres and the contact point fixes both gears' positions in closed
-form; rho itself follows from a bracketed root. Rolled lengths u are counted from the end of the path outward:
+form; rho over the position is that table read sideways, and the gap is exact for the rho used. Rolled lengths u are
+counted from the end of the path outward:
 
     u_T = r_bT [A_T(rho) - A_T(rho_0)],    u_F = r_bF [A_F(rho) - A_F(rho_0) - inv(rho) + inv(rho_0)],
 
@@ -24,6 +25,7 @@ from fegear.geometry.involute import polar_angle
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+    from scipy.interpolate import CubicSpline
 
     from fegear.geometry.pair import GearPair, Member
 
@@ -54,7 +56,7 @@ class CornerContact:
         """Whether the path ends at this tip (and not at the mate's form circle) and the mate's flank goes on."""
         end = self.pair.x_start if self.tip_of == "driven" else self.pair.x_end
         tip = float(self.pair.x_of_radius(self.pair.gear(self.tip_of).involute_tip_radius, self.tip_of))
-        return abs(tip - end) <= 1e-12 * self.pair.base_pitch
+        return abs(tip - end) <= 1e-12 * self.pair.base_pitch and self._span[1] > self._span[0]
 
     @property
     def rounding(self) -> float:
@@ -115,8 +117,19 @@ class CornerContact:
     @cached_property
     def reach(self) -> float:
         """How far beyond the path's end the corner still faces the mate's involute [m]."""
+        if not self.exists:
+            return 0.0
         u_t, u_f = self._rolled(np.asarray(self._span[1]))
         return float(0.5 * (u_t + u_f))
+
+    @cached_property
+    def _length_of_position(self) -> CubicSpline:
+        """Roll length over the position u: u grows monotonely with it, so the inverse is a table read sideways."""
+        from scipy.interpolate import CubicSpline
+
+        lengths = np.linspace(*self._span, 801)
+        u_t, u_f = self._rolled(lengths)
+        return CubicSpline(0.5 * (u_t + u_f), lengths)
 
     def locate(self, beyond: ArrayLike) -> tuple[Array, Array, Array]:
         """Gap and place of contact at distances beyond the end of the path.
@@ -136,13 +149,7 @@ class CornerContact:
             Angle [rad] between the two flanks' normals at the corner: they part inward from it with this slope.
         """
         u = np.asarray(beyond, dtype=float)
-        low, high = np.full(u.shape, self._span[0]), np.full(u.shape, self._span[1])
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            u_t, u_f = self._rolled(middle)
-            short = 0.5 * (u_t + u_f) < u
-            low, high = np.where(short, middle, low), np.where(short, high, middle)
-        length = 0.5 * (low + high)
+        length = np.clip(self._length_of_position(np.clip(u, 0.0, self.reach)), *self._span)
         u_t, u_f = self._rolled(length)
         gap = np.where(u > self.reach * (1.0 + 1e-12), np.inf, np.maximum(u_t - u_f, 0.0))
         return gap, length - self.rounding, self._tilt(length)

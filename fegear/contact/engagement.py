@@ -160,7 +160,7 @@ class Engagement:
         e = self.separation(grid.contacts, cycle)
         loads = np.atleast_1d(np.asarray(load, dtype=float))
         m = grid.matrices
-        shared = share_load(m.compliance, e, loads, m.log_slope, m.reference_load, m.tilt)
+        shared = share_load(m.compliance, e, loads, m.log_slope, m.reference_load, m.tilt, m.power)
         return Loaded(grid, loads, shared, e)
 
     @property

@@ -47,7 +47,8 @@ class FiniteElementCompliance:
     lowest: float
     highest: float
 
-    kinks: tuple[float, ...] = ()
+    kinks = ()
+    power = 0.0
 
     @property
     def reach(self) -> int:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 #: share is below its own size.
 _SMALLEST_SHARE = 1e-20
 _MOST_STEPS = 40
+#: Exponent of the load in Palmgren's contact deflection.
+_PALMGREN = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +72,7 @@ def share_load(
     log_slope: ArrayLike = 0.0,
     reference_load: ArrayLike = 1.0,
     tilt: ArrayLike | None = None,
+    power: ArrayLike = 0.0,
 ) -> SharedLoad:
     """Share total loads among the tooth pairs at many roll positions.
 
@@ -80,7 +83,7 @@ def share_load(
         at the reference load.
     separation : array_like, shape (n, P) or (n, P, L)
         e_j [m], initial distance of pair j along the line of action; infinite where the pair is out of reach.
-    load : array_like, shape (L,)
+    load : array_like, shape (L,) or (P, L)
         W [N], positive.
     log_slope : array_like, shape () or (n, P)
         kappa_j, change of both bodies' approach per unit load with ln(1 / half-width) [m/N]; 0 for a linear contact.
@@ -89,6 +92,8 @@ def share_load(
     tilt : array_like, shape (n, P), optional
         theta_j R_j over the Hertzian half-width at the reference load, theta_j the slope at which the flanks part
         from the tip corner inward (negative when the contact lies inside the corner); see `edge_law`.
+    power : array_like, shape () or (n, P)
+        q_j of a further deflection q_j W_j^0.9 [m/N^0.9]: Palmgren's contact.
 
     Returns
     -------
@@ -103,9 +108,10 @@ def share_load(
     """
     c = np.asarray(compliance, dtype=float)
     total = np.atleast_1d(np.asarray(load, dtype=float))
-    n, positions, cases = c.shape[0], c.shape[2], total.size
     if not (np.isfinite(total).all() and (total > 0.0).all()):
-        raise InputError("load", load, "must be positive and finite")
+        raise InputError("load", f"{total[~(np.isfinite(total) & (total > 0.0))][0]} N", "must be positive and finite")
+    n, positions, cases = c.shape[0], c.shape[2], total.shape[-1]
+    total = np.broadcast_to(total, (positions, cases))
     e = np.asarray(separation, dtype=float)
     e = np.broadcast_to(e[:, :, None] if e.ndim == 2 else e, (n, positions, cases))
     reach = e < np.inf
@@ -120,6 +126,7 @@ def share_load(
         )
     kappa = np.broadcast_to(np.asarray(log_slope, dtype=float), (n, positions))[:, :, None]
     at = np.broadcast_to(np.asarray(reference_load, dtype=float), (n, positions))[:, :, None]
+    bent = np.broadcast_to(np.asarray(power, dtype=float), (n, positions))[:, :, None]
     # In shares v = W_j / W every load is the same problem: only the diagonal and the separations change with W.
     diagonal = c[np.arange(n), np.arange(n)][:, :, None] - 0.5 * kappa * np.log(total / at)
     _refuse_wide_contact(np.where(reach, diagonal, np.inf), kappa, total)
@@ -137,6 +144,7 @@ def share_load(
         gap=flat(np.where(reach, e, 0.0) / total),
         reach=flat(reach.astype(float)) > 0.5,
         tilt=None if tilt is None else flat(np.asarray(tilt, dtype=float)[:, :, None] * np.sqrt(at / total)),
+        power=flat(bent * total ** (_PALMGREN - 1.0)) if bent.any() else None,
     )
     v, z, steps = _solve(problem)
     loads = v.reshape(n, positions, cases) * total
@@ -153,6 +161,7 @@ class _Problem:
     gap: Array
     reach: Mask
     tilt: Array | None
+    power: Array | None
 
     def only(self, index: NDArray[np.int64]) -> _Problem:
         """The problems at `index`."""
@@ -163,6 +172,7 @@ class _Problem:
             self.gap[:, index],
             self.reach[:, index],
             None if self.tilt is None else self.tilt[:, index],
+            None if self.power is None else self.power[:, index],
         )
 
 
@@ -200,10 +210,9 @@ def _refuse_wide_contact(diagonal: Array, kappa: Array, total: Array) -> None:
     margin = diagonal - 0.5 * np.maximum(kappa, 0.0)
     bad = ~(margin > 0.0)
     if bad.any():
-        case = int(np.flatnonzero(bad.any(axis=(0, 1)))[0])
         raise RangeError(
             "load",
-            f"{total[case]:.6g} N",
+            f"{np.broadcast_to(total, bad.shape)[bad][0]:.6g} N",
             "makes the Hertzian contact so wide that a tooth pair has no positive stiffness left",
             "lower the load, widen the face, or check the compliances given",
         )
@@ -221,11 +230,13 @@ def _solve(problem: _Problem) -> tuple[Array, Array, int]:
         steps += 1
         new, z = _newton_step(problem, active, v)
         stays = active & (new > 0.0)
-        enters = problem.reach & ~active & (_gap(problem, np.where(active, new, 0.0), z) < 0.0)
+        # A pair that only just touches must not flicker in and out of the set for the sake of round-off.
+        touching = -1e-15 * (np.abs(z) + np.abs(problem.gap))
+        enters = problem.reach & ~active & (_gap(problem, np.where(active, new, 0.0), z) < touching)
         settled = (stays | enters) == active
         # Newton squares the relative error: a last step of 1e-8 leaves nothing but round-off.
         close = (np.abs(new - v) <= 1e-8 * np.abs(new) + 1e-17).all(axis=0, where=active)
-        straight = problem.half_slope.max(axis=0) == 0.0
+        straight = (problem.half_slope.max(axis=0) == 0.0) & (problem.power is None)
         done = settled.all(axis=0) & (close | straight)
         if done.any():
             shares[:, index[done]], approach[index[done]] = np.where(stays, new, 0.0)[:, done], z[done]
@@ -252,6 +263,10 @@ def _newton_step(problem: _Problem, active: Mask, v: Array) -> tuple[Array, Arra
         psi, t_slope = edge_law(t)
         slope = slope + problem.half_slope * (2.0 * psi - t_slope)
         constant = constant + problem.half_slope * w * t_slope
+    if problem.power is not None:
+        approach = problem.power * w**_PALMGREN
+        slope = slope + _PALMGREN * approach / w
+        constant = constant + (1.0 - _PALMGREN) * approach
     if problem.coupling is None:
         inverse = np.where(active, 1.0 / np.where(active, slope, 1.0), 0.0)
         z = (1.0 + (inverse * constant).sum(axis=0)) / inverse.sum(axis=0)

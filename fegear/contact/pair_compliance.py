@@ -40,12 +40,15 @@ class PairMatrices:
         [N].
     tilt : ndarray, shape (n, P), or None
         Of contacts near tip corners, see `share_load`; None when corners do not matter.
+    power : float
+        q of a contact deflection q W^0.9 [m/N^0.9].
     """
 
     compliance: Array
     log_slope: Array
     reference_load: float
     tilt: Array | None = None
+    power: float = 0.0
 
     def at_load(self, loads: Array) -> Array:
         """Secant compliances at loads of shape (n, P, L), shape (n, n, P, L) [m/N]."""
@@ -64,6 +67,8 @@ class PairMatrices:
             psi, t_slope = edge_law(self.tilt[:, :, None] / np.sqrt(w))
             added += psi - 0.5 * tangent * t_slope
         c[np.arange(n), np.arange(n)] += self.log_slope[:, :, None] * added
+        if self.power:
+            c[np.arange(n), np.arange(n)] += (1.0 - 0.1 * tangent) * self.power * (w * self.reference_load) ** -0.1
         return c
 
 
@@ -145,6 +150,8 @@ class PairCompliance:
             for source, radius in ((self.driver, at.radius_driver), (self.driven, at.radius_driven)):
                 r = radius[j, here]
                 own += source.own(r)
+                if self.hertz != "load-dependent" and source.power > 0.0:
+                    own += source.power * (at_load / face) ** -0.1
                 if self.hertz != "none" and source.log_slope > 0.0:
                     own += source.log_slope * np.log(source.reference_half_width(r) / b)
             c[j, j, here] = own / face
@@ -156,7 +163,8 @@ class PairCompliance:
         tilt = None
         if self.hertz == "load-dependent" and at.edge.max() > -np.inf:
             tilt = at.edge / self.half_width(np.asarray(reference), at.relative_radius)
-        return PairMatrices(c, slope, reference, tilt)
+        q = self.driver.power + self.driven.power if self.hertz == "load-dependent" else 0.0
+        return PairMatrices(c, slope, reference, tilt, q * face**-0.9)
 
     def _couple(self, c: Array, at: Contacts) -> None:
         """Add what a load on pair j' does to pair j < j', and its transpose (Maxwell).

@@ -124,6 +124,7 @@ class TableCompliance:
 
     reach = 0
     log_slope = 0.0
+    power = 0.0
 
     @property
     def kinks(self) -> tuple[float, ...]:

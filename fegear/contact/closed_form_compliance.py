@@ -1,0 +1,110 @@
+"""A closed form of `fegear.formulas` as a compliance source: one tooth on its own, tabulated over its flank."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.formulas.sources import source as formula_source
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+    from scipy.interpolate import CubicSpline
+
+    from fegear.contact.compliance import Side
+    from fegear.formulas.compliance import ComplianceSource
+    from fegear.geometry.gear import Gear
+
+    Array = NDArray[np.float64]
+
+_POINTS = 81
+
+
+@dataclass(frozen=True)
+class ClosedFormCompliance:
+    """Tooth compliance by a formula, its contact split into what the load-sharing solver knows.
+
+    Parameters
+    ----------
+    gear : Gear
+    formula : ComplianceSource
+    own_spline : scipy CubicSpline
+        Over the roll length [m].
+    half_width : float
+        Reference half-width [m].
+    log_slope, power : float
+        Of the contact formula: Hertz-like or Palmgren-like.
+    """
+
+    gear: Gear
+    formula: ComplianceSource
+    own_spline: CubicSpline
+    half_width: float
+    log_slope: float
+    power: float
+
+    reach = 0
+    kinks = ()
+
+    def own(self, radius: ArrayLike) -> Array:
+        """Tooth, foundation and the contact's part that is linear in the load [m^2/N]."""
+        r, rb = np.asarray(radius, dtype=float), self.gear.base_radius
+        length = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
+        return np.asarray(self.own_spline(np.clip(length, self.own_spline.x[0], self.own_spline.x[-1])))
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """The same everywhere [m]."""
+        return np.full(np.shape(radius), self.half_width)
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
+        """Zero: closed forms know one tooth."""
+        return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
+        """Unknown here: closed forms for root stress are formulas of their own."""
+        return None
+
+    def describe(self) -> str:
+        """Return source and limits."""
+        return f"{self.formula.citation}; {self.formula.remark}"
+
+
+def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:
+    """Tabulate the closed form `name` for a gear.
+
+    Parameters
+    ----------
+    gear : Gear
+    name : str
+        "cornell", "weber-banaschek" or "potential-energy".
+
+    Raises
+    ------
+    InputError
+        If the name is unknown or the contact formula is neither linear, nor Hertz's, nor Palmgren's in the load.
+    """
+    from scipy.interpolate import CubicSpline
+
+    formula = formula_source(name)
+    rb = gear.base_radius
+    low, high = (math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (gear.form_radius, gear.involute_tip_radius))
+    lengths = np.linspace(low, high, _POINTS)
+    radii = np.clip(np.hypot(rb, lengths), gear.form_radius, gear.involute_tip_radius)
+    own = np.array(formula.tooth(gear, radii).total)
+    # Probe the contact: how it grows with the load, and how it shrinks with the width.
+    w, b = 1e5, 0.02 * gear.module
+    here = formula.contact(gear, radii, w, b)
+    exponent = math.log2(float(formula.contact(gear, radii[:1], 2.0 * w, b)[0] / here[0]))
+    slope = float((here[0] - formula.contact(gear, radii[:1], w, 1.001 * b)[0]) / w / math.log(1.001))
+    power = 0.0
+    if abs(exponent - 1.0) < 1e-9:
+        own += here / w
+    elif abs(exponent - 0.9) < 1e-9:
+        power = float(here[0] / w**0.9)
+    else:
+        raise InputError("compliance.source", f'"{name}"', f"has a contact that grows with the power {exponent:.4f}")
+    return ClosedFormCompliance(gear, formula, CubicSpline(lengths, own), b, max(slope, 0.0), power)

@@ -1,0 +1,92 @@
+"""Root stress of a tooth on its way through the mesh, from its own load and its neighbours'."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.contact.compliance import Side
+    from fegear.contact.engagement import Engagement, Loaded
+    from fegear.geometry.pair import Member
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RootStressHistory:
+    """Largest fillet stress of each pair's tooth at each roll position.
+
+    Parameters
+    ----------
+    member : {"driver", "driven"}
+    side : {"tension", "compression"}
+    x : ndarray, shape (n, P)
+        Position of the pair's contact [m]; beyond the path the tooth is unloaded but feels its neighbours.
+    stress : ndarray, shape (n, P, L)
+        Largest tension, or most negative compression [Pa].
+    """
+
+    member: Member
+    side: Side
+    x: Array
+    stress: Array
+
+    @property
+    def largest(self) -> Array:
+        """Over the whole engagement, shape (L,) [Pa]."""
+        flat = self.stress.reshape(-1, self.stress.shape[-1])
+        return np.asarray(flat.max(axis=0) if self.side == "tension" else flat.min(axis=0))
+
+
+def root_stress_history(
+    engagement: Engagement, loaded: Loaded, member: Member, side: Side = "tension"
+) -> RootStressHistory:
+    """Superpose the fillet stress of a tooth's own load and of its neighbours' loads, then take the extreme.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    loaded : Loaded
+    member : {"driver", "driven"}
+    side : {"tension", "compression"}
+        The tension fillet lies below the loaded flank.
+
+    Raises
+    ------
+    InputError
+        If the compliance source of this gear knows no root stress.
+    """
+    source = engagement.compliance.source(member)
+    contacts = loaded.grid.contacts
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    n, positions = radius.shape
+    towards_load = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
+    reach = min(source.reach, n - 1) if engagement.compliance.coupling else 0
+    kernels: dict[int, Array] = {}
+    line_load = loaded.loads / engagement.compliance.face_width
+    stress = np.empty_like(line_load)
+    for k in range(-reach, reach + 1):
+        kernel = source.root_stress(k, radius.ravel(), side)
+        if kernel is None:
+            raise InputError(
+                "results",
+                '"root-stress"',
+                f"cannot come from this compliance source ({source.describe()})",
+                'set pair.compliance.source = "fe"',
+            )
+        kernels[k] = kernel.reshape(kernel.shape[0], n, positions)
+    for tooth in range(n):
+        total = np.zeros((kernels[0].shape[0], positions, line_load.shape[2]))
+        for other in range(n):
+            k = towards_load * (tooth - other)
+            if k in kernels:
+                total += kernels[k][:, other, :, None] * line_load[other][None]
+        stress[tooth] = total.max(axis=0) if side == "tension" else total.min(axis=0)
+    return RootStressHistory(member, side, contacts.x, stress)

@@ -1,0 +1,260 @@
+"""Loaded static transmission error over a base pitch, with its Fourier series to quadrature accuracy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
+from fegear.contact.load_sharing import share_load
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.contact.engagement import Engagement, Loaded
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TransmissionError:
+    """Transmission error of one gear pair under one load, as a Fourier series over the base pitch.
+
+    Parameters
+    ----------
+    load : float
+        [N].
+    points : Panels
+        Quadrature points between all jumps and kinks.
+    loaded : Loaded
+        Load sharing at these points.
+    series : FourierSeries
+        [m].
+    """
+
+    load: float
+    points: Panels
+    loaded: Loaded
+    series: FourierSeries
+
+    @property
+    def values(self) -> Array:
+        """Transmission error at the quadrature points, shape (Q,) [m]."""
+        return np.asarray(self.loaded.transmission_error[:, 0])
+
+    @property
+    def mean(self) -> float:
+        """[m]."""
+        return float(self.series.mean)
+
+    @property
+    def peak_to_peak(self) -> float:
+        """Largest less smallest value [m]."""
+        return float(np.ptp(self.values))
+
+    @property
+    def effective_error(self) -> float:
+        """A_e of TM-89901 [m]."""
+        return float(effective_error(self.series))
+
+    @property
+    def average_stiffness(self) -> float:
+        """Mean over the base pitch of the local mesh stiffness dW/dzeta [N/m]."""
+        return float(self.loaded.local_stiffness[:, 0] @ self.points.weights / self.points.period)
+
+
+def contact_changes(engagement: Engagement, load: float, cycle: int = 0, samples: int = 48) -> Array:
+    """Roll positions [m] at which a pair comes into or out of contact between the geometric break points.
+
+    Found as events: between two neighbouring sample points with different loaded pairs the change is bracketed by
+    bisection, to 1e-9 of the base pitch; a misplaced kink costs the quadrature its square.
+    """
+    pitch, start = engagement.pair.base_pitch, engagement.pair.x_start
+    edges = np.concatenate([[start], [b for b in engagement.breaks if start < b < start + pitch], [start + pitch]])
+    xs, piece = [], []
+    for i, (a, b) in enumerate(pairwise(edges)):
+        if b - a > 1e-12 * pitch:
+            n = max(4, round(samples * (b - a) / pitch))
+            xs.append(
+                np.concatenate([[a + 1e-9 * (b - a)], a + (b - a) * (np.arange(n) + 0.5) / n, [b - 1e-9 * (b - a)]])
+            )
+            piece.append(np.full(n + 2, i))
+    x, which = np.concatenate(xs), np.concatenate(piece)
+    active = _active(engagement, x, load, cycle)
+    changed = (active[:, 1:] != active[:, :-1]).any(axis=0) & (which[1:] == which[:-1])
+    low, high, state = x[:-1][changed], x[1:][changed], active[:, :-1][:, changed]
+    if not low.size:
+        return low
+    for _ in range(25):
+        middle = 0.5 * (low + high)
+        same = (_active(engagement, middle, load, cycle) == state).all(axis=0)
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.asarray(0.5 * (low + high))
+
+
+def _active(engagement: Engagement, x: Array, load: float, cycle: int) -> NDArray[np.bool_]:
+    return np.asarray(engagement.solve(engagement.grid(x), [load], cycle).loads[:, :, 0] > 0.0)
+
+
+def transmission_error(
+    engagement: Engagement, load: float, harmonics: int = 64, *, order: int = 16, cycle: int = 0
+) -> TransmissionError:
+    """Transmission error under one load by piecewise Gauss quadrature.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    load : float
+        [N].
+    harmonics : int
+        N of the series.
+    order : int
+        Gauss points per subdivision: the setting that trades accuracy for time.
+    cycle : int
+        Which base pitch, when there are spacing errors.
+    """
+    pair = engagement.pair
+    changes = contact_changes(engagement, load, cycle)
+    points = panels(pair.x_start, pair.base_pitch, [*engagement.breaks, *changes], waves=harmonics, order=order)
+    loaded = engagement.solve(engagement.grid(points.x), [load], cycle)
+    return TransmissionError(load, points, loaded, fourier_series(points, loaded.transmission_error[:, 0], harmonics))
+
+
+@dataclass(frozen=True)
+class PairStiffness:
+    """Mark's effective stiffness of the tooth pairs (App. A, A.8, A.11).
+
+    Parameters
+    ----------
+    points : Panels
+    pair : ndarray, shape (n, Q)
+        K_Sj of each pair [N/m]; zero where it is off the path.
+    x : ndarray, shape (n, Q)
+        Positions of the pairs [m].
+    """
+
+    points: Panels
+    pair: Array
+    x: Array
+
+    @property
+    def mesh(self) -> Array:
+        """K_T = sum of K_Sj, shape (Q,) [N/m]."""
+        return np.asarray(self.pair.sum(axis=0))
+
+    @property
+    def mean_compliance(self) -> float:
+        """Mean of 1/K_T over the base pitch [m/N]."""
+        return float((1.0 / self.mesh) @ self.points.weights / self.points.period)
+
+
+def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> PairStiffness:
+    """Effective tooth-pair stiffness K_Sj = sum_j' k_jj', k the inverse of c_jj'.
+
+    By Maxwell's theorem it is the load on pair j, per unit approach, of a pair without modifications or errors (A.11);
+    with a load-dependent contact it is the secant stiffness under `load` [N].
+    """
+    pair = engagement.pair
+    points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics)
+    grid = engagement.grid(points.x)
+    m = grid.matrices
+    e = np.where(grid.contacts.gap == 0.0, 0.0, np.inf)
+    shared = share_load(m.compliance, e, [load], m.log_slope, m.reference_load, m.tilt, m.power)
+    return PairStiffness(points, shared.loads[:, :, 0] / shared.transmission_error[:, 0], grid.contacts.x)
+
+
+def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int, order: int = 8) -> FourierSeries:
+    """Transmission error over many base pitches with spacing errors: its rotational harmonics.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        With spacing errors.
+    load : float
+        [N].
+    cycles : int
+        Number of base pitches: the teeth of the gear with errors, or the least common multiple of both.
+    harmonics : int
+        Highest rotational harmonic; order `cycles` is the tooth-mesh frequency.
+    order : int
+        Gauss points per subdivision. Contact changes of single pitches are not resolved as break points.
+
+    Returns
+    -------
+    FourierSeries
+        Over the period of `cycles` base pitches.
+    """
+    if cycles < 1:
+        raise InputError("cycles", cycles, "must be at least 1")
+    pair = engagement.pair
+    per_pitch = max(12, -(-harmonics // cycles))
+    points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=per_pitch, order=order)
+    grid = engagement.grid(points.x)
+    m, e = grid.matrices, engagement.separation(grid.contacts)
+    finite = np.where(grid.contacts.present, e - engagement.spacing(grid.contacts, 0), np.inf)
+    errors = np.concatenate([engagement.spacing(grid.contacts, k) for k in range(cycles)], axis=1)
+    shared = share_load(
+        m.compliance, finite[:, :, None] + errors[:, None, :], np.full(cycles, load),
+        m.log_slope, m.reference_load, m.tilt, m.power,
+    )  # fmt: skip
+    x = points.x[None, :] + pair.base_pitch * np.arange(cycles)[:, None]
+    whole = Panels(x.ravel(), np.tile(points.weights, cycles), cycles * pair.base_pitch, points.breaks)
+    return fourier_series(whole, shared.transmission_error.T.ravel(), harmonics)
+
+
+@dataclass(frozen=True, slots=True)
+class OffPathWarning:
+    """What corner contact would change where it is switched off.
+
+    Parameters
+    ----------
+    x : float
+        Roll position where it matters most [m].
+    gap : float
+        Distance to the next tip corner there [m].
+    deflection : float
+        Transmission error there without corner contact [m].
+    change : float
+        Change of the transmission error with it [m].
+    """
+
+    x: float
+    gap: float
+    deflection: float
+    change: float
+
+    @property
+    def sentence(self) -> str:
+        """For the user."""
+        return (
+            f"corner_contact is off, but at x = {self.x * 1e3:.4g} mm the next tip corner is only "
+            f"{self.gap * 1e6:.3g} um away while the teeth give way by {self.deflection * 1e6:.3g} um: it would change "
+            f"the transmission error by {self.change * 1e6:+.3g} um ({self.change / self.deflection:+.1%}); "
+            "set effects.corner_contact = true"
+        )
+
+
+def off_path_warning(engagement: Engagement, load: float, samples: int = 60) -> OffPathWarning | None:
+    """Tell whether contact off the path matters although it is not asked for; None when it does not."""
+    from dataclasses import replace
+
+    if engagement.corner_contact:
+        return None
+    pair = engagement.pair
+    x = pair.x_start + pair.base_pitch * (np.arange(samples) + 0.5) / samples
+    plain = engagement.solve(engagement.grid(x), [load]).transmission_error[:, 0]
+    cornered = replace(engagement, corner_contact=True)
+    with_corners = cornered.solve(cornered.grid(x), [load])
+    contacts = with_corners.grid.contacts
+    off = contacts.present & (contacts.gap > 0.0)
+    gap = np.where(off, with_corners.separation, np.inf).min(axis=0)
+    change = with_corners.transmission_error[:, 0] - plain
+    matters = (gap < plain) & (np.abs(change) > 1e-4 * plain)
+    if not matters.any():
+        return None
+    i = int(np.argmax(np.where(matters, np.abs(change), 0.0)))
+    return OffPathWarning(float(x[i]), float(gap[i]), float(plain[i]), float(change[i]))
