@@ -158,20 +158,17 @@ def _show(value: object) -> str:
 
 
 # ---- what keys exist ---------------------------------------------------------------------------------------------
-def _models(annotation: object) -> list[type[BaseModel]]:
-    """Tables that an annotation allows: ``Part``, ``Part | None``, ``Annotated[Part, ...]``."""
+def part_models(annotation: object) -> list[type[BaseModel]]:
+    """Tables that an annotation allows: ``Part``, ``Part | None``, ``Annotated[Part, ...]``, ``dict[str, Part]``."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     if get_origin(annotation) is Annotated:
-        return _models(get_args(annotation)[0])
+        return part_models(get_args(annotation)[0])
+    if get_origin(annotation) is dict:
+        return part_models(get_args(annotation)[1])
     if get_origin(annotation) in (Union, UnionType):
-        return [model for argument in get_args(annotation) for model in _models(argument)]
+        return [model for argument in get_args(annotation) for model in part_models(argument)]
     return []
-
-
-def _named_tables(annotation: object) -> list[type[BaseModel]]:
-    """Model of the values in ``dict[str, Part]``."""
-    return _models(get_args(annotation)[1]) if get_origin(annotation) is dict else []
 
 
 def _keys_at(loc: Sequence[str]) -> list[str]:
@@ -181,10 +178,9 @@ def _keys_at(loc: Sequence[str]) -> list[str]:
     while steps:
         step = steps.pop(0)
         annotations = [model.model_fields[step].annotation for model in models if step in model.model_fields]
-        named = [model for annotation in annotations for model in _named_tables(annotation)]
-        if named and steps:
-            steps.pop(0)
-        models = [model for annotation in annotations for model in _models(annotation)] or named or models
+        if steps and any(get_origin(annotation) is dict for annotation in annotations):
+            steps.pop(0)  # the name that the user gave
+        models = [model for annotation in annotations for model in part_models(annotation)] or models
     return sorted({name for model in models for name in model.model_fields})
 
 

@@ -1,0 +1,111 @@
+"""The README's first screen: its program prints its numbers, its commands and links exist."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(kind: str) -> list[str]:
+    return re.findall(rf"```{kind}\n(.*?)```", README, re.DOTALL)
+
+
+def test_the_program_prints_what_the_readme_says():
+    (program,), (printed,) = blocks("python"), blocks("text")
+    assert len([line for line in program.splitlines() if line.strip()]) == 12
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=120)
+    number = re.compile(r"(?<![\w])-?\d+\.?\d*(?:e-?\d+)?")
+    assert number.sub("#", run.stdout) == number.sub("#", printed)
+    found, expected = (
+        [float(n) for line in text.splitlines() for n in number.findall(line.split(", error")[0])]
+        for text in (run.stdout, printed)
+    )
+    # The last printed digit may turn when gmsh draws the mesh anew on another machine.
+    assert found == pytest.approx(expected, rel=4e-3)
+    errors = re.findall(r"error of c_0 (\S+)", run.stdout)
+    assert len(errors) == 3
+    assert all(0.0 < float(error) <= 1e-3 for error in errors)
+
+
+def test_the_two_commands_are_there_and_set_themselves_up():
+    (commands,) = blocks("sh")
+    scripts = [line.split()[0] for line in commands.splitlines()]
+    assert scripts == ["./run.sh", "./test.sh"]
+    for script in scripts:
+        path = ROOT / script
+        assert os.access(path, os.X_OK)
+        subprocess.run(["sh", "-n", path], check=True)
+        assert "fegear_setup" in path.read_text()
+    assert (ROOT / commands.splitlines()[0].split()[1]).is_file()
+
+
+def test_every_link_leads_somewhere():
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    for page in pages:
+        for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
+            if "://" not in link:
+                assert (page.parent / link).exists(), f"{page.name} links to {link}"
+
+
+@pytest.mark.parametrize("missing", ["python3-venv", "libglu1-mesa"])
+def test_without_rights_the_scripts_name_the_apt_get_line(missing, tmp_path):
+    """A machine without the package and a user who may not install it, made of stand-ins for the system's programs."""
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    libraries = "libGLU.so.1 libXcursor.so.1 libXft.so.2 libXinerama.so.1 libGL.so.1 libEGL.so.1 libXrender.so.1"
+    libraries += " libXfixes.so.3 libgomp.so.1"
+    if missing == "libglu1-mesa":
+        libraries = libraries.replace("libGLU.so.1", "")
+    stand_ins = {
+        "ldconfig": f"echo {libraries}",
+        "id": "echo 1000",
+        "python3": "exit 1" if missing == "python3-venv" else "exit 0",
+        "dirname": 'exec /usr/bin/dirname "$@"',
+    }
+    for name, line in stand_ins.items():
+        (programs / name).write_text(f"#!/bin/sh\n{line}\n")
+        (programs / name).chmod(0o755)
+    run = subprocess.run(
+        ["/bin/sh", ROOT / "run.sh"],
+        env={"PATH": f"{programs}", "FEGEAR_VENV": str(tmp_path / "venv")},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert run.returncode != 0
+    assert f"sudo apt-get install {missing}" in run.stderr
+    assert not (tmp_path / "venv").exists()
+
+
+def test_the_case_file_page_names_every_key():
+    from fegear.scene.case import Case
+    from fegear.scene.load import part_models
+
+    page = (ROOT / "docs" / "case-files.md").read_text(encoding="utf-8")
+    parts = [Case]
+    while parts:
+        part = parts.pop()
+        for name, field in part.model_fields.items():
+            models = part_models(field.annotation)
+            parts += models
+            named = (f"`{name}`", f"`[{name}]`", f"`[{name}.NAME]`")
+            assert any(form in page for form in named), f"{part.__name__}.{name} is not on the page"
+
+
+def test_the_case_file_page_s_example_is_a_case(tmp_path):
+    import tomllib
+
+    from fegear.scene.load import build_scene
+
+    page = (ROOT / "docs" / "case-files.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert build_scene(tomllib.loads(example), "example", tmp_path).gears["a"].teeth == 28
