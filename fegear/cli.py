@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from pathlib import Path
@@ -129,6 +130,10 @@ def _plan_lines(planned: Plan) -> list[str]:
 
 def main() -> None:
     """Entry point: every foreseen error is one line on stderr and exit code 2; Ctrl-C is 130."""
+    # The dense blocks of a sector are too small for threads: two take twice the work of one for no gain in time, and
+    # on a busy machine they wait for each other. Set before numpy is loaded; a user's own choice stands.
+    for library in ("OMP", "OPENBLAS", "MKL"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     try:
         app()
     except KeyboardInterrupt:
