@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Ends = tuple[Array, Array, Array]
 
 #: Places per period at which sign changes of the slope are looked for.
-NODES = 96
+NODES = 72
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,7 +50,7 @@ def test_table_3(psi, kappa):
     ratio, normal, bending, coupling = TABLE_3[psi, kappa]
     table = mode_table(example(psi, kappa))
     assert table.ratio == pytest.approx(ratio, abs=0.51e-5)
-    # .0089 in (c) reads .0087 here; the table's own coupling ratio .1598 in the same line needs .00868, so it is a slip.
+    # .0089 in (c) reads .0087 here; the table's own coupling ratio .1598 in that line needs .00868: a slip.
     loose = np.where((np.array(bending) == 0.0089), 2.3e-4, 0.51e-4)
     assert (np.abs(table.normal - normal) <= 0.51e-4).all()
     assert (np.abs(table.bending - bending) <= loose).all()

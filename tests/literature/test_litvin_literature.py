@@ -1,0 +1,175 @@
+"""Litvin, Lu, Townsend, Hawkins, NASA TM-107451: the drive of sections 2 and 3 and what the paper says of it.
+
+The paper's figures are pictures without numbers; what it states in words is asserted. Face and addendum are not
+stated: abs(z) <= L/2 and 1/P_n. Pinion errors run all of its Appendix 2 again.
+"""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from fegear.errors import RangeError
+from fegear.helical import HelicalGear, HelicalPair, Misalignment, tooth_contact
+from fegear.helical.bearing import bearing_contact
+from fegear.helical.predesign import absorb_linear_error, linear_error
+
+INCH, ARCMIN, ARCSEC = 0.0254, math.pi / 10800.0, math.pi / 648000.0
+
+
+def drive(shaft=0.0, lead=0.0, profile=0.0, parabola=0.0):
+    """30/100 teeth, alpha_n = 20 deg, P_n = 5/in, lambda_p = 60 deg, L = 1.6 in; errors in arc-min, a_c in 1/in."""
+    pinion, gear = (
+        HelicalGear(n, INCH / 5.0, math.radians(20.0), math.radians(30.0), 1.6 * INCH, hand)
+        for n, hand in ((30, "left"), (100, "right"))
+    )
+    errors = Misalignment(shaft * ARCMIN, lead * ARCMIN, profile * ARCMIN)
+    return HelicalPair(pinion, gear, errors, parabola=parabola / INCH)
+
+
+def slopes(result):
+    """Mean slope [arcsec per pitch] of each kind of contact in the cycle."""
+    kinds = result.mesh.kind
+    pitch = result.pair.pinion.angular_pitch
+    return {k: float(result.mesh.slope[kinds == k].mean()) * pitch / ARCSEC for k in set(kinds) - {"corner"}}
+
+
+def test_aligned_gears_have_no_transmission_error_and_line_contact():
+    result = tooth_contact(drive(), 100)
+    assert np.abs(result.error).max() < 1e-12
+    assert np.abs(result.single.error).max() < 1e-12
+    assert set(result.mesh.kind) == {"surface"}
+    assert result.mesh.ill_defined.all(), "a line has no one contact point"
+
+
+@pytest.mark.parametrize("errors", [{"shaft": 3.0}, {"lead": 3.0}])
+def test_shaft_or_lead_alone_gives_edge_contact_and_two_linear_pieces(errors):
+    """Figs. 2 and 3: edge contact, two almost linear pieces of opposite slope."""
+    result = tooth_contact(drive(**errors), 400)
+    assert "surface" not in result.mesh.kind
+    edges = slopes(result)
+    assert edges["gear tip"] == pytest.approx(19.6, abs=0.1)
+    face = edges.get("gear face end", edges.get("pinion face end"))
+    assert face == pytest.approx(-5.54, abs=0.03)
+    for kind in ("gear tip", "gear face end", "pinion face end"):
+        part = result.mesh.slope[result.mesh.kind == kind]
+        if part.size:
+            assert np.ptp(part) < 2e-3 * np.abs(part).max(), "almost linear"
+    assert result.peak_to_peak / ARCSEC == pytest.approx(4.30, abs=0.01)
+
+
+def test_shaft_and_lead_alone_give_the_same_function():
+    """Fig. 3 is one figure for both errors."""
+    shaft, lead = tooth_contact(drive(shaft=3.0), 200, 0.0), tooth_contact(drive(lead=3.0), 200, 0.0)
+    # They differ in second order only: by 3e-4 of the error, the size of the angles themselves.
+    assert np.abs(shaft.error - lead.error).max() < 0.03 * ARCSEC
+    assert shaft.peak_to_peak == pytest.approx(lead.peak_to_peak, rel=5e-4)
+
+
+def test_profile_angle_error_moves_the_contact_but_makes_no_transmission_error():
+    """Fig. 4."""
+    result = tooth_contact(drive(profile=3.0), 200)
+    assert result.peak_to_peak < 1e-6 * ARCSEC
+    assert set(result.mesh.kind) == {"gear tip"}
+    opposite = tooth_contact(drive(profile=-3.0), 200)
+    assert opposite.peak_to_peak < 1e-6 * ARCSEC
+    assert set(opposite.mesh.kind) == {"pinion tip"}
+
+
+def test_shaft_3_and_lead_minus_4_give_edge_contact_with_two_slopes():
+    """Figs. 5 and 6."""
+    result = tooth_contact(drive(shaft=3.0, lead=-4.0), 400)
+    assert "surface" not in result.mesh.kind
+    found = slopes(result)
+    assert found["pinion tip"] == pytest.approx(-6.5, abs=0.1)
+    assert found["gear face end"] == pytest.approx(1.85, abs=0.02)
+
+
+def test_profile_3_and_lead_minus_2_put_the_contact_on_the_end_of_the_tooth():
+    """Figs. 7 and 8: contact on the edge of the tooth length, an almost linear function."""
+    result = tooth_contact(drive(profile=3.0, lead=-2.0), 400)
+    end = result.mesh.kind == "pinion face end"
+    assert end.mean() > 0.9
+    assert np.ptp(result.mesh.slope[end]) < 2e-3 * np.abs(result.mesh.slope[end]).max()
+
+
+def test_shaft_3_and_lead_minus_3_cancel():
+    """Fig. 9: surface contact of crossed helicoids along a straight line, no transmission error."""
+    result = tooth_contact(drive(shaft=3.0, lead=-3.0), 200)
+    assert set(result.mesh.kind) == {"surface"}
+    assert np.abs(result.error).max() < 1e-10 * ARCMIN
+    assert result.mesh.ill_defined.all()
+    single = result.single
+    inner = (single.kind == "surface") & (single.z1 > -5e-3) & (single.z1 < 5e-3)
+    assert inner.sum() > 50
+    # The path climbs from the root to the tip of the pinion while it moves along the tooth.
+    line = np.polynomial.Polynomial.fit(single.s[inner], single.z1[inner], 1)
+    assert single.z1[inner] == pytest.approx(line(single.s[inner]), abs=2e-5)
+    assert np.ptp(single.z1[inner]) / np.ptp(single.s[inner]) == pytest.approx(1.29, abs=0.02)
+    # "Even a small difference will cause an edge contact and transmission errors".
+    assert "surface" not in tooth_contact(drive(shaft=3.0, lead=-3.001), 50).mesh.kind
+
+
+def test_localised_contact_has_an_almost_linear_error_whose_slope_does_not_depend_on_the_parabola():
+    """Figs. 12 and 13."""
+    found = []
+    for a_c in (0.04, 0.06, 0.1):
+        result = tooth_contact(drive(shaft=3.0, parabola=a_c), 200)
+        inside = result.mesh.kind == "surface"
+        found.append(slopes(result)["surface"])
+        assert np.ptp(result.mesh.slope[inside]) < 1e-3 * abs(result.mesh.slope[inside].mean())
+        assert not result.mesh.ill_defined[inside].any()
+        # The path stays near the mean line and runs along the tooth.
+        assert np.abs(result.mesh.s[inside]).max() < 1.5e-3 * 0.04 / a_c
+        assert np.ptp(result.mesh.s[inside]) < 1e-5
+    assert found == pytest.approx([19.593] * 3, abs=2e-3)
+
+
+def test_a_parabola_too_flat_leaves_the_contact_on_the_edge():
+    result = tooth_contact(drive(shaft=3.0, parabola=0.005), 100)
+    assert "surface" not in result.mesh.kind
+    with pytest.raises(RangeError, match="leaves the contact on the edges"):
+        linear_error(drive(shaft=3.0, parabola=0.005))
+
+
+@pytest.mark.parametrize("errors", [{"shaft": 3.0}, {"shaft": -3.0}, {"lead": 2.0}])
+def test_predesigned_parabola_absorbs_the_linear_error(errors):
+    plain = drive(**errors, parabola=0.08)
+    design = absorb_linear_error(plain)
+    result = tooth_contact(design.pair, 200)
+    assert set(result.mesh.kind) == {"surface"}
+    # The estimate takes the loss as a_c s^2; at this parabola it is some 4 % less.
+    assert result.peak_to_peak == pytest.approx(design.peak_to_peak, rel=0.06)
+    aligned = tooth_contact(design.pair.with_errors(Misalignment()), 200)
+    assert result.peak_to_peak == pytest.approx(aligned.peak_to_peak, rel=0.01), "the linear error is absorbed"
+    # Second differences tell the parabola; pairs change where it has fallen by its height.
+    same = result.leader[1:] == result.leader[:-1]
+    bend = np.diff(result.mesh.slope)[same] / np.diff(result.phi_1)[same]
+    assert bend == pytest.approx(np.full(bend.size, -2.0 * design.error_parabola), rel=0.1)
+    assert result.peak_to_peak < tooth_contact(plain, 100).peak_to_peak
+
+
+def test_predesign_refuses_what_it_cannot_do():
+    with pytest.raises(RangeError, match="must be positive"):
+        absorb_linear_error(drive(shaft=3.0))
+    with pytest.raises(RangeError, match="over tip and root"):
+        stub = drive(parabola=0.08)
+        short = dataclasses.replace(stub.pinion, tip_radius=stub.pinion.pitch_radius + 1.5e-3)
+        absorb_linear_error(dataclasses.replace(stub, pinion=short), slope=0.01, face_share=0.1)
+    spur = [HelicalGear(30, 5e-3, 0.35, 0.0, 0.04, "spur") for _ in range(2)]
+    with pytest.raises(RangeError, match="helical drive"):
+        absorb_linear_error(HelicalPair(*spur, parabola=1.0))
+
+
+def test_contact_ellipses_lie_along_the_tooth():
+    pair = drive(shaft=3.0, parabola=0.08)
+    result = tooth_contact(pair, 50)
+    bearing = bearing_contact(pair, result.mesh, 1000.0, 115e9)
+    ellipse = bearing.ellipse
+    assert (ellipse.long > 5.0 * ellipse.short).all()
+    point = result.mesh.point[:, bearing.index]
+    assert np.abs((bearing.long_axis * bearing.short_axis).sum(0)).max() < 1e-12
+    assert point.shape == bearing.long_axis.shape
+    with pytest.raises(RangeError, match="no contact ellipse"):
+        bearing_contact(drive(), tooth_contact(drive(), 10).mesh, 1000.0, 115e9)
