@@ -37,7 +37,7 @@ class MeshSettings:
     root_edge_length: float = 0.05
     flank_edge_length: float = 0.035
     tip_edge_length: float = 0.008
-    junction_edge_length: float = 0.012
+    junction_edge_length: float = 0.008
     back_edge_length: float = 0.3
     growth: float = 0.25
     tip_growth: float = 0.15
