@@ -27,9 +27,10 @@ if TYPE_CHECKING:
 
 #: The second mesh of the error estimate is this much coarser everywhere.
 _COARSER = 1.6
-#: Share of the difference between two meshes that is left in the finer one. Second-order elements would leave
-#: 1 / (1.6^4 - 1) = 0.18 in energy and 0.5 in stress; meshes that gmsh draws anew scatter about that.
+#: Share of the difference between two meshes that is taken as left in the finer one. Second-order elements would leave
+#: 1 / (1.6^4 - 1) = 0.18 in energy and 0.5 in stress, but meshes that gmsh draws anew scatter about that.
 _MESH_SHARE = 0.5
+_SCATTER_SHARE = 1.0
 #: The second patch is this much wider. The patch's own error grows about linearly with its width, so a difference
 #: over half a width more stands for about itself.
 _WIDER = 1.5
@@ -154,17 +155,43 @@ class GearInfluence:
         """Estimated error of `neighbour` [m^2/N], shape (P, Q)."""
         if self.coarse is None:
             return np.full((np.size(radius_p), np.size(radius_q)), np.nan)
-        p, q, a = self._modules(radius_p), self._modules(radius_q), self.settings.patch_half_width
-        difference = self.coarse.neighbour(k, p, q, a) - self.fine.neighbour(k, p, q, a)
-        return self.share * np.abs(difference) / self.gear.material.young_modulus
+        a = self.settings.patch_half_width
+
+        def difference(p: Array, q: Array) -> Array:
+            return np.abs(self.fine.neighbour(k, p, q, a) - self._other.neighbour(k, p, q, a))
+
+        usual = _root_mean_square(difference(self._samples, self._samples))
+        own = difference(self._modules(radius_p), self._modules(radius_q))
+        return _SCATTER_SHARE * np.maximum(own, usual) / self.gear.material.young_modulus
 
     def root_stress_error(self, k: int, side: Side, radius: ArrayLike) -> Array:
         """Estimated error of `largest_root_stress` [1/m], shape (P,)."""
         if self.coarse is None:
             return np.full(np.size(radius), np.nan)
-        r, a = self._modules(radius), self.settings.patch_half_width
-        fine, coarse = (i.largest_root_stress(k, side, r, a)[0] for i in (self.fine, self.coarse))
-        return self.share * np.abs(fine - coarse) / self.gear.module
+        a = self.settings.patch_half_width
+
+        def both(r: Array) -> tuple[Array, Array]:
+            fine, other = (i.largest_root_stress(k, side, r, a)[0] for i in (self.fine, self._other))
+            return fine, np.abs(fine - other)
+
+        value, difference = both(self._modules(radius))
+        usual = _root_mean_square(np.divide(*both(self._samples)[::-1]))
+        return _SCATTER_SHARE * np.maximum(difference, usual * np.abs(value)) / self.gear.module
+
+    @property
+    def _other(self) -> Influence:
+        return self.fine if self.coarse is None else self.coarse
+
+    @property
+    def _samples(self) -> Array:
+        """Radii over the flank at which the usual difference of two meshes is taken [modules]."""
+        low, high = self.fine.flank.lowest_radius, self.fine.flank.highest_radius
+        return np.linspace(low + 0.05 * (high - low), high, 12)
+
+
+def _root_mean_square(values: Array) -> float:
+    """One position's difference may vanish by chance; the mean over the flank does not."""
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def solve_gear(

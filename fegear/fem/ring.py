@@ -73,7 +73,7 @@ class Ring:
         Parameters
         ----------
         loads : ndarray, shape (size, P)
-            Forces on the unknowns of sector 0; zero on the sides.
+            Forces on the unknowns of sector 0, its sides included.
         watch : ndarray of int, shape (q,)
             Unknowns of a sector whose displacement is wanted, in that sector's own frame.
         reach : int, optional
@@ -102,7 +102,10 @@ class Ring:
 
     def _drive(self, loads: Array) -> tuple[Array, Array]:
         f = loads[self.inner]
-        return -(self.side_response_a.T @ f), -(self.side_response_b.T @ f)
+        return (
+            self.turn_a.T @ loads[self.side_a] - self.side_response_a.T @ f,
+            self.turn_b.T @ loads[self.side_b] - self.side_response_b.T @ f,
+        )
 
     def _side_motion(self, k: int, drive_a: Array, drive_b: Array) -> Array:
         """Polar displacement of side A of sector k (which is side B of sector k - 1)."""
