@@ -135,20 +135,22 @@ def share_load(
     def flat(values: Array) -> Array:
         return np.ascontiguousarray(np.broadcast_to(values, (n, positions, cases)).reshape(n, size))
 
+    # Counted from the pair that is nearest, so that large separations cost no digits of small deflections.
+    nearest = np.where(reach, e, np.inf).min(axis=0)
     coupling = c.copy()
     coupling[np.arange(n), np.arange(n)] = 0.0
     problem = _Problem(
         coupling=np.ascontiguousarray(np.repeat(coupling, cases, axis=2)) if coupling.any() else None,
         diagonal=flat(diagonal),
         half_slope=flat(0.5 * kappa),
-        gap=flat(np.where(reach, e, 0.0) / total),
+        gap=flat(np.where(reach, e - nearest, 0.0) / total),
         reach=flat(reach.astype(float)) > 0.5,
         tilt=None if tilt is None else flat(np.asarray(tilt, dtype=float)[:, :, None] * np.sqrt(at / total)),
         power=flat(bent * total ** (_PALMGREN - 1.0)) if bent.any() else None,
     )
     v, z, steps = _solve(problem)
-    loads = v.reshape(n, positions, cases) * total
-    return SharedLoad(loads, z.reshape(positions, cases) * total, steps)
+    loads = (v / v.sum(axis=0)).reshape(n, positions, cases) * total
+    return SharedLoad(loads, nearest + z.reshape(positions, cases) * total, steps)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,8 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.contact.transmission_error import PairStiffness
+
     Array = NDArray[np.float64]
 
 
@@ -69,3 +71,27 @@ def mesh_transfer(order: ArrayLike, contact_ratio: float, truncated: bool = True
         window = np.where(np.abs(g - n) < 1.0, 0.5 * (1.0 + np.cos(math.pi * (g - n))), 0.0)
         correction += np.where(n == 0.0, 0.0, window * np.sinc(n * contact_ratio) * np.sinc((g - n) * contact_ratio))
     return np.asarray(base - correction)
+
+
+def transfer_of_stiffness(stiffness: PairStiffness, order: ArrayLike) -> NDArray[np.complex128]:
+    """Exact mesh transfer function for tooth-spacing errors, from the pair stiffness itself.
+
+    With all pairs of the path in contact zeta = (W + sum_j K_Sj e_j) / K_T, so a pair's error enters with the weight
+    K_Sj / K_T as it travels along the path: S(g) = (1/A) integral of K_S / K_T exp(-2 pi i g x / A) dx over the path.
+    The coefficient of rotational harmonic n of a gear with N teeth is B(n) S(n / N) (1.28).
+
+    Parameters
+    ----------
+    stiffness : PairStiffness
+    order : array_like
+        g = n / N, cycles per base pitch.
+
+    Returns
+    -------
+    ndarray
+        Complex, since x counts from the pitch point and tooth 0 is that of pair 0 in cycle 0.
+    """
+    g = np.asarray(order, dtype=float)
+    weight = stiffness.pair / stiffness.mesh * stiffness.points.weights / stiffness.points.period
+    phase = np.exp(-2j * math.pi * np.multiply.outer(g, stiffness.x) / stiffness.points.period)
+    return np.asarray((phase * weight).sum(axis=(-2, -1)))

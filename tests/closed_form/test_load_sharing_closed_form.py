@@ -39,13 +39,13 @@ def brute_force(c, e, total, kappa, ref):
         c_mean = np.diag(c)[s]
         guess = (1 / c_mean) / (1 / c_mean).sum()
         solution = root(equations, [*guess, (guess @ c_mean + np.mean(e[s]) / total) * total / scale], tol=1e-15)
-        if np.abs(equations(solution.x)).max() > 1e-11 or (solution.x[:-1] < 0).any():
+        if np.abs(equations(solution.x)).max() > 1e-11 or (solution.x[:-1] < -1e-11).any():
             continue
         w = np.zeros(n)
         w[s] = solution.x[:-1] * total
         z = solution.x[-1] * scale
         gaps = [c[j] @ w + e[j] - z for j in range(n) if not bits[j] and np.isfinite(e[j])]
-        if all(g >= -1e-13 * scale for g in gaps):
+        if all(g >= -1e-11 * scale for g in gaps):
             answers.append((w, z))
     return answers
 

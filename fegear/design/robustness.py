@@ -1,0 +1,97 @@
+"""How a relief holds up when load, spacing and grinding are not what the drawing says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.design.evaluation import bench
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.contact.engagement import Engagement
+    from fegear.design.charts import Metric
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Robustness:
+    """Excitation over every combination of the deviations asked for.
+
+    Parameters
+    ----------
+    load_factors, spacing_errors, relief_errors : ndarray, shapes (A,), (B,), (C,)
+        Load over its nominal value; spacing error of every second pair [m]; relative error of the relief's depth.
+    values : ndarray, shape (A, B, C)
+        The metric [m].
+    nominal : float
+        Without deviations [m].
+    """
+
+    load_factors: Array
+    spacing_errors: Array
+    relief_errors: Array
+    values: Array
+    nominal: float
+
+    @property
+    def worst(self) -> float:
+        """Largest value of all [m]."""
+        return float(self.values.max())
+
+    @property
+    def worst_case(self) -> tuple[float, float, float]:
+        """Load factor, spacing error [m] and relief error that give it."""
+        i, j, k = np.unravel_index(int(self.values.argmax()), self.values.shape)
+        return float(self.load_factors[i]), float(self.spacing_errors[j]), float(self.relief_errors[k])
+
+
+def robustness(
+    engagement: Engagement,
+    load: float,
+    load_factors: ArrayLike = (0.7, 0.85, 1.0, 1.15, 1.3),
+    spacing_errors: ArrayLike = (0.0,),
+    relief_errors: ArrayLike = (-0.2, 0.0, 0.2),
+    metric: Metric = "peak_to_peak",
+) -> Robustness:
+    """Try every combination of load, spacing error and relief tolerance.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        With the reliefs to be tried.
+    load : float
+        Nominal load [N].
+    load_factors : array_like
+        Loads over the nominal one, positive.
+    spacing_errors : array_like
+        Removal on every second pair [m]: neighbours then differ by it, and with either sign.
+    relief_errors : array_like
+        Relative error of the depth of both reliefs: 0.1 is 10 % too deep.
+    metric : {"peak_to_peak", "effective_error"}
+    """
+    w, e, d = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (load_factors, spacing_errors, relief_errors))
+    if (w <= 0.0).any():
+        raise InputError("design.load_factors", float(w.min()), "must be positive")
+    table = bench(engagement)
+    m = table.removal(engagement.driver_relief, engagement.driven_relief)
+    second = (table.grid.contacts.number % 2 == 1).astype(float)[:, None]
+    cases, loads = [], []
+    for factor, error, depth in product(w, e, d):
+        for parity in (second, 1.0 - second) if error != 0.0 else (second,):
+            cases.append(m * (1.0 + depth) + error * parity)
+            loads.append(load * factor)
+    values = table.errors(np.stack(cases, axis=2), np.array(loads)).of(metric)
+    table_of_values, position = np.empty((w.size, e.size, d.size)), 0
+    for i, j, k in np.ndindex(table_of_values.shape):
+        count = 2 if e[j] != 0.0 else 1
+        table_of_values[i, j, k] = values[position : position + count].max()
+        position += count
+    nominal = float(table.errors(m[:, :, None], load).of(metric)[0])
+    return Robustness(w, e, d, table_of_values, nominal)

@@ -1,0 +1,141 @@
+"""Loading functions chosen for the least root stress (Mark, section 4: F and r for contact ratios above 2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.design.loading import LoadingFunction, Ramp
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from fegear.contact.pair_compliance import PairCompliance
+    from fegear.geometry.pair import Member
+
+    Array = NDArray[np.float64]
+
+MEMBERS: tuple[Member, Member] = ("driver", "driven")
+
+
+@dataclass(frozen=True)
+class DesignStress:
+    """Largest root tension that design loads cause, per unit design load, as a function of the loading.
+
+    Parameters
+    ----------
+    kernels : mapping of member to list of (x of the load, ndarray (points, P))
+        Fillet stress of the tooth at x per unit line load on the pair at x + k A.
+    """
+
+    compliance: PairCompliance
+    x: Array
+    kernels: dict[Member, list[tuple[Array, Array]]]
+
+    def largest(self, loading: LoadingFunction, member: Member) -> float:
+        """Largest root tension over the path [Pa] for a design load of 1 N."""
+        total: Array = np.zeros(1)
+        for where, kernel in self.kernels[member]:
+            total = total + kernel * (loading.fraction(where) / self.compliance.face_width)
+        return float(total.max())
+
+    def worst(self, loading: LoadingFunction) -> float:
+        """The larger of both gears."""
+        return max(self.largest(loading, member) for member in self.kernels)
+
+
+def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStress:
+    """Collect the root-stress kernels along the path once; then any loading costs a few products.
+
+    Raises
+    ------
+    InputError
+        If no gear's source knows root stress.
+    """
+    pair = compliance.pair
+    x = np.linspace(pair.x_start, pair.x_end, positions)
+    kernels: dict[Member, list[tuple[Array, Array]]] = {}
+    for member in MEMBERS:
+        source, sign = compliance.source(member), 1 if member == "driver" else -1
+        reach = source.reach if compliance.coupling else 0
+        found = []
+        for ahead in range(-reach, reach + 1):
+            there = x + ahead * pair.base_pitch
+            radius = pair.radius(np.clip(there, pair.x_start, pair.x_end), member)
+            kernel = source.root_stress(-sign * ahead, radius, "tension")
+            if kernel is not None:
+                found.append((there, kernel))
+        if found:
+            kernels[member] = found
+    if not kernels:
+        raise InputError("design", "root stress", "is unknown to these compliance sources", 'set source = "fe"')
+    return DesignStress(compliance, x, kernels)
+
+
+@dataclass(frozen=True)
+class StressOptimum:
+    """Loading with the least largest root stress.
+
+    Parameters
+    ----------
+    loading : LoadingFunction
+    stress : float
+        Largest root tension of both gears per unit design load [Pa/N].
+    candidates : tuple of (exponent or None, peak, stress)
+        Best F of each exponent tried.
+    """
+
+    loading: LoadingFunction
+    stress: float
+    candidates: tuple[tuple[int | None, float, float], ...]
+
+
+def least_root_stress(
+    stress: DesignStress,
+    loading: LoadingFunction,
+    exponents: Sequence[int | None] = (None, 3, 5, 7, 9),
+) -> StressOptimum:
+    """Choose F and r so that the largest root stress is least; the slope at contact initiation stays as given.
+
+    Parameters
+    ----------
+    stress : DesignStress
+    loading : LoadingFunction
+        Contact ratio above 2; its first ramp's slope s is kept, its exponent and peak are replaced.
+    exponents : sequence of int or None
+        r to try; None is the sinusoidal family. Those too low for the slope are left out.
+    """
+    from scipy.optimize import minimize_scalar
+
+    low, high = loading.peak_range
+    if high - low <= 0.0:
+        raise InputError(
+            "design.peak", loading.peak, "is fixed for contact ratios up to 2", "choose a longer design length"
+        )
+    slope = loading.ramp.slope
+    found: list[tuple[float, LoadingFunction, int | None]] = []
+    for r in exponents:
+        if slope > (2.0 if r is None else r):
+            continue
+        base = replace(loading, ramp=Ramp(slope, r), inner_ramp=Ramp(1.0, r))
+
+        def worst(peak: float, base: LoadingFunction = base) -> float:
+            return stress.worst(replace(base, peak=float(np.clip(peak, low, high))))
+
+        # The largest of several smooth functions of F has kinks: scan, then refine by golden section.
+        scan = np.linspace(low, high, 21)
+        values = [worst(float(f)) for f in scan]
+        i = int(np.argmin(values))
+        bracket = (float(scan[max(i - 1, 0)]), float(scan[min(i + 1, 20)]))
+        result = minimize_scalar(worst, bounds=bracket, method="bounded", options={"xatol": 1e-6})
+        peak = float(result.x) if result.fun < values[i] else float(scan[i])
+        found.append((worst(peak), replace(base, peak=peak), r))
+    if not found:
+        raise InputError("design.exponent", tuple(exponents), f"has none that allows the initial slope {slope}")
+    best = min(found, key=lambda item: item[0])
+    return StressOptimum(best[1], best[0], tuple((r, f.peak, value) for value, f, r in found))
