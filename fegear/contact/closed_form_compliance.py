@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.spline import Spline, spline
 from fegear.errors import InputError
 from fegear.formulas.sources import source as formula_source
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-    from scipy.interpolate import CubicSpline
 
     from fegear.contact.compliance import Side
     from fegear.formulas.compliance import ComplianceSource
@@ -32,7 +32,7 @@ class ClosedFormCompliance:
     ----------
     gear : Gear
     formula : ComplianceSource
-    own_spline : scipy CubicSpline
+    own_spline : Spline
         Over the roll length [m].
     half_width : float
         Reference half-width [m].
@@ -42,7 +42,7 @@ class ClosedFormCompliance:
 
     gear: Gear
     formula: ComplianceSource
-    own_spline: CubicSpline
+    own_spline: Spline
     half_width: float
     log_slope: float
     power: float
@@ -87,8 +87,6 @@ def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:
     InputError
         If the name is unknown or the contact formula is neither linear, nor Hertz's, nor Palmgren's in the load.
     """
-    from scipy.interpolate import CubicSpline
-
     formula = formula_source(name)
     rb = gear.base_radius
     low, high = (math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (gear.form_radius, gear.involute_tip_radius))
@@ -107,4 +105,4 @@ def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:
         power = float(here[0] / w**0.9)
     else:
         raise InputError("compliance.source", f'"{name}"', f"has a contact that grows with the power {exponent:.4f}")
-    return ClosedFormCompliance(gear, formula, CubicSpline(lengths, own), b, max(slope, 0.0), power)
+    return ClosedFormCompliance(gear, formula, spline(lengths, own), b, max(slope, 0.0), power)

@@ -21,11 +21,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.spline import Spline, spline
 from fegear.geometry.involute import polar_angle
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-    from scipy.interpolate import CubicSpline
 
     from fegear.geometry.pair import GearPair, Member
 
@@ -123,13 +123,11 @@ class CornerContact:
         return float(0.5 * (u_t + u_f))
 
     @cached_property
-    def _length_of_position(self) -> CubicSpline:
+    def _length_of_position(self) -> Spline:
         """Roll length over the position u: u grows monotonely with it, so the inverse is a table read sideways."""
-        from scipy.interpolate import CubicSpline
-
-        lengths = np.linspace(*self._span, 801)
+        lengths = np.linspace(*self._span, 201)
         u_t, u_f = self._rolled(lengths)
-        return CubicSpline(0.5 * (u_t + u_f), lengths)
+        return spline(0.5 * (u_t + u_f), lengths)
 
     def locate(self, beyond: ArrayLike) -> tuple[Array, Array, Array]:
         """Gap and place of contact at distances beyond the end of the path.

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.spline import Spline, spline
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import ArrayLike, NDArray
-    from scipy.interpolate import CubicSpline
 
     from fegear.contact.compliance import Side
     from fegear.fem.gear import GearInfluence
@@ -33,7 +33,7 @@ class FiniteElementCompliance:
     Parameters
     ----------
     influence : GearInfluence
-    own_spline : scipy CubicSpline
+    own_spline : Spline
         c_0 at the patch's half-width [m^2/N] over the roll length [m].
     neighbours : mapping of int to ndarray, shape (m, m)
         Chebyshev coefficients of c_k(p, q).
@@ -42,7 +42,7 @@ class FiniteElementCompliance:
     """
 
     influence: GearInfluence
-    own_spline: CubicSpline
+    own_spline: Spline
     neighbours: Mapping[int, Array]
     lowest: float
     highest: float
@@ -105,16 +105,16 @@ class FiniteElementCompliance:
 
 def finite_element_compliance(influence: GearInfluence) -> FiniteElementCompliance:
     """Tabulate the influence functions of a solved gear."""
-    from scipy.interpolate import CubicSpline
-
     gear = influence.gear
     rb = gear.base_radius
     bottom = max(influence.lowest_radius, gear.form_radius)
     top = min(influence.highest_radius, gear.involute_tip_radius)
     low, high = (math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (bottom, top))
-    # Half cosine spacing: the compliance bends most at the tip, where the patch has to shrink.
-    s = np.sin(0.5 * math.pi * np.linspace(0.0, 1.0, _OWN_POINTS)) * 0.5 + 0.5 * np.linspace(0.0, 1.0, _OWN_POINTS)
-    lengths = low + (high - low) * s
+    # The compliance bends most where the patch has to shrink, within its own width of the tip corner: points crowd
+    # there, half of them in the last tenth of a module, and a little where the flank starts.
+    corner = min(0.1 * gear.module * rb / high, 0.3 * (high - low))
+    s = np.linspace(0.0, 1.0, _OWN_POINTS // 2)
+    lengths = np.concatenate([low + (high - corner - low) * (s * s * (3.0 - 2.0 * s))[:-1], high - corner * (1.0 - s)])
     radii = np.clip(np.hypot(rb, lengths), bottom, top)
     own = influence.self_compliance(radii, influence.patch_half_width)
     m = _NEIGHBOUR_POINTS
@@ -126,4 +126,4 @@ def finite_element_compliance(influence: GearInfluence) -> FiniteElementComplian
         values = influence.neighbour(k, nodes, nodes)
         neighbours[k] = to_coefficients @ values @ to_coefficients.T
         neighbours[-k] = neighbours[k].T  # reciprocity, exact for pressure-weighted deflections
-    return FiniteElementCompliance(influence, CubicSpline(lengths, own), neighbours, low, high)
+    return FiniteElementCompliance(influence, spline(lengths, own), neighbours, low, high)

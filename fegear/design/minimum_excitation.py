@@ -107,7 +107,7 @@ class MinimumExcitationRelief:
     @cached_property
     def offset(self) -> float:
         """Largest deflection over the design zone [m]: where the relief is zero."""
-        x = np.linspace(self.loading.x_start, self.loading.x_end, 1201)
+        x = np.concatenate([np.linspace(self.loading.x_start, self.loading.x_end, 1201), self.loading.kinks])
         return float((self.deflection_by_own_load(x) + self.deflection_by_neighbours(x)).max())
 
     @cached_property

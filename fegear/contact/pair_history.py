@@ -1,0 +1,96 @@
+"""One tooth pair followed from first to last contact: what the load-sharing table shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.contact.engagement import Engagement
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PairHistory:
+    """Load and its consequences on one tooth pair over its path.
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+        Position of the pair [m]; before the start and after the end of the path a tip corner touches.
+    driver_roll_angle : ndarray, shape (P,)
+        Roll angle of the contact on the driver's flank [rad].
+    load : ndarray, shape (P, L)
+        [N].
+    share : ndarray, shape (P, L)
+        Of the total load.
+    deflection : ndarray, shape (P, L)
+        Of both teeth and their contact [m].
+    hertz_pressure : ndarray, shape (P, L)
+        Largest pressure of a smooth contact [Pa]; at a corner the true pressure is higher.
+    transmission_error : ndarray, shape (P, L)
+        [m].
+    """
+
+    x: Array
+    driver_roll_angle: Array
+    load: Array
+    share: Array
+    deflection: Array
+    hertz_pressure: Array
+    transmission_error: Array
+
+
+def pair_history(engagement: Engagement, load: ArrayLike, positions: int = 200, cycle: int = 0) -> PairHistory:
+    """Follow one tooth pair from its first to its last contact.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    load : array_like, shape (L,)
+        [N].
+    positions : int
+        Positions spread evenly; two more stand on either side of every jump.
+    cycle : int
+        Which pair, when there are spacing errors: the one that is pair 0 in that base pitch.
+    """
+    pair, pitch = engagement.pair, engagement.pair.base_pitch
+    before, after = 0.0, 0.0
+    if engagement.corner_contact:
+        before, after = (min(c.reach, pitch) for c in engagement.meshing.corners)
+    first, last = pair.x_start - before, pair.x_end + after
+    places = [b + k * pitch for b in engagement.breaks for k in range(-2, 6)]
+    beside = [b + side for b in places if first < b < last for side in (-1e-7 * pitch, 1e-7 * pitch)]
+    x = np.unique(np.concatenate([np.linspace(first, last, positions), beside]))
+    x = x[(x >= first) & (x <= last)]
+    number = np.floor((x - pair.x_start) / pitch).astype(int)
+    grid = engagement.grid(x - number * pitch)
+    index = np.clip(number - grid.contacts.number[0], 0, grid.contacts.number.size - 1)
+    here = (index, np.arange(x.size))
+    loads = np.atleast_1d(np.asarray(load, dtype=float))
+    picked = []
+    for k in np.unique(number):
+        # Pair j is on teeth cycle - j: this pair keeps its own teeth while the base pitches pass.
+        rows = number == k
+        part = engagement.solve(
+            grid if rows.all() else engagement.grid((x - number * pitch)[rows]), loads, cycle + int(k)
+        )
+        picked.append((np.flatnonzero(rows), part, index[rows]))
+    shape = (x.size, loads.size)
+    w, u, te = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    for rows, part, which in picked:
+        at = np.arange(rows.size)
+        w[rows], u[rows] = part.loads[which, at], part.deflection[which, at]
+        te[rows] = part.transmission_error
+    pressure = engagement.compliance.pressure(w, grid.contacts.relative_radius[here][:, None])
+    touched = np.flatnonzero((w > 0.0).any(axis=1))
+    keep = slice(touched[0], touched[-1] + 1) if touched.size else slice(0, 0)
+    if not engagement.corner_contact:
+        keep = slice(0, x.size)
+    roll = grid.contacts.roll_driver[here]
+    return PairHistory(x[keep], roll[keep], w[keep], (w / loads)[keep], u[keep], pressure[keep], te[keep])
