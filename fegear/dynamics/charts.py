@@ -1,0 +1,137 @@
+"""Design charts of TM-89901: largest dynamic factor over a range of speeds, against amount and length of relief."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.dynamics.excitation import effective_error
+from fegear.dynamics.motion_model import MotionModel
+from fegear.dynamics.steady_state import SteadyState, speed_sweep
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.dynamics.excitation import MeshExcitation
+    from fegear.dynamics.lin_model import FourInertia
+
+    Array = NDArray[np.float64]
+
+Direction = Literal["up", "down", "static", "rest"]
+
+
+@dataclass(frozen=True)
+class SpeedChart:
+    """Dynamic factor of a gear pair against speed, in increasing order of speed.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (n,)
+        Speeds of the first body [rad/s].
+    dynamic_factor, mesh_force_factor : ndarray, shape (n,)
+        Largest force on one tooth pair, and largest mesh force, over the mean mesh force.
+    apart, behind : ndarray, shape (n,)
+        Share of the time without contact and on the back flanks.
+    periods : ndarray of int, shape (n,)
+        Periods after which the motion repeats, 0 if it does not.
+    kinds : tuple of str
+        "periodic", "quasi-periodic" or "chaotic" at each speed.
+    """
+
+    speeds: Array
+    dynamic_factor: Array
+    mesh_force_factor: Array
+    apart: Array
+    behind: Array
+    periods: NDArray[np.int64]
+    kinds: tuple[str, ...]
+
+    @property
+    def worst(self) -> tuple[float, float]:
+        """Largest dynamic factor and the speed [rad/s] at which it occurs."""
+        index = int(np.argmax(self.dynamic_factor))
+        return float(self.dynamic_factor[index]), float(self.speeds[index])
+
+
+def speed_chart(
+    model: MotionModel,
+    speeds: ArrayLike,
+    *,
+    mesh: int = 0,
+    direction: Direction = "down",
+    tolerance: float = 5e-4,
+) -> SpeedChart:
+    """Dynamic factor against speed.
+
+    Parameters
+    ----------
+    model : MotionModel
+        What moves; its own speed is not used.
+    speeds : array_like
+        Speeds of the first body [rad/s].
+    mesh : int
+        Gear pair looked at.
+    direction : {"up", "down", "static", "rest"}
+        Sweeping (each speed starts from the one before), or every speed afresh from the static state or from rest.
+        A pair that loses contact keeps its large motion when speed falls, so that "down" finds the larger factors.
+    tolerance : float
+        Accuracy of the dynamic factor.
+    """
+    speed = np.sort(np.atleast_1d(np.asarray(speeds, dtype=float)))
+    if direction not in ("up", "down", "static", "rest"):
+        raise InputError("direction", direction, 'must be "up", "down", "static" or "rest"')
+    order = speed[::-1] if direction == "down" else speed
+    start = "follow" if direction in ("up", "down") else direction
+    states: tuple[SteadyState, ...] = speed_sweep(model, order, start=start, tolerance=tolerance)
+    if direction == "down":
+        states = states[::-1]
+    return SpeedChart(
+        speed,
+        np.array([s.dynamic_factor[mesh] for s in states]),
+        np.array([s.mesh_force_factor[mesh] for s in states]),
+        np.array([s.apart[mesh] for s in states]),
+        np.array([s.behind[mesh] for s in states]),
+        np.array([s.periods for s in states], dtype=np.int64),
+        tuple(s.kind for s in states),
+    )
+
+
+@dataclass(frozen=True)
+class ChartPoint:
+    """One point of a design chart: largest factors over the speeds, where [rad/s], and the effective error [m]."""
+
+    dynamic_factor: float
+    mesh_force_factor: float
+    speed: float
+    effective_error: float
+    lost_contact: bool
+    unsteady_speeds: int
+
+
+def chart_point(
+    system: FourInertia,
+    excitation: MeshExcitation,
+    speeds: ArrayLike,
+    *,
+    direction: Direction = "down",
+    tolerance: float = 5e-4,
+) -> ChartPoint:
+    """Largest dynamic factor of the four-inertia model over a range of speeds, beside the effective error A_e.
+
+    The mesh damping follows the mean stiffness of the gear pair (1 over its mean compliance).
+    """
+    train = system.train(1.0 / excitation.mean_compliance())
+    chart = speed_chart(MotionModel(train, (excitation,), 1.0), speeds, direction=direction, tolerance=tolerance)
+    worst, where = chart.worst
+    error = excitation.transmission_error(system.force, tolerance=1e-8)
+    return ChartPoint(
+        worst,
+        float(np.max(chart.mesh_force_factor)),
+        where,
+        effective_error(error),
+        bool(np.any(chart.apart > 0.0)),
+        int(np.count_nonzero(chart.periods == 0)),
+    )

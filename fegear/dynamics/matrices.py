@@ -1,0 +1,98 @@
+"""Mass, damping and stiffness matrices of a gear train, its element list and its static state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.dynamics.train import Train
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """A spring and damper in parallel that acts on ``radius_a theta_a + radius_b theta_b``.
+
+    `b` is -1 for the ground; `mesh` is the number of the gear pair, or -1. `geared` says that the element is
+    consistent with the rigid-body motion of the train by construction, so that it adds nothing to it.
+    """
+
+    a: int
+    b: int
+    radius_a: float
+    radius_b: float
+    stiffness: float
+    damping: float
+    mesh: int = -1
+    geared: bool = True
+
+
+def elements(train: Train) -> tuple[Element, ...]:
+    """All springs and dampers of a train: gear pairs first, then shafts, dampers between bodies, dampers to ground."""
+    dof = train.dof
+    found = [
+        Element(dof[m.a], dof[m.b], m.radius_a, m.radius_b, m.stiffness, m.damping, mesh=index)
+        for index, m in enumerate(train.meshes)
+    ]
+    found += [Element(dof[s.a], dof[s.b], 1.0, -1.0, s.stiffness, s.damping) for s in train.elastic_shafts]
+    for damper in train.dampers:
+        a = dof[damper.a]
+        if damper.b is None:
+            found.append(Element(a, -1, 1.0, 0.0, 0.0, damper.damping, geared=False))
+        elif dof[damper.b] != a:
+            b = dof[damper.b]
+            geared = train.exact_ratios[a] == train.exact_ratios[b]
+            found.append(Element(a, b, 1.0, -1.0, 0.0, damper.damping, geared=geared))
+    return tuple(found)
+
+
+def _assemble(train: Train, weights: list[float]) -> Array:
+    total = np.zeros((train.size, train.size))
+    for element, weight in zip(elements(train), weights, strict=True):
+        row = np.zeros(train.size)
+        row[element.a] += element.radius_a
+        if element.b >= 0:
+            row[element.b] += element.radius_b
+        total += weight * np.outer(row, row)
+    return total
+
+
+def mass_matrix(train: Train) -> Array:
+    """Diagonal mass matrix [kg m^2], shape (size, size)."""
+    return np.diag(train.inertia)
+
+
+def damping_matrix(train: Train, *, meshes: bool = True) -> Array:
+    """Damping matrix [N m s/rad], shape (size, size), with or without the gear pairs' own damping."""
+    return _assemble(train, [e.damping if meshes or e.mesh < 0 else 0.0 for e in elements(train)])
+
+
+def stiffness_matrix(train: Train, *, meshes: bool = True) -> Array:
+    """Stiffness matrix [N m/rad], shape (size, size), with the mean stiffness of the gear pairs or without them."""
+    return _assemble(train, [e.stiffness if meshes or e.mesh < 0 else 0.0 for e in elements(train)])
+
+
+def static_angles(train: Train) -> Array:
+    """Rotation angles under the constant torques [rad], with the mean mesh stiffness; kinetic mean angle zero."""
+    root = np.sqrt(train.inertia)
+    rigid = train.ratios * root
+    rigid = rigid / np.linalg.norm(rigid)
+    reduced = stiffness_matrix(train) / np.outer(root, root)
+    # the rigid-body motion gets a stiffness of its own, of the size of the others, and takes no torque
+    bordered = reduced + np.outer(rigid, rigid) * np.trace(reduced)
+    load = train.torque / root
+    angles: Array = np.linalg.solve(bordered, load - rigid * (rigid @ load)) / root
+    return angles
+
+
+def static_forces(train: Train) -> Array:
+    """Mean force of each gear pair under the constant torques [N], positive when it presses the teeth together."""
+    stiffness = np.array([mesh.stiffness for mesh in train.meshes])
+    forces: Array = stiffness * (train.approach @ static_angles(train))
+    return forces

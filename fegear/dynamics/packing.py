@@ -1,0 +1,172 @@
+"""A model as the plain arrays that the integrator takes, in units of its own."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.dynamics.matrices import damping_matrix, elements, stiffness_matrix
+from fegear.dynamics.modes import modes
+from fegear.dynamics.motion_model import friction_loss_torque
+from fegear.dynamics.periodic import Periodic
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.dynamics.motion_model import MotionModel
+    from fegear.dynamics.train import Train
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Packed:
+    """A model as the arrays of `kernel.run`, in its own units: time 1/w_max, a length and a force of the mesh.
+
+    Attributes
+    ----------
+    free : ndarray of bool, shape (n,)
+        Coordinates whose position matters (all but the rigid-body angle).
+    shapes : ndarray, shape (size, n)
+        Rotation angles [rad] per coordinate.
+    """
+
+    model: MotionModel
+    time_unit: float
+    length_unit: float
+    force_unit: float
+    shapes: Array
+    free: NDArray[np.bool_]
+    K: Array
+    C: Array
+    f: Array
+    approach: Array
+    damping: Array
+    lever: Array
+    mesh_of: NDArray[np.int64]
+    side: Array
+    rate: Array
+    phase: Array
+    first: NDArray[np.int64]
+    cuts: Array
+    poly: Array
+
+    @property
+    def period(self) -> float:
+        """Common period in time units."""
+        return self.model.period / self.time_unit
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(self.free.size)
+
+    @property
+    def springs(self) -> int:
+        """Number of one-sided springs."""
+        return int(self.mesh_of.size)
+
+
+def _on_breaks(part: Periodic, cuts: Array, pitches: int, degree: int) -> Array:
+    """Coefficients of a periodic function on finer break points over a longer period, shape (pieces, degree + 1)."""
+    rows = np.zeros((cuts.size - 1, degree + 1))
+    middle = 0.5 * (cuts[:-1] + cuts[1:]) * pitches / part.pitches
+    half = 0.5 * np.diff(cuts) * pitches / part.pitches
+    s = middle - np.floor(middle)
+    piece = np.clip(np.searchsorted(part.breaks, s, side="right") - 1, 0, part.breaks.size - 2)
+    start, end = part.breaks[piece], part.breaks[piece + 1]
+    centre, scale = ((s - start) - (end - s)) / (end - start), 2.0 * half / (end - start)
+    for index, p in enumerate(piece):
+        row = np.polynomial.Polynomial(part.coefficients[p])
+        for k in range(part.coefficients.shape[1]):
+            rows[index, k] = row(centre[index]) * scale[index] ** k / math.factorial(k)
+            row = row.deriv()
+    return rows
+
+
+def _spring_tables(
+    model: MotionModel, length: float, force: float
+) -> tuple[list[tuple[int, float, Array, Array, int]], int]:
+    """(mesh, side, cuts, polynomials, pitches) of each spring in units, and their common degree."""
+    springs = []
+    for m, (mesh, excitation) in enumerate(zip(model.train.meshes, model.excitations, strict=True)):
+        none = Periodic.constant(0.0)
+        for j, (k, e) in enumerate(zip(excitation.stiffness, excitation.separation, strict=True)):
+            a, b = excitation.friction[j] if excitation.friction else (none, none)
+            springs.append((m, 1.0, (k, e, a, b)))
+        if math.isfinite(mesh.backlash):
+            total = excitation.total_stiffness() if len(excitation.stiffness) > 1 else excitation.stiffness[0]
+            springs.append((m, -1.0, (total, Periodic.constant(-mesh.backlash), none, none)))
+    degree = max(part.coefficients.shape[1] - 1 for _, _, parts in springs for part in parts)
+    found = []
+    for m, side, parts in springs:
+        pitches = math.lcm(*(part.pitches for part in parts))
+        cuts = np.unique(np.concatenate([part.breaks_over(pitches) for part in parts])) / pitches
+        cuts = cuts[np.append(True, np.diff(cuts) > 1e-11)]
+        cuts[-1] = 1.0
+        table = np.stack([_on_breaks(part, cuts, pitches, degree) for part in parts], axis=1)
+        table[:, 0] *= length / force
+        table[:, 1] /= length
+        found.append((m, side, cuts, table, pitches))
+    return found, degree
+
+
+def pack(model: MotionModel) -> Packed:
+    """Turn a model into arrays for the integrator."""
+    train = model.train
+    shape = modes(train)
+    rigid = shape.shapes[:, :1]
+    slipping = damping_matrix(train, meshes=False) @ rigid
+    keep_rigid = bool(np.any(np.abs(slipping) > 0.0)) and not _geared_damping(train)
+    shapes = shape.shapes if keep_rigid else shape.shapes[:, 1:]
+    free = np.ones(shapes.shape[1], dtype=bool)
+    if keep_rigid:
+        free[0] = False
+    top = 2.0 * math.pi * float(shape.frequencies[-1])
+    rows = train.approach @ shapes
+    rows[:, ~free] = 0.0
+    stiffness = np.array([mesh.stiffness for mesh in train.meshes])
+    length = float(np.max(model.static / stiffness))
+    if length <= 0.0:
+        largest = [float(np.max(np.abs(e.coefficients))) for x in model.excitations for e in x.separation]
+        length = max(*largest, 1e-9)
+    unit = length / float(np.max(np.abs(rows)))
+    time = 1.0 / top
+    force = unit**2 / (time**2 * length)
+    springs, degree = _spring_tables(model, length, force)
+    frequency = train.mesh_frequencies(model.speed)
+    K = shapes.T @ stiffness_matrix(train, meshes=False) @ shapes * time**2
+    K[~free, :] = 0.0
+    K[:, ~free] = 0.0
+    mesh_of = np.array([s[0] for s in springs], dtype=np.int64)
+    ends = np.array([[train.dof[m.a], train.dof[m.b]] for m in train.meshes])
+    pieces = [s[3].shape[0] for s in springs]
+    return Packed(
+        model=model,
+        time_unit=time,
+        length_unit=length,
+        force_unit=force,
+        shapes=shapes * unit,
+        free=free,
+        K=K,
+        C=shapes.T @ damping_matrix(train, meshes=False) @ shapes * time,
+        f=shapes.T @ (train.torque + friction_loss_torque(model)) * time**2 / unit,
+        approach=rows * unit / length,
+        damping=np.array([m.damping for m in train.meshes]) * length / (force * time),
+        lever=shapes[ends] * unit / length,
+        mesh_of=mesh_of,
+        side=np.array([s[1] for s in springs]),
+        rate=np.array([frequency[s[0]] / s[4] for s in springs]) * time,
+        phase=np.array([model.excitations[s[0]].phase / s[4] for s in springs]),
+        first=np.concatenate([[0], np.cumsum(pieces)]).astype(np.int64),
+        cuts=np.concatenate([s[2] for s in springs]),
+        poly=np.concatenate([s[3] for s in springs]).reshape(-1, 4, degree + 1),
+    )
+
+
+def _geared_damping(train: Train) -> bool:
+    """Whether every damper follows the rigid-body motion, so that the mean turning cannot be felt."""
+    return all(part.geared or part.damping == 0.0 for part in elements(train))

@@ -1,0 +1,98 @@
+"""Mesh-force spectra of a train in the frequency domain (Mark, Eqs. 3.1 to 3.11), over a range of speeds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.dynamics.increments import dynamic_increments
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.dynamics.periodic import Periodic
+    from fegear.dynamics.train import Train
+
+    Array = NDArray[np.float64]
+    ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class MeshForceSpectrum:
+    """Line spectra of the mesh forces; the bearings react to the same forces.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (speeds,)
+        Speeds of the first body [rad/s].
+    frequencies : ndarray, shape (meshes, harmonics, speeds)
+        n times the mesh frequency of the mesh that excites [Hz], n = 1, 2, ...
+    coefficients : ndarray, shape (meshes, meshes, harmonics, speeds)
+        Complex Fourier coefficient [N] of the force in mesh i that the static transmission error of mesh j excites;
+        its amplitude (0-peak) is twice the modulus.
+    static : ndarray, shape (meshes,)
+        Mean mesh forces [N].
+    """
+
+    speeds: Array
+    frequencies: Array
+    coefficients: ComplexArray
+    static: Array
+
+    @property
+    def amplitudes(self) -> Array:
+        """Amplitudes (0-peak) [N], shape (meshes, meshes, harmonics, speeds)."""
+        return 2.0 * np.abs(self.coefficients)
+
+    @property
+    def power_lines(self) -> Array:
+        """One-sided power of each line [N^2], 2 |alpha|^2 (3.11)."""
+        return 2.0 * np.abs(self.coefficients) ** 2
+
+
+def mesh_force_spectrum(
+    train: Train,
+    errors: Sequence[Periodic],
+    speeds: ArrayLike,
+    harmonics: int = 64,
+    static: ArrayLike | None = None,
+) -> MeshForceSpectrum:
+    """Forces in every mesh from the static transmission error of every mesh, at every speed.
+
+    Parameters
+    ----------
+    train : Train
+        Meshes with their mean stiffness.
+    errors : sequence of Periodic, one per mesh
+        Static transmission error [m] under the mean load over the base pitch, its mean without meaning here.
+    speeds : array_like
+        Speeds of the first body [rad/s].
+    harmonics : int
+        Number of harmonics of each error (of its own period, if that is longer than the base pitch).
+    static : array_like, optional
+        Mean mesh forces [N]; by default those of the train's torques.
+    """
+    from fegear.dynamics.matrices import static_forces
+
+    if len(errors) != len(train.meshes):
+        raise InputError("errors", len(errors), f"must be one function for each of the {len(train.meshes)} gear pairs")
+    speed = np.atleast_1d(np.array(speeds, dtype=float))
+    count, n = len(train.meshes), np.arange(1, harmonics + 1)
+    mesh = train.mesh_frequencies(speed)
+    frequencies = np.empty((count, harmonics, speed.size))
+    coefficients = np.empty((count, count, harmonics, speed.size), dtype=complex)
+    stiffness = np.array([m.stiffness for m in train.meshes])[:, None, None]
+    for j, error in enumerate(errors):
+        frequencies[j] = n[:, None] * mesh[j][None, :] / error.pitches
+        q = dynamic_increments(train, 2.0 * math.pi * frequencies[j])
+        coefficients[:, j] = stiffness * q[:, j] * error.fourier(n)[:, None]
+    mean = static_forces(train) if static is None else np.array(static, dtype=float)
+    for array in (speed, frequencies, coefficients, mean):
+        array.flags.writeable = False
+    return MeshForceSpectrum(speed, frequencies, coefficients, mean)
