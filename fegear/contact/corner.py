@@ -2,8 +2,8 @@
 
 Off the path the corner (or the rounding) of one gear's tip, T, approaches the involute of the other gear, F. With the
 contact at radius rho on F the triangle of the two centres and the contact point fixes both gears' positions in closed
-form; rho over the position is that table read sideways, and the gap is exact for the rho used. Rolled lengths u are
-counted from the end of the path outward:
+form; rho follows from the position by a table read sideways and corrected until it fits. Rolled lengths u are counted
+from the end of the path outward:
 
     u_T = r_bT [A_T(rho) - A_T(rho_0)],    u_F = r_bF [A_F(rho) - A_F(rho_0) - inv(rho) + inv(rho_0)],
 
@@ -147,7 +147,12 @@ class CornerContact:
             Angle [rad] between the two flanks' normals at the corner: they part inward from it with this slope.
         """
         u = np.asarray(beyond, dtype=float)
-        length = np.clip(self._length_of_position(np.clip(u, 0.0, self.reach)), *self._span)
+        table, inside = self._length_of_position, np.clip(u, 0.0, self.reach)
+        wanted = table(inside)
+        length = np.clip(wanted, *self._span)
+        for _ in range(3):  # the table's own slope turns what is missing in u into length
+            u_t, u_f = self._rolled(length)
+            length = np.clip(length + wanted - table(0.5 * (u_t + u_f)), *self._span)
         u_t, u_f = self._rolled(length)
         gap = np.where(u > self.reach * (1.0 + 1e-12), np.inf, np.maximum(u_t - u_f, 0.0))
         return gap, length - self.rounding, self._tilt(length)
