@@ -28,6 +28,7 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
     "speed": ("rad/s", "10000 rpm"),
     "frequency": ("Hz", "3500 Hz"),
     "inertia": ("kg*m^2", "0.002 kg*m^2"),
+    "mass": ("kg", "2.882 kg"),
     "torsional_stiffness": ("N*m/rad", "2.18e4 N*m/rad"),
     "torsional_damping": ("N*m*s/rad", "12.6 N*m*s"),
     "stiffness": ("N/m", "300 N/um"),
@@ -46,7 +47,7 @@ _INCH = 0.0254
 #: alone would take a quarter of a cold run; any other unit goes to pint. A test holds every entry against pint.
 EVERYDAY: dict[str, dict[str, float]] = {
     "length": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "cm": 1e-2, "inch": _INCH, "in": _INCH},
-    "angle": {"rad": 1.0, "deg": math.pi / 180.0, "degree": math.pi / 180.0},
+    "angle": {"rad": 1.0, "deg": math.pi / 180.0, "degree": math.pi / 180.0, "arcmin": math.pi / 10800.0},
     "force": {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605},
     "torque": {"N*m": 1.0, "kN*m": 1e3},
     "pressure": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
@@ -55,6 +56,7 @@ EVERYDAY: dict[str, dict[str, float]] = {
     "speed": {"rad/s": 1.0, "rpm": math.pi / 30.0},
     "frequency": {"Hz": 1.0, "kHz": 1e3},
     "inertia": {"kg*m^2": 1.0},
+    "mass": {"kg": 1.0, "g": 1e-3},
     "torsional_stiffness": {"N*m/rad": 1.0},
     "torsional_damping": {"N*m*s/rad": 1.0, "N*m*s": 1.0},
     "stiffness": {"N/m": 1.0, "N/mm": 1e3, "N/um": 1e6},

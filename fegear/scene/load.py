@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
     from fegear.geometry import Gear, GearPair
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.helical.pair import HelicalPair
 
 _KINDS = {
     "int_type": "must be a whole number",
@@ -49,6 +51,8 @@ class Scene:
         Where relative file names in the case start.
     gears : dict of str to Gear
     pairs : dict of str to GearPair
+    helical_gears : dict of str to HelicalGear
+    helical_pairs : dict of str to HelicalPair
     """
 
     case: Case
@@ -56,6 +60,8 @@ class Scene:
     folder: Path
     gears: dict[str, Gear]
     pairs: dict[str, GearPair]
+    helical_gears: dict[str, HelicalGear] = field(default_factory=dict)
+    helical_pairs: dict[str, HelicalPair] = field(default_factory=dict)
 
     def file(self, text: str, key: str) -> Path:
         """Return the path of a file that the case names, or refuse if it is not there."""
@@ -99,16 +105,28 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path) -> Scen
         case = Case.model_validate(document)
     except ValidationError as error:
         raise _sentence(error.errors(include_url=False)[0]) from None
-    gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items()}
+    gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items() if not part.is_helical}
+    helical_gears = {key: part.build_helical(f"gear.{key}") for key, part in case.gear.items() if part.is_helical}
     for key, pair in case.pair.items():
         for role in ("driver", "driven"):
-            _known(f"pair.{key}.{role}", getattr(pair, role), gears, "gear")
-    pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
+            _known(f"pair.{key}.{role}", getattr(pair, role), case.gear, "gear")
+        if (pair.driver in gears) != (pair.driven in gears):
+            raise InputError(
+                f"pair.{key}.driven", f'"{pair.driven}"', "is helical where its mate is not, or the other way round",
+                'describe both with helix_angle (a spur gear with "0 deg" and hand = "spur")',
+            )  # fmt: skip
+    spur = {key: pair for key, pair in case.pair.items() if pair.driver in gears}
+    pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in spur.items()}
+    helical_pairs = {
+        key: pair.build_helical(helical_gears, f"pair.{key}", misaligned=case.effects.misalignment)
+        for key, pair in case.pair.items()
+        if key not in spur
+    }
     if case.stiffness.gear is not None:
         _known("stiffness.gear", case.stiffness.gear, gears, "gear")
     if case.stiffness.pair is not None:
         _known("stiffness.pair", case.stiffness.pair, pairs, "pair")
-    return Scene(case, name, folder, gears, pairs)
+    return Scene(case, name, folder, gears, pairs, helical_gears, helical_pairs)
 
 
 def _known(key: str, name: str, known: Iterable[str], kind: str) -> None:

@@ -153,10 +153,11 @@ def test_predesigned_parabola_absorbs_the_linear_error(errors):
 def test_predesign_refuses_what_it_cannot_do():
     with pytest.raises(RangeError, match="must be positive"):
         absorb_linear_error(drive(shaft=3.0))
+    stub = drive(parabola=0.08)
+    short = dataclasses.replace(stub.pinion, tip_radius=stub.pinion.pitch_radius + 1.5e-3)
+    stub = dataclasses.replace(stub, pinion=short)
     with pytest.raises(RangeError, match="over tip and root"):
-        stub = drive(parabola=0.08)
-        short = dataclasses.replace(stub.pinion, tip_radius=stub.pinion.pitch_radius + 1.5e-3)
-        absorb_linear_error(dataclasses.replace(stub, pinion=short), slope=0.01, face_share=0.1)
+        absorb_linear_error(stub, slope=0.01, face_share=0.1)
     spur = [HelicalGear(30, 5e-3, 0.35, 0.0, 0.04, "spur") for _ in range(2)]
     with pytest.raises(RangeError, match="helical drive"):
         absorb_linear_error(HelicalPair(*spur, parabola=1.0))

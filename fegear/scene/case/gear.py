@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -21,6 +21,9 @@ from fegear.scene.case.part import (
     at,
     refuse,
 )
+
+if TYPE_CHECKING:
+    from fegear.geometry.helical_gear import HelicalGear
 
 #: Names of the geometry layer that a case file calls otherwise.
 _KEYS = {
@@ -83,9 +86,24 @@ class GearPart(Part):
     plane: Literal["strain", "stress", "auto"] = "strain"
     material: MaterialPart = Field(default_factory=MaterialPart)
     tooth_mesh: str | None = None
+    helix_angle: Angle | None = None
+    hand: Literal["left", "right", "spur"] | None = None
+    normal_module: PositiveLength | None = None
+    normal_diametral_pitch: PositiveInverseLength | None = None
+
+    @property
+    def is_helical(self) -> bool:
+        """Whether the gear is described as a helical one (of helix angle zero as the limit)."""
+        return self.helix_angle is not None
 
     @model_validator(mode="after")
     def _one_size(self) -> Self:
+        if self.is_helical:
+            self._check_helical()
+            return self
+        for key in ("hand", "normal_module", "normal_diametral_pitch"):
+            if getattr(self, key) is not None:
+                raise refuse("has a meaning only with helix_angle", 'write helix_angle = "30 deg"', key=key)
         if self.module is None and self.diametral_pitch is None:
             raise refuse("is missing", 'write module = "3.175 mm" or diametral_pitch = "8 / inch"', key="module")
         if self.module is not None and self.diametral_pitch is not None:
@@ -95,6 +113,39 @@ class GearPart(Part):
                 'is missing, but plane = "auto" decides by it', 'write face_width = "6.35 mm"', key="face_width"
             )
         return self
+
+    def _check_helical(self) -> None:
+        """Refuse keys that the helical gear does not know."""
+        if (self.normal_module is None) == (self.normal_diametral_pitch is None):
+            remedy = 'write normal_module = "5 mm" or normal_diametral_pitch = "5 / inch"'
+            raise refuse("must be given once for a helical gear", remedy, key="normal_module")
+        known = {
+            "teeth", "pressure_angle", "tip_diameter", "face_width", "material", "helix_angle", "hand",
+            "normal_module", "normal_diametral_pitch",
+        }  # fmt: skip
+        for key in sorted(self.model_fields_set - known):
+            raise refuse("has no meaning for a gear with a helix_angle", f"leave out {key}", key=key)
+        for key in ("hand", "face_width"):
+            if getattr(self, key) is None:
+                raise refuse("is missing for a helical gear", f"give {key}", key=key)
+
+    def build_helical(self, prefix: str) -> HelicalGear:
+        """Make the helical gear."""
+        from fegear.geometry.helical_gear import HelicalGear
+
+        module = self.normal_module if self.normal_module is not None else 1.0 / (self.normal_diametral_pitch or 1.0)
+        try:
+            return HelicalGear(
+                self.teeth,
+                module,
+                self.pressure_angle,
+                self.helix_angle or 0.0,
+                self.face_width or math.nan,
+                self.hand or "spur",
+                tip_radius=math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter,
+            )
+        except InputError as error:
+            raise at(prefix, error, {"tip_radius": "tip_diameter", "normal_pressure_angle": "pressure_angle"}) from None
 
     @property
     def module_length(self) -> float:

@@ -9,9 +9,11 @@ from pydantic import Field
 from fegear.scene.case.accuracy import AccuracyPart
 from fegear.scene.case.effects import EffectsPart
 from fegear.scene.case.gear import GearPart
+from fegear.scene.case.helical import ToothContactPart
 from fegear.scene.case.pair import PairPart
 from fegear.scene.case.part import Part
 from fegear.scene.case.stiffness import StiffnessPart
+from fegear.scene.case.transmissibility import TransmissibilityPart
 
 
 class Case(Part):
@@ -22,5 +24,7 @@ class Case(Part):
     gear: dict[str, GearPart] = Field(default_factory=dict)
     pair: dict[str, PairPart] = Field(default_factory=dict)
     stiffness: StiffnessPart = Field(default_factory=StiffnessPart)
+    tooth_contact: ToothContactPart = Field(default_factory=ToothContactPart)
+    transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
     effects: EffectsPart = Field(default_factory=EffectsPart)
     accuracy: AccuracyPart = Field(default_factory=AccuracyPart)

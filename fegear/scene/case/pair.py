@@ -9,10 +9,13 @@ from pydantic import Field, model_validator
 
 from fegear.errors import InputError
 from fegear.geometry import GearPair
-from fegear.scene.case.part import Part, PositiveForce, PositiveLength, PositiveTorque, at, refuse
+from fegear.scene.case.helical import MisalignmentPart, ModificationPart, build_pair
+from fegear.scene.case.part import Length, Part, PositiveForce, PositiveLength, PositiveTorque, at, refuse
 
 if TYPE_CHECKING:
     from fegear.geometry import Gear
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.helical.pair import HelicalPair
 
 
 class CompliancePart(Part):
@@ -47,6 +50,9 @@ class PairPart(Part):
     load: PositiveForce | None = None
     torque: PositiveTorque | None = None
     compliance: CompliancePart = Field(default_factory=CompliancePart)
+    misalignment: MisalignmentPart | None = None
+    modification: ModificationPart | None = None
+    axial_offset: Length = 0.0
 
     @model_validator(mode="after")
     def _one_load(self) -> Self:
@@ -63,6 +69,27 @@ class PairPart(Part):
             return GearPair(gears[self.driver], gears[self.driven], distance)
         except InputError as error:
             raise at(prefix, error, {"pair": ""}) from None
+
+    def build_helical(self, gears: dict[str, HelicalGear], prefix: str, *, misaligned: bool) -> HelicalPair:
+        """Make a helical pair; its errors count only where the scene calls for misalignment."""
+        if self.centre_distance is not None:
+            raise InputError(
+                f"{prefix}.centre_distance", f"{self.centre_distance * 1e3:.9g} mm",
+                "has no meaning for a helical pair",
+                "give misalignment = { centre_distance = ... }, the error against the design",
+            )  # fmt: skip
+        try:
+            return build_pair(
+                gears[self.driver],
+                gears[self.driven],
+                self.misalignment if misaligned else None,
+                self.modification,
+                self.axial_offset,
+            )
+        except InputError as error:
+            names = {key: f"misalignment.{key}" for key in ("shaft_angle", "lead_angle", "profile_angle")}
+            names |= {key: f"modification.{key}" for key in ("parabola", "crown")}
+            raise at(prefix, error, names) from None
 
     def normal_load(self, pair: GearPair) -> float | None:
         """Load along the line of action [N], from the load or the driver's torque; None if neither is given."""

@@ -61,6 +61,12 @@ PositiveLineLoad = Annotated[float, quantity("line_load", positive=True)]
 PositivePressure = Annotated[float, quantity("pressure", positive=True)]
 PositiveDensity = Annotated[float, quantity("density", positive=True)]
 PositiveInverseLength = Annotated[float, quantity("inverse_length", positive=True)]
+InverseLength = Annotated[float, quantity("inverse_length")]
+PositiveMass = Annotated[float, quantity("mass", positive=True)]
+PositiveInertia = Annotated[float, quantity("inertia", positive=True)]
+PositiveStiffness = Annotated[float, quantity("stiffness", positive=True)]
+StiffnessOrZero = Annotated[float, quantity("stiffness", not_negative=True)]
+TorsionalStiffnessOrZero = Annotated[float, quantity("torsional_stiffness", not_negative=True)]
 
 
 def at(prefix: str, error: InputError, names: dict[str, str] | None = None) -> FegearError:

@@ -28,7 +28,7 @@ _DRAWN = 0.15
 _TOP = 99.5
 
 
-def _pyvista() -> Any:
+def offscreen_pyvista() -> Any:
     """Import pyvista set up for drawing without a screen.
 
     Raises
@@ -39,7 +39,7 @@ def _pyvista() -> Any:
     if sys.platform.startswith("linux"):
         if ctypes.util.find_library("EGL") is None:
             raise MissingLibraryError(
-                "the deformed gear cannot be drawn without a screen; on Debian or Ubuntu run: apt-get install libegl1"
+                "pictures in space cannot be drawn without a screen; on Debian or Ubuntu run: apt-get install libegl1"
             )
         # Else VTK first asks for an X server and warns that there is none.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
@@ -49,7 +49,7 @@ def _pyvista() -> Any:
 
 
 def _grid(points: Array, triangles: NDArray[np.int64]) -> Any:
-    pv = _pyvista()
+    pv = offscreen_pyvista()
     cells = np.hstack([np.full((triangles.shape[1], 1), 6), triangles.T])
     kinds = np.full(triangles.shape[1], pv.CellType.QUADRATIC_TRIANGLE)
     return pv.UnstructuredGrid(cells.ravel(), kinds, points)
@@ -75,7 +75,7 @@ def draw_deformed(
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    pv = _pyvista()
+    pv = offscreen_pyvista()
     m = gear.module * 1e3
     points = np.column_stack([whole.points.T * m, np.zeros(whole.points.shape[1])])
     scale = _DRAWN * m / float(np.linalg.norm(fields["displacement"], axis=1).max())

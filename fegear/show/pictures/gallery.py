@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     from fegear.fem import StiffnessTable
     from fegear.scene.run import Results
+    from fegear.scene.stages.tooth_contact import ToothContactData
+    from fegear.scene.stages.transmissibility import TransmissibilityData
     from fegear.show.pictures.style import Picture
 
 #: Line load of the deformed gear's picture when the case names none [N/m].
@@ -48,10 +50,32 @@ def _root_stress(results: Results, task: Task, folder: Path) -> Iterator[Picture
     yield draw_deformed(gear, whole, fields, folder / f"deformed_{name}.png", name, line_load)
 
 
+def _tooth_contact(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.helical import draw_bearing, draw_contact_pattern, draw_flanks, draw_transmission_error
+
+    name, data = task.subject, cast("ToothContactData", results.outcomes[task].data)
+    yield draw_transmission_error(data.contact, folder / f"transmission_error_{name}.png", name)
+    yield draw_contact_pattern(data.contact, folder / f"contact_pattern_{name}.png", name, data.bearing)
+    load = results.scene.case.tooth_contact.load
+    if data.bearing is not None and load is not None:
+        yield draw_bearing(data.contact, data.bearing, folder / f"contact_ellipses_{name}.png", name, load)
+    yield draw_flanks(data.contact, folder / f"flanks_{name}.png", name)
+
+
+def _transmissibility(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.transmissibility import draw_modes, draw_transmissibility
+
+    name, data = task.subject, cast("TransmissibilityData", results.outcomes[task].data)
+    yield draw_modes(data.modes, folder / f"helical_modes_{name}.png", name)
+    yield draw_transmissibility(data.response, data.mesh, folder / f"transmissibility_{name}.png", name)
+
+
 #: For each stage that has pictures, what draws them; others follow the same shape.
 DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
     "stiffness": _stiffness,
     "root-stress": _root_stress,
+    "tooth-contact": _tooth_contact,
+    "transmissibility": _transmissibility,
 }
 
 

@@ -1,0 +1,158 @@
+"""The helical case files, run as users run them."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.cli import app
+from fegear.errors import InputError
+from fegear.scene.load import read_scene
+from fegear.scene.plan import make_plan
+from fegear.scene.run import run_plan
+from fegear.scene.stages import STAGES
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def run(name, *overrides):
+    scene = read_scene(CASES / f"{name}.toml", overrides)
+    results = run_plan(scene, make_plan(scene, STAGES))
+    tables = {table.name: {column.name: column.shown for column in table.columns} for table in results.tables}
+    return tables, {value.name: value.shown for value in results.values}, results
+
+
+@pytest.mark.parametrize(
+    ("name", "kinds", "peak_to_peak"),
+    [
+        ("litvin_shaft_angle", {"gear tip", "gear face end", "pinion face end", "corner"}, 4.3000),
+        ("litvin_lead", {"gear tip", "pinion face end", "corner"}, 4.3015),
+        ("litvin_profile_angle", {"gear tip"}, 0.0),
+        ("litvin_combined", {"pinion tip", "gear face end", "pinion face end", "corner"}, 1.4386),
+        ("litvin_localised", {"surface", "gear face end", "pinion face end"}, 12.3313),
+    ],
+)
+def test_litvin_cases(name, kinds, peak_to_peak):
+    tables, values, _ = run(name)
+    table = tables["tooth_contact_I"]
+    assert list(table)[:7] == ["phi1", "te", "contact", "r1", "z1", "r2", "z2"]
+    assert len(table["phi1"]) == 400
+    assert set(table["contact"]) <= kinds
+    assert values["I.te_peak_to_peak"] == pytest.approx(peak_to_peak, abs=2e-4)
+    # 400 samples of pieces with slopes up to 50 arcsec per pitch come that near to the exact extremes.
+    assert np.ptp(table["te"]) == pytest.approx(peak_to_peak, abs=0.15)
+
+
+def test_without_the_effect_the_drive_is_aligned_or_the_table_refused():
+    with pytest.raises(InputError, match="effect is off"):
+        run("litvin_lead", "effects.misalignment=false")
+    _, values, results = run("litvin_lead", "pair.I.misalignment={ lead_angle = '0 deg' }")
+    assert values["I.te_peak_to_peak"] < 1e-6
+    assert any("ill-defined" in remark for remark in results.remarks)
+
+
+def test_absorbing_the_linear_error():
+    tables, values, results = run("litvin_localised", "pair.I.modification.absorb=true")
+    assert set(tables["tooth_contact_I"]["contact"]) == {"surface"}
+    assert values["I.te_peak_to_peak"] == pytest.approx(values["I.predesigned_te"], rel=0.06)
+    assert values["I.crown"] == pytest.approx(19.8, abs=0.5)
+    # The crown told in words gives the same drive when it is written into the case.
+    crown = f"pair.I.modification.crown='{values['I.crown']:.12g} um'"
+    _, again, _ = run("litvin_localised", crown)
+    assert again["I.te_peak_to_peak"] == pytest.approx(values["I.te_peak_to_peak"], rel=1e-6)
+    assert "contact_ellipses_I" in tables
+    assert results.remarks == ()
+
+
+def test_blankenship_singh():
+    tables, values, _ = run("blankenship_singh")
+    modes, response = tables["helical_modes_I"], tables["transmissibility_I"]
+    assert modes["Lambda"] == pytest.approx([1.65451, 0.78400, 0.44871, 0.39390, 0.26800], abs=0.51e-5)
+    assert modes["Delta_normal"] == pytest.approx([1.0, 0.1956, 0.2628, 0.0282, 0.0442], abs=0.51e-4)
+    assert len(response["Lambda"]) == 2000
+    assert len(response) == 2 + 2 * 2 * 25
+    assert values["I.omega"] == pytest.approx(math.sqrt(2.0 * 3e8 / 2.882) / (2.0 * math.pi), rel=1e-12)
+    spur, _, _ = run("blankenship_singh", "transmissibility.I.mesh={ stiffness = '3e8 N/m' }")
+    assert spur["helical_modes_I"]["Lambda"][0] == pytest.approx(1.61803, abs=0.51e-5)
+
+
+def test_general_pair_and_mesh_from_a_load_distribution(tmp_path):
+    rows = "\n".join(f"{z},{100.0},{10.0}" for z in range(-10, 1))
+    (tmp_path / "face.csv").write_text("z [mm],load [N/mm],deflection [um]\n" + rows + "\n")
+    gear = (
+        'mass = "3 kg", inertia_x = "0.01 kg*m^2", inertia_y = "0.01 kg*m^2", inertia_z = "0.02 kg*m^2", '
+        'base_radius = "70 mm", half_face_width = "10 mm", '
+        'bearing = { y = "6e8 N/m", z = "1e8 N/m", theta_x = "2e5 N*m/rad", theta_y = "3e5 N*m/rad" }'
+    )
+    case = tmp_path / "general.toml"
+    case.write_text(
+        'results = ["transmissibility"]\n[transmissibility.I]\n'
+        'mesh = { distribution = "face.csv", face_width = "20 mm", base_helix_angle = "20 deg" }\n'
+        f"driver = {{ {gear} }}\ndriven = {{ {gear.replace('3 kg', '5 kg')} }}\ndamping_ratio = 0.03\n"
+    )
+    tables, values, _ = run(case.with_suffix(""))
+    assert values["I.kappa"] == pytest.approx(-0.5, rel=1e-12)
+    assert values["I.mesh_stiffness"] == pytest.approx(100.0, rel=1e-12)
+    assert len(tables["helical_modes_I"]["Lambda"]) == 10
+    assert (tables["helical_modes_I"]["Lambda"] == 0.0).sum() == 1
+    assert {"R_ii_y_y_re", "R_ij_theta_z_z_im"} <= set(tables["transmissibility_I"])
+    (tmp_path / "face.csv").write_text("z [mm],load [N/mm]\n0,1\n")
+    with pytest.raises(InputError, match=r"has no column deflection \[um\]"):
+        run(case.with_suffix(""))
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("gear.gear.hand='left'", "opposite hands"),
+        ("gear.gear.helix_angle='20 deg'", "equal by design"),
+        ("gear.pinion.tip_diameter='150 mm'", "below the base circle"),
+        ("gear.pinion.module='5 mm'", "no meaning for a gear with a helix_angle"),
+        ("gear.pinion.normal_module='5 mm'", "must be given once"),
+        ("gear.pinion.hand='spur'", "contradicts the helix angle"),
+        ("pair.I.axial_offset='100 mm'", "beside each other"),
+        ("pair.I.centre_distance='381 mm'", "no meaning for a helical pair"),
+        ("pair.I.misalignment={ shaft_angle = '10 deg' }", "pair.I.misalignment.shaft_angle.*no small error"),
+        ("pair.I.modification={ parabola = '90 / mm' }", "pair.I.modification.parabola.*no regular flank"),
+        ("pair.I.modification={ absorb = true }", "pair.I.modification.parabola.*must be positive"),
+        ("tooth_contact.positions=1", "positions"),
+    ],
+)
+def test_nonsense_is_refused_under_the_users_own_key(override, words):
+    with pytest.raises(InputError, match=words):
+        run("litvin_shaft_angle", override)
+
+
+def test_helical_and_spur_gears_do_not_mix(tmp_path):
+    case = tmp_path / "mixed.toml"
+    text = (CASES / "litvin_lead.toml").read_text()
+    text += '\n[gear.spur]\nteeth = 28\nmodule = "5 mm"\n'
+    case.write_text(text.replace('driven = "gear"', 'driven = "spur"'))
+    with pytest.raises(InputError, match="is helical where its mate is not"):
+        read_scene(case)
+
+
+def test_a_run_leaves_tables_and_pictures(tmp_path):
+    from typer.testing import CliRunner
+
+    out = tmp_path / "out"
+    case = str(CASES / "litvin_localised.toml")
+    done = CliRunner().invoke(app, ["run", case, "--out", str(out), "--set", "tooth_contact.positions=40"])
+    assert done.exit_code == 0, done.output
+    head = (out / "tables" / "tooth_contact_I.csv").read_text().splitlines()[0]
+    assert head.startswith("phi1 [deg],te [arcsec],contact,r1 [mm],z1 [mm],r2 [mm],z2 [mm]")
+    summary = json.loads((out / "summary.json").read_text())["results"]
+    assert summary["I.te_peak_to_peak"]["unit"] == "arcsec"
+    pictures = {picture.name for picture in (out / "plots").glob("*.png")}
+    assert {"transmission_error_I.png", "contact_pattern_I.png", "contact_ellipses_I.png"} <= pictures
+
+
+def test_the_example_of_the_documentation_runs_and_prints_its_number(capsys):
+    text = (CASES.parent / "docs" / "helical.md").read_text()
+    block = text.split("```python\n")[1].split("```")[0]
+    exec(compile(block, "helical.md", "exec"), {})  # noqa: S102  (our own documentation)
+    printed = capsys.readouterr().out.splitlines()
+    assert float(printed[0]) == pytest.approx(4.300, abs=5e-4)
+    assert "gear tip" in printed[1]
