@@ -35,7 +35,7 @@ class Chain:
     Parameters
     ----------
     name : str
-        One of bore, side_a, side_b, root_land, fillet, flank, tip, back_flank, back_fillet.
+        One of bore, side_a, side_b, root_land, fillet, flank, tip_rounding, tip, back_flank, back_fillet.
     vertices : ndarray, shape (2, n + 1)
         [modules], in counterclockwise order round the sector.
     middles : ndarray, shape (2, n)
@@ -92,8 +92,10 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     pitch_angle = 2.0 * math.pi / tooth.teeth
     land = [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings))] if tooth.root_land else []
     front_laws = _front_sizes(tooth, settings)
-    front = [_on_curve(_BOUNDARY[piece], pieces[piece], law) for piece, law in front_laws.items() if piece in pieces]
-    back_tip = [_mirrored(chain, "tip") for chain in reversed(front) if chain.name == "tip"]
+    front = [
+        _on_curve(_boundary(piece, tooth), pieces[piece], law) for piece, law in front_laws.items() if piece in pieces
+    ]
+    back_tip = [_mirrored(chain, "tip") for chain in reversed(front) if chain.name.startswith("tip")]
     back_flank = _mirrored(_on_curve("flank", tooth.involute, _back_size(settings)), "back_flank")
     back_fillet = _mirrored(
         _on_curve("fillet", tooth.fillet, lambda s: np.full_like(s, settings.root_edge_length)), "back_fillet"
@@ -104,7 +106,8 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
 
     def body_size(depth: Array) -> Array:
         width = settings.body_fraction * pitch_angle * (outer - depth)
-        return np.minimum(first + settings.side_growth * depth, width)
+        rim = settings.rim_fraction * (outer - bore_radius)
+        return np.minimum(first + settings.side_growth * depth, np.minimum(width, rim))
 
     side_b = _side(top[:, 0], bore_radius, body_size)
     turn = _rotation(pitch_angle)
@@ -115,8 +118,11 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     return [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]
 
 
-#: Boundary that each piece of the outline belongs to.
-_BOUNDARY = {"fillet": "fillet", "flank": "flank", "tip_edge": "tip", "tip_land": "tip"}
+def _boundary(piece: str, tooth: Tooth) -> str:
+    """Name of the boundary that a piece of the outline belongs to; a rounding carries load as the flank does."""
+    if piece == "tip_edge" and tooth.tip_rounding > 0.0:
+        return "tip_rounding"
+    return "tip" if piece.startswith("tip") else piece
 
 
 def _length(curve: Curve) -> float:

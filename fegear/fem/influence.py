@@ -89,8 +89,9 @@ class Influence:
         is; a contact at the corner itself is modelled at the corner distance inside it.
         """
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
-        low, high, closest = self.flank.flank_start, self.flank.arc[-1], self.corner_distance
-        arc = np.minimum(arc, high - closest)
+        low, high, closest = self.flank.flank_start, self.flank.flank_end, self.corner_distance
+        if self.flank.upper_corner:
+            arc = np.minimum(arc, high - closest)
         if self.flank.lower_corner:
             arc = np.maximum(arc, low + closest)
         room = np.minimum(arc - low, high - arc)
@@ -100,7 +101,7 @@ class Influence:
         """Loads in their exact place for effects away from the contact, where a narrow patch needs no resolution."""
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
         low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
-        room = np.minimum(arc - self.flank.flank_start, self.flank.arc[-1] - arc)
+        room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
         return self.flank.patches(np.clip(arc, low, high), np.maximum(np.minimum(patch, room), _POINT))
 
     def _beside_fillet(self, radius: ArrayLike, patch: float) -> Array:
@@ -109,7 +110,7 @@ class Influence:
         low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
         width = np.minimum(patch, np.maximum(arc - self.flank.flank_start, 2.0 * self.corner_distance))
         return self.flank.patches(
-            np.clip(arc, low, high), np.maximum(np.minimum(width, self.flank.arc[-1] - arc), _POINT)
+            np.clip(arc, low, high), np.maximum(np.minimum(width, self.flank.flank_end - arc), _POINT)
         )
 
     def self_compliance(self, radius: ArrayLike, patch: ArrayLike, half_width: ArrayLike | None = None) -> Array:
@@ -194,6 +195,23 @@ def solve_influence(
     -------
     Influence
     """
+    from threadpoolctl import threadpool_limits
+
+    # Many small dense matrices: on a busy machine a second BLAS thread makes them ten times slower, never faster.
+    with threadpool_limits(limits=1, user_api="blas"):
+        return _solve(tooth, mesh, poisson_ratio, plane, order, reach, corner_distance, margin)
+
+
+def _solve(
+    tooth: Tooth,
+    mesh: SectorMesh,
+    poisson_ratio: float,
+    plane: Plane,
+    order: int,
+    reach: int,
+    corner_distance: float,
+    margin: float,
+) -> Influence:
     started = time.perf_counter()
     reach = min(reach, (tooth.teeth - 1) // 2)
     elasticity = assemble(mesh, poisson_ratio, plane, order)

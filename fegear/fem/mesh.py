@@ -17,8 +17,11 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Index = NDArray[np.int64]
 
-#: Boundaries of a sector, counterclockwise from the bore; root_land is absent with a full fillet.
-BOUNDARIES = ("bore", "side_b", "root_land", "fillet", "flank", "tip", "back_flank", "back_fillet", "side_a")
+#: Boundaries of a sector, counterclockwise from the bore. A full fillet leaves no root_land, a sharp or chamfered tip
+#: no tip_rounding (which is the loaded side's only).
+BOUNDARIES = (
+    "bore", "side_b", "root_land", "fillet", "flank", "tip_rounding", "tip", "back_flank", "back_fillet", "side_a",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

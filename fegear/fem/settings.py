@@ -26,6 +26,8 @@ class MeshSettings:
         How fast edges grow with distance from fillet, tip corner and outline.
     body_fraction : float
         Longest edge in the body as a fraction of the sector's width there.
+    rim_fraction : float
+        Longest edge in the body as a fraction of the rim's thickness (outline to bore).
     corner_distance : float
         Contacts nearer than this to a corner of the flank are modelled at this distance.
     patch_half_width : float
@@ -43,6 +45,7 @@ class MeshSettings:
     tip_growth: float = 0.15
     side_growth: float = 0.35
     body_fraction: float = 2.0
+    rim_fraction: float = 0.3
     corner_distance: float = 0.02
     patch_half_width: float = 0.08
     order: int = 2
@@ -69,4 +72,5 @@ class MeshSettings:
             tip_growth=self.tip_growth * factor,
             side_growth=self.side_growth * factor,
             body_fraction=self.body_fraction * factor,
+            rim_fraction=self.rim_fraction * factor,
         )

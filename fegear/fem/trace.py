@@ -1,8 +1,8 @@
 """Loads and deflections along the loaded flank as vectors over its unknowns.
 
 A contact is a semi-elliptic pressure of half-width a, acting against the surface's normal. With s = a sin(theta) its
-share of the load is (2/pi) cos^2(theta) dtheta, so that Gauss quadrature on each edge is exact to round-off in spite of
-the square roots at the ends of the patch.
+share of the load is (2/pi) cos^2(theta) dtheta, so that Gauss quadrature on each edge is exact to round-off in spite
+of the square roots at the ends of the patch.
 """
 
 from __future__ import annotations
@@ -84,30 +84,38 @@ class LoadedFlank:
         Quadratic edges, from the fillet to the tip.
     arc : ndarray, shape (n + 1,)
         Arc length at the edges' ends [modules].
-    first_flank_edge : int
-        The edges before it belong to the fillet.
+    first_flank_edge, after_flank_edge : int
+        The edges before the first belong to the fillet, those from the second on to the tip rounding.
     roll_squared : ndarray, shape (n_flank + 1,)
         Squared roll angles of the flank's vertices: on an involute the arc length is linear in them.
     base_radius : float
         [modules].
     order : int
-    lower_corner : bool
-        Whether the flank starts in a corner (undercut) instead of running smoothly into the fillet.
+    lower_corner, upper_corner : bool
+        Whether the flank starts in a corner (undercut) instead of running smoothly into the fillet, and whether it
+        ends in one instead of running smoothly into a tip rounding.
     """
 
     dofs: Index
     points: Array
     arc: Array
     first_flank_edge: int
+    after_flank_edge: int
     roll_squared: Array
     base_radius: float
     order: int
     lower_corner: bool
+    upper_corner: bool
 
     @property
     def flank_start(self) -> float:
         """Arc length at which the flank starts [modules]."""
         return float(self.arc[self.first_flank_edge])
+
+    @property
+    def flank_end(self) -> float:
+        """Arc length at which the flank ends [modules]."""
+        return float(self.arc[self.after_flank_edge])
 
     @property
     def nodes(self) -> int:
@@ -141,7 +149,19 @@ class LoadedFlank:
                 "radius", f"{off:.8g} modules", f"lies off the flank, which runs from {low:.8g} to {high:.8g}"
             )
         roll_squared = np.maximum(r * r / self.base_radius**2 - 1.0, 0.0)
-        return np.interp(roll_squared, self.roll_squared, self.arc[self.first_flank_edge :])
+        return np.interp(roll_squared, self.roll_squared, self.arc[self.first_flank_edge : self.after_flank_edge + 1])
+
+    def _inward(self, arc: Array) -> tuple[Index, Array, Array]:
+        """Edge, place on it and unit vector against the normal at points of the run: shapes (P,), (P,), (2, P)."""
+        edge = np.clip(np.searchsorted(self.arc, arc, side="right") - 1, 0, self.arc.size - 2)
+        xi = (arc - self.arc[edge]) / np.diff(self.arc)[edge]
+        return edge, xi, self._normal(edge, xi)
+
+    def _normal(self, edge: Index, xi: Array) -> Array:
+        """Unit vectors into the material at places of edges, shape (2, *xi.shape)."""
+        slope = np.stack([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
+        tangent = np.einsum("cin,in...->cn...", self.points[:, :, edge], slope)
+        return np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
 
     def patches(self, arc: Array, half_width: Array) -> Array:
         """Unknown-wise loads of unit contacts centred at `arc` with half-widths a.
@@ -154,7 +174,9 @@ class LoadedFlank:
         Returns
         -------
         ndarray, shape (2 nodes, P)
-            Total force one along minus the normal; as a left factor it is the pressure-weighted mean deflection.
+            Total force one, against the normals of fillet and flank, beyond the flank's end against the normal there
+            (a patch that reaches over a tip rounding must not turn with it). As a left factor it is the
+            pressure-weighted mean deflection.
         """
         s, a = np.atleast_1d(arc), np.broadcast_to(half_width, np.shape(np.atleast_1d(arc)))
         bounds = np.arcsin(np.clip((self.arc[:, None] - s) / a, -1.0, 1.0))  # (n + 1, P)
@@ -165,11 +187,9 @@ class LoadedFlank:
         weight = h * _GAUSS[1] * (2.0 / np.pi) * np.cos(theta) ** 2
         length = np.diff(self.arc)[edge][:, None]
         xi = (s[position][:, None] + a[position][:, None] * np.sin(theta) - self.arc[edge][:, None]) / length
-        slope = np.stack([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
-        tangent = np.einsum("cin,inq->cnq", self.points[:, :, edge], slope)
-        inward = np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
-        shape = lagrange(self.order, xi)  # (order + 1, pairs, q)
-        values = np.einsum("inq,cnq,nq->cni", shape, inward, weight)
+        inward = self._normal(edge, xi)
+        inward[:, edge >= self.after_flank_edge] = self._inward(np.array([self.flank_end]))[2][:, :, None]
+        values = np.einsum("inq,cnq,nq->cni", lagrange(self.order, xi), inward, weight)
         loads = np.zeros((2, self.nodes, s.size))
         node = edge[:, None] * self.order + np.arange(self.order + 1)
         for c in range(2):
@@ -181,45 +201,49 @@ class LoadedFlank:
     def deflections_at(self, arc: Array) -> Array:
         """Vectors that pick the deflection against the normal at points of the run, shape (2 nodes, P)."""
         s = np.atleast_1d(arc)
-        edge = np.clip(np.searchsorted(self.arc, s, side="right") - 1, 0, self.arc.size - 2)
-        xi = (s - self.arc[edge]) / np.diff(self.arc)[edge]
-        slope = np.stack([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
-        tangent = np.einsum("cin,in->cn", self.points[:, :, edge], slope)
-        inward = np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
-        shape = lagrange(self.order, xi)
-        picks = np.zeros((2, self.nodes, s.size))
-        node = edge * self.order + np.arange(self.order + 1)[:, None]
-        for c in range(2):
-            picks[c, node, np.arange(s.size)] = shape * inward[c]
-        return picks.reshape(2 * self.nodes, -1)
+        edge, xi, inward = self._inward(s)
+        pick = np.zeros((self.nodes, s.size))
+        pick[edge * self.order + np.arange(self.order + 1)[:, None], np.arange(s.size)] = lagrange(self.order, xi)
+        return np.concatenate([direction * pick for direction in inward])
 
 
 def loaded_flank(mesh: SectorMesh, elasticity: SectorElasticity, tooth: Tooth, margin: float) -> LoadedFlank:
-    """Collect the loaded run: the right flank, and `margin` [modules] of the fillet below it where that is smooth."""
-    flank_order = np.argsort(np.hypot(*mesh.points[:, mesh.edges["flank"][2]]))
-    pieces = [(mesh.edges["flank"][:, flank_order], elasticity.edge_dofs["flank"][:, :, flank_order])]
+    """Collect the loaded run: the right flank, and `margin` [modules] of a smooth fillet or tip rounding beside it."""
+
+    def upward(name: str) -> tuple[Index, Index, Array]:
+        order = np.argsort(np.hypot(*mesh.points[:, mesh.edges[name][2]]))
+        edges = mesh.edges[name][:, order]
+        lengths = np.hypot(*(mesh.points[:, edges[1]] - mesh.points[:, edges[0]]))
+        return edges, elasticity.edge_dofs[name][:, :, order], lengths
+
+    edges, dofs, _ = upward("flank")
+    first, after = 0, edges.shape[1]
     if not tooth.undercut:
-        fillet = mesh.edges["fillet"]
-        order = np.argsort(np.hypot(*mesh.points[:, fillet[2]]))
-        lengths = np.hypot(*(mesh.points[:, fillet[1]] - mesh.points[:, fillet[0]]))[order]
-        below = np.cumsum(lengths[::-1])[::-1] - lengths < margin
-        pieces.insert(0, (fillet[:, order[below]], elasticity.edge_dofs["fillet"][:, :, order[below]]))
-    edges = np.hstack([piece[0] for piece in pieces])
-    dofs = np.concatenate([piece[1] for piece in pieces], axis=2)
+        more, more_dofs, lengths = upward("fillet")
+        near = np.cumsum(lengths[::-1])[::-1] - lengths < margin
+        edges, dofs = np.hstack([more[:, near], edges]), np.concatenate([more_dofs[:, :, near], dofs], axis=2)
+        first = int(near.sum())
+        after += first
+    rounded = "tip_rounding" in mesh.edges
+    if rounded:
+        more, more_dofs, lengths = upward("tip_rounding")
+        near = np.cumsum(lengths) - lengths < margin
+        edges, dofs = np.hstack([edges, more[:, near]]), np.concatenate([dofs, more_dofs[:, :, near]], axis=2)
     points = mesh.points[:, edges]
     run = np.concatenate([dofs[:, :1, 0], dofs[:, 1:, :].transpose(0, 2, 1).reshape(2, -1)], axis=1)
     _, tangent = quadratic_edge(points, 0.5 + 0.5 * _GAUSS[0])
     lengths = (np.hypot(*tangent) * 0.5 * _GAUSS[1]).sum(axis=1)
-    first = pieces[0][0].shape[1] if len(pieces) > 1 else 0
-    vertices = np.hypot(*np.concatenate([points[:, :1, first], points[:, 1, first:]], axis=1))
+    vertices = np.hypot(*np.concatenate([points[:, :1, first], points[:, 1, first:after]], axis=1))
     rb = tooth.base_radius
     return LoadedFlank(
         dofs=run.reshape(-1),
         points=points,
         arc=np.concatenate([[0.0], np.cumsum(lengths)]),
         first_flank_edge=first,
+        after_flank_edge=after,
         roll_squared=np.maximum(vertices**2 / rb**2 - 1.0, 0.0),
         base_radius=rb,
         order=elasticity.order,
         lower_corner=tooth.undercut,
+        upper_corner=not rounded,
     )

@@ -31,7 +31,10 @@ def mesh_settings(accuracy: AccuracyPart) -> MeshSettings:
     from fegear.fem.settings import MeshSettings
 
     factor = (accuracy.tolerance / DEFAULT_TOLERANCE) ** (1.0 / _ORDER)
-    settings = MeshSettings().scaled(min(max(factor, _FINEST), _COARSEST))
+    factor = min(max(factor, _FINEST), _COARSEST)
+    settings = MeshSettings().scaled(factor)
+    # The pressure that loads the mesh leaves an error of its own, about in proportion to its width.
+    settings = replace(settings, patch_half_width=settings.patch_half_width * min(factor, 1.0))
     given = {
         field.name: getattr(accuracy, field.name)
         for field in fields(MeshSettings)

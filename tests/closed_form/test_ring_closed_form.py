@@ -78,14 +78,14 @@ def energy(known):
 
 @pytest.mark.parametrize(
     ("order", "factors", "slope"),
-    [(2, (2.8, 2.0, 1.4, 1.0), 2.6), (3, (4.0, 2.8, 2.0), 3.6), (4, (5.6, 4.0, 2.8), 4.0)],
+    [(2, (2.8, 2.0, 1.4, 1.0), 2.6), (3, (4.0, 2.8, 2.0, 1.4), 3.6), (4, (5.6, 4.0, 2.8), 4.0)],
 )
 def test_observed_order_of_convergence_in_energy(order, factors, slope):
     # 2 p on smooth problems; the sharp tip corner and meshes drawn anew for each size cost some of it.
     reference = energy(four_square(4, 1.4))
     errors = np.array([np.abs(energy(four_square(order, f)) / reference - 1.0)[0] for f in factors])
     assert np.polyfit(np.log(factors), np.log(errors), 1)[0] > slope
-    assert errors[-1] < {2: 2e-4, 3: 5e-5, 4: 5e-5}[order]
+    assert errors[-1] < {2: 2e-4, 3: 1e-4, 4: 1e-4}[order]
 
 
 @pytest.mark.parametrize(
@@ -138,7 +138,8 @@ def test_moments_and_forces_of_every_patch_are_exact():
     normal = four_square(2, 1.0).tooth.involute
     roll = np.sqrt(normal.start**2 + 2.0 * (arc - flank.flank_start) / normal.base_radius)
     total = loads.reshape(2, -1, 17).sum(axis=1)
-    assert np.abs(total[:, 1:-1] + normal.normals(roll)[:, 1:-1]).max() < 5e-3
+    # The patch follows the flank's curvature, and is cut off at its ends.
+    assert np.abs(total + normal.normals(roll))[:, 1:-1].max() < 5e-3
     assert np.hypot(*total) == pytest.approx(1.0, abs=1e-3)
 
 
@@ -196,3 +197,13 @@ def test_hard_gears_give_finite_monotone_answers(teeth, shift, bore, nu):
     tension = known.largest_root_stress(0, "tension", radii[5:], 0.08)[0]
     assert (tension > 0.0).all()
     assert (known.largest_root_stress(0, "compression", radii, 0.08)[0] < 0.0).all()
+
+
+def test_a_rounded_tip_carries_load_without_a_kink_at_the_end_of_the_flank():
+    tooth = Tooth(28, tip_rounding=0.12)
+    known = solve_influence(tooth, mesh_sector(tooth, 0.5 * tooth.root_radius, MeshSettings()), 0.3, "strain")
+    assert not known.flank.upper_corner
+    assert known.flank.flank_end < known.flank.arc[-1]
+    radii = np.sqrt(np.linspace(tooth.form_radius**2, tooth.involute_tip_radius**2, 60))
+    c = known.self_compliance(radii, 0.08, 0.02)
+    assert (np.diff(c[-10:], 2) > 0.0).all()

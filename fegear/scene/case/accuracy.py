@@ -32,5 +32,6 @@ class AccuracyPart(Part):
     tip_growth: EdgeLength | None = None
     side_growth: EdgeLength | None = None
     body_fraction: Annotated[Number, Field(gt=0.0, le=10.0)] | None = None
+    rim_fraction: Annotated[Number, Field(gt=0.0, le=1.0)] | None = None
     corner_distance: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None
     patch_half_width: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None
