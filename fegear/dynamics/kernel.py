@@ -283,7 +283,21 @@ def _run(  # noqa: C901  (one loop: splitting it would cost the array views thei
             if count[i] == 1:
                 last = max(last, abs(X[order, i, 0]))
                 other = max(other, abs(X[order - 1, i, 0]))
-        h = 0.9 * min((tolerance / last) ** (1.0 / order), (tolerance / other) ** (1.0 / (order - 1)), longest / 0.9)
+        # tangents need fewer digits, but a stiff mode that the motion leaves alone must not blow them up
+        worst = 1e-300
+        for c in range(1, columns):
+            size = 1.0
+            for i in range(n):
+                size = max(size, abs(x[i, c]), abs(v[i, c]))
+            for i in range(n):
+                worst = max(worst, abs(X[order, i, c]) / size, abs(X[order - 1, i, c] * 0.1) / size)
+        longest_tangent = (1e-10 / worst) ** (1.0 / order) if columns > 1 else math.inf
+        h = 0.9 * min(
+            (tolerance / last) ** (1.0 / order),
+            (tolerance / other) ** (1.0 / (order - 1)),
+            longest / 0.9,
+            longest_tangent,
+        )
         to_limit = h >= limit - t
         if to_limit:
             h = limit - t
