@@ -36,7 +36,7 @@ class MeshSettings:
         Polynomial order of the displacement, 2 to 4.
     """
 
-    root_edge_length: float = 0.05
+    root_edge_length: float = 0.04
     flank_edge_length: float = 0.035
     tip_edge_length: float = 0.008
     junction_edge_length: float = 0.008
