@@ -55,6 +55,12 @@ class RackFlank:
         for key in ("parabola", "crown"):
             if not math.isfinite(getattr(self, key)):
                 raise InputError(key, getattr(self, key), "must be finite")
+        half = 0.5 * self.gear.face_width
+        if abs(self.crown) * half**2 > 0.1 * self.gear.angular_pitch:
+            raise GeometryError(
+                "crown", f"{self.crown:.6g} rad/m^2", "takes more than a tenth of the pitch off at the face ends",
+                "lower it",
+            )  # fmt: skip
         s = np.linspace(self.s_form, self.s_tip, 65)
         if not (self.s_tip > self.s_form and np.all(np.diff(np.abs(self.profile(s)[0])) > 0.0)):
             raise GeometryError(

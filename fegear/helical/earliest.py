@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 #: Samples over the height of the flank that bracket the outer maximum.
 SAMPLES = 13
 
+#: A reach shorter than this part of the face is a point.
+_SHORT = 1e-11
+
 
 @dataclass(frozen=True, slots=True)
 class Top:
@@ -74,6 +77,12 @@ def top_of_helix(p: Placement, w: Complex, dw: Complex) -> Top:
         guess = (line - np.angle(w)) / p.twist_1 if p.twist_1 != 0.0 else 0.5 * (r.lo + r.hi)
     z = falling_root(p.slope_along_helix, r.lo, r.hi, np.nan_to_num(guess), (w,))
     at_lo, at_hi = z <= r.lo, z >= r.hi
+    # Near a corner the reach is as short as round-off: which end the top is at is then for the slope to say.
+    short = np.flatnonzero((r.hi - r.lo <= _SHORT * (p.face_1[1] - p.face_1[0])) & (r.outside == 0))
+    if short.size:
+        rising = p.slope_along_helix(z[short], w[short])[0] > 0.0
+        at_lo[short], at_hi[short] = ~rising, rising
+        z[short] = np.where(rising, r.hi[short], r.lo[short])
     bound = np.where(at_lo, r.lo_bound, np.where(at_hi, r.hi_bound, Bound.NONE)).astype(np.int8)
     slope = p.slope_along_profile(z, w, dw)
     edge = np.flatnonzero((at_lo | at_hi) & (r.outside == 0))

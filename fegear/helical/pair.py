@@ -153,6 +153,24 @@ class HelicalPair:
         return math.acos(cosine)
 
     @property
+    def interferes(self) -> tuple[bool, bool]:
+        """Whether the mate's tip reaches below the form circle of the pinion, and of the gear.
+
+        The flanks end there; what the tip does to the fillet is not part of this analysis.
+        """
+        a, b = self.cut_pinion, self.gear
+        line = self.centre_distance * math.sin(self.working_pressure_angle)
+
+        def tangent(radius: float, base: float) -> float:
+            return math.sqrt(max(radius**2 - base**2, 0.0))
+
+        slack = 1e-9 * line
+        return (
+            line - tangent(b.tip_radius, b.base_radius) < tangent(a.form_radius, a.base_radius) - slack,
+            line - tangent(a.tip_radius, a.base_radius) < tangent(b.form_radius, b.base_radius) - slack,
+        )
+
+    @property
     def path_start(self) -> float:
         """Base tangent length of the pinion [m] where the gear's tip, or the pinion's form circle, starts contact."""
         rb, E = self.gear.base_radius, self.centre_distance

@@ -109,6 +109,26 @@ def test_earliest_contact_is_the_largest_gear_angle_of_a_plain_search(
     assert found.error[0] + pair.ratio * phi == pytest.approx(touching[0], abs=1e-14)
 
 
+@pytest.mark.parametrize(
+    ("teeth", "beta", "errors", "where"),
+    [
+        ((24, 73), 0.01, Misalignment(150 * ARCMIN * 0.2, 0.0, -30 * ARCMIN), 0.0),
+        ((155, 64), 1e-7, Misalignment(0.0, 30 * ARCMIN, 30 * ARCMIN, -1e-4), 0.0),
+        ((40, 31), 45.0, Misalignment(-120 * ARCMIN, 3 * ARCMIN, 0.0), 0.93),
+        ((20, 20), 0.0, Misalignment(120 * ARCMIN, 0.0, 1e-6 * ARCMIN), 0.5),
+    ],
+)
+def test_corners_and_slivers_where_the_reach_closes(teeth, beta, errors, where):
+    """Large errors on narrow or wide faces, at the very ends of engagement."""
+    for width in (0.005, 0.15):
+        pair = make(*teeth, beta, "left" if beta else "spur", width, alpha=20.0, errors=errors, width_2=0.15)
+        lo, hi = pair.engagement
+        phi = lo + where * (hi - lo)
+        found = pair_contact(pair, [phi])
+        searched = largest_gear_angle(pair, phi) - pair.ratio * phi
+        assert found.error[0] >= searched - 1e-12
+
+
 @given(st.sampled_from([0.0, 15.0, 30.0]), angles, angles, angles, st.sampled_from([0.0, 2.0]))
 @settings(max_examples=8, deadline=None)
 def test_mirrored_hands_with_mirrored_shafts_have_the_same_error(beta, shaft, lead, profile, parabola):

@@ -39,6 +39,7 @@ def gear(teeth=30, hand="left", beta=30.0, **more):
             "base radii",
         ),
         (lambda: HelicalPair(gear(), gear(100, "right"), parabola=1e3), GeometryError, "no regular flank"),
+        (lambda: HelicalPair(gear(), gear(100, "right"), crown=100.0), GeometryError, "tenth of the pitch"),
         (lambda: Misalignment(shaft_angle=0.2), RangeError, "no small error"),
         (lambda: Misalignment(lead_angle=math.nan), RangeError, "no small error"),
         (lambda: Misalignment(centre_distance=math.nan), InputError, "finite"),
@@ -57,6 +58,15 @@ def test_results_are_read_only():
         result.error[0] = 1.0
     with pytest.raises(ValueError, match="read-only"):
         result.mesh.r1[0] = 1.0
+
+
+def test_interference_below_the_form_circle_is_told():
+    def spur(teeth):
+        return HelicalGear(teeth, 5e-3, 20.0 * DEG, 0.0, 0.04, "spur")
+
+    assert HelicalPair(spur(30), spur(40)).interferes == (False, False)
+    assert HelicalPair(spur(12), spur(80)).interferes == (True, False)
+    assert HelicalPair(spur(80), spur(12)).interferes == (False, True)
 
 
 def test_flanks_out_of_reach_are_named_none():

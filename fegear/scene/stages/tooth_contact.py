@@ -129,6 +129,11 @@ def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
         remarks.append(f"Pair {name}: contact is on an edge over part of the cycle: {told}.")
     if any("circle" in k or "tangent" in k for k in edges):
         remarks.append(f"Pair {name}: contact reaches the end of the involute near the root: the fillet would be hit.")
+    for member, hit in zip(("pinion", "gear"), t.pair.interferes, strict=True):
+        if hit:
+            remarks.append(
+                f"Pair {name}: the mating tip reaches below the {member}'s form circle; that fillet is not analysed."
+            )
     vague = float(np.mean(t.mesh.ill_defined))
     if vague > 0.0:
         remarks.append(
