@@ -186,7 +186,10 @@ def draw_flanks(contact: ToothContact, path: Path, name: str) -> Picture:
     for grid, colour in _tooth_surfaces(pv, contact, phi_1, phi_2):
         opacity = 1.0 if colour == BLUE else 0.6
         plotter.add_mesh(grid, color=colour, opacity=opacity, ambient=0.5, diffuse=0.5)
-        plotter.add_mesh(grid.extract_feature_edges(feature_edges=False), color=BLACK, line_width=2)
+        outline = grid.extract_feature_edges(
+            boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
+        )
+        plotter.add_mesh(outline, color=BLACK, line_width=2)
     plotter.add_mesh(
         pv.PolyData(contact.mesh.point[:, middle] * 1e3), color=RED, point_size=16.0, render_points_as_spheres=True
     )
