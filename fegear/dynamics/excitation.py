@@ -118,6 +118,29 @@ class MeshExcitation:
         """One spring for the whole gear pair: mesh stiffness [N/m] and unloaded transmission error [m]."""
         return cls((stiffness,), (error if error is not None else Periodic.constant(0.0),))
 
+    @classmethod
+    def at_mean_load(
+        cls, stiffness: Periodic, error: Periodic, load: float, shares: tuple[Periodic, ...] = ()
+    ) -> MeshExcitation:
+        """A gear pair linearised about its mean load, from any load sharing (coupled teeth included).
+
+        Parameters
+        ----------
+        stiffness : Periodic
+            Local mesh stiffness dW/dzeta at the mean load [N/m].
+        error : Periodic
+            Static transmission error under the mean load [m].
+        load : float
+            The mean load [N]; contact is lost where the mesh force falls to zero.
+        shares : tuple of Periodic
+            Share of the load that each tooth pair in reach carries; they sum to one. One spring without them.
+        """
+        separation = combine((error, stiffness), lambda z, k: z - load / k, tolerance=1e-10)
+        if not shares:
+            return cls((stiffness,), (separation,))
+        parts = tuple(combine((share, stiffness), lambda q, k: q * k, tolerance=1e-10) for share in shares)
+        return cls(parts, (separation,) * len(parts))
+
     def at_phase(self, phase: float) -> MeshExcitation:
         """The same gear pair at another phase at time zero [base pitches]."""
         return replace(self, phase=phase)

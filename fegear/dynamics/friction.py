@@ -27,6 +27,8 @@ _POUND_PER_INCH = 4.4482216152605 / _INCH
 _REYN = 4.4482216152605 / _INCH**2
 #: Largest friction coefficient used; (18) has no bound where sliding stops.
 LARGEST_COEFFICIENT = 0.2
+#: Shortest stretch of the base pitch on which friction is resolved; at the pitch point it has a root or a logarithm.
+SHORTEST = 1e-3
 
 
 def buckingham(sliding: ArrayLike) -> Array:
@@ -134,7 +136,13 @@ def with_friction(
         parts = (*excitation.stiffness, *excitation.separation)
         ramp = replace(k, breaks=np.array([0.0, 1.0]), coefficients=np.array([[0.5, 0.5]]), pitches=1)
         pair = tuple(
-            combine((ramp, *parts), lambda s, *_, a=a, of=of: of(s, a), extra_breaks=kinks, tolerance=tolerance)
+            combine(
+                (ramp, *parts),
+                lambda s, *_, a=a, of=of: of(s, a),
+                extra_breaks=kinks,
+                tolerance=tolerance,
+                shortest=SHORTEST,
+            )
             for a in (True, False)
         )
         found.append((pair[0], pair[1]))

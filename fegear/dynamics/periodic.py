@@ -73,6 +73,7 @@ class Periodic:
         degree: int = 8,
         tolerance: float = 1e-12,
         pitches: int = 1,
+        shortest: float = 0.0,
     ) -> Periodic:
         """Fit a vectorised function of the period fraction s, smooth between `breaks`, halving pieces as needed.
 
@@ -88,6 +89,8 @@ class Periodic:
             Largest error beside the largest value.
         pitches : int
             Base pitches in one period.
+        shortest : float
+            Pieces of at most this length [periods] are taken as they are (a square root's tip, a clipped logarithm).
 
         Raises
         ------
@@ -110,7 +113,7 @@ class Periodic:
             scale = max(scale, float(np.max(np.abs(values))))
             row = to_power @ values[: degree + 1]
             error = np.max(np.abs(np.polynomial.polynomial.polyval(probe, row) - values[degree + 1 :]))
-            if error > tolerance * scale:
+            if error > tolerance * scale and h > shortest:
                 if h < 1e-9:
                     raise ConvergenceError(
                         f"A periodic function cannot be fitted near s = {a:.9g}: error {error:.3g} beside {scale:.3g}. "
@@ -135,6 +138,28 @@ class Periodic:
             0.5 * np.column_stack([y[piece] + y[piece + 1], y[piece + 1] - y[piece]]),
             pitches,
         )
+
+    @classmethod
+    def from_nodes(cls, breaks: ArrayLike, nodes: ArrayLike, values: ArrayLike, *, pitches: int = 1) -> Periodic:
+        """Polynomials through values at the same nodes of every piece (Gauss points, for example).
+
+        Parameters
+        ----------
+        breaks : array_like, shape (pieces + 1,)
+            Break points in periods, from 0 to 1.
+        nodes : array_like, shape (n,)
+            Nodes in (-1, 1), the same in every piece; n of at most 20.
+        values : array_like, shape (pieces, n)
+            Values there.
+        pitches : int
+            Base pitches in one period.
+        """
+        v, f = np.asarray(nodes, dtype=float), np.atleast_2d(np.asarray(values, dtype=float))
+        if v.ndim != 1 or v.size > 20 or f.shape[1] != v.size:
+            raise InputError("periodic.nodes", v.shape, f"must match the {f.shape[1]} values of each piece, at most 20")
+        legendre = np.linalg.solve(np.polynomial.legendre.legvander(v, v.size - 1), f.T).T
+        rows = np.asarray(np.linalg.solve(_to_legendre(v.size - 1), legendre.T).T, dtype=float)
+        return cls(np.asarray(breaks, dtype=float), rows, pitches)
 
     def _locate(self, phase: ArrayLike) -> tuple[NDArray[np.intp], Array]:
         s = np.asarray(phase, dtype=float) / self.pitches
@@ -208,6 +233,7 @@ def combine(
     extra_breaks: Iterable[float] = (),
     degree: int = 8,
     tolerance: float = 1e-12,
+    shortest: float = 0.0,
 ) -> Periodic:
     """Fit ``rule(part_1(phase), part_2(phase), ...)`` over the common period of all parts.
 
@@ -221,6 +247,7 @@ def combine(
         degree=degree,
         tolerance=tolerance,
         pitches=pitches,
+        shortest=shortest,
     )
 
 

@@ -1,0 +1,124 @@
+"""Tooth friction: the two formulas of TM-100180, the torques they make, and the losses that follow."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.dynamics.excitation import MeshExcitation
+from fegear.dynamics.friction import benedict_kelley, buckingham, with_friction
+from fegear.dynamics.lin_model import FourInertia
+from fegear.dynamics.motion_model import MotionModel, friction_loss_torque
+from fegear.dynamics.periodic import Periodic
+from fegear.dynamics.steady_state import steady_state
+from fegear.errors import InputError, RangeError
+
+INCH, POUND = 0.0254, 4.4482216152605
+BASE, ANGLE = 0.04177, math.radians(20.0)
+PITCH = 2 * math.pi * BASE / 28
+FORCE = 8890.0
+
+
+def test_buckingham():
+    """(17) with V in in/s: 0.05 at rest, by hand at 40 in/s; the sign of the sliding does not matter."""
+    assert buckingham(0.0) == pytest.approx(0.05)
+    assert buckingham(-40 * INCH) == pytest.approx(0.05 * math.exp(-5) + 0.002 * math.sqrt(40))
+
+
+def test_benedict_kelley():
+    """(18) by hand in lb/in, lb s/in^2 and in/s, and Benedict and Kelley's own 3.17e8 in cP."""
+    reyn = POUND / INCH**2
+    mu, vs, vr, w = 0.02, 1.5, 12.0, 3.5e5
+    by_hand = 0.0127 * math.log10(45.94 * (w * INCH / POUND) / ((mu / reyn) * (vs / INCH) * (vr / INCH) ** 2))
+    original = 0.0127 * math.log10(3.17e8 * (w * INCH / POUND) / ((mu * 1e3) * (vs / INCH) * (vr / INCH) ** 2))
+    assert benedict_kelley(w, mu, vs, vr) == pytest.approx(by_hand, rel=1e-12)
+    assert by_hand == pytest.approx(original, rel=1e-3)
+    assert benedict_kelley(w, mu, 0.0, vr) == 0.2  # no bound where sliding stops: held
+    assert benedict_kelley(0.0, mu, vs, vr) == 0.0
+    with pytest.raises(RangeError, match="viscosity"):
+        benedict_kelley(w, 0.0, vs, vr)
+
+
+def plain(length=1.6):
+    half = 0.5 * length * PITCH
+    return MeshExcitation.from_tooth_pair(
+        lambda x: 3e8 * np.ones_like(x), lambda x: np.zeros_like(x), -half, half, PITCH
+    )
+
+
+def train(shaft_ratio=0.05):
+    j = 1.22e-3
+    system = FourInertia(10 * j, j, j, 10 * j, 2.18e4, 2.18e4, BASE, BASE, 28, 28, FORCE, shaft_ratio, 0.1)
+    return system.train(1 / plain().mean_compliance())
+
+
+def rubbed(mu, speed=300.0):
+    found = train()
+    return with_friction(
+        plain(), found.meshes[0], PITCH, ANGLE, float(found.mesh_frequencies(speed)[0]), FORCE, lambda *_: mu
+    )
+
+
+def test_lever_arms_and_signs():
+    """At x before the pitch point (approach) friction helps the driver along its own rolling, after it friction brakes.
+
+    Torque on the driver is -sign(x) mu W (R tan a + x), on the driven gear sign(x) mu W (R tan a - x).
+    """
+    found = rubbed(0.05)
+    for j, (on_a, on_b) in enumerate(found.friction):
+        s = np.linspace(0.02, 0.98, 25)
+        x = (s + found.first_slot + j) * PITCH
+        there = found.stiffness[j](s) > 0
+        expected_a = -np.sign(x) * 0.05 * (BASE * math.tan(ANGLE) + x)
+        expected_b = np.sign(x) * 0.05 * (BASE * math.tan(ANGLE) - x)
+        assert on_a(s)[there] == pytest.approx(expected_a[there], abs=1e-9)
+        assert on_b(s)[there] == pytest.approx(expected_b[there], abs=1e-9)
+
+
+def test_loss_is_the_sliding_work():
+    """Loss = mean of mu W |v_s|; both gears turn at w, the loss torque is that over w, taken off the load."""
+    speed, mu = 300.0, 0.05
+    found = MotionModel(train(), (rubbed(mu, speed),), speed)
+    s = np.linspace(0, 1, 20_001)[:-1]
+    exc = found.excitations[0]
+    error = exc.approach(FORCE, s)
+    power = 0.0
+    for j, k in enumerate(exc.stiffness):
+        x = (s + exc.first_slot + j) * PITCH
+        power += np.mean(k(s) * error * mu * np.abs(2 * speed * x))
+    extra = friction_loss_torque(found)
+    assert extra[:3].tolist() == [0.0, 0.0, 0.0]
+    assert extra[3] == pytest.approx(power / speed, rel=2e-3)
+
+
+def test_friction_ripples_the_torque_and_vanishes_with_its_coefficient():
+    speed = 300.0
+    dry = steady_state(MotionModel(train(), (plain(),), speed), tolerance=1e-7)
+    differences = []
+    for mu in (0.0, 0.02, 0.04):
+        wet = steady_state(MotionModel(train(), (rubbed(mu, speed),), speed), tolerance=1e-7)
+        assert wet.kind == "periodic"
+        twist = wet.trajectory(1)
+        t = np.linspace(0, wet.model.period, 200)[1:-1]
+        base = dry.trajectory(1)
+        ripple = [np.ptp(r.angles(t)[:, 0] - r.angles(t)[:, 1]) for r in (twist, base)]
+        differences.append(np.max(np.abs(twist.mesh_forces(t) - base.mesh_forces(t))) / FORCE)
+        assert np.isfinite(ripple).all()
+    assert differences[0] < 1e-6
+    assert 1e-4 < differences[1] < differences[2]
+    assert differences[2] / differences[1] == pytest.approx(2.0, rel=0.2)
+
+
+def test_real_coefficients_run():
+    speed = 10_000 * math.pi / 30
+    found = train()
+    frequency = float(found.mesh_frequencies(speed)[0])
+    laws = (lambda v, _r, _w: buckingham(v), lambda v, r, w: benedict_kelley(w / 0.0254, 0.02, v, r))
+    for law in laws:
+        exc = with_friction(plain(), found.meshes[0], PITCH, ANGLE, frequency, FORCE, law, tolerance=1e-5)
+        state = steady_state(MotionModel(found, (exc,), speed), tolerance=1e-5)
+        assert 1.0 < state.dynamic_factor[0] < 4.0
+    with pytest.raises(InputError, match="tooth pairs"):
+        with_friction(
+            MeshExcitation.from_mesh(Periodic.constant(3e8)), found.meshes[0], PITCH, ANGLE, frequency, FORCE, laws[0]
+        )
