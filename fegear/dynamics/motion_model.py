@@ -51,7 +51,7 @@ class MotionModel:
         if not (math.isfinite(self.speed) and self.speed > 0.0):
             raise RangeError("speed", self.speed, "must be positive", "at standstill the static answer holds")
         for index, (mesh, excitation) in enumerate(zip(self.train.meshes, self.excitations, strict=True)):
-            if self.static[index] < 0.0:
+            if self.static[index] < -1e-9 * float(np.max(np.abs(self.static))):
                 raise InputError(
                     f"mesh.{mesh.name}", f"{self.static[index]:.6g} N", "is a mean force that parts the teeth",
                     "turn the torques round, or the signs of both base radii",

@@ -87,19 +87,28 @@ class SteadyState:
     @property
     def dynamic_factor(self) -> Array:
         """Largest force on one tooth pair over the mean mesh force (TM-89901: dynamic over static tooth load)."""
-        return self.tooth_force / self.model.static
+        return self.tooth_force / self._mean_force()
 
     @property
     def mesh_force_factor(self) -> Array:
         """Largest mesh force, all teeth in contact together, over the mean mesh force."""
-        return self.largest / self.model.static
+        return self.largest / self._mean_force()
+
+    def _mean_force(self) -> Array:
+        if not np.all(self.model.static > 0.0):
+            raise RangeError(
+                "dynamic factor", f"{float(np.min(self.model.static)):.6g} N", "is the mean mesh force: must be positive",
+                "look at `largest` and `tooth_force` of an idling gear pair",
+            )  # fmt: skip
+        return self.model.static
 
     def trajectory(self, periods: int = 0, *, tolerance: float = 1e-10) -> Trajectory:
         """The motion over its period, or over a number of periods of excitation."""
         packed = pack(self.model)
         count = periods or max(self.periods, 1)
+        length = count * packed.period
         passage = propagate(
-            packed, self.x, self.v, count * packed.period, tolerance=tolerance, record=2000 * count, peaks=False
+            packed, self.x, self.v, length, tolerance=tolerance, record=1000 * count + int(8 * length), peaks=False
         )
         return Trajectory(packed, passage)
 

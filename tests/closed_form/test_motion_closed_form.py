@@ -286,3 +286,12 @@ def test_refusals():
 def test_sweep_runs_in_the_order_given():
     states = speed_sweep(model(1.0), [100.0, 90.0, 95.0])
     assert [s.model.speed for s in states] == [100.0, 90.0, 95.0]
+
+
+def test_idling_gears_rattle_and_have_no_dynamic_factor():
+    """No mean load: the transmission error throws the gears about; a factor would divide by zero."""
+    state = steady_state(model(0.6, 4e-6, force=0.0, backlash=1e-5, zeta=0.1))
+    assert state.largest[0] > 0.0
+    assert state.apart[0] > 0.0
+    with pytest.raises(RangeError, match="mean mesh force"):
+        _ = state.dynamic_factor
