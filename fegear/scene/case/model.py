@@ -13,6 +13,7 @@ from fegear.scene.case.helical import ToothContactPart
 from fegear.scene.case.pair import PairPart
 from fegear.scene.case.part import Part
 from fegear.scene.case.stiffness import StiffnessPart
+from fegear.scene.case.study import StudyPart
 from fegear.scene.case.transmissibility import TransmissibilityPart
 
 
@@ -24,6 +25,7 @@ class Case(Part):
     gear: dict[str, GearPart] = Field(default_factory=dict)
     pair: dict[str, PairPart] = Field(default_factory=dict)
     stiffness: StiffnessPart = Field(default_factory=StiffnessPart)
+    study: StudyPart | None = None
     tooth_contact: ToothContactPart = Field(default_factory=ToothContactPart)
     transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
     effects: EffectsPart = Field(default_factory=EffectsPart)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fegear.scene.stages import geometry, stiffness, tooth_contact, transmissibility
+from fegear.scene.stages import crosscheck, geometry, root_stress_study, stiffness, tooth_contact, transmissibility
 
 if TYPE_CHECKING:
     from fegear.scene.stage import Stage
@@ -14,6 +14,8 @@ STAGES: tuple[Stage, ...] = (
     geometry.GEOMETRY,
     stiffness.STIFFNESS,
     stiffness.ROOT_STRESS,
+    crosscheck.CROSSCHECK,
+    root_stress_study.ROOT_STRESS_STUDY,
     tooth_contact.TOOTH_CONTACT,
     transmissibility.TRANSMISSIBILITY,
 )

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from fegear.fem import StiffnessTable
     from fegear.scene.run import Results
+    from fegear.scene.stages.crosscheck import CrosscheckData
     from fegear.scene.stages.tooth_contact import ToothContactData
     from fegear.scene.stages.transmissibility import TransmissibilityData
     from fegear.show.pictures.style import Picture
@@ -70,10 +71,31 @@ def _transmissibility(results: Results, task: Task, folder: Path) -> Iterator[Pi
     yield draw_transmissibility(data.response, data.mesh, folder / f"transmissibility_{name}.png", name)
 
 
+def _crosscheck(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.crosscheck import draw_compliance_check, draw_root_stress_check
+
+    outcome = results.outcomes[task]
+    tables, data = {table.name: table for table in outcome.tables}, cast("CrosscheckData", outcome.data)
+    for name in data.gears:
+        root = tables[f"crosscheck_root_stress_{name}"]
+        yield draw_root_stress_check(root, folder / f"crosscheck_root_stress_{name}.png", name)
+    for name in (*data.gears, *data.pairs):
+        table = tables[f"crosscheck_compliance_{name}"]
+        yield draw_compliance_check(table, folder / f"crosscheck_compliance_{name}.png")
+
+
+def _root_stress_study(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.root_stress_study import draw_root_stress_study
+
+    yield draw_root_stress_study(results.outcomes[task].tables[0], folder / "root_stress_study.png")
+
+
 #: For each stage that has pictures, what draws them; others follow the same shape.
 DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
     "stiffness": _stiffness,
     "root-stress": _root_stress,
+    "crosscheck": _crosscheck,
+    "root-stress-study": _root_stress_study,
     "tooth-contact": _tooth_contact,
     "transmissibility": _transmissibility,
 }

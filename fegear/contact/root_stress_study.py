@@ -1,0 +1,130 @@
+"""Where each root-stress formula is high, low or breaks down: a sweep of teeth held against finite elements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.crosscheck import RootStressAnswers, root_stress_answers
+from fegear.errors import FegearError, InputError
+from fegear.geometry import Gear, Tooth
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from fegear.fem.settings import MeshSettings
+
+    Array = NDArray[np.float64]
+
+#: Half-width of the band that counts as agreement: what Cornell's abstract claims.
+BAND = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """One gear of the sweep: its numbers, and the gear itself or the reason why there is none."""
+
+    teeth: int
+    profile_shift: float
+    rack_tip_radius: float
+    gear: Gear | None
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class VariantStress:
+    """Root stress of one gear over load positions, shape (P,), as stress x module / line load.
+
+    Parameters
+    ----------
+    variant : Variant
+    position : ndarray
+        Share of the roll angle between the involute's start (0) and its end (1).
+    radius : ndarray
+        Load radii [m].
+    fe, fe_angle : ndarray
+        Largest tangential stress of the fillet below the loaded flank, and its tangent angle [rad].
+    answers : dict of str to RootStressAnswers
+    """
+
+    variant: Variant
+    position: Array
+    radius: Array
+    fe: Array
+    fe_angle: Array
+    answers: dict[str, RootStressAnswers]
+
+
+def verdict(ratio: float) -> str:
+    """Call a formula's ratio to the finite elements "high", "low", "within 5 %", or "breaks down" (NaN)."""
+    if not np.isfinite(ratio):
+        return "breaks down"
+    if abs(ratio - 1.0) <= BAND:
+        return f"within {BAND:.0%}".replace("%", " %")
+    return "high" if ratio > 1.0 else "low"
+
+
+def variants(
+    base: Gear, teeth: Sequence[int], profile_shift: Sequence[float], rack_tip_radius: Sequence[float]
+) -> list[Variant]:
+    """Every combination; all keep the base gear's rack, module, tip shape and ratio of bore to root radius."""
+    found = []
+    share, t = base.bore_radius / base.root_radius, base.tooth
+    for z, x, rho in product(teeth, profile_shift, rack_tip_radius):
+        try:
+            tooth = Tooth(
+                z, replace(t.rack, tip_radius=rho), profile_shift=x, thickness_allowance=t.thickness_allowance,
+                tip_rounding=t.tip_rounding, tip_chamfer=t.tip_chamfer,
+            )  # fmt: skip
+            bore = share * tooth.root_radius * base.module
+            gear = Gear(tooth, base.module, bore, base.face_width, base.material, base.plane)
+        except InputError as error:
+            found.append(Variant(z, x, rho, None, f"no such gear: {error}"))
+        else:
+            found.append(Variant(z, x, rho, gear))
+    return found
+
+
+def load_radii(gear: Gear, position: Sequence[float]) -> Array:
+    """Radii [m] at shares of the roll angle between start and end of the involute."""
+    ends = (gear.form_radius, gear.involute_tip_radius)
+    low, high = (np.sqrt(max((r - gear.base_radius) * (r + gear.base_radius), 0.0)) for r in ends)
+    return np.clip(np.hypot(gear.base_radius, low + (high - low) * np.asarray(position, dtype=float)), *ends)
+
+
+def root_stress_study(
+    gears: Sequence[Variant],
+    position: Sequence[float],
+    settings: MeshSettings,
+    progress: Callable[[float], None] | None = None,
+) -> list[VariantStress]:
+    """Root stress of every gear by finite elements (no neighbours, no second mesh) and by every formula."""
+    from fegear.fem import solve_gear
+
+    found = []
+    at = np.asarray(position, dtype=float)
+    nothing = np.full(at.shape, np.nan)
+    for number, variant in enumerate(gears, start=1):
+        gear, reason = variant.gear, variant.reason
+        if gear is not None:
+            radii = load_radii(gear, position)
+            try:
+                known = solve_gear(gear, settings, reach=0, estimate_error=False)
+            except FegearError as error:
+                gear, reason = None, f"no finite elements: {error}"
+            else:
+                value, arc = known.largest_root_stress(0, "tension", radii)
+                fillet = known.fine.fillets["tension"]
+                angle = np.interp(arc / gear.module, fillet.arc, fillet.tangent_angle)
+                answers = root_stress_answers(gear.tooth, radii / gear.module)
+                found.append(VariantStress(variant, at, radii, value * gear.module, angle, answers))
+        if gear is None:
+            found.append(VariantStress(replace(variant, gear=None, reason=reason), at, nothing, nothing, nothing, {}))
+        if progress:
+            progress(number / len(gears))
+    return found
