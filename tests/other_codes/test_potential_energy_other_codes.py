@@ -1,7 +1,8 @@
 """The potential-energy pair against the numbers that the rotordynamics code ROSS asserts for its GearElementTVMS.
 
 ROSS (github.com/petrobras/ross) tests a pair of 62/62 teeth, m = 2 mm, 20 deg, 20 mm wide, bore 35 mm, E = 206 GPa:
-contact ratio 1.7897798668330458, linear contact 3555868607.9 N/m, mesh stiffness at the start of double contact 396622921 N/m.
+contact ratio 1.7897798668330458, linear contact 3555868607.9 N/m, mesh stiffness at the start of
+double contact 396622921 N/m.
 """
 
 import numpy as np
