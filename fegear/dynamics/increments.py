@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 #: What is left of the last pivot beside its terms when a frequency counts as an undamped resonance.
 RESONANCE = 1e-12
+#: Estimated relative round-off beyond which a frequency is solved again with longer floats.
+DOUBTFUL = 1e-12
 #: Frequencies solved together, so that the arrays stay in the cache.
 BLOCK = 1024
 
@@ -72,7 +74,11 @@ def dynamic_increments(train: Train, omega: ArrayLike) -> ComplexArray:
     found = np.empty((count, count, flat.size), dtype=complex)
     for start in range(0, flat.size, BLOCK):
         part = slice(start, start + BLOCK)
-        found[:, :, part] = network.increments(flat[part])
+        q, doubt = network.increments(flat[part])
+        weak = np.any(doubt > DOUBTFUL * np.abs(q), axis=(0, 1))
+        if np.any(weak):
+            q[:, :, weak] = network.careful(flat[part][weak], q[:, :, weak], doubt[:, :, weak])
+        found[:, :, part] = q
     negative = (w < 0.0).ravel()
     found[:, :, negative] = np.conj(found[:, :, negative])
     return found.reshape((count, count, *w.shape))
@@ -133,12 +139,45 @@ class _Network:
         sides = np.array([_spanning_sides(train.size, links, weights, m) for m in range(len(train.meshes))])
         return cls(train, links, leaks, turns, excess, sides.reshape(-1, train.size))
 
-    def increments(self, w: Array) -> ComplexArray:
-        """Q[i, j, frequency]."""
+    def careful(self, w: Array, q: ComplexArray, doubt: Array) -> ComplexArray:
+        """Improve increments in doubt: longest floats there are, every node in turn as the root, the best of each.
+
+        What cancels is a small force beside larger ones that balance; it is exact when summed from the side of the
+        train where nothing larger flows, and which side that is depends on the root of the elimination.
+        """
+        long = w.astype(np.longdouble)
+        for root in range(self.train.size):
+            other, other_doubt = self.increments(long, root)
+            better = other_doubt < doubt
+            q, doubt = np.where(better, other, q), np.where(better, other_doubt, doubt)
+        return q
+
+    def _ground(self) -> int:
+        """The node with the most damping to ground, or the heaviest one."""
+        held = np.zeros(self.train.size)
+        for part in self.leaks:
+            held[part.a] += part.damping * self.train.ratios[part.a] ** 2
+        return int(np.argmax(held if held.any() else self.train.inertia * self.train.ratios**2))
+
+    def _rank(self, root: int) -> NDArray[np.intp]:
+        """Order of elimination: nodes far from the root first."""
+        distance = np.full(self.train.size, self.train.size)
+        distance[root] = 0
+        for _ in range(self.train.size):
+            for link in self.links:
+                near = min(distance[link.a], distance[link.b]) + 1
+                distance[link.a], distance[link.b] = min(distance[link.a], near), min(distance[link.b], near)
+        rank = np.empty(self.train.size, dtype=np.intp)
+        rank[np.argsort(-distance, kind="stable")] = np.arange(self.train.size)
+        return rank
+
+    def increments(self, w: NDArray[np.floating], root: int = -1) -> tuple[ComplexArray, Array]:
+        """Q[i, j, frequency] and an estimate of its round-off, in the precision of `w`."""
+        kind = np.result_type(w.dtype, np.complex64)
         size, meshes = self.train.size, len(self.train.meshes)
         yq = [link.stiffness + 1j * w * link.damping for link in self.links]
-        Y = np.zeros((w.size, size, size), dtype=complex)
-        leak = np.zeros((w.size, size), dtype=complex)
+        Y = np.zeros((w.size, size, size), dtype=kind)
+        leak = np.zeros((w.size, size), dtype=kind)
         leak += -np.square(w)[:, None] * self.train.inertia * self.train.ratios**2
         for part in self.leaks:
             leak[:, part.a] += 1j * w * part.damping * self.train.ratios[part.a] ** 2
@@ -148,34 +187,37 @@ class _Network:
             leak[:, link.a] += y * turn[0] * over
             leak[:, link.b] += y * turn[1] * over
         rhs, total, start = self._right_hand_sides(w, yq, leak)
-        q = _eliminate(Y, leak, rhs, total, w)
+        lag, doubt = _eliminate(Y, leak, rhs, total, w, self._rank(self._ground() if root < 0 else root))
 
-        found = np.empty((meshes, meshes, w.size), dtype=complex)
+        found = np.empty((meshes, meshes, w.size), dtype=kind)
+        error = np.empty((meshes, meshes, w.size))
         for i in range(meshes):
-            a, b = self.links[i].a, self.links[i].b
-            qa, qb = q[:, a] * self.turns[i, 0], q[:, b] * self.turns[i, 1]
+            a, b, turn = self.links[i].a, self.links[i].b, self.turns[i, 0]
             for j in range(meshes):
                 own = 1.0 if i == j else 0.0
-                above = qa[:, j] + qb[:, j] - own
-                crossing = start[:, j, a] * self.turns[i, 0] + start[:, j, b] * self.turns[i, 1] if i != j else 0.0
-                if i != j and self.sides[j, a] == self.sides[j, b]:
-                    crossing = 0.0
+                above = turn * lag[:, a, b, j] - own
+                crossing = np.zeros(w.size, dtype=kind)
+                if i != j and self.sides[j, a] != self.sides[j, b]:
+                    crossing = turn * (start[:, j, a] - start[:, j, b])
                 k = meshes + j
-                below = qa[:, k] + qb[:, k] + crossing
-                loss_above = (np.abs(qa[:, j]) + np.abs(qb[:, j]) + own) * np.abs(below)
-                loss_below = (np.abs(qa[:, k]) + np.abs(qb[:, k]) + np.abs(crossing)) * np.abs(above)
-                best = np.where(loss_below <= loss_above, below, above)
+                below = turn * lag[:, a, b, k] + crossing
+                # the one whose terms are smaller has the smaller round-off
+                doubt_above = abs(turn) * doubt[:, a, b, j] + own
+                doubt_below = abs(turn) * doubt[:, a, b, k] + np.abs(crossing)
+                best = np.where(doubt_below <= doubt_above, below, above)
                 stiffness_i, stiffness_j = self.links[i].stiffness, self.links[j].stiffness
-                found[i, j] = best * (yq[i] / stiffness_i) * (stiffness_j / yq[j])
-        return found
+                scale = (yq[i] / stiffness_i) * (stiffness_j / yq[j])
+                found[i, j] = best * scale
+                error[i, j] = np.finfo(w.dtype).eps * np.minimum(doubt_below, doubt_above) * np.abs(scale)
+        return found, error
 
     def _right_hand_sides(
-        self, w: Array, yq: list[ComplexArray], leak: ComplexArray
+        self, w: NDArray[np.floating], yq: list[ComplexArray], leak: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """Columns from above, then from below; what each column sums to; and the strain-free turns of the cut train."""
         size, meshes = self.train.size, len(self.train.meshes)
-        rhs = np.zeros((w.size, size, 2 * meshes), dtype=complex)
-        start = np.zeros((w.size, meshes, size), dtype=complex)
+        rhs = np.zeros((w.size, size, 2 * meshes), dtype=leak.dtype)
+        start = np.zeros((w.size, meshes, size), dtype=leak.dtype)
         inertia = -np.square(w)[:, None] * self.train.inertia * self.train.ratios**2
         slips = self._slipping(w)
         for j in range(meshes):
@@ -206,9 +248,9 @@ class _Network:
                 force = yq[n] * self.turns[n, 0] ** 2 * (start[:, j, other.a] - start[:, j, other.b])
                 rhs[:, other.a, k] -= force
                 rhs[:, other.b, k] += force
-        return rhs, np.zeros((w.size, 2 * meshes), dtype=complex), start
+        return rhs, np.zeros((w.size, 2 * meshes), dtype=leak.dtype), start
 
-    def _slipping(self, w: Array) -> list[tuple[ComplexArray, Array]]:
+    def _slipping(self, w: NDArray[np.floating]) -> list[tuple[ComplexArray, Array]]:
         """Dampers that the rigid-body motion works: admittance, and slip per turn of each node."""
         found = []
         for link, turn in zip(self.links, self.turns, strict=True):
@@ -223,29 +265,49 @@ class _Network:
         return found
 
 
-def _eliminate(Y: ComplexArray, leak: ComplexArray, rhs: ComplexArray, total: ComplexArray, w: Array) -> ComplexArray:
+def _eliminate(
+    Y: ComplexArray,
+    leak: ComplexArray,
+    rhs: ComplexArray,
+    total: ComplexArray,
+    w: NDArray[np.floating],
+    rank: NDArray[np.intp],
+) -> tuple[ComplexArray, Array]:
     """Solve (diag(leak + sum Y) - Y) q = rhs for every frequency, leaks and sums kept apart from the links.
 
     `total` is the exact sum of each right-hand side over the nodes. The last node takes what is left of it or its own
-    entry, whichever lost less to cancellation.
+    entry, whichever lost less to cancellation. Returned are the differences q_a - q_b, formed from what pulls at each
+    node and never by subtraction, shape (frequencies, size, size, columns), and the size of the terms they came from.
     """
     frequencies, size, _ = Y.shape
     row = np.arange(frequencies)
     left = np.broadcast_to(np.arange(size), (frequencies, size)).copy()
     bound, rhs_bound, total_bound = np.abs(leak), np.abs(rhs), np.abs(total)
-    steps: list[tuple[NDArray[np.intp], NDArray[np.intp], ComplexArray, ComplexArray, ComplexArray]] = []
+    steps = []
     for _ in range(size - 1):
         pivot = leak + Y.sum(axis=2)
         terms = bound + np.abs(Y).sum(axis=2)
         quality = np.abs(pivot) / np.where(terms == 0.0, 1.0, terms)
-        chosen = np.argmax(np.minimum(quality, 0.5), axis=1)
+        # in the given order, unless a node is near a resonance of its own
+        chosen = np.argmax(np.where(quality >= 0.5, 1.0 + size - rank[left], quality), axis=1)
         keep = np.argsort(np.arange(left.shape[1])[None, :] == chosen[:, None], axis=1, kind="stable")[:, :-1]
         S = pivot[row, chosen]
         S = np.where(S == 0.0, np.maximum(1e-16 * terms[row, chosen], np.finfo(float).tiny), S)
         y = Y[row[:, None], chosen[:, None], keep]
         b = rhs[row, chosen]
         leak_p, bound_p = leak[row, chosen], bound[row, chosen]
-        steps.append((left[row, chosen], np.take_along_axis(left, keep, axis=1), y, b, S))
+        steps.append(
+            (
+                left[row, chosen],
+                np.take_along_axis(left, keep, axis=1),
+                y,
+                b,
+                leak_p,
+                S,
+                rhs_bound[row, chosen],
+                bound_p,
+            )
+        )
         part = y / S[:, None]
         Y = Y[row[:, None, None], keep[:, :, None], keep[:, None, :]] + part[:, :, None] * y[:, None, :]
         index = np.arange(keep.shape[1])
@@ -258,7 +320,7 @@ def _eliminate(Y: ComplexArray, leak: ComplexArray, rhs: ComplexArray, total: Co
         total = total - b * (leak_p / S)[:, None]
         total_bound = total_bound + b_bound * np.abs(leak_p / S)[:, None]
         left = np.take_along_axis(left, keep, axis=1)
-    q = np.zeros((frequencies, size, rhs.shape[2]), dtype=complex)
+    q = np.zeros((frequencies, size, rhs.shape[2]), dtype=rhs.dtype)
     last, limit = leak[:, 0], bound[:, 0]
     resonant = (np.abs(last) < RESONANCE * limit) & (w > 0.0)
     if np.any(resonant):
@@ -269,8 +331,31 @@ def _eliminate(Y: ComplexArray, leak: ComplexArray, rhs: ComplexArray, total: Co
             "is a natural frequency of the train without damping: the response has no bound",
             "give the train damping or leave this frequency out",
         )
-    load = np.where(total_bound <= rhs_bound[:, 0], total, rhs[:, 0])
-    q[row, left[:, 0]] = np.where(last == 0.0, 0.0, 1.0)[:, None] * load / np.where(last == 0.0, 1.0, last)[:, None]
-    for node, others, y, b, S in reversed(steps):
-        q[row, node] = (b + np.einsum("fa,fam->fm", y, q[row[:, None], others])) / S[:, None]
-    return q
+    own = total_bound <= rhs_bound[:, 0]
+    load = np.where(own, total, rhs[:, 0])
+    floor = np.where(last == 0.0, 1.0, last)[:, None]
+    held = np.where(last == 0.0, 0.0, 1.0)[:, None]
+    q[row, left[:, 0]] = held * load / floor
+    # sizes of the terms behind each result: round-off times these bounds its error
+    behind = np.zeros(q.shape, dtype=bound.dtype)
+    behind[row, left[:, 0]] = held * np.where(own, total_bound, rhs_bound[:, 0]) / np.abs(floor)
+    lag = np.zeros((frequencies, size, size, rhs.shape[2]), dtype=rhs.dtype)
+    doubt = np.zeros(lag.shape, dtype=bound.dtype)
+    for node, others, y, b, leak_p, S, b_bound, leak_bound in reversed(steps):
+        known, known_behind = q[row[:, None], others], behind[row[:, None], others]
+        pair = row[:, None, None], others[:, :, None], others[:, None, :]
+        size_y, size_S = np.abs(y), np.abs(S)[:, None]
+        value = (b + np.einsum("fa,fam->fm", y, known)) / S[:, None]
+        value_behind = (b_bound + np.einsum("fa,fam->fm", size_y, known_behind)) / size_S
+        # the difference to each node known already: from what pulls at this one, or by subtraction
+        pull = b[:, None, :] - leak_p[:, None, None] * known
+        pull = (pull + np.einsum("fb,fbam->fam", y, lag[pair])) / S[:, None, None]
+        pull_behind = b_bound[:, None, :] + leak_bound[:, None, None] * known_behind
+        pull_behind = (pull_behind + np.einsum("fb,fbam->fam", size_y, doubt[pair])) / size_S[:, :, None]
+        plain_behind = value_behind[:, None, :] + known_behind
+        across = np.where(pull_behind <= plain_behind, pull, value[:, None, :] - known)
+        least = np.minimum(pull_behind, plain_behind)
+        lag[row[:, None], node[:, None], others], lag[row[:, None], others, node[:, None]] = across, -across
+        doubt[row[:, None], node[:, None], others] = doubt[row[:, None], others, node[:, None]] = least
+        q[row, node], behind[row, node] = value, value_behind
+    return lag, doubt

@@ -97,7 +97,7 @@ class SteadyState:
     def _mean_force(self) -> Array:
         if not np.all(self.model.static > 0.0):
             raise RangeError(
-                "dynamic factor", f"{float(np.min(self.model.static)):.6g} N", "is the mean mesh force: must be positive",
+                "dynamic factor", f"{float(np.min(self.model.static)):.6g} N", "is the mean force: must be positive",
                 "look at `largest` and `tooth_force` of an idling gear pair",
             )  # fmt: skip
         return self.model.static

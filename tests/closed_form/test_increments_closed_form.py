@@ -226,3 +226,37 @@ def test_undamped_resonance_is_refused_and_next_to_it_is_not():
     assert dynamic_increments(train, 2.0 + 1e-6)[0, 0].real == pytest.approx(-1e6, rel=1e-5)
     with pytest.raises(RangeError, match="finite"):
         dynamic_increments(train, np.nan)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_trains(seed):
+    """Trees of two to eight bodies over many decades, with dampers to ground and between bodies of any speed."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(2, 9))
+    bodies = tuple(Body(str(i), float(10 ** rng.uniform(-6, 1))) for i in range(n))
+    shafts, meshes = [], []
+    for i in range(1, n):
+        other = str(int(rng.integers(0, i)))
+        if i == 1 or rng.random() < 0.5:
+            za, zb = (int(z) for z in rng.integers(15, 90, 2))
+            m = 10 ** rng.uniform(-3.5, -2)
+            k, c = float(10 ** rng.uniform(6, 9.5)), float(10 ** rng.uniform(0, 3.5))
+            meshes.append(Mesh(f"m{i}", other, str(i), za * m / 2, zb * m / 2, za, zb, k, c))
+        else:
+            shafts.append(
+                Shaft(f"s{i}", other, str(i), float(10 ** rng.uniform(1, 7)), float(10 ** rng.uniform(-3, 1)))
+            )
+    dampers = tuple(Damper(str(i), None, float(10 ** rng.uniform(-4, 2))) for i in range(n) if rng.random() < 0.3)
+    if n > 3 and rng.random() < 0.5:
+        dampers += (Damper("1", "3", float(10 ** rng.uniform(-3, 2))),)
+    assert largest_error(Train(bodies, tuple(shafts), tuple(meshes), dampers), np.logspace(-6, 6, 25)) < 1e-10
+
+
+def test_reciprocity():
+    """Q_ij / C_i is symmetric: what mesh j's error does to mesh i's force, mesh i's error does to mesh j's."""
+    train = Train(BODIES, SHAFTS, MESHES, (Damper("a", None, 0.3),))
+    q = dynamic_increments(train, 2 * np.pi * np.logspace(-3, 5, 30))
+    k = np.array([m.stiffness for m in train.meshes])
+    damped = np.array([1 + 2j * np.pi * np.logspace(-3, 5, 30) * m.damping / m.stiffness for m in train.meshes])
+    forward, back = k[0] * q[0, 1] / damped[0], k[1] * q[1, 0] / damped[1]
+    assert forward == pytest.approx(back, rel=1e-11)

@@ -293,5 +293,5 @@ def test_idling_gears_rattle_and_have_no_dynamic_factor():
     state = steady_state(model(0.6, 4e-6, force=0.0, backlash=1e-5, zeta=0.1))
     assert state.largest[0] > 0.0
     assert state.apart[0] > 0.0
-    with pytest.raises(RangeError, match="mean mesh force"):
+    with pytest.raises(RangeError, match="mean force"):
         _ = state.dynamic_factor
