@@ -1,7 +1,9 @@
-"""The command line: ``fegear run``, ``fegear plan``, ``fegear export``."""
+"""The command line: ``fegear run``, ``fegear plan``, ``fegear sweep``, ``fegear export``."""
 
 from __future__ import annotations
 
+import contextlib
+import math
 import os
 import sys
 import time
@@ -16,6 +18,8 @@ from fegear.errors import FegearError
 if TYPE_CHECKING:
     from fegear.scene.plan import Plan
 
+#: Finished points of sweeps may take this many bytes on disk.
+_POINTS_LIMIT = 1 << 29
 _INTERRUPTED = "interrupted; results of earlier runs are as they were."
 
 app = typer.Typer(
@@ -32,6 +36,10 @@ Overrides = Annotated[
 ]
 Out = Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>.")]
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw nothing: tables, dataset and report alone.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option("--scheduler", metavar="ADDRESS", help="A running Dask scheduler, e.g. tcp://10.0.0.5:8786."),
+]
 
 
 def _version(wanted: bool) -> None:
@@ -50,14 +58,26 @@ def _options(
 
 
 @app.command()
-def run(case: CaseFile, overrides: Overrides = None, out: Out = None, no_plots: NoPlots = False) -> None:
+def run(
+    case: CaseFile,
+    overrides: Overrides = None,
+    out: Out = None,
+    no_plots: NoPlots = False,
+    scheduler: Scheduler = None,
+    cache: Annotated[
+        bool,
+        typer.Option("--cache", help="Read solved tooth shapes from the disk cache and keep new ones there."),
+    ] = False,
+) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
+    from fegear.scene.executor import computing_by
     from fegear.scene.load import read_scene
     from fegear.scene.plan import make_plan
     from fegear.scene.run import run_plan
     from fegear.scene.stages import STAGES
     from fegear.show.folder import whole_or_nothing
     from fegear.show.write import STEPS, write_results
+    from fegear.store import keeping_shapes
     from fegear.terminal import watcher
 
     start = time.perf_counter()
@@ -65,7 +85,13 @@ def run(case: CaseFile, overrides: Overrides = None, out: Out = None, no_plots: 
         scene = read_scene(case, overrides or ())
         planned = make_plan(scene, STAGES)
         target = out or Path("results") / scene.name
-        with whole_or_nothing(target) as scratch, watcher(sys.stderr) as watching:
+        with contextlib.ExitStack() as stack:
+            scratch = stack.enter_context(whole_or_nothing(target))
+            watching = stack.enter_context(watcher(sys.stderr))
+            stack.enter_context(computing_by(scheduler))
+            # Afresh by default: the seconds of a run are one of its results.
+            if cache:
+                stack.enter_context(keeping_shapes())
             results = run_plan(scene, planned, watching, following=STEPS)
             remarks = write_results(results, scratch, watching, plots=not no_plots)
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
@@ -87,6 +113,74 @@ def plan(case: CaseFile, overrides: Overrides = None) -> None:
 
     scene = read_scene(case, overrides or ())
     typer.echo("\n".join(_plan_lines(make_plan(scene, STAGES))))
+
+
+@app.command()
+def sweep(
+    case: CaseFile,
+    over: Annotated[
+        list[str],
+        typer.Option(
+            "--over",
+            metavar="KEY=START:STOP:COUNT",
+            help="An axis, e.g. gear.a.profile_shift=-0.4:0.8:25, =10:20:6:mm, =1:1000:4:log or =0.1,0.2,0.5.",
+        ),
+    ],
+    overrides: Overrides = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_sweep.")] = None,
+    scheduler: Scheduler = None,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, help="Processes on this machine; default one for each core.")
+    ] = None,
+    no_cache: Annotated[
+        bool,
+        typer.Option("--no-cache", help="Compute all anew and keep nothing: a killed sweep then starts from nothing."),
+    ] = False,
+) -> None:
+    """Run a case over a grid of values; killed and started again, it goes on where it was."""
+    from fegear.scene.axis import read_axis
+    from fegear.scene.sweep import sweep_case
+    from fegear.show.folder import check_target, whole_or_nothing
+    from fegear.show.sweep import write_sweep
+    from fegear.store import Store, cache_folder, keeping_shapes
+    from fegear.terminal import watcher
+
+    try:
+        axes = [read_axis(text) for text in over]
+        target = out or Path("results") / f"{case.stem}_sweep"
+        check_target(target)
+        with contextlib.ExitStack() as stack:
+            watching = stack.enter_context(watcher(sys.stderr, remaining=True))
+            store = None if no_cache else Store(cache_folder() / "points", _POINTS_LIMIT)
+            if not no_cache:
+                stack.enter_context(keeping_shapes())
+            count = math.prod(len(axis) for axis in axes)
+            watching.begin(f"{count} points", 1, 1)
+            results = sweep_case(
+                case,
+                axes,
+                overrides or (),
+                store=store,
+                scheduler=scheduler,
+                workers=workers,
+                progress=watching.advance,
+            )
+            watching.end(results.seconds)
+        with whole_or_nothing(target) as scratch:
+            remarks = write_sweep(results, scratch)
+    except KeyboardInterrupt:
+        _leave("interrupted; started again, the sweep goes on where it was.", 130)
+    for remark in remarks:
+        typer.echo(f"Note: {remark}")
+    solved, read, spared = results.shapes
+    typer.echo(f"{count - len(results.failures)} of {count} points have results.")
+    if results.kept:
+        typer.echo(f"{results.kept} points were finished by an earlier sweep.")
+    if read:
+        typer.echo(f"Tooth shapes: {solved} solved now; {read} from the disk cache ({spared:.2f} s when solved).")
+    typer.echo(f"Wrote {target} in {results.seconds:.2f} s.")
+    if len(results.failures) == count:
+        raise typer.Exit(1)
 
 
 @app.command()

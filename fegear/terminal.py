@@ -54,14 +54,22 @@ class Bar:
 
 
 @contextlib.contextmanager
-def watcher(stream: TextIO) -> Iterator[Watcher]:
-    """Give the watcher that suits a stream."""
+def watcher(stream: TextIO, *, remaining: bool = False) -> Iterator[Watcher]:
+    """Give the watcher that suits a stream.
+
+    Parameters
+    ----------
+    stream : text stream
+    remaining : bool
+        Whether a bar foretells the time that is left, which makes sense for many alike steps.
+    """
     if not stream.isatty():
         yield PlainLines(stream)
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     columns = (TextColumn("{task.description}"), BarColumn(bar_width=30), TimeElapsedColumn())
-    with Progress(*columns, console=Console(file=stream)) as progress:
+    ahead = (TextColumn("left"), TimeRemainingColumn(elapsed_when_finished=False)) if remaining else ()
+    with Progress(*columns, *ahead, console=Console(file=stream)) as progress:
         yield Bar(progress)

@@ -12,6 +12,7 @@ import numpy as np
 from fegear.fem.influence import Influence, Side, solve_influence
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import MeshSettings
+from fegear.fem.shape_cache import kept_or_solved
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -42,15 +43,19 @@ def influence_of_shape(
     tooth: Tooth, bore_radius: float, poisson_ratio: float, plane: Plane, settings: MeshSettings, reach: int
 ) -> Influence:
     """Solve one gear shape (lengths in modules); equal shapes in a process are solved once."""
-    return solve_influence(
-        tooth,
-        mesh_sector(tooth, bore_radius, settings),
-        poisson_ratio,
-        plane,
-        order=settings.order,
-        reach=reach,
-        corner_distance=settings.corner_distance,
-    )
+
+    def solve() -> Influence:
+        return solve_influence(
+            tooth,
+            mesh_sector(tooth, bore_radius, settings),
+            poisson_ratio,
+            plane,
+            order=settings.order,
+            reach=reach,
+            corner_distance=settings.corner_distance,
+        )
+
+    return kept_or_solved(tooth, (bore_radius, poisson_ratio, plane, settings, reach), solve)
 
 
 @dataclass(frozen=True)
@@ -233,10 +238,16 @@ def solve_gear(
         say("influence functions on the given mesh")
         _, _, nu, plane = shape
         orders = (settings.order, min(settings.order + 1, 4) if settings.order < 4 else 3)
-        found = [
-            solve_influence(gear.tooth, mesh, nu, plane, order=p, reach=reach, corner_distance=settings.corner_distance)
-            for p in (orders if estimate_error else orders[:1])
-        ]
+
+        def solve(order: int) -> Influence:
+            closest = settings.corner_distance
+            return kept_or_solved(
+                gear.tooth,
+                (mesh, nu, plane, order, reach, closest),
+                lambda: solve_influence(gear.tooth, mesh, nu, plane, order=order, reach=reach, corner_distance=closest),
+            )
+
+        found = [solve(p) for p in (orders if estimate_error else orders[:1])]
         fine, coarse, share = found[0], found[-1] if estimate_error else None, 1.0
     else:
         say("influence functions")

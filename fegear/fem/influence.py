@@ -195,6 +195,8 @@ def solve_influence(
     -------
     Influence
     """
+    # Loaded before it is limited: scipy brings a BLAS of its own.
+    import scipy.sparse.linalg  # noqa: F401
     from threadpoolctl import threadpool_limits
 
     # Many small dense matrices: on a busy machine a second BLAS thread makes them ten times slower, never faster.
@@ -232,7 +234,7 @@ def _solve(
     compliance: dict[int, Array] = {}
     stress: dict[tuple[int, Side], Array] = {}
     for k, u in response.items():
-        compliance[k] = u[:n]
+        compliance[k] = np.ascontiguousarray(u[:n])  # as it comes back from a file, so that sums run in one order
         stress[k, "tension"] = modulus * (fillets["tension"].strain @ u[n : n + t])
         stress[k, "compression"] = modulus * (fillets["compression"].strain @ u[n + t :])
     solved = time.perf_counter()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import signal
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -74,6 +76,16 @@ def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> Sec
     return SectorMesh(points, six, edges, tooth.teeth, "generated", time.perf_counter() - started)
 
 
+def _ignore_closed_pipes() -> None:
+    """Give SIGPIPE back to Python, from any thread.
+
+    gmsh.initialize resets it, after which writing to a pipe or socket that the other side has closed would end the
+    process without a word instead of raising BrokenPipeError.
+    """
+    if hasattr(signal, "SIGPIPE") and signal.getsignal(signal.SIGPIPE) == signal.SIG_IGN:
+        ctypes.pythonapi.PyOS_setsig(int(signal.SIGPIPE), ctypes.c_void_p(int(signal.SIG_IGN)))
+
+
 def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Triangulate the inside of a closed polygon whose corners stay the only boundary nodes."""
     gmsh = load_gmsh()
@@ -81,6 +93,7 @@ def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
     own = not gmsh.isInitialized()
     if own:
         gmsh.initialize(interruptible=False)
+        _ignore_closed_pipes()
     try:
         for option, value in {
             "General.Terminal": 0,

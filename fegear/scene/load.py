@@ -86,6 +86,11 @@ def read_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
         If the file cannot be read or anything in it breaks a rule.
     """
     path = Path(path)
+    return build_scene(read_document(path, overrides), path.stem, path.parent)
+
+
+def read_document(path: Path, overrides: Sequence[str] = ()) -> dict[str, Any]:
+    """Read a case file as plain tables and apply ``--set`` options, without checking more than that."""
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -96,7 +101,7 @@ def read_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
         raise InputError("case", f'"{path}"', f"is no valid TOML: {error}", "quantities stand in quotes") from None
     for override in overrides:
         apply_override(document, override)
-    return build_scene(document, path.stem, path.parent)
+    return document
 
 
 def build_scene(document: Mapping[str, object], name: str, folder: Path) -> Scene:
@@ -219,19 +224,35 @@ def apply_override(document: dict[str, Any], override: str) -> None:
         value = tomllib.loads(f"value = {text.strip()}")["value"]
     except tomllib.TOMLDecodeError:
         value = text.strip()
+    set_key(document, path.strip(), value)
+
+
+def set_key(document: dict[str, Any], path: str, value: object, option: str = "--set") -> None:
+    """Set ``dotted.key`` in a case document, or refuse a path that does not exist.
+
+    Parameters
+    ----------
+    document : dict
+        Changed in place.
+    path : str
+    value : object
+    option : str
+        Name of the option for error messages.
+    """
+    steps = path.split(".")
     table = document
     for depth, step in enumerate(steps[:-1]):
         if step not in table:
             if steps[depth - 1 : depth] in (["gear"], ["pair"]):
-                raise InputError("--set", f'"{path}"', f'"{step}" is not in this case', nearest(step, table))
+                raise InputError(option, f'"{path}"', f'"{step}" is not in this case', nearest(step, table))
             known = _keys_at(steps[:depth])
             if step not in known:
-                raise InputError("--set", f'"{path}"', f'"{step}" is an unknown key', nearest(step, known))
+                raise InputError(option, f'"{path}"', f'"{step}" is an unknown key', nearest(step, known))
             table[step] = {}
         if not isinstance(table[step], dict):
-            raise InputError("--set", f'"{path}"', f'"{step}" is no table in this case, so nothing can be set in it')
+            raise InputError(option, f'"{path}"', f'"{step}" is no table in this case, so nothing can be set in it')
         table = table[step]
     known = _keys_at(steps[:-1])
     if known and steps[-1] not in known and steps[-1] not in table:
-        raise InputError("--set", f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known))
+        raise InputError(option, f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known))
     table[steps[-1]] = value

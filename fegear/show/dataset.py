@@ -11,9 +11,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 import fegear
+from fegear.show.netcdf import put
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,22 +28,8 @@ def _add_table(file: netcdf_file, table: Table) -> None:
     file.createDimension(rows, len(table.columns[0].values))
     first = f"{table.name}.{table.columns[0].name}"
     for column in table.columns:
-        name, values = f"{table.name}.{column.name}", column.shown
-        if values.dtype.kind in "US":
-            encoded = np.char.encode(values.astype(str), "utf-8")
-            width = max(encoded.dtype.itemsize, 1)
-            file.createDimension(f"{name}_length", width)
-            variable = file.createVariable(name, "c", (rows, f"{name}_length"))
-            variable[:] = encoded.astype(f"S{width}").view("S1").reshape(len(values), width)
-            variable._Encoding = "utf-8"  # noqa: SLF001  (the attribute's name in the NetCDF conventions)
-        else:
-            kind = "i4" if values.dtype.kind in "iub" else "f8"
-            variable = file.createVariable(name, kind, (rows,))
-            variable[:] = values.astype(kind)
-        if column.unit:
-            variable.units = column.unit
-        if column.meaning:
-            variable.long_name = column.meaning.encode()
+        name = f"{table.name}.{column.name}"
+        variable = put(file, name, (rows,), column.shown, column.unit, column.meaning)
         if name != first:
             variable.coordinates = first
 

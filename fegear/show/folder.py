@@ -77,6 +77,22 @@ def whole_or_nothing(target: Path, key: str = "--out") -> Iterator[Path]:
         _remove_empty(made)
 
 
+def check_target(target: Path) -> None:
+    """Refuse a folder that `whole_or_nothing` could not fill, before long work is begun; leaves nothing behind.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written to.
+    """
+
+    class Enough(Exception):  # noqa: N818  (no error: it ends the block without moving anything)
+        pass
+
+    with contextlib.suppress(Enough), whole_or_nothing(target):
+        raise Enough
+
+
 def _remove_empty(folders: list[Path]) -> None:
     for folder in folders:
         with contextlib.suppress(OSError):

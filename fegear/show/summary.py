@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import fegear
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from fegear.scene.run import Results
@@ -44,6 +45,10 @@ def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str,
         },
         "timings": {str(task): round(seconds, 6) for task, seconds in results.seconds.items()}
         | {"total": round(sum(results.seconds.values()), 6)},
+        "from_cache": {
+            str(task): {"shapes": found.shapes, "seconds_when_solved": round(found.seconds, 6)}
+            for task, found in results.from_cache.items()
+        },
         "remarks": remarks,
         "files": files,
         "version": fegear.__version__,
@@ -52,6 +57,9 @@ def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str,
 
 def write_summary(path: Path, results: Results, remarks: list[str], files: list[str]) -> None:
     """Write the summary as JSON."""
-    path.write_text(
-        json.dumps(summary(results, remarks, files), indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8"
-    )
+    write_json(path, summary(results, remarks, files))
+
+
+def write_json(path: Path, told: Mapping[str, object]) -> None:
+    """Write a JSON file that people can read."""
+    path.write_text(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")

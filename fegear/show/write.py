@@ -52,7 +52,7 @@ def write_results(results: Results, folder: Path, watcher: Watcher, *, plots: bo
         from fegear.show.pictures.gallery import draw_all
 
         pictures, missing = draw_all(results, folder / "plots", watcher.advance)
-    remarks = [*results.remarks, *missing]
+    remarks = [*results.remarks, *results.cache_remarks, *missing]
     write_report(folder / "report.html", results, pictures, remarks)
     write_summary(folder / SUMMARY, results, remarks, [*files_in(folder), SUMMARY])
     watcher.end(time.perf_counter() - started)

@@ -21,7 +21,9 @@ _spec.loader.exec_module(source_tree)
 LAYERS = {
     "fegear": 0,
     "errors": 0,
+    "plain": 0.5,
     "units": 0.5,
+    "store": 0.6,
     "geometry": 1,
     "formulas": 2,
     "fem": 2,

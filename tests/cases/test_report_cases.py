@@ -140,7 +140,7 @@ def test_a_picture_that_cannot_be_drawn_is_a_remark_not_a_failure(made, tmp_path
     def missing():
         raise MissingLibraryError("the deformed gear cannot be drawn; run: apt-get install libegl1")
 
-    monkeypatch.setattr(deformed, "_pyvista", missing)
+    monkeypatch.setattr(deformed, "offscreen_pyvista", missing)
     remarks = write_results(made[0], tmp_path, Silence())
     assert remarks[-1] == "the deformed gear cannot be drawn; run: apt-get install libegl1."
     assert re.search("apt-get install libegl1", (tmp_path / "report.html").read_text(encoding="utf-8"))

@@ -1,0 +1,176 @@
+"""Plain data (numbers, texts, arrays, lists, dictionaries) as bytes and back, and keys made from content.
+
+Everything that fegear keeps on disk between runs goes through here. No code is ever loaded from such a file, floats
+come back bit for bit, and equal data give equal bytes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import hashlib
+import json
+import struct
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_ALIGN = 64
+_KINDS = "biufcSU"
+#: Libraries whose version may change the last bits of a result.
+_LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
+
+
+def pack(value: object) -> bytes:
+    """Write plain data as bytes.
+
+    Parameters
+    ----------
+    value : None, bool, int, float, str, ndarray, or list, tuple, dict of these
+        Arrays of numbers or texts; contiguous ones keep their memory order.
+
+    Raises
+    ------
+    TypeError
+        If something in it is not plain.
+    """
+    arrays: list[tuple[int, bytes]] = []
+    end = 0
+
+    def encode(item: object) -> object:
+        nonlocal end
+        if isinstance(item, np.generic):
+            item = item.item()
+        if item is None or isinstance(item, (bool, int, float, str)):
+            return item
+        if isinstance(item, np.ndarray):
+            if item.dtype.kind not in _KINDS:
+                raise TypeError(f"an array of {item.dtype} is not plain data")
+            columns_first = item.flags.f_contiguous and not item.flags.c_contiguous
+            order, data = ("F", item.tobytes("F")) if columns_first else ("C", item.tobytes("C"))
+            arrays.append((end, data))
+            told = {"a": [item.dtype.str, list(item.shape), order, end]}
+            end += -(-len(data) // _ALIGN) * _ALIGN
+            return told
+        if isinstance(item, list):
+            return {"l": [encode(x) for x in item]}
+        if isinstance(item, tuple):
+            return {"t": [encode(x) for x in item]}
+        if isinstance(item, Mapping):
+            return {"d": [[encode(k), encode(v)] for k, v in item.items()]}
+        raise TypeError(f"{type(item).__name__} is not plain data")
+
+    head = json.dumps(encode(value), ensure_ascii=False, separators=(",", ":")).encode()
+    body = bytearray(end)
+    for start, data in arrays:
+        body[start : start + len(data)] = data
+    return struct.pack("<Q", len(head)) + head + bytes(body)
+
+
+def unpack(data: bytes) -> object:
+    """Read what `pack` wrote.
+
+    Raises
+    ------
+    ValueError
+        If the bytes are not what `pack` writes.
+    """
+    try:
+        (length,) = struct.unpack_from("<Q", data)
+        start = 8 + length
+        return _decode(json.loads(data[8:start]), memoryview(data)[start:])
+    except (struct.error, KeyError, IndexError, TypeError, UnicodeDecodeError) as problem:
+        raise ValueError(f"not packed data: {problem}") from None
+
+
+def _decode(item: object, body: memoryview) -> object:
+    if not isinstance(item, dict):
+        return item
+    ((kind, content),) = item.items()
+    if kind == "a":
+        return _array(content, body)
+    if kind == "l":
+        return [_decode(x, body) for x in content]
+    if kind == "t":
+        return tuple(_decode(x, body) for x in content)
+    return {_decode(k, body): _decode(v, body) for k, v in content}
+
+
+def _array(content: tuple[str, list[int], str, int], body: memoryview) -> NDArray[np.generic]:
+    kind, shape, order, start = content
+    count = int(np.prod(shape, dtype=np.int64))
+    flat = np.frombuffer(body, kind, count, start) if count else np.empty(0, kind)
+    return flat.reshape(shape, order="F" if order == "F" else "C").copy(order="K")
+
+
+def content_key(*parts: object) -> str:
+    """Key of data by what they are: equal content, equal key, in every process and on every machine.
+
+    Parameters
+    ----------
+    *parts : plain data, paths (by name), dataclasses of these (by the fields that count in comparisons)
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits (SHA-256).
+
+    Raises
+    ------
+    TypeError
+        If a part is none of these.
+    """
+    text = json.dumps([_canonical(part) for part in parts], separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _canonical(item: object) -> object:
+    if isinstance(item, np.generic):
+        item = item.item()
+    if item is None or isinstance(item, (bool, int, str)):
+        return item
+    if isinstance(item, float):
+        return ["float", (item + 0.0).hex()]  # so that -0.0 is 0.0
+    if isinstance(item, np.ndarray) and item.dtype.kind in _KINDS:
+        digest = hashlib.sha256(np.ascontiguousarray(item).tobytes()).hexdigest()
+        return ["array", item.dtype.str, list(item.shape), digest]
+    if isinstance(item, Path):
+        return ["path", item.as_posix()]
+    if isinstance(item, (list, tuple)):
+        return ["list", *(_canonical(x) for x in item)]
+    if isinstance(item, Mapping):
+        pairs = [[_canonical(k), _canonical(v)] for k, v in item.items()]
+        return ["map", *sorted(pairs, key=lambda pair: json.dumps(pair[0]))]
+    if dataclasses.is_dataclass(item) and not isinstance(item, type):
+        fields = [[f.name, _canonical(getattr(item, f.name))] for f in dataclasses.fields(item) if f.compare]
+        return ["data", type(item).__qualname__, *fields]
+    raise TypeError(f"{type(item).__name__} has no content key")
+
+
+@functools.cache
+def code_version(*packages: str) -> str:
+    """Version of the code that makes results: a digest of its source and of the libraries below it.
+
+    Parameters
+    ----------
+    *packages : str
+        Subpackages of fegear to count in; all of it by default.
+    """
+    from importlib.metadata import PackageNotFoundError, version
+
+    root = Path(__file__).parent
+    digest = hashlib.sha256()
+    for folder in [root / name for name in packages] or [root]:
+        for path in sorted(folder.rglob("*.py")):
+            digest.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
+    for library in _LIBRARIES:
+        try:
+            digest.update(f"{library} {version(library)}".encode())
+        except PackageNotFoundError:  # a program without it makes no result that depends on it
+            continue
+    return digest.hexdigest()

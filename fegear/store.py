@@ -1,0 +1,181 @@
+"""Results kept on disk by their content: whole or absent, checked on reading, bounded in size."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import tempfile
+import time
+from contextvars import ContextVar
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+#: First bytes of an entry; the SHA-256 of the rest follows.
+_MAGIC = b"fegear1\n"
+_HEAD = len(_MAGIC) + 32
+_SUFFIX = ".entry"
+#: After pruning, this share of the limit is left, so that not every write prunes.
+_KEEP = 0.9
+#: Temporary files older than this were left behind by a killed process [s].
+_ABANDONED = 3600.0
+_GIB = 1 << 30
+
+
+def cache_folder() -> Path:
+    """Where fegear keeps results between runs: ``FEGEAR_CACHE``, else the user's cache folder of the system."""
+    given = os.environ.get("FEGEAR_CACHE")
+    if given:
+        return Path(given)
+    import platformdirs
+
+    return Path(platformdirs.user_cache_dir("fegear", appauthor=False))
+
+
+@dataclass(frozen=True, slots=True)
+class Store:
+    """A folder of entries by key.
+
+    Parameters
+    ----------
+    folder : Path
+        Made when the first entry is written.
+    limit : int
+        Bytes that all entries together may take; the ones unused for longest go first.
+    """
+
+    folder: Path
+    limit: int = _GIB
+
+    def _place(self, key: str) -> Path:
+        return self.folder / key[:2] / f"{key}{_SUFFIX}"
+
+    def __contains__(self, key: str) -> bool:
+        """Whether there is an entry, sound or not."""
+        return self._place(key).is_file()
+
+    def read(self, key: str) -> bytes | None:
+        """Return an entry; None if there is none or it is damaged."""
+        place = self._place(key)
+        try:
+            data = place.read_bytes()
+        except OSError:
+            return None
+        payload = data[_HEAD:]
+        if data[:_HEAD] != _MAGIC + hashlib.sha256(payload).digest():
+            return None
+        with contextlib.suppress(OSError):  # tells when it was last of use; a folder may be read-only
+            os.utime(place)
+        return payload
+
+    def write(self, key: str, payload: bytes) -> None:
+        """Keep an entry: it appears whole or not at all, even if the process is killed meanwhile.
+
+        Raises
+        ------
+        OSError
+            If the folder cannot be written to.
+        """
+        place = self._place(key)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=".", dir=place.parent)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(_MAGIC + hashlib.sha256(payload).digest() + payload)
+            Path(name).replace(place)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                Path(name).unlink()
+            raise
+        self._prune()
+
+    def _prune(self) -> None:
+        entries = []
+        for path in self.folder.glob("*/*"):
+            with contextlib.suppress(OSError):  # another process may prune as well
+                stat = path.stat()
+                if path.suffix == _SUFFIX:
+                    entries.append((stat.st_mtime, stat.st_size, path))
+                elif path.name.startswith(".") and time.time() - stat.st_mtime > _ABANDONED:
+                    path.unlink()
+        total = sum(size for _, size, _ in entries)
+        if total <= self.limit:
+            return
+        for _, size, path in sorted(entries):
+            with contextlib.suppress(OSError):
+                path.unlink()
+            total -= size
+            if total <= _KEEP * self.limit:
+                return
+
+    @contextlib.contextmanager
+    def claim(self, key: str) -> Iterator[None]:
+        """Hold a key, so that of several processes that want the same entry one makes it and the others wait.
+
+        The system releases it when a process dies. Where it cannot be held (a file system without locks, Windows),
+        nothing is: then two processes may make the same entry, which is whole all the same.
+        """
+        try:
+            import fcntl
+
+            place = self.folder / "claims" / key[:2]
+            place.parent.mkdir(parents=True, exist_ok=True)
+            file = place.open("ab")
+        except (ImportError, OSError):
+            yield
+            return
+        with file:
+            with contextlib.suppress(OSError):
+                fcntl.flock(file, fcntl.LOCK_EX)
+            yield
+
+
+class ShapeKeeper:
+    """The store of solved tooth shapes in use, and how often it helped.
+
+    Attributes
+    ----------
+    solved, read : int
+        Shapes that were solved, and that were read from the store.
+    spared : float
+        Seconds that the shapes read took when they were solved.
+    """
+
+    def __init__(self, store: Store) -> None:
+        self.store = store
+        self.solved, self.read, self.spared = 0, 0, 0.0
+
+    def count(self, solved: int, read: int, spared: float) -> None:
+        """Add what happened elsewhere, in another process for example."""
+        self.solved += solved
+        self.read += read
+        self.spared += spared
+
+
+_keeper: ContextVar[ShapeKeeper | None] = ContextVar("fegear_shape_keeper", default=None)
+
+
+def shape_keeper() -> ShapeKeeper | None:
+    """Return the keeper of solved tooth shapes in use; None where shapes are solved afresh."""
+    return _keeper.get()
+
+
+@contextlib.contextmanager
+def keeping_shapes(folder: Path | None = None) -> Iterator[ShapeKeeper]:
+    """Keep solved tooth shapes on disk inside the block; numbers are the same with and without, to the last bit.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        By default `cache_folder`.
+    """
+    keeper = ShapeKeeper(Store((folder or cache_folder()) / "shapes"))
+    token = _keeper.set(keeper)
+    try:
+        yield keeper
+    finally:
+        _keeper.reset(token)

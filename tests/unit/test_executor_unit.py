@@ -1,0 +1,132 @@
+"""Points are computed once, in parallel, whoever computes them; what goes wrong at one is that one's value."""
+
+from __future__ import annotations
+
+import functools
+import math
+import operator
+import os
+import re
+import subprocess
+import sys
+import time
+
+import pytest
+
+from fegear.errors import InputError
+from fegear.scene.executor import Failure, computing_by, count_kept, map_points
+from fegear.store import Store
+
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+
+
+def test_results_come_in_order_and_failures_are_values(tmp_path):
+    told = []
+    store = Store(tmp_path)
+    points = [4.0, -1.0, 2.0, 4.0]
+    found = map_points(math.sqrt, points, store=store, progress=told.append)
+    assert found[0] == found[3] == 2.0
+    assert found[2] == math.sqrt(2.0)
+    assert isinstance(found[1], Failure)
+    assert found[1].kind == "ValueError"
+    assert told[0] == 0.0
+    assert told[-1] == 1.0
+    assert told == sorted(told)
+    # An unforeseen error is no lasting result; the others are.
+    assert count_kept(math.sqrt, points, store) == 3
+    assert map_points(math.sqrt, points, store=store) == found
+
+
+def test_a_process_that_dies_takes_no_other_point_with_it():
+    found = map_points(functools.partial(map, os._exit), [7], workers=2)
+    assert isinstance(found[0], Failure)  # a map is no plain data, and nothing died yet
+    died = map_points(os._exit, [3, 4], workers=2)
+    assert all(isinstance(one, Failure) and "process died" in one.reason for one in died)
+
+
+def test_functions_without_a_name_are_refused():
+    with pytest.raises(ValueError, match="function of a module"):
+        map_points(lambda x: x, [1])
+
+
+def test_workers_use_one_thread_each_and_leave_the_environment_alone(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    assert map_points(os.getenv, ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"]) == ("1", "1")
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+
+
+def test_a_store_that_cannot_be_written_to_is_told(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be written to"):
+        map_points(math.sqrt, [1.0], store=Store(tmp_path / "file"))
+
+
+@pytest.fixture(scope="module")
+def scheduler():
+    """A Dask scheduler with one worker on this machine."""
+    pytest.importorskip("distributed")
+    program = (
+        "from dask.distributed import LocalCluster\n"
+        "import sys\n"
+        "if __name__ == '__main__':\n"
+        "    with LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as cluster:\n"
+        "        print(cluster.scheduler_address, flush=True)\n"
+        "        sys.stdin.read()\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=ENVIRONMENT
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    yield process.stdout.readline().strip()
+    process.stdin.close()
+    process.wait(timeout=30)
+
+
+def test_a_cluster_gives_the_same(scheduler, tmp_path):
+    points = [2.0, -1.0, 3.0]
+    assert map_points(math.sqrt, points, scheduler=scheduler) == map_points(math.sqrt, points)
+    with computing_by(scheduler):
+        assert map_points(operator.neg, [1, 2.5], store=Store(tmp_path)) == (-1, -2.5)
+    assert count_kept(operator.neg, [1, 2.5], Store(tmp_path)) == 2
+
+
+def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("fegear.scene.executor._PATIENCE", 0.5)
+    with pytest.raises(InputError, match=re.escape("--scheduler = tcp://127.0.0.1:9: does not answer")):
+        map_points(math.sqrt, [1.0], scheduler="tcp://127.0.0.1:9")
+
+
+def test_no_worker_outlives_a_killed_parent():
+    program = (
+        "import os, time\n"
+        "from fegear.scene.executor import map_points\n"
+        "if __name__ == '__main__':\n"
+        "    print(os.getpid(), flush=True)\n"
+        "    map_points(time.sleep, [600, 601], workers=2)\n"
+    )
+    group = subprocess.Popen(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, env=ENVIRONMENT, start_new_session=True
+    )
+    assert group.stdout is not None
+    group.stdout.readline()
+
+    def members() -> list[str]:
+        listing = subprocess.run(
+            ["ps", "-o", "pid=,args=", "-g", str(group.pid)], capture_output=True, text=True, check=False
+        )
+        return [line for line in listing.stdout.splitlines() if "spawn_main" in line]
+
+    for _ in range(100):
+        if len(members()) >= 2:
+            break
+        time.sleep(0.1)
+    assert len(members()) >= 2
+    group.kill()
+    group.wait()
+    for _ in range(100):
+        if not members():
+            break
+        time.sleep(0.1)
+    assert members() == []

@@ -1,0 +1,198 @@
+"""What is kept on disk comes back bit for bit or not at all, and the store stays within its size."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from fegear.fem import gear as fem_gear
+from fegear.fem import solve_gear
+from fegear.fem.settings import MeshSettings
+from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.plain import content_key, pack, unpack
+from fegear.store import Store, cache_folder, keeping_shapes
+
+COARSE = MeshSettings().scaled(2.0)
+
+plain = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**70), 2**70)
+    | st.floats(allow_nan=False)
+    | st.text()
+    | hnp.arrays(st.sampled_from([np.float64, np.int32, np.bool_]), hnp.array_shapes(min_dims=0, min_side=0)),
+    lambda inner: st.lists(inner) | st.lists(inner).map(tuple) | st.dictionaries(st.text() | st.integers(), inner),
+    max_leaves=12,
+)
+
+
+def same(a, b) -> bool:
+    if isinstance(a, np.ndarray):
+        return isinstance(b, np.ndarray) and a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+    if isinstance(a, (list, tuple)):
+        return type(a) is type(b) and len(a) == len(b) and all(map(same, a, b))
+    if isinstance(a, dict):
+        return list(a) == list(b) and all(same(a[k], b[k]) for k in a)
+    return type(a) is type(b) and repr(a) == repr(b)
+
+
+@given(plain)
+def test_packed_data_come_back_bit_for_bit(value):
+    assert same(unpack(pack(value)), value)
+
+
+def test_memory_order_and_special_floats_survive():
+    a = np.asfortranarray(np.arange(12.0).reshape(3, 4))
+    special = np.array([np.nan, np.inf, -0.0, 5e-324])
+    found = unpack(pack({"a": a, "special": special, "texts": np.array(["ä", "bcd"]), "nan": float("nan")}))
+    assert found["a"].flags.f_contiguous
+    assert found["special"].tobytes() == special.tobytes()
+    assert list(found["texts"]) == ["ä", "bcd"]
+    assert np.isnan(found["nan"])
+
+
+@pytest.mark.parametrize("value", [object(), {1, 2}, np.array([object()]), lambda: 0])
+def test_nothing_but_plain_data_is_packed(value):
+    with pytest.raises(TypeError):
+        pack(value)
+    with pytest.raises(TypeError):
+        content_key(value)
+
+
+@given(st.binary(max_size=64))
+def test_foreign_bytes_are_no_packed_data(data):
+    try:
+        found = unpack(data)
+    except ValueError:
+        return
+    assert pack(found)[:8] == data[:8]  # a few short ones are well formed by chance
+
+
+def test_keys_tell_content_apart_and_nothing_else():
+    tooth = Tooth(20, BasicRack())
+    assert content_key(tooth, 1.0) == content_key(Tooth(20, BasicRack()), 1.0)
+    assert content_key({"a": 1, "b": 2}) == content_key({"b": 2, "a": 1})
+    assert content_key(-0.0) == content_key(0.0)
+    different = [1, 1.0, "1", True, None, [1], {"1": 1}, np.array([1]), np.array([1.0]), tooth, Tooth(21, BasicRack())]
+    assert len({content_key(item) for item in different}) == len(different)
+
+
+def test_damaged_entries_are_ignored_and_replaced(tmp_path):
+    store = Store(tmp_path)
+    key = content_key("x")
+    store.write(key, b"payload")
+    (place,) = tmp_path.rglob("*.entry")
+    whole = place.read_bytes()
+    for damaged in (b"", whole[:-1], whole[:20], whole[:-1] + b"X", b"other" + whole):
+        place.write_bytes(damaged)
+        assert store.read(key) is None
+    store.write(key, b"payload")
+    assert store.read(key) == b"payload"
+    assert store.read(content_key("y")) is None
+
+
+def test_the_store_drops_what_was_unused_for_longest(tmp_path):
+    store = Store(tmp_path, limit=10_000)
+    keys = [content_key(i) for i in range(12)]
+    for age, key in enumerate(keys[:8]):
+        store.write(key, bytes(1000))
+        (place,) = tmp_path.rglob(f"{key}.entry")
+        os.utime(place, (1e9 + age, 1e9 + age))
+    assert store.read(keys[0]) is not None  # now it is the youngest
+    for key in keys[8:]:
+        store.write(key, bytes(1000))
+    sizes = [path.stat().st_size for path in tmp_path.rglob("*.entry")]
+    assert 5000 < sum(sizes) <= 10_000
+    assert keys[0] in store
+    assert keys[11] in store
+    assert keys[1] not in store
+
+
+def test_the_cache_folder_can_be_chosen(monkeypatch, tmp_path):
+    monkeypatch.setenv("FEGEAR_CACHE", str(tmp_path / "here"))
+    assert cache_folder() == tmp_path / "here"
+    monkeypatch.delenv("FEGEAR_CACHE")
+    assert cache_folder().name == "fegear"
+
+
+def numbers(gear: Gear) -> list[bytes]:
+    """Every kind of number that a solution gives, solved or read afresh."""
+    fem_gear.influence_of_shape.cache_clear()
+    known = solve_gear(gear, COARSE)
+    r = np.linspace(known.lowest_radius, known.highest_radius, 7)
+    return [
+        known.self_compliance(r, 2e-5).tobytes(),
+        known.self_error(r, 2e-5).tobytes(),
+        known.neighbour(1, r, r).tobytes(),
+        known.neighbour_error(-1, r, r).tobytes(),
+        *(known.largest_root_stress(0, side, r)[0].tobytes() for side in ("tension", "compression")),
+        known.fillet_stress(1, "tension", r).tobytes(),
+    ]
+
+
+def test_a_shape_is_solved_once_and_read_bit_for_bit(tmp_path):
+    gear, larger = (Gear(Tooth(20, BasicRack()), m, 5.0 * m, 1e-3) for m in (1e-3, 2e-3))
+    fresh = numbers(gear)
+    with keeping_shapes(tmp_path) as keeper:
+        assert numbers(gear) == fresh
+        assert (keeper.solved, keeper.read) == (2, 0)  # the second is for the error
+        assert numbers(gear) == fresh
+        assert (keeper.solved, keeper.read) == (2, 2)
+        assert keeper.spared > 0.0
+        numbers(larger)  # the same shape in another size
+        assert (keeper.solved, keeper.read) == (2, 4)
+        for place in (tmp_path / "shapes").rglob("*.entry"):
+            place.write_bytes(place.read_bytes()[:-5])
+        assert numbers(gear) == fresh
+        assert (keeper.solved, keeper.read) == (4, 4)
+
+
+def test_a_closed_pipe_is_an_error_after_meshing_too():
+    program = (
+        "import os\n"
+        "from fegear.fem.sector import mesh_sector\n"
+        "from fegear.fem.settings import MeshSettings\n"
+        "from fegear.geometry import Tooth\n"
+        "mesh_sector(Tooth(20), 5.0, MeshSettings().scaled(3.0))\n"
+        "reader, writer = os.pipe()\n"
+        "os.close(reader)\n"
+        "try:\n"
+        "    os.write(writer, b'x')\n"
+        "except BrokenPipeError:\n"
+        "    print('told')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.stdout == "told\n", done.stderr
+
+
+def test_a_cache_that_cannot_be_written_costs_time_only(tmp_path):
+    (tmp_path / "shapes").write_text("a file where the folder should be")
+    gear = Gear(Tooth(20, BasicRack()), 1e-3, 5e-3, 1e-3)
+    with keeping_shapes(tmp_path) as keeper:
+        assert len(numbers(gear)) == 7
+        assert (keeper.solved, keeper.read) == (2, 0)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"poisson_ratio": 0.31}, {"bore": 5.1e-3}, {"plane": "stress"}, {"shift": 0.1}, {"settings": COARSE.scaled(1.1)}],
+)
+def test_whatever_changes_the_solution_changes_the_key(change, tmp_path):
+    from fegear.geometry import Material
+
+    def solve(poisson_ratio=0.3, bore=5e-3, plane="strain", shift=0.0, settings=COARSE):
+        fem_gear.influence_of_shape.cache_clear()
+        gear = Gear(Tooth(20, BasicRack(), shift), 1e-3, bore, 1e-3, Material(2e11, poisson_ratio, 7850.0), plane)
+        solve_gear(gear, settings, estimate_error=False)
+
+    with keeping_shapes(tmp_path) as keeper:
+        solve()
+        solve(**change)
+        assert (keeper.solved, keeper.read) == (2, 0)

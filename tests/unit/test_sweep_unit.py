@@ -1,0 +1,267 @@
+"""Sweeps: axes as users write them, one labelled dataset, failures in words, and the same bits however it was run."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from fegear.errors import InputError
+from fegear.scene.axis import read_axis
+from fegear.scene.sweep import point_content, sweep_case
+
+CASE = """
+title = "A pinion and its mate"
+results = ["geometry"]
+[gear.a]
+teeth = 20
+module = "2 mm"
+bore_radius = "10 mm"
+[gear.b]
+teeth = 31
+module = "2 mm"
+bore_radius = "15 mm"
+[pair.I]
+driver = "a"
+driven = "b"
+[stiffness]
+gear = "a"
+positions = 5
+contact_half_width = "0.05 mm"
+[accuracy]
+tolerance = 0.5
+"""
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+#: The shapes of 5 profile shifts under 40 contact widths.
+GRID = (
+    "--set", 'results=["stiffness"]',
+    "--over", "gear.a.profile_shift=-0.1:0.7:5",
+    "--over", "stiffness.contact_half_width=0.02:0.215:40:mm",
+)  # fmt: skip
+
+
+@pytest.fixture
+def case(tmp_path):
+    path = tmp_path / "two.toml"
+    path.write_text(CASE)
+    return path
+
+
+def command(*arguments: object) -> list[str]:
+    return [sys.executable, "-c", "from fegear.cli import main; main()", "sweep", *map(str, arguments)]
+
+
+def fegear(*arguments: object, cwd, cache) -> subprocess.CompletedProcess:
+    environment = {**ENVIRONMENT, "FEGEAR_CACHE": str(cache)}
+    return subprocess.run(
+        command(*arguments), cwd=cwd, env=environment, capture_output=True, text=True, check=False, timeout=120
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "unit"),
+    [
+        ("k=-0.4:0.8:4", (-0.4, 0.0, 0.4, 0.8), ""),
+        ("k=0:1:11", tuple(i / 10 for i in range(11)), ""),
+        ("k=20:26:4", (20, 22, 24, 26), ""),
+        ("k=20:21:3", (20.0, 20.5, 21.0), ""),
+        ("k=1:1000:4:log", (1, 10, 100, 1000), ""),
+        ("k=10:20:3:mm", ("10 mm", "15 mm", "20 mm"), "mm"),
+        ("k=10 mm:20 mm:3", ("10 mm", "15 mm", "20 mm"), "mm"),
+        ("k=1:100:3:N/mm:log", ("1 N/mm", "10 N/mm", "100 N/mm"), "N/mm"),
+        ("k=3:3:1", (3,), ""),
+        ("k=0.1,0.25", (0.1, 0.25), ""),
+        ("k=1 mm,2 mm", ("1 mm", "2 mm"), "mm"),
+        ('k="ISO 53 A","ISO 53 B"', ("ISO 53 A", "ISO 53 B"), ""),
+        ("k=fe,cornell", ("fe", "cornell"), ""),
+        ("k=[true, false]", (True, False), ""),
+    ],
+)
+def test_axes_are_read_as_a_user_means_them(text, values, unit):
+    axis = read_axis(text)
+    assert (axis.key, axis.values, axis.unit) == ("k", values, unit)
+    assert [type(value) for value in axis.values] == [type(value) for value in values]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["k", "k=", "=1:2:3", "k=1:2", "k=1:2:0", "k=1:2:x", "k=a:b:3", "k=1 mm:2 cm:3", "k=1:2:1", "k=0:1:3:log",
+     "k=1,1", "k=[1, nan]", "k=1:2:3:4:5:6", "k=1:2:10000000"],
+)  # fmt: skip
+def test_axes_that_mean_nothing_are_refused(text):
+    with pytest.raises(InputError, match="--over"):
+        read_axis(text)
+
+
+def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    out = tmp_path / "out"
+    axes = (
+        "--over",
+        "gear.a.teeth=18:24:3",
+        "--over",
+        "gear.b.module=2:2:1:mm",
+        "--over",
+        "gear.a.profile_shift=0,0.3",
+    )
+    done = fegear(case, *axes, "--out", out, cwd=tmp_path, cache=tmp_path / "cache")
+    assert done.returncode == 0, done.stderr
+    assert sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()) == [
+        "summary.json", "sweep.nc", "tables/sweep.csv",
+    ]  # fmt: skip
+    with xarray.open_dataset(out / "sweep.nc") as data:
+        assert dict(data.sizes)["gear.a.teeth"] == 3
+        assert data["gear.b.module"].attrs["units"] == "mm"
+        assert (data["failure"] == "").all()
+        ratio = data["I.contact_ratio"].sel({"gear.a.teeth": 21, "gear.a.profile_shift": 0.3}).item()
+        radius = data["geometry.tip_radius"].sel({"gear.a.teeth": 21}).values
+        assert data["geometry.tip_radius"].attrs["units"] == "mm"
+    run = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(case), "--no-plots"]
+    changes = ("--set", "gear.a.teeth=21", "--set", "gear.a.profile_shift=0.3", "--out", str(tmp_path / "one"))
+    subprocess.run([*run, *changes], cwd=tmp_path, env=ENVIRONMENT, check=True, capture_output=True, timeout=60)
+    one = json.loads((tmp_path / "one" / "summary.json").read_text())["results"]
+    assert ratio == one["I.contact_ratio"]["value"]
+    assert radius[0] == pytest.approx(np.array([[23.0, 33.0], [23.6, 33.0]]))
+    with (out / "tables" / "sweep.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["gear.a.teeth"] for row in rows] == ["18", "18", "21", "21", "24", "24"]
+    assert float(rows[3]["I.contact_ratio"]) == pytest.approx(ratio, rel=1e-11)
+
+
+def test_failures_are_values_with_a_reason_and_told_in_groups(case, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    done = fegear(case, "--over", "gear.a.profile_shift=0:2:9", cwd=tmp_path, cache=tmp_path / "cache")
+    assert done.returncode == 0, done.stderr
+    notes = [line for line in done.stdout.splitlines() if "failed" in line]
+    with xarray.open_dataset(tmp_path / "results" / "two_sweep" / "sweep.nc") as data:
+        failed = data["failure"].values != ""
+        assert (np.isnan(data["I.contact_ratio"].values) == failed).all()
+        assert "gear.a" in data["failure"].values[-1]
+    assert 0 < failed.sum() < 9
+    assert 1 <= len(notes) < failed.sum()
+    counts = [int(note.split()[1]) for note in notes]
+    assert sum(counts) == failed.sum()
+    assert f"{9 - failed.sum()} of 9 points have results." in done.stdout
+    nothing = fegear(case, "--over", "gear.a.profile_shift=5:6:2", cwd=tmp_path, cache=tmp_path / "cache")
+    assert nothing.returncode == 1
+    assert "0 of 2 points have results." in nothing.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--over", "gear.a.teth=20:22:3"), 'the nearest known name is "teeth"'),
+        (("--over", "gear.c.teeth=20:22:3"), '"c" is not in this case'),
+        (("--over", "gear.a.teeth=20:22:3", "--over", "gear.a.teeth=1:2:3"), "given twice"),
+        (("--over", "gear.a.teeth=20:22:3", "--out", "/proc/none"), "cannot be written to"),
+        ((), "Missing option '--over'"),
+    ],
+)
+def test_sweeps_that_cannot_be_are_refused_before_they_start(arguments, words, case, tmp_path):
+    done = fegear(case, *arguments, cwd=tmp_path, cache=tmp_path / "cache")
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["two.toml"]
+
+
+def test_a_killed_sweep_of_200_points_goes_on_and_equals_an_uninterrupted_one_bit_for_bit(case, tmp_path):
+    whole = fegear(case, *GRID, "--out", "whole", cwd=tmp_path, cache=tmp_path / "one")
+    assert whole.returncode == 0, whole.stderr
+    assert "200 of 200 points have results." in whole.stdout
+    # 5 shapes, each on two meshes: 200 points and two workers never solved one twice.
+    summary = json.loads((tmp_path / "whole" / "summary.json").read_text())
+    assert summary["timings"]["shapes_solved"] == 10
+
+    kept = tmp_path / "two"
+    environment = {**ENVIRONMENT, "FEGEAR_CACHE": str(kept)}
+    process = subprocess.Popen(
+        command(case, *GRID, "--out", "resumed"),
+        cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    for _ in range(2000):
+        finished = len(list((kept / "points").rglob("*.entry")))
+        if finished >= 30 or process.poll() is not None:
+            break
+        time.sleep(0.01)
+    process.kill()
+    process.wait()
+    assert 30 <= finished < 200
+    assert not (tmp_path / "resumed").exists()
+
+    resumed = fegear(case, *GRID, "--out", "resumed", cwd=tmp_path, cache=kept)
+    assert resumed.returncode == 0, resumed.stderr
+    told = json.loads((tmp_path / "resumed" / "summary.json").read_text())["timings"]
+    assert 30 <= told["points_kept_from_earlier"] < 200
+    assert told["shapes_solved"] < 10
+    for name in ("sweep.nc", "tables/sweep.csv"):
+        assert (tmp_path / "resumed" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "resumed", "two", "two.toml", "whole"]
+
+
+def test_executors_are_bit_equal(case, tmp_path):
+    pytest.importorskip("distributed")
+    program = (
+        "from dask.distributed import LocalCluster\n"
+        "import sys\n"
+        "if __name__ == '__main__':\n"
+        "    with LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as cluster:\n"
+        "        print(cluster.scheduler_address, flush=True)\n"
+        "        sys.stdin.read()\n"
+    )
+    cluster = subprocess.Popen(
+        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=ENVIRONMENT
+    )
+    assert cluster.stdin is not None
+    assert cluster.stdout is not None
+    try:
+        address = cluster.stdout.readline().strip()
+        axis = ("--set", 'results=["stiffness"]', "--over", "gear.a.profile_shift=0:2:5", "--no-cache")
+        for name, more in (("cores", ()), ("one", ("--workers", 1)), ("cluster", ("--scheduler", address))):
+            done = fegear(case, *axis, *more, "--out", name, cwd=tmp_path, cache=tmp_path / "cache")
+            assert done.returncode == 0, done.stderr
+    finally:
+        cluster.stdin.close()
+        cluster.wait(timeout=30)
+    first = (tmp_path / "cores" / "sweep.nc").read_bytes()
+    assert (tmp_path / "one" / "sweep.nc").read_bytes() == first
+    assert (tmp_path / "cluster" / "sweep.nc").read_bytes() == first
+    assert not (tmp_path / "cache").exists()
+
+
+def test_a_changed_file_that_the_case_names_is_computed_anew(tmp_path):
+    point = {"document": {"title": "x", "pair": {"I": {"file": "c.csv"}}}, "name": "x", "folder": str(tmp_path)}
+    keys = [point_content(point)]
+    for text in ("1", "2"):
+        (tmp_path / "c.csv").write_text(text)
+        keys.append(point_content(point))
+    assert keys[0] != keys[1] != keys[2]
+    assert point_content({**point, "document": {**point["document"], "title": "y"}}) == keys[2]
+
+
+def test_sweeps_work_from_python_too(case):
+    found = sweep_case(case, [read_axis("gear.a.teeth=20:22:3")], workers=2)
+    assert [point.values[0].name for point in found.points] == ["I.contact_ratio"] * 3
+    assert found.kept == 0
+    assert found.place(2) == "gear.a.teeth = 22"
+
+
+def test_a_run_reads_the_cache_only_when_asked_and_then_says_so(case, tmp_path):
+    run = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(case), "--no-plots"]
+    told = []
+    for more in ((), ("--cache",), ("--cache",), ()):
+        arguments = [*run, "--set", 'results=["stiffness"]', "--out", "o", *more]
+        environment = {**ENVIRONMENT, "FEGEAR_CACHE": str(tmp_path / "cache")}
+        subprocess.run(arguments, cwd=tmp_path, env=environment, check=True, capture_output=True, timeout=60)
+        found = json.loads((tmp_path / "o" / "summary.json").read_text())
+        told.append((found["from_cache"], [r for r in found["remarks"] if "disk cache" in r], found["results"]))
+    assert [bool(cached) for cached, _, _ in told] == [False, False, True, False]
+    assert [len(remarks) for _, remarks, _ in told] == [0, 0, 1, 0]
+    assert told[2][0]["stiffness of a"]["shapes"] == 2
+    assert told[2][0]["stiffness of a"]["seconds_when_solved"] > 0.0
+    assert all(results == told[0][2] for _, _, results in told)
