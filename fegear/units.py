@@ -149,6 +149,7 @@ PER_SI: dict[str, float] = {
     "GPa": 1e-9,
     "N/mm": 1e-3,
     "N/um": 1e-6,
+    "um/N": 1e6,
     "um.mm/N": 1e9,
     "MPa.mm/N": 1e-3,
     "Hz": 1.0,

@@ -131,6 +131,8 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path) -> Scen
         _known("stiffness.gear", case.stiffness.gear, gears, "gear")
     if case.stiffness.pair is not None:
         _known("stiffness.pair", case.stiffness.pair, pairs, "pair")
+    if case.design is not None and case.design.pair is not None:
+        _known("design.pair", case.design.pair, pairs, "pair")
     return Scene(case, name, folder, gears, pairs, helical_gears, helical_pairs)
 
 
@@ -189,6 +191,8 @@ def part_models(annotation: object) -> list[type[BaseModel]]:
         return part_models(get_args(annotation)[0])
     if get_origin(annotation) is dict:
         return part_models(get_args(annotation)[1])
+    if get_origin(annotation) is list:
+        return part_models(get_args(annotation)[0])
     if get_origin(annotation) in (Union, UnionType):
         return [model for argument in get_args(annotation) for model in part_models(argument)]
     return []

@@ -21,6 +21,7 @@ from fegear.scene.case.part import (
     at,
     refuse,
 )
+from fegear.scene.case.relief import ReliefPart, SpacingErrorsPart
 
 if TYPE_CHECKING:
     from fegear.geometry.helical_gear import HelicalGear
@@ -86,6 +87,8 @@ class GearPart(Part):
     plane: Literal["strain", "stress", "auto"] = "strain"
     material: MaterialPart = Field(default_factory=MaterialPart)
     tooth_mesh: str | None = None
+    relief: ReliefPart | None = None
+    spacing_errors: SpacingErrorsPart | None = None
     helix_angle: Angle | None = None
     hand: Literal["left", "right", "spur"] | None = None
     normal_module: PositiveLength | None = None

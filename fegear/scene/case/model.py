@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from fegear.scene.case.accuracy import AccuracyPart
+from fegear.scene.case.design import DesignPart
 from fegear.scene.case.effects import EffectsPart
 from fegear.scene.case.gear import GearPart
 from fegear.scene.case.helical import ToothContactPart
@@ -28,5 +29,6 @@ class Case(Part):
     study: StudyPart | None = None
     tooth_contact: ToothContactPart = Field(default_factory=ToothContactPart)
     transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
+    design: DesignPart | None = None
     effects: EffectsPart = Field(default_factory=EffectsPart)
     accuracy: AccuracyPart = Field(default_factory=AccuracyPart)

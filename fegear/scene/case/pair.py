@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from fegear.errors import InputError
 from fegear.geometry import GearPair
 from fegear.scene.case.helical import MisalignmentPart, ModificationPart, build_pair
-from fegear.scene.case.part import Length, Part, PositiveForce, PositiveLength, PositiveTorque, at, refuse
+from fegear.scene.case.part import (
+    Length,
+    Part,
+    PositiveForce,
+    PositiveLength,
+    PositiveSpeed,
+    PositiveTorque,
+    at,
+    refuse,
+)
 
 if TYPE_CHECKING:
     from fegear.geometry import Gear
@@ -49,6 +58,8 @@ class PairPart(Part):
     centre_distance: PositiveLength | None = None
     load: PositiveForce | None = None
     torque: PositiveTorque | None = None
+    loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = None
+    speed: PositiveSpeed | None = None
     compliance: CompliancePart = Field(default_factory=CompliancePart)
     misalignment: MisalignmentPart | None = None
     modification: ModificationPart | None = None
@@ -92,7 +103,12 @@ class PairPart(Part):
             raise at(prefix, error, names) from None
 
     def normal_load(self, pair: GearPair) -> float | None:
-        """Load along the line of action [N], from the load or the driver's torque; None if neither is given."""
+        """Load along the line of action [N]: the load, the driver's torque, or the largest of loads; None without."""
         if self.torque is not None:
             return self.torque / pair.driver.base_radius
-        return self.load
+        return max(self.loads) if self.load is None and self.loads else self.load
+
+    def all_loads(self, pair: GearPair) -> tuple[float, ...]:
+        """Every load of the case along the line of action [N], ascending, the nominal one among them."""
+        nominal = self.normal_load(pair)
+        return tuple(sorted({*(self.loads or ()), *(() if nominal is None else (nominal,))}))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 from fegear.errors import FegearError, InputError
@@ -50,12 +50,14 @@ def _number(value: object) -> object:
 
 
 Number = Annotated[float, BeforeValidator(_number)]
+PositiveNumber = Annotated[float, BeforeValidator(_number), Field(gt=0.0)]
 Length = Annotated[float, quantity("length")]
 PositiveLength = Annotated[float, quantity("length", positive=True)]
 LengthOrZero = Annotated[float, quantity("length", not_negative=True)]
 Angle = Annotated[float, quantity("angle")]
 Force = Annotated[float, quantity("force")]
 PositiveForce = Annotated[float, quantity("force", positive=True)]
+PositiveSpeed = Annotated[float, quantity("speed", positive=True)]
 PositiveTorque = Annotated[float, quantity("torque", positive=True)]
 PositiveLineLoad = Annotated[float, quantity("line_load", positive=True)]
 PositivePressure = Annotated[float, quantity("pressure", positive=True)]

@@ -4,7 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fegear.scene.stages import crosscheck, geometry, root_stress_study, stiffness, tooth_contact, transmissibility
+from fegear.scene.stages import (
+    crosscheck,
+    geometry,
+    load_sharing,
+    loaded_pair,
+    relief,
+    relief_chart,
+    root_stress_history,
+    root_stress_study,
+    stiffness,
+    tooth_contact,
+    transmissibility,
+    transmission_error,
+)
 
 if TYPE_CHECKING:
     from fegear.scene.stage import Stage
@@ -16,6 +29,13 @@ STAGES: tuple[Stage, ...] = (
     stiffness.ROOT_STRESS,
     crosscheck.CROSSCHECK,
     root_stress_study.ROOT_STRESS_STUDY,
+    loaded_pair.LOADED_PAIR,
+    load_sharing.LOAD_SHARING,
+    transmission_error.TRANSMISSION_ERROR,
+    root_stress_history.ROOT_STRESS_HISTORY,
+    relief.RELIEF,
+    relief_chart.RELIEF_CHART,
+    relief_chart.ROBUSTNESS,
     tooth_contact.TOOTH_CONTACT,
     transmissibility.TRANSMISSIBILITY,
 )

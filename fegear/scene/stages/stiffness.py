@@ -11,7 +11,7 @@ from fegear.errors import InputError
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.settings import mesh_settings
 from fegear.scene.stage import Stage, Task
-from fegear.scene.tooth_mesh import own_sector_mesh
+from fegear.scene.tooth_influence import gear_influence
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -181,13 +181,12 @@ def _remarks(scene: Scene, name: str, t: StiffnessTable) -> tuple[str, ...]:
 
 
 def _run_stiffness(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
-    from fegear.fem import solve_gear, stiffness_table
+    from fegear.fem import stiffness_table
 
     gear, settings = scene.gears[name], mesh_settings(scene.case.accuracy)
     steps = iter(range(_STEPS))
     radii = load_radii(scene, name)
-    mesh = own_sector_mesh(scene, name)
-    influence = solve_gear(gear, settings, mesh=mesh, progress=lambda _title: progress(next(steps, _STEPS) / _STEPS))
+    influence = gear_influence(scene, name, lambda _title: progress(next(steps, _STEPS) / _STEPS))
     table = stiffness_table(gear, radii, contact_half_width(scene, name, radii), settings, influence=influence)
     told = {
         **asdict(settings),

@@ -1,0 +1,84 @@
+"""A finite-element source shifted by its own estimated error: what is left of the digits further down the chain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.contact.compliance import Side
+    from fegear.contact.fe_compliance import FiniteElementCompliance
+
+    Array = NDArray[np.float64]
+
+_POINTS = 25
+
+
+@dataclass(frozen=True)
+class ShiftedCompliance:
+    """A source whose own compliance, or whose neighbours', is off by the estimated error.
+
+    Parameters
+    ----------
+    base : FiniteElementCompliance
+    radii, own_error : ndarray
+        Added to c_0 over the radius [m], [m^2/N]; straight between the points.
+    neighbour_error : float
+        Added to every c_k [m^2/N].
+    """
+
+    base: FiniteElementCompliance
+    radii: Array
+    own_error: Array
+    neighbour_error: float = 0.0
+
+    @property
+    def reach(self) -> int:
+        """As the base."""
+        return self.base.reach
+
+    @property
+    def log_slope(self) -> float:
+        """As the base."""
+        return self.base.log_slope
+
+    power = 0.0
+    kinks = ()
+
+    def own(self, radius: ArrayLike) -> Array:
+        """c_0 and its error [m^2/N]."""
+        return np.asarray(
+            self.base.own(radius) + np.interp(np.asarray(radius, dtype=float), self.radii, self.own_error)
+        )
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """As the base."""
+        return self.base.reference_half_width(radius)
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k and its error [m^2/N]."""
+        return np.asarray(self.base.neighbour(k, radius_p, radius_q) + self.neighbour_error)
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """As the base."""
+        return self.base.root_stress(k, radius_q, side)
+
+    def describe(self) -> str:
+        """As the base, shifted."""
+        return f"{self.base.describe()}, shifted by its estimated error"
+
+
+def shifted_by_error(base: FiniteElementCompliance) -> tuple[ShiftedCompliance, ShiftedCompliance]:
+    """The source with its loaded tooth softer by the estimated error, and with its neighbours softer by theirs."""
+    known = base.influence
+    low = max(known.lowest_radius, known.gear.form_radius)
+    high = min(known.highest_radius, known.gear.involute_tip_radius)
+    radii = np.linspace(low, high, _POINTS)
+    own = known.self_error(radii, base.reference_half_width(radii))
+    few = np.linspace(low, high, 4)
+    beside = max((float(np.nanmax(known.neighbour_error(k, few, few))) for k in range(1, base.reach + 1)), default=0.0)
+    return ShiftedCompliance(base, radii, own), ShiftedCompliance(base, radii, np.zeros_like(own), beside)

@@ -1,0 +1,178 @@
+"""Stage ``root-stress-history``: root stress of one tooth of either gear on its way through the mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.scene.loaded_pair import MEMBERS, LoadedPair, check_relief, gear_name
+from fegear.scene.outcome import Column, Outcome, Table, Value
+from fegear.scene.stage import Stage
+from fegear.scene.stages.loaded_pair import EFFECTS, loaded_pair, needs_pair, solve_again, spur_pairs
+from fegear.scene.stages.transmission_error import roll_positions
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.contact import Engagement, Loaded
+    from fegear.geometry.pair import Member
+    from fegear.scene.load import Scene
+    from fegear.scene.stage import Done, Progress
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ToothStress:
+    """Largest root stresses of one tooth while its pair passes through the mesh; arrays of shape (P, L).
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+        Position of the tooth's contact [m].
+    tension, compression : ndarray
+        Largest tension below the loaded flank and most negative compression on the other side [Pa].
+    tension_error : ndarray
+        Estimated [Pa].
+    """
+
+    x: Array
+    tension: Array
+    compression: Array
+    tension_error: Array
+
+
+@dataclass(frozen=True)
+class RootStressData:
+    """What the stage hands to pictures."""
+
+    pair: LoadedPair
+    stress: dict[Member, ToothStress]
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_relief(scene, name)
+    source = scene.case.pair[name].compliance.source
+    if source != "fe":
+        raise InputError(f"pair.{name}.compliance.source", f'"{source}"', "knows no root stress", 'set source = "fe"')
+
+
+def _solve(e: Engagement, x: Array, loads: tuple[float, ...]) -> tuple[list[int], list[Loaded]]:
+    """Rows of the pairs and the loaded state for each: the same one unless teeth differ by their spacing errors."""
+    grid = e.grid(x)
+    rows = list(range(grid.contacts.number.size))
+    if not (e.driver_spacing.size or e.driven_spacing.size):
+        return rows, [e.solve(grid, loads)] * len(rows)
+    # The pair in row j is on the tooth of interest in base pitch number j.
+    return rows, [e.solve(grid, loads, int(grid.contacts.number[row])) for row in rows]
+
+
+def tooth_stress(pair: LoadedPair, member: Member) -> ToothStress:
+    """Follow one tooth of a gear from one end of the mesh to the other."""
+    from fegear.contact import root_stress_history
+
+    e = pair.engagement
+    rows, states = _solve(e, roll_positions(pair), pair.loads)
+    xs, tension, compression, error = [], [], [], []
+    known: dict[int, tuple[Array, Array, Array, Array]] = {}
+    for row, state in zip(rows, states, strict=True):
+        if id(state) not in known:
+            pulled = root_stress_history(e, state, member, "tension")
+            pressed = root_stress_history(e, state, member, "compression")
+            off = np.zeros_like(pulled.stress)
+            for other in pair.shifted:
+                again = solve_again(other, state.grid, state)
+                off = off + np.abs(root_stress_history(e, again, member, "tension").stress - pulled.stress)
+            known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
+        x, pull, press, off = known[id(state)]
+        xs.append(x[row])
+        tension.append(pull[row])
+        compression.append(press[row])
+        error.append(off[row] + _own_error(pair, member, state, row))
+    x = np.concatenate(xs)
+    order = np.argsort(x)
+    t, c, off = (np.concatenate(parts)[order] for parts in (tension, compression, error))
+    return ToothStress(x[order], t, c, off)
+
+
+def _own_error(pair: LoadedPair, member: Member, state: Loaded, row: int) -> Array:
+    """What the finite elements leave in the stress of the tooth's own load, shape (P, L) [Pa]."""
+    from fegear.contact.fe_compliance import FiniteElementCompliance
+
+    source = pair.engagement.compliance.source(member)
+    if not isinstance(source, FiniteElementCompliance):
+        return np.zeros(state.loads.shape[1:])
+    contacts = state.grid.contacts
+    radius = (contacts.radius_driver if member == "driver" else contacts.radius_driven)[row]
+    ends = source.influence.lowest_radius, source.influence.highest_radius
+    few = np.linspace(max(radius.min(), ends[0]), min(radius.max(), ends[1]), 9)
+    usual = source.influence.root_stress_error(0, "tension", few)
+    per_load = np.interp(radius, few, usual)
+    return np.asarray(per_load[:, None] * state.loads[row] / pair.engagement.compliance.face_width)
+
+
+def _table(name: str, gear: str, s: ToothStress, i: int, rate: float | None, loads: tuple[float, ...]) -> Table:
+    columns = [
+        Column("x", s.x, "mm", "position of the tooth's contact on the line of action"),
+        Column("stress", s.tension[:, i], "MPa", "largest tangential tension of the fillet below the loaded flank"),
+        Column("compression", s.compression[:, i], "MPa", "most negative stress of the other fillet"),
+        Column("stress_error", s.tension_error[:, i], "MPa", "estimated error of stress"),
+    ]
+    if rate is not None:
+        columns.insert(0, Column("t", (s.x - s.x[0]) / rate, "s", "from the first position"))
+    for k, load in enumerate(loads):
+        if k != i:
+            columns.append(Column(f"stress at {load:.6g} N", s.tension[:, k], "MPa", "as stress, under this load"))
+    return Table(f"root_stress_history_{name}", tuple(columns), f"Root stress of a tooth of gear {gear} in the mesh")
+
+
+def table_names(scene: Scene, name: str) -> dict[Member, str]:
+    """``<pair>_<gear>``; where a gear meshes with its like the driven one's name ends in ``_driven``."""
+    names = {member: gear_name(scene, name, member) for member in MEMBERS}
+    twins = names["driver"] == names["driven"]
+    return {m: f"{name}_{g}" + ("_driven" if twins and m == "driven" else "") for m, g in names.items()}
+
+
+def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+    pair = loaded_pair(done, name)
+    i = pair.loads.index(pair.nominal)
+    speed = scene.case.pair[name].speed
+    rate = None if speed is None else speed * pair.engagement.pair.driver.base_radius
+    tables, values = [], []
+    stress: dict[Member, ToothStress] = {}
+    for number, (member, label) in enumerate(table_names(scene, name).items()):
+        s = stress[member] = tooth_stress(pair, member)
+        progress((number + 1) / 2)
+        gear = gear_name(scene, name, member)
+        tables.append(_table(label, gear, s, i, rate, pair.loads))
+        worst, least = int(np.argmax(s.tension[:, i])), int(np.argmin(s.compression[:, i]))
+        values += [
+            Value(
+                f"{name}.{member}.largest_root_tension", float(s.tension[worst, i]), "MPa",
+                float(s.tension_error[worst, i]), f"gear {gear}, contact at x = {s.x[worst] * 1e3:.5g} mm",
+            ),
+            Value(
+                f"{name}.{member}.largest_root_compression", float(s.compression[least, i]), "MPa", None,
+                f"gear {gear}, contact at x = {s.x[least] * 1e3:.5g} mm",
+            ),
+            Value(
+                f"{name}.{member}.root_stress_range", float(np.ptp(s.tension[:, i])), "MPa", None,
+                "largest less smallest stress below the loaded flank over the mesh",
+            ),
+        ]  # fmt: skip
+    return Outcome(RootStressData(pair, stress), tuple(tables), tuple(values))
+
+
+ROOT_STRESS_HISTORY = Stage(
+    name="root-stress-history",
+    title="Root stress through the mesh",
+    results=("root-stress-history",),
+    subjects=spur_pairs,
+    run=_run,
+    needs=needs_pair,
+    check=_check,
+    effects=EFFECTS,
+)

@@ -1,0 +1,53 @@
+"""The finite-element solution of a gear, once for every stage that needs it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from fegear.scene.settings import mesh_settings
+from fegear.scene.tooth_mesh import own_sector_mesh
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.fem import GearInfluence
+    from fegear.scene.load import Scene
+
+
+def needed_reach(scene: Scene, name: str) -> int:
+    """How many neighbours on either side a gear's solution must know: as many as share the load in any of its pairs.
+
+    All stages ask for the same number, so that they find the same solution.
+    """
+    reach = 1
+    for key, part in scene.case.pair.items():
+        if key in scene.pairs and name in (part.driver, part.driven):
+            ratio = scene.pairs[key].contact_ratio
+            # A corner in contact before and after the path adds a pair at either end.
+            extra = 1 if scene.case.effects.corner_contact else 0
+            reach = max(reach, min(math.ceil(ratio * (1.0 - 1e-12)) - 1 + extra, scene.gears[name].teeth // 2 - 1))
+    return reach
+
+
+def gear_influence(scene: Scene, name: str, progress: Callable[[str], None] | None = None) -> GearInfluence:
+    """Solve a gear of the scene; equal shapes with equal settings are solved once in a process.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Name of the gear.
+    progress : callable, optional
+        Called with the name of each step as it starts.
+    """
+    from fegear.fem import solve_gear
+
+    mesh = own_sector_mesh(scene, name)
+    return solve_gear(
+        scene.gears[name],
+        mesh_settings(scene.case.accuracy),
+        reach=needed_reach(scene, name),
+        mesh=mesh,
+        progress=progress,
+    )
