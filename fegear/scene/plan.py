@@ -53,7 +53,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
     Raises
     ------
     InputError
-        If a result is unknown, or the scene lacks what a stage needs.
+        If a result is unknown, or the scene lacks what a stage needs: a part, or an effect.
     """
     by_name = {stage.name: stage for stage in stages}
     by_result: dict[str, list[Stage]] = {}
@@ -70,6 +70,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
                 reasons[task].append(reason)
             return
         stage = by_name[task.stage]
+        _require_effects(scene, stage)
         stage.check(scene, task.subject)
         reasons[task] = [reason]
         for need in stage.needs(scene, task.subject):
@@ -100,6 +101,20 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
     skipped = tuple((stage.name, _why_not(stage)) for stage in stages if stage.name not in running)
     used = {effect for step in steps for effect in step.effects}
     return Plan(steps, skipped, tuple(effect for effect in on if effect not in used))
+
+
+def _require_effects(scene: Scene, stage: Stage) -> None:
+    for need in stage.requires:
+        wanted = [result for result in scene.case.results if result in (need.results or stage.results)]
+        if (need.results and not wanted) or scene.case.effects.is_on(need.effect):
+            continue
+        who = f'"{wanted[0]}"' if wanted else f"stage {stage.name}"
+        raise InputError(
+            f"effects.{need.effect}",
+            "(off)",
+            f"is needed by {who}: {need.reason}",
+            f"write {need.effect} = {scene.case.effects.example(need.effect)} under [effects], or do not ask for {who}",
+        )
 
 
 def _why_not(stage: Stage) -> str:

@@ -11,6 +11,10 @@ if TYPE_CHECKING:
 
 #: Tolerance that the default settings are made for.
 DEFAULT_TOLERANCE = 1e-3
+#: Seconds of one gear with the default settings and its error estimate, on one core of a server, and how they grow with
+#: 1 / edge length: 0.22, 0.7, 6.3 and 30 s were measured for edges of 1.6, 1, 0.5 and 0.3 times the default, much the
+#: same from 12 to 100 teeth.
+_SECONDS, _GROWTH = 0.7, 3.15
 #: Root stress, the slowest of the results, converges with about the square of the edge length.
 _ORDER = 2.0
 _COARSEST, _FINEST = 1.6, 0.3
@@ -41,3 +45,12 @@ def mesh_settings(accuracy: AccuracyPart) -> MeshSettings:
         if getattr(accuracy, field.name) is not None
     }
     return replace(settings, **given)
+
+
+def seconds_of_gear(settings: MeshSettings) -> float:
+    """About how long the influence functions of one gear take, with their error estimate, from nothing [s]."""
+    from fegear.fem.settings import MeshSettings
+
+    usual = MeshSettings()
+    finer = usual.root_edge_length / settings.root_edge_length * usual.flank_edge_length / settings.flank_edge_length
+    return float(_SECONDS * (finer**0.5 * settings.order / usual.order) ** _GROWTH)

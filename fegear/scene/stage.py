@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
@@ -32,12 +33,49 @@ class Progress(Protocol):
 Done = Mapping[Task, "Outcome"]
 
 
+class Need(NamedTuple):
+    """An effect without which a stage has no meaning.
+
+    Attributes
+    ----------
+    effect : str
+        Its key under ``[effects]``.
+    reason : str
+        Clause that says why: "it is what the tooth force rises above the load by".
+    results : tuple of str
+        The wanted results that need it; empty if the stage itself does.
+    """
+
+    effect: str
+    reason: str
+    results: tuple[str, ...] = ()
+
+
+class Forecast(NamedTuple):
+    """What can be said of a task before it runs.
+
+    Attributes
+    ----------
+    settings : mapping
+        Settings that it will use, plain numbers and texts.
+    seconds : float or None
+        What it will take, alone on one core of a usual machine; None where nobody knows.
+    """
+
+    settings: Mapping[str, object] = MappingProxyType({})
+    seconds: float | None = None
+
+
 def _nothing(_scene: Scene, _subject: str) -> tuple[Task, ...]:
     return ()
 
 
 def _fine(_scene: Scene, _subject: str) -> None:
     return None
+
+
+def _unknown(_scene: Scene, _subject: str) -> Forecast:
+    return Forecast()
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +100,10 @@ class Stage:
         ``check(scene, subject)`` raises `InputError` when the scene lacks something the stage cannot do without.
     effects : tuple of str
         Effects that change what it computes.
+    requires : tuple of Need
+        Effects that must be on; a scene that leaves them off is refused with the remedy.
+    forecast : callable
+        ``forecast(scene, subject)`` -> `Forecast`, for ``fegear plan``.
     """
 
     name: str
@@ -72,3 +114,5 @@ class Stage:
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
     effects: tuple[str, ...] = ()
+    requires: tuple[Need, ...] = ()
+    forecast: Callable[[Scene, str], Forecast] = _unknown

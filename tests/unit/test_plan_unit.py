@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fegear.errors import InputError
+from fegear.fem.settings import MeshSettings
 from fegear.scene.load import build_scene
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.plan import make_plan
 from fegear.scene.run import run_plan
-from fegear.scene.stage import Stage, Task
+from fegear.scene.settings import seconds_of_gear
+from fegear.scene.stage import Need, Stage, Task
 
 GEARS = {"a": {"teeth": 28, "module": "1 mm"}, "b": {"teeth": 35, "module": "1 mm"}}
 
@@ -107,3 +110,36 @@ def test_tables_are_read_only_and_rectangular():
         column.values[0] = 0.0
     with pytest.raises(ValueError, match="different length"):
         Table("t", (column, Column("n", np.arange(3))))
+
+
+def test_a_result_without_an_effect_that_it_needs_is_refused_with_the_remedy():
+    stages = tuple(
+        replace(stage, requires=needs)
+        for stage, needs in zip(
+            Workshop().stages,
+            ((), (Need("relief", "there is nothing to grind without it"),), (Need("friction", "so", ("both",)),), ()),
+            strict=True,
+        )
+    )
+    with pytest.raises(
+        InputError, match=r"effects.relief = \(off\): is needed by \"teeth\": there is nothing"
+    ) as caught:
+        make_plan(scene("teeth"), stages)
+    assert "write relief = true under [effects]" in str(caught.value)
+    with pytest.raises(InputError, match="is needed by stage tooth"):  # as a need of another
+        make_plan(scene("pairs"), stages)
+    on = {"relief": True}
+    assert make_plan(scene("teeth", effects=on), stages).steps
+    assert make_plan(scene("pairs", effects=on), stages).steps, "only the other result of that stage needs friction"
+    with pytest.raises(InputError, match=r"effects.friction = \(off\): is needed by \"both\""):
+        make_plan(scene("both", effects=on), stages)
+    hertz = (replace(Workshop().stages[0], results=("blanks",), requires=(Need("hertz", "why"),)),)
+    with pytest.raises(InputError, match='write hertz = "load-dependent" under'):
+        make_plan(scene("blanks"), hertz)
+
+
+def test_finer_settings_are_foretold_to_take_longer():
+    usual = MeshSettings()
+    seconds = [seconds_of_gear(settings) for settings in (usual.scaled(1.5), usual, usual.scaled(0.5))]
+    assert 0.0 < seconds[0] < seconds[1] < seconds[2]
+    assert seconds_of_gear(replace(usual, order=3)) > seconds[1]

@@ -25,6 +25,10 @@ class EffectsPart(Part):
         """Whether an effect is switched on."""
         return getattr(self, name) not in (False, "none")
 
+    def example(self, name: str) -> str:
+        """Value that switches an effect on, as a case file writes it."""
+        return '"load-dependent"' if name == "hertz" else "true"
+
     def on(self) -> tuple[str, ...]:
         """Names of the effects that are on."""
         return tuple(name for name in type(self).model_fields if self.is_on(name))

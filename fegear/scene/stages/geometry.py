@@ -8,7 +8,7 @@ import numpy as np
 
 from fegear.geometry import interference
 from fegear.scene.outcome import Column, Outcome, Table, Value
-from fegear.scene.stage import Stage
+from fegear.scene.stage import Forecast, Stage
 
 if TYPE_CHECKING:
     from fegear.geometry import GearPair
@@ -71,4 +71,5 @@ GEOMETRY = Stage(
     results=("geometry",),
     subjects=_everything,
     run=_run,
+    forecast=lambda _scene, _subject: Forecast({}, 0.01),
 )

@@ -9,8 +9,8 @@ import numpy as np
 
 from fegear.errors import InputError
 from fegear.scene.outcome import Column, Outcome, Table, Value
-from fegear.scene.settings import mesh_settings
-from fegear.scene.stage import Stage, Task
+from fegear.scene.settings import mesh_settings, seconds_of_gear
+from fegear.scene.stage import Forecast, Stage, Task
 from fegear.scene.tooth_influence import gear_influence
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 USUAL_HALF_WIDTH = 0.02
 #: A stress converges one order more slowly than a compliance: its tolerance is this many times the case's.
 STRESS_SHARE = 5.0
+#: Reading off one position of a solved gear [s].
+_SECONDS_PER_POSITION = 3e-4
 #: How many times the finite-element part reports that it goes on.
 _STEPS = 3
 
@@ -198,6 +200,14 @@ def _run_stiffness(scene: Scene, name: str, _done: Done, progress: Progress) -> 
     return Outcome(table, _tables(name, table), _values(name, gear, table), told, _remarks(scene, name, table))
 
 
+def _forecast(scene: Scene, name: str) -> Forecast:
+    settings = mesh_settings(scene.case.accuracy)
+    if scene.case.gear[name].tooth_mesh is not None:
+        return Forecast({"mesh": scene.case.gear[name].tooth_mesh, "order": settings.order})
+    positions = len(scene.case.stiffness.radii or ()) or scene.case.stiffness.positions
+    return Forecast(asdict(settings), seconds_of_gear(settings) + _SECONDS_PER_POSITION * positions)
+
+
 STIFFNESS = Stage(
     name="stiffness",
     title="Compliance and root stress, whole gear",
@@ -205,6 +215,7 @@ STIFFNESS = Stage(
     subjects=_gear,
     run=_run_stiffness,
     check=_check,
+    forecast=_forecast,
 )
 
 
@@ -247,4 +258,5 @@ ROOT_STRESS = Stage(
     subjects=_gear,
     run=_run_root_stress,
     needs=lambda _scene, name: (Task("stiffness", name),),
+    forecast=lambda _scene, _name: Forecast({}, 0.01),
 )
