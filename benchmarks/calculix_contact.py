@@ -1,4 +1,4 @@
-"""Loaded transmission error against frictionless contact of both complete gears in CalculiX (run by hand; minutes each).
+"""Loaded transmission error beside frictionless contact of both complete gears in CalculiX (run by hand, minutes each).
 
     python benchmarks/calculix_contact.py 28 28 0 0 3.0      # teeth, teeth, shifts, x [mm]
 
@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fegear.contact import Engagement, PairCompliance, finite_element_compliance
+from fegear.contact import Engagement, PairCompliance, finite_element_compliance, root_stress_history
 from fegear.fem import MeshSettings, solve_gear
 from fegear.fem.sector import mesh_sector
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
@@ -161,8 +161,11 @@ def main(z1, z2, shift1, shift2, x_mm, corner=True):
     engagement = Engagement(PairCompliance(pair, *sources), corner_contact=corner)
     loaded = engagement.solve(engagement.grid(x), np.array([LOAD]))
     delta = float(np.ravel(loaded.transmission_error)[0])
-    print(f"x = {x_mm} mm in {pair.x_start * 1e3:.3f} .. {pair.x_end * 1e3:.3f} mm; fegear: te {delta * 1e6:.4f} um, loads",
-          np.ravel(loaded.loads), "N/mm")  # fmt: skip
+    print(f"x = {x_mm} mm in {pair.x_start * 1e3:.3f} .. {pair.x_end * 1e3:.3f} mm")
+    print(f"fegear: transmission error {delta * 1e6:.4f} um, loads", np.ravel(loaded.loads), "N/mm")
+    for member in ("driver", "driven"):
+        stress = root_stress_history(engagement, loaded, member).stress
+        print(f"fegear: largest root tension of the {member}'s teeth", np.ravel(stress) * 1e-6, "MPa")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         kept, fillets = deck(pair, float(x[0]), delta, folder)
