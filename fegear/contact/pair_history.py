@@ -89,7 +89,7 @@ def pair_history(engagement: Engagement, load: ArrayLike, positions: int = 200, 
         te[rows] = part.transmission_error
     pressure = engagement.compliance.pressure(w, grid.contacts.relative_radius[here][:, None])
     touched = np.flatnonzero((w > 0.0).any(axis=1))
-    keep = slice(touched[0], touched[-1] + 1) if touched.size else slice(0, 0)
+    keep = slice(max(touched[0] - 1, 0), touched[-1] + 2) if touched.size else slice(0, 0)
     if not engagement.corner_contact:
         keep = slice(0, x.size)
     roll = grid.contacts.roll_driver[here]

@@ -46,7 +46,7 @@ class RootStressHistory:
 
 
 def root_stress_history(
-    engagement: Engagement, loaded: Loaded, member: Member, side: Side = "tension"
+    engagement: Engagement, loaded: Loaded, member: Member, side: Side = "tension", beyond: int = 0
 ) -> RootStressHistory:
     """Superpose the fillet stress of a tooth's own load and of its neighbours' loads, then take the extreme.
 
@@ -57,6 +57,8 @@ def root_stress_history(
     member : {"driver", "driven"}
     side : {"tension", "compression"}
         The tension fillet lies below the loaded flank.
+    beyond : int
+        Teeth before the first and after the last pair that can touch, in addition: they feel their neighbours' loads.
 
     Raises
     ------
@@ -68,10 +70,11 @@ def root_stress_history(
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     n, positions = radius.shape
     towards_load = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
-    reach = min(source.reach, n - 1) if engagement.compliance.coupling else 0
+    reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
     kernels: dict[int, Array] = {}
     line_load = loaded.loads / engagement.compliance.face_width
-    stress = np.empty_like(line_load)
+    teeth = range(-beyond, n + beyond)
+    stress = np.empty((len(teeth), *line_load.shape[1:]))
     for k in range(-reach, reach + 1):
         kernel = source.root_stress(k, radius.ravel(), side)
         if kernel is None:
@@ -82,11 +85,12 @@ def root_stress_history(
                 'set pair.compliance.source = "fe"',
             )
         kernels[k] = kernel.reshape(kernel.shape[0], n, positions)
-    for tooth in range(n):
+    for row, tooth in enumerate(teeth):
         total = np.zeros((kernels[0].shape[0], positions, line_load.shape[2]))
         for other in range(n):
             k = towards_load * (tooth - other)
             if k in kernels:
                 total += kernels[k][:, other, :, None] * line_load[other][None]
-        stress[tooth] = total.max(axis=0) if side == "tension" else total.min(axis=0)
-    return RootStressHistory(member, side, contacts.x, stress)
+        stress[row] = total.max(axis=0) if side == "tension" else total.min(axis=0)
+    x = contacts.x[0] + np.array(teeth)[:, None] * engagement.pair.base_pitch
+    return RootStressHistory(member, side, x, stress)

@@ -60,58 +60,61 @@ def _check(scene: Scene, name: str) -> None:
         raise InputError(f"pair.{name}.compliance.source", f'"{source}"', "knows no root stress", 'set source = "fe"')
 
 
-def _solve(e: Engagement, x: Array, loads: tuple[float, ...]) -> tuple[list[int], list[Loaded]]:
-    """Rows of the pairs and the loaded state for each: the same one unless teeth differ by their spacing errors."""
+def _states(e: Engagement, x: Array, loads: tuple[float, ...]) -> list[tuple[int, Loaded]]:
+    """Row of each tooth and the loaded state for it: the same state unless teeth differ by their spacing errors."""
     grid = e.grid(x)
-    rows = list(range(grid.contacts.number.size))
+    numbers = np.concatenate([[grid.contacts.number[0] - 1], grid.contacts.number, [grid.contacts.number[-1] + 1]])
     if not (e.driver_spacing.size or e.driven_spacing.size):
-        return rows, [e.solve(grid, loads)] * len(rows)
-    # The pair in row j is on the tooth of interest in base pitch number j.
-    return rows, [e.solve(grid, loads, int(grid.contacts.number[row])) for row in rows]
+        state = e.solve(grid, loads)
+        return [(row, state) for row in range(numbers.size)]
+    # The tooth of interest carries pair number j in base pitch number j.
+    return [(row, e.solve(grid, loads, int(number))) for row, number in enumerate(numbers)]
 
 
 def tooth_stress(pair: LoadedPair, member: Member) -> ToothStress:
-    """Follow one tooth of a gear from one end of the mesh to the other."""
+    """Follow one tooth of a gear from a base pitch before its contact to one after it."""
     from fegear.contact import root_stress_history
 
     e = pair.engagement
-    rows, states = _solve(e, roll_positions(pair), pair.loads)
-    xs, tension, compression, error = [], [], [], []
+    xs: list[Array] = []
+    tension: list[Array] = []
+    compression: list[Array] = []
+    error: list[Array] = []
     known: dict[int, tuple[Array, Array, Array, Array]] = {}
-    for row, state in zip(rows, states, strict=True):
+    for row, state in _states(e, roll_positions(pair), pair.loads):
         if id(state) not in known:
-            pulled = root_stress_history(e, state, member, "tension")
-            pressed = root_stress_history(e, state, member, "compression")
+            pulled = root_stress_history(e, state, member, "tension", 1)
+            pressed = root_stress_history(e, state, member, "compression", 1)
             off = np.zeros_like(pulled.stress)
             for other in pair.shifted:
                 again = solve_again(other, state.grid, state)
-                off = off + np.abs(root_stress_history(e, again, member, "tension").stress - pulled.stress)
+                off = off + np.abs(root_stress_history(e, again, member, "tension", 1).stress - pulled.stress)
+            off[1:-1] += _own_error(pair, member, state)
             known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
-        x, pull, press, off = known[id(state)]
-        xs.append(x[row])
-        tension.append(pull[row])
-        compression.append(press[row])
-        error.append(off[row] + _own_error(pair, member, state, row))
+        for found, values in zip((xs, tension, compression, error), known[id(state)], strict=True):
+            found.append(values[row])
     x = np.concatenate(xs)
     order = np.argsort(x)
+    pitch = e.pair.base_pitch
+    order = order[(x[order] > e.pair.x_start - pitch) & (x[order] < e.pair.x_end + pitch)]
     t, c, off = (np.concatenate(parts)[order] for parts in (tension, compression, error))
     return ToothStress(x[order], t, c, off)
 
 
-def _own_error(pair: LoadedPair, member: Member, state: Loaded, row: int) -> Array:
-    """What the finite elements leave in the stress of the tooth's own load, shape (P, L) [Pa]."""
+def _own_error(pair: LoadedPair, member: Member, state: Loaded) -> Array:
+    """What the finite elements leave in the stress of each tooth's own load, shape (n, P, L) [Pa]."""
     from fegear.contact.fe_compliance import FiniteElementCompliance
 
     source = pair.engagement.compliance.source(member)
     if not isinstance(source, FiniteElementCompliance):
-        return np.zeros(state.loads.shape[1:])
+        return np.zeros(state.loads.shape)
     contacts = state.grid.contacts
-    radius = (contacts.radius_driver if member == "driver" else contacts.radius_driven)[row]
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     ends = source.influence.lowest_radius, source.influence.highest_radius
     few = np.linspace(max(radius.min(), ends[0]), min(radius.max(), ends[1]), 9)
     usual = source.influence.root_stress_error(0, "tension", few)
     per_load = np.interp(radius, few, usual)
-    return np.asarray(per_load[:, None] * state.loads[row] / pair.engagement.compliance.face_width)
+    return np.asarray(per_load[:, :, None] * state.loads / pair.engagement.compliance.face_width)
 
 
 def _table(name: str, gear: str, s: ToothStress, i: int, rate: float | None, loads: tuple[float, ...]) -> Table:

@@ -14,8 +14,13 @@ if TYPE_CHECKING:
     from fegear.fem import StiffnessTable
     from fegear.scene.run import Results
     from fegear.scene.stages.crosscheck import CrosscheckData
+    from fegear.scene.stages.load_sharing import LoadSharingData
+    from fegear.scene.stages.relief import ReliefData
+    from fegear.scene.stages.relief_chart import ReliefChartData, RobustnessData
+    from fegear.scene.stages.root_stress_history import RootStressData
     from fegear.scene.stages.tooth_contact import ToothContactData
     from fegear.scene.stages.transmissibility import TransmissibilityData
+    from fegear.scene.stages.transmission_error import TransmissionErrorData
     from fegear.show.pictures.style import Picture
 
 #: Line load of the deformed gear's picture when the case names none [N/m].
@@ -90,12 +95,71 @@ def _root_stress_study(results: Results, task: Task, folder: Path) -> Iterator[P
     yield draw_root_stress_study(results.outcomes[task].tables[0], folder / "root_stress_study.png")
 
 
+def _gear_names(results: Results, name: str) -> dict[str, str]:
+    part = results.scene.case.pair[name]
+    return {"driver": part.driver, "driven": part.driven}
+
+
+def _load_sharing(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.loaded_teeth import draw_load_sharing
+
+    data = cast("LoadSharingData", results.outcomes[task].data)
+    yield draw_load_sharing(data, folder / f"load_sharing_{task.subject}.png", task.subject)
+
+
+def _transmission_error(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.loaded_teeth import draw_harmonics, draw_te
+
+    data, name = cast("TransmissionErrorData", results.outcomes[task].data), task.subject
+    yield draw_te(data, folder / f"transmission_error_{name}.png", name)
+    yield draw_harmonics(data, folder / f"transmission_error_harmonics_{name}.png", name)
+
+
+def _root_stress_history(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.loaded_teeth import draw_root_stress
+
+    data, name = cast("RootStressData", results.outcomes[task].data), task.subject
+    yield draw_root_stress(data, folder / f"root_stress_history_{name}.png", name, _gear_names(results, name))
+
+
+def _relief(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.relief import draw_candidates, draw_harris, draw_reliefs
+
+    data, name = cast("ReliefData", results.outcomes[task].data), task.subject
+    yield draw_reliefs(data, folder / f"relief_{name}.png", name, _gear_names(results, name))
+    yield draw_candidates(data, folder / f"relief_candidates_{name}.png", name)
+    yield draw_harris(data, folder / f"harris_map_{name}.png", name)
+
+
+def _relief_chart(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.relief import draw_chart
+
+    data, name = cast("ReliefChartData", results.outcomes[task].data), task.subject
+    picture = draw_chart(data, folder / f"relief_chart_{name}.png", name)
+    if picture is not None:
+        yield picture
+
+
+def _robustness(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.relief import draw_robustness
+
+    outcome, name = results.outcomes[task], task.subject
+    data, metric = cast("RobustnessData", outcome.data), str(outcome.settings["metric"])
+    yield draw_robustness(data, folder / f"robustness_{name}.png", name, metric)
+
+
 #: For each stage that has pictures, what draws them; others follow the same shape.
 DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
     "stiffness": _stiffness,
     "root-stress": _root_stress,
     "crosscheck": _crosscheck,
     "root-stress-study": _root_stress_study,
+    "load-sharing": _load_sharing,
+    "transmission-error": _transmission_error,
+    "root-stress-history": _root_stress_history,
+    "relief": _relief,
+    "relief-chart": _relief_chart,
+    "robustness": _robustness,
     "tooth-contact": _tooth_contact,
     "transmissibility": _transmissibility,
 }

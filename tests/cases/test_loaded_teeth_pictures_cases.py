@@ -1,0 +1,49 @@
+"""Pictures of loaded teeth: each is drawn, has a caption, and none is an empty page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.scene.load import read_scene
+from fegear.scene.plan import make_plan
+from fegear.scene.run import run_plan
+from fegear.scene.stages import STAGES
+from fegear.show.pictures.gallery import draw_all
+
+CASES = Path(__file__).parents[2] / "cases"
+
+#: Coarse finite elements: what is drawn matters here, not the last digit.
+QUICK = ("accuracy.tolerance=2e-2",)
+
+
+@pytest.mark.parametrize(
+    ("case", "names"),
+    [
+        (
+            "calculix_pair",
+            ["load_sharing", "transmission_error", "transmission_error_harmonics", "root_stress_history"],
+        ),
+        (
+            "nasa_relief_design",
+            ["relief", "relief_candidates", "harris_map", "relief_chart", "robustness", "load_sharing"],
+        ),
+        ("mark_minimum_excitation", ["relief", "relief_candidates", "harris_map"]),
+    ],
+)
+def test_every_picture_shows_something(case, names, tmp_path):
+    from matplotlib.image import imread
+
+    scene = read_scene(CASES / f"{case}.toml", QUICK)
+    results = run_plan(scene, make_plan(scene, STAGES))
+    pictures, missing = draw_all(results, tmp_path / "plots", lambda _fraction: None)
+    assert not missing
+    found = {picture.path.stem: picture for picture in pictures}
+    for name in names:
+        picture = found[f"{name}_I"]
+        assert picture.title
+        assert len(picture.caption) > 40
+        pixels = imread(picture.path)[..., :3]
+        assert np.mean(pixels.min(axis=2) < 0.9) > 0.01, name
