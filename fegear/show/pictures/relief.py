@@ -70,8 +70,8 @@ def draw_reliefs(data: ReliefData, path: Path, name: str, gears: dict[str, str])
     legend(both[1], 2)
     caption = (
         f"Pair {name}: relief of both gears for {data.load:.5g} N over the active profile. Shaded: the design zone, "
-        "where the tooth is loaded at the design load. Ground reliefs are at the tips only; a constant over the whole flank "
-        "makes no difference."
+        "where the tooth is loaded at the design load. Ground reliefs are at the tips only; a constant over the whole "
+        "flank makes no difference."
     )
     return save(made, path, f"Profile relief of {name}", caption)
 
