@@ -38,8 +38,13 @@ def brute_force(c, e, total, kappa, ref):
 
         c_mean = np.diag(c)[s]
         guess = (1 / c_mean) / (1 / c_mean).sum()
-        solution = root(equations, [*guess, (guess @ c_mean + np.mean(e[s]) / total) * total / scale], tol=1e-15)
-        if np.abs(equations(solution.x)).max() > 1e-11 or (solution.x[:-1] < -1e-11).any():
+        # Where one load is small, the search from equal shares may end at its mirror image below zero.
+        starts = [guess, *(np.where(np.arange(len(s)) == a, 1e-2, guess) for a in range(len(s)))]
+        level = (guess @ c_mean + np.mean(e[s]) / total) * total / scale
+        tries = (root(equations, [*start, level], tol=1e-15) for start in starts)
+        found = (t for t in tries if np.abs(equations(t.x)).max() <= 1e-11 and (t.x[:-1] >= -1e-11).all())
+        solution = next(found, None)
+        if solution is None:
             continue
         w = np.zeros(n)
         w[s] = solution.x[:-1] * total

@@ -118,14 +118,14 @@ def test_no_worker_outlives_a_killed_parent():
         )
         return [line for line in listing.stdout.splitlines() if "spawn_main" in line]
 
-    for _ in range(100):
+    for _ in range(600):
         if len(members()) >= 2:
             break
         time.sleep(0.1)
     assert len(members()) >= 2
     group.kill()
     group.wait()
-    for _ in range(100):
+    for _ in range(600):
         if not members():
             break
         time.sleep(0.1)

@@ -66,7 +66,7 @@ def test_an_error_leaves_earlier_results_whole_and_no_traces(tmp_path, error):
 
 def test_an_interrupt_while_files_are_moved_waits(tmp_path, monkeypatch):
     out = tmp_path / "out"
-    replace = Path.replace
+    replace, before = Path.replace, signal.getsignal(signal.SIGINT)
 
     def interrupting(self, target):
         os.kill(os.getpid(), signal.SIGINT)
@@ -76,7 +76,7 @@ def test_an_interrupt_while_files_are_moved_waits(tmp_path, monkeypatch):
     with whole_or_nothing(out) as scratch:
         fill(scratch, ["a.csv", "b.csv"], "first")
     assert set(contents(out)) == {"a.csv", "b.csv", "summary.json"}
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_folders_that_cannot_be_written_are_refused(tmp_path, monkeypatch):

@@ -1,0 +1,8 @@
+#!/bin/sh
+# The site with the example gallery, into site/: ./docs.sh [options of mkdocs build]. Sets itself up in .venv on first use.
+set -eu
+root=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
+. "$root/setup.sh"
+fegear_setup "${FEGEAR_VENV:-$root/.venv}" docs
+cd "$root"
+exec "${FEGEAR_VENV:-$root/.venv}/bin/python" -m mkdocs build --strict "$@"

@@ -1,0 +1,151 @@
+"""Hook of mkdocs: runs every case and makes a page of each from the case file and what the run left behind.
+
+Results are kept in ``results/gallery`` and made anew when the case or the program changes. ``FEGEAR_GALLERY`` restricts
+the gallery to some cases (names separated by commas).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from mkdocs.exceptions import PluginError
+from mkdocs.structure.files import File
+
+from fegear.plain import code_version, content_key
+
+ROOT = Path(__file__).resolve().parents[1]
+MADE = ROOT / "results" / "gallery"
+#: Rows of a table's beginning that a page shows.
+_ROWS = 8
+#: Pages outside docs/ that belong to the site, and where links to them are found.
+_OUTSIDE = {"index.md": ROOT / "README.md", "meshes.md": ROOT / "meshes" / "README.md"}
+
+
+def cases() -> list[Path]:
+    """Case files of the gallery."""
+    wanted = os.environ.get("FEGEAR_GALLERY")
+    found = sorted((ROOT / "cases").glob("*.toml"))
+    return [path for path in found if wanted is None or path.stem in wanted.split(",")]
+
+
+def _title(path: Path) -> str:
+    return str(tomllib.loads(path.read_text("utf-8")).get("title") or path.stem)
+
+
+def _run(path: Path) -> None:
+    """Run a case unless its results are there, made by the same program from the same files."""
+    out, stamp = MADE / path.stem, MADE / f"{path.stem}.key"
+    beside = {
+        p.name: p.read_text("utf-8", "replace") for p in sorted(path.parent.rglob("*")) if p.is_file() and p != path
+    }
+    named = {name: text for name, text in beside.items() if name in path.read_text("utf-8")}
+    key = content_key(code_version(), path.read_text("utf-8"), named)
+    if stamp.is_file() and stamp.read_text() == key and (out / "summary.json").is_file():
+        return
+    shutil.rmtree(out, ignore_errors=True)
+    command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(path), "--out", str(out)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise PluginError(f"the case {path.name} does not run: {done.stderr.strip()}")
+    stamp.write_text(key)
+
+
+def _numbers(results: dict[str, dict[str, object]]) -> str:
+    rows = ["| quantity | value | unit | estimated error |", "|---|---|---|---|"]
+    for name, told in results.items():
+        value = "none" if told["value"] is None else f"{told['value']:.6g}"
+        error = {None: "not estimated", 0: "exact"}.get(told["error"]) or f"{told['error']:.1e}"
+        rows.append(f"| `{name}` | {value} | {told['unit']} | {error} |")
+    return "\n".join(rows)
+
+
+def _table(path: Path) -> str:
+    head, *rows = [line.split(",") for line in path.read_text("utf-8").splitlines()[: _ROWS + 1]]
+
+    def short(text: str) -> str:
+        try:
+            return f"{float(text):.5g}"
+        except ValueError:
+            return text
+
+    lines = [head, ["---"] * len(head), *([short(cell) for cell in row] for row in rows)]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def page(path: Path) -> str:
+    """Text of a case's page."""
+    out, text = MADE / path.stem, path.read_text("utf-8")
+    summary = json.loads((out / "summary.json").read_text("utf-8"))
+    comment = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        comment.append(line.lstrip("# "))
+    pictures = [name for name in summary["files"] if name.endswith(".png")]
+    parts = [
+        f"# {_title(path)}",
+        " ".join(comment),
+        f"```sh\nfegear run cases/{path.name}\n```",
+        (
+            f"Computed in {summary['timings']['total']:.2f} s. [The whole report]({path.stem}/report.html), "
+            f"[all numbers as a dataset]({path.stem}/results.nc)."
+        ),
+        "## To know first\n\n" + "\n".join(f"- {remark}" for remark in summary["remarks"])
+        if summary["remarks"]
+        else "",
+        "## Numbers\n\n" + _numbers(summary["results"]) if summary["results"] else "",
+        "## Pictures\n\n" + "\n\n".join(f"![{Path(name).stem}]({path.stem}/{name})" for name in pictures)
+        if pictures
+        else "",
+        "## Tables\n\n"
+        + "\n\n".join(
+            f"### [{Path(name).name}]({path.stem}/{name})\n\n{_table(out / name)}"
+            for name in summary["files"]
+            if name.endswith(".csv")
+        ),
+        f"## The case file\n\n```toml\n{text}```",
+    ]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+# ---- what mkdocs calls -------------------------------------------------------------------------------------------
+def on_config(config):
+    """Put the gallery into the navigation."""
+    pages = [{_title(path): f"gallery/{path.stem}.md"} for path in cases()]
+    config.nav.append({"Gallery": [{"All cases": "gallery/index.md"}, *pages]})
+    return config
+
+
+def on_files(files, config):
+    """Run the cases, two at a time, and add their pages with all that these show."""
+    MADE.mkdir(parents=True, exist_ok=True)
+    with ThreadPoolExecutor(max(1, min(4, os.cpu_count() or 1))) as pool:
+        list(pool.map(_run, cases()))
+    for name, source in _OUTSIDE.items():
+        files.append(File.generated(config, name, content=source.read_text("utf-8")))
+    index = ["# Gallery", "", "Each page is one file of `cases/` and what `fegear run` makes of it.", ""]
+    for path in cases():
+        index.append(f"- [{_title(path)}]({path.stem}.md)")
+        files.append(File.generated(config, f"gallery/{path.stem}.md", content=page(path)))
+        for made in sorted((MADE / path.stem).rglob("*")):
+            relative = made.relative_to(MADE).as_posix()
+            if made.is_file() and made.suffix in (".png", ".csv", ".html", ".nc"):
+                files.append(File.generated(config, f"gallery/{relative}", abs_src_path=str(made)))
+    files.append(File.generated(config, "gallery/index.md", content="\n".join(index) + "\n"))
+    return files
+
+
+def on_page_markdown(markdown, page, **_others):
+    """Let links that hold in the repository hold in the site."""
+    if page.file.src_uri == "index.md":
+        markdown = markdown.replace("](docs/", "](")
+    markdown = markdown.replace("](../meshes/README.md)", "](meshes.md)")
+    return re.sub(r"\]\((?:\.\./)?cases/(\w+)\.toml\)", r"](gallery/\1.md)", markdown)
