@@ -36,4 +36,4 @@ def test_the_site_builds_without_a_warning(tmp_path):
     page = (tmp_path / "site" / "gallery" / "litvin_lead" / "index.html").read_text("utf-8")
     assert "fegear run cases/litvin_lead.toml" in page
     assert page.count("<img") >= 1
-    assert "<h2 id=\"numbers\">" in page
+    assert '<h2 id="numbers">' in page
