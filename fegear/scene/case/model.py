@@ -8,6 +8,7 @@ from pydantic import Field
 
 from fegear.scene.case.accuracy import AccuracyPart
 from fegear.scene.case.design import DesignPart
+from fegear.scene.case.dynamics import DynamicsPart
 from fegear.scene.case.effects import EffectsPart
 from fegear.scene.case.gear import GearPart
 from fegear.scene.case.helical import ToothContactPart
@@ -15,6 +16,7 @@ from fegear.scene.case.pair import PairPart
 from fegear.scene.case.part import Part
 from fegear.scene.case.stiffness import StiffnessPart
 from fegear.scene.case.study import StudyPart
+from fegear.scene.case.train import TrainPart
 from fegear.scene.case.transmissibility import TransmissibilityPart
 
 
@@ -30,5 +32,7 @@ class Case(Part):
     tooth_contact: ToothContactPart = Field(default_factory=ToothContactPart)
     transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
     design: DesignPart | None = None
+    train: TrainPart | None = None
+    dynamics: DynamicsPart = Field(default_factory=DynamicsPart)
     effects: EffectsPart = Field(default_factory=EffectsPart)
     accuracy: AccuracyPart = Field(default_factory=AccuracyPart)

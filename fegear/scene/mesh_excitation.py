@@ -1,0 +1,138 @@
+"""From a loaded pair of the scene to what its teeth do to the train: one-sided springs over the path of contact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.dynamics.excitation import MeshExcitation
+from fegear.dynamics.periodic import Periodic
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fegear.contact import Engagement, RollGrid
+
+    Array = NDArray[np.float64]
+
+#: Accuracy of the fitted stiffness, separation and transmission error beside their largest value.
+FIT = 1e-9
+#: The same where load sharing with coupled teeth is solved at every point.
+FIT_SHARED = 1e-7
+#: Pieces of the fit get no shorter than this, in base pitches (a corner that starts to bear has an infinite slope).
+SHORTEST = 2e-4
+
+
+def stands_alone(engagement: Engagement) -> bool:
+    """Whether every tooth pair is a spring of its own: no coupling of neighbours and no contact off the path."""
+    return not (engagement.corner_contact or engagement.compliance.coupling)
+
+
+def mesh_excitation(engagement: Engagement, load: float) -> MeshExcitation:
+    """One-sided springs of a gear pair.
+
+    Tooth pairs that stand alone are springs over the whole path; their contact deflection is linear about the full load
+    on one pair, as in NASA TM-89901. Coupled tooth pairs are linearised about the mean load that they share. Spacing
+    errors are left out: all teeth are equal.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    load : float
+        Mean mesh force [N].
+    """
+    return _separate(engagement, load) if stands_alone(engagement) else _shared(engagement, load)
+
+
+def unmodified(excitation: MeshExcitation, width_ratio: float) -> MeshExcitation:
+    """The same teeth as perfect involutes, so many times as wide."""
+    none = tuple(Periodic.constant(0.0) for _ in excitation.separation)
+    return replace(excitation, stiffness=tuple(k.scaled(width_ratio) for k in excitation.stiffness), separation=none)
+
+
+def _row_of(engagement: Engagement, x: Array) -> tuple[RollGrid, NDArray[np.intp]]:
+    """The grid at the roll positions that belong to places of one tooth pair, and the pair's row there."""
+    pair = engagement.pair
+    number = np.clip(np.floor((x - pair.x_start) / pair.base_pitch), 0, None)
+    grid = engagement.grid(x - number * pair.base_pitch)
+    row = np.rint((x - grid.contacts.x[0]) / pair.base_pitch).astype(np.intp)
+    return grid, np.clip(row, 0, grid.contacts.x.shape[0] - 1)
+
+
+def _separate(engagement: Engagement, load: float) -> MeshExcitation:
+    pair, pitch = engagement.pair, engagement.pair.base_pitch
+
+    def stiffness(x: Array) -> Array:
+        grid, row = _row_of(engagement, np.asarray(x, dtype=float))
+        own = np.arange(x.size)
+        full = np.full((*grid.contacts.x.shape, 1), load)
+        return np.asarray(1.0 / grid.matrices.at_load(full)[row, row, own, 0])
+
+    def separation(x: Array) -> Array:
+        grid, row = _row_of(engagement, np.asarray(x, dtype=float))
+        return np.asarray(engagement.modification(grid.contacts)[row, np.arange(x.size)])
+
+    places = [b + k * pitch for b in engagement.breaks for k in range(-2, math.ceil(pair.contact_ratio) + 2)]
+    breaks = [b for b in places if pair.x_start < b < pair.x_end]
+    return MeshExcitation.from_tooth_pair(
+        stiffness, separation, pair.x_start, pair.x_end, pitch, breaks=breaks, tolerance=FIT
+    )
+
+
+def _shared(engagement: Engagement, load: float) -> MeshExcitation:
+    """Springs about the mean load, from load sharing with coupled teeth and corners."""
+    from fegear.contact.transmission_error import contact_changes
+
+    pair, pitch = engagement.pair, engagement.pair.base_pitch
+    plain = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
+    changes = [*plain.breaks, *contact_changes(plain, load)]
+    cuts = sorted({(b / pitch) % 1.0 for b in changes})
+    known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
+
+    def solved(s: Array) -> tuple[Array, Array, Array, Array]:
+        key = s.tobytes()
+        if key not in known:
+            state = plain.solve(plain.grid(s * pitch), [load])
+            share = state.loads[:, :, 0] / load
+            known[key] = (state.transmission_error[:, 0], state.local_stiffness[:, 0], share, state.pair_x)
+        return known[key]
+
+    def fit(function: Callable[[Array], Array]) -> Periodic:
+        return Periodic.fit(function, cuts, tolerance=FIT_SHARED, shortest=SHORTEST)
+
+    # Corners bear before the start and after the end of the path: a slot more on either side.
+    extra = 1 if plain.corner_contact else 0
+    first = math.floor(pair.x_start / pitch) - extra
+    last = math.ceil(pair.x_end / pitch) - 1 + extra
+
+    def share_of(j: int) -> Callable[[Array], Array]:
+        def share(s: Array) -> Array:
+            _, _, shares, x = solved(s)
+            row = np.rint((s + j) - x[0] / pitch).astype(np.intp)
+            inside = (row >= 0) & (row < x.shape[0])
+            return np.where(inside, shares[np.clip(row, 0, x.shape[0] - 1), np.arange(s.size)], 0.0)
+
+        return share
+
+    error, stiffness = fit(lambda s: solved(s)[0]), fit(lambda s: solved(s)[1])
+    shares = tuple(fit(share_of(j)) for j in range(first, last + 1))
+    return replace(MeshExcitation.at_mean_load(stiffness, error, load, shares), first_slot=first)
+
+
+def tooth_pair_at(excitation: MeshExcitation, x: Array, base_pitch: float) -> tuple[Array, Array]:
+    """Stiffness [N/m] and separation [m] of one tooth pair at its places x [m]."""
+    s = np.asarray(x, dtype=float) / base_pitch
+    slot = np.floor(s).astype(int)
+    k, m = np.zeros(s.shape), np.zeros(s.shape)
+    for j in np.unique(slot):
+        index = int(j) - excitation.first_slot
+        if 0 <= index < len(excitation.stiffness):
+            at = slot == j
+            k[at] = excitation.stiffness[index](s[at] - j)
+            m[at] = excitation.separation[index](s[at] - j)
+    return k, m

@@ -1,0 +1,263 @@
+"""Stage ``dynamic-factor``: largest tooth force over speed, with contact loss or from the linearised train."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.scene.outcome import Column, Outcome, Table, Value
+from fegear.scene.stage import Stage, Task
+from fegear.scene.stages.gear_train import gear_train, needs_train, the_train
+from fegear.scene.stages.mesh_forces import force_history, meshes, needs_speeds
+from fegear.scene.train import train_part
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fegear.dynamics.charts import SpeedChart
+    from fegear.dynamics.excitation import MeshExcitation
+    from fegear.dynamics.motion_model import MotionModel
+    from fegear.dynamics.steady_state import SteadyState
+    from fegear.scene.case.dynamics import FrictionPart
+    from fegear.scene.load import Scene
+    from fegear.scene.stage import Done, Progress
+    from fegear.scene.train import GearTrain
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SweepData:
+    """Steady motions over speeds, in increasing order of speed; none where the linearised train was asked for."""
+
+    train: GearTrain
+    speeds: Array
+    states: tuple[SteadyState, ...]
+
+
+@dataclass(frozen=True)
+class DynamicFactorData:
+    """What pictures need: the chart of one mesh, speeds in rad/s of the body that the case refers to."""
+
+    chart: SpeedChart
+    speed_of: str
+
+
+def in_time(scene: Scene) -> bool:
+    """Whether the motion is computed in time: an effect calls for it that the linearised train does not know."""
+    effects = scene.case.effects
+    return effects.contact_loss or effects.parametric or effects.friction
+
+
+def check_motion(scene: Scene, _subject: str = "") -> None:
+    """Refuse friction where teeth are lumped, and backlash that nothing looks at."""
+    effects = scene.case.effects
+    if effects.friction and (effects.neighbour_coupling or effects.corner_contact):
+        raise InputError(
+            "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
+            "leave out neighbour_coupling and corner_contact",
+        )  # fmt: skip
+    if effects.friction and not effects.parametric:
+        raise InputError(
+            "effects.friction", "true", "needs tooth pairs that come and go", "set effects.parametric = true"
+        )
+
+
+def _coefficient(part: FrictionPart, width: float) -> Callable[[Array, Array, Array], Array]:
+    from fegear.dynamics.friction import benedict_kelley, buckingham
+
+    if part.law == "buckingham":
+        return lambda sliding, _rolling, _force: buckingham(sliding)
+    if part.law == "constant":
+        return lambda sliding, _rolling, _force: np.full(np.shape(sliding), part.coefficient or 0.0)
+    viscosity = part.viscosity or 0.0
+    return lambda sliding, rolling, force: benedict_kelley(np.asarray(force) / width, viscosity, sliding, rolling)
+
+
+def excitations_at(scene: Scene, data: GearTrain, speed: float) -> tuple[MeshExcitation, ...]:
+    """What the scene's effects leave of each mesh, at a speed of the first body [rad/s] (friction depends on it)."""
+    from fegear.dynamics.excitation import MeshExcitation
+    from fegear.dynamics.friction import with_friction
+    from fegear.dynamics.periodic import Periodic
+
+    effects = scene.case.effects
+    found = []
+    for m, mesh in enumerate(data.train.meshes):
+        excitation, error = data.excitations[m], data.errors[m]
+        if not effects.parametric:
+            # Mark's (2.9b): constant stiffness, all fluctuation in the transmission error
+            flat = MeshExcitation.from_mesh(Periodic.constant(mesh.stiffness), error.plus(-error.mean))
+            found.append(replace(flat, phase=excitation.phase))
+            continue
+        if effects.friction:
+            pair = data.pairs[m]
+            width = min(pair.driver.face_width, pair.driven.face_width)
+            excitation = with_friction(
+                excitation, mesh, pair.base_pitch, pair.working_pressure_angle,
+                float(data.train.mesh_frequencies(speed)[m]), float(data.forces[m]),
+                _coefficient(scene.case.dynamics.friction, width),
+            )  # fmt: skip
+        found.append(excitation)
+    return tuple(found)
+
+
+def motion_model(scene: Scene, data: GearTrain, speed: float) -> MotionModel:
+    """The train at a speed of the first body [rad/s] with the scene's effects."""
+    from fegear.dynamics.motion_model import MotionModel
+
+    taken_by = scene.case.dynamics.loss_taken_by or (scene.case.train and scene.case.train.balance) or ""
+    return MotionModel(data.train, excitations_at(scene, data, speed), speed, taken_by)
+
+
+def _run_sweep(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.dynamics.steady_state import steady_state
+
+    data, part = gear_train(done), scene.case.dynamics
+    speeds = part.speed_values / data.speed_ratio
+    if not in_time(scene):
+        return Outcome(SweepData(data, speeds, ()))
+    order = speeds[::-1] if part.direction == "down" else speeds
+    start: str | tuple[Array, Array] = "rest" if part.direction == "rest" else "static"
+    states: list[SteadyState] = []
+    model = motion_model(scene, data, float(order[0]))
+    for number, speed in enumerate(order):
+        model = motion_model(scene, data, float(speed)) if scene.case.effects.friction else model.at_speed(float(speed))
+        state = steady_state(model, start=start, tolerance=part.tolerance)
+        states.append(state)
+        if part.direction in ("up", "down"):
+            start = (state.x, state.v)
+        progress((number + 1) / order.size)
+    found = tuple(states[::-1] if part.direction == "down" else states)
+    remarks = []
+    lost = [data.names[m] for m in range(len(data.names)) if any(state.apart[m] > 0.0 for state in found)]
+    if lost and not scene.case.effects.contact_loss:
+        remarks.append(
+            f"effects.contact_loss is off, but teeth part at some speeds (mesh {', '.join(lost)}); it is in the motion."
+        )
+    odd = [state for state in found if state.kind != "periodic"]
+    if odd:
+        told = ", ".join(f"{state.model.speed * data.speed_ratio * 30.0 / np.pi:.6g} rpm {state.kind}" for state in odd)
+        remarks.append(f"The motion does not repeat at {len(odd)} of {len(found)} speeds: {told}.")
+    settings: dict[str, object] = {"direction": part.direction, "tolerance": part.tolerance}
+    return Outcome(SweepData(data, speeds, found), (), (), settings, tuple(remarks))
+
+
+def _linear_chart(scene: Scene, data: GearTrain, i: int, speeds: Array, progress: Progress) -> SpeedChart:
+    """Dynamic factor of the linearised train: no contact loss, the other meshes at the worst relative phase."""
+    from fegear.dynamics.charts import SpeedChart
+
+    part, mean = scene.case.dynamics, float(data.forces[i])
+    tooth, mesh = np.empty(speeds.size), np.empty(speeds.size)
+    for number, speed in enumerate(speeds):
+        found = force_history(data, i, float(speed) * data.speed_ratio, part.positions, part.harmonics)
+        tooth[number] = (float(found.total.max()) + float(found.cross_peak.sum())) / mean
+        mesh[number] = _mesh_force_factor(data, i, float(speed), part.harmonics, mean)
+        progress((number + 1) / speeds.size)
+    none = np.zeros(speeds.size)
+    return SpeedChart(
+        speeds, tooth, mesh, none, none.copy(), np.ones(speeds.size, dtype=np.int64), ("periodic",) * speeds.size
+    )
+
+
+def _mesh_force_factor(data: GearTrain, i: int, speed: float, harmonics: int, mean: float) -> float:
+    """Largest mesh force over the mean one: k Q alpha of every mesh summed at its worst relative phase."""
+    from fegear.dynamics.spectra import mesh_force_spectrum
+
+    found = mesh_force_spectrum(data.train, data.errors, [speed], harmonics)
+    phase = np.linspace(0.0, 1.0, 16 * harmonics, endpoint=False)
+    waves = np.exp(2j * np.pi * np.outer(phase, np.arange(1, harmonics + 1)))
+    largest = [float((2.0 * np.real(waves @ found.coefficients[i, j, :, 0])).max()) for j in range(len(data.names))]
+    return 1.0 + sum(largest) / mean
+
+
+def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.dynamics.charts import SpeedChart
+
+    sweep = cast("SweepData", done[Task("motion")].data)
+    data, part = sweep.train, scene.case.dynamics
+    i = data.train.mesh_index(name)
+    if data.forces[i] <= 1e-9 * float(np.max(np.abs(data.forces))):
+        remark = f"Mesh {name} carries no mean force, so it has no dynamic factor."
+        return Outcome(None, (), (), {}, (remark,))
+    if sweep.states:
+        states, mean = sweep.states, float(data.forces[i])
+        chart = SpeedChart(
+            sweep.speeds,
+            np.array([s.tooth_force[i] for s in states]) / mean,
+            np.array([s.largest[i] for s in states]) / mean,
+            np.array([s.apart[i] for s in states]),
+            np.array([s.behind[i] for s in states]),
+            np.array([s.periods for s in states], dtype=np.int64),
+            tuple(s.kind for s in states),
+        )
+    else:
+        chart = _linear_chart(scene, data, i, sweep.speeds, progress)
+    chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
+    table = Table(
+        f"dynamic_factor_{name}",
+        (
+            Column("speed", chart.speeds, "rpm", f"of {data.speed_of}"),
+            Column(
+                "dynamic_factor", chart.dynamic_factor, "", "largest force on one tooth pair over the mean mesh force"
+            ),
+            Column("contact_loss_fraction", chart.apart, "", "share of the time without contact"),
+            Column("backside_fraction", chart.behind, "", "share of the time on the back flanks"),
+            Column(
+                "periods", chart.periods, "", "periods of excitation after which the motion repeats; 0 if it does not"
+            ),
+            Column("mesh_force_factor", chart.mesh_force_factor, "", "largest mesh force over the mean mesh force"),
+            Column("motion", np.array(chart.kinds, dtype=str), "", "periodic, quasi-periodic, chaotic or long-period"),
+        ),
+        f"Dynamic factor of mesh {name} over speed",
+    )
+    worst, where = chart.worst
+    error = part.tolerance * worst if sweep.states else None
+    values = (
+        Value(f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {part.direction}"),
+        Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {data.speed_of}"),
+        Value(f"{name}.largest_contact_loss", float(chart.apart.max()), "", None, "share of the time"),
+    )
+    remarks = []
+    if sweep.states and not scene.case.effects.parametric:
+        remarks.append(
+            f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
+            "dynamic factor is that of the mesh force."
+        )
+    return Outcome(DynamicFactorData(chart, data.speed_of), (table,), values, {}, tuple(remarks))
+
+
+def _check(scene: Scene, name: str) -> None:
+    needs_speeds(scene, name)
+    if scene.case.effects.contact_loss is False and train_part(scene).mesh[name].backlash is not None:
+        raise InputError(
+            f"train.mesh.{name}.backlash", "(given)", "has a meaning only with effects.contact_loss = true",
+            "switch the effect on, or leave the backlash out",
+        )  # fmt: skip
+
+
+MOTION = Stage(
+    name="motion",
+    title="Motion over the speeds",
+    results=(),
+    subjects=the_train,
+    run=_run_sweep,
+    needs=needs_train,
+    check=check_motion,
+    effects=("contact_loss", "friction", "parametric"),
+)
+
+DYNAMIC_FACTOR = Stage(
+    name="dynamic-factor",
+    title="Dynamic factor over speed",
+    results=("dynamic-factor",),
+    subjects=meshes,
+    run=_run,
+    needs=lambda _scene, _name: (Task("motion"),),
+    check=_check,
+    effects=("contact_loss", "friction", "parametric"),
+)

@@ -1,0 +1,312 @@
+"""Stages ``mesh-force-spectrum``, ``tooth-force``, ``dynamic-root-stress``: the linearised train over frequency."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.scene.loaded_pair import gear_name
+from fegear.scene.outcome import Column, Outcome, Table, Value
+from fegear.scene.stage import Stage, Task
+from fegear.scene.stages.gear_train import gear_train, needs_train
+from fegear.scene.stages.root_stress_history import table_names
+from fegear.scene.train import train_part
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fegear.contact.fe_compliance import FiniteElementCompliance
+    from fegear.dynamics.spectra import MeshForceSpectrum
+    from fegear.dynamics.tooth_force import ToothForce
+    from fegear.geometry.pair import GearPair, Member
+    from fegear.scene.load import Scene
+    from fegear.scene.stage import Done, Progress
+    from fegear.scene.train import GearTrain
+
+    Array = NDArray[np.float64]
+
+#: How near to the ends of the path the last positions are, in base pitches.
+_INSIDE = 1e-9
+
+
+@dataclass(frozen=True)
+class SpectrumData:
+    """Forces in one mesh at the case's speed, and over its speeds (the waterfall) where it gives a range."""
+
+    train: GearTrain
+    mesh: int
+    spectrum: MeshForceSpectrum
+    waterfall: MeshForceSpectrum | None
+
+
+@dataclass(frozen=True)
+class ToothForceData:
+    """Force on one tooth pair through its engagement."""
+
+    train: GearTrain
+    mesh: int
+    force: ToothForce
+
+
+@dataclass(frozen=True)
+class DynamicRootStress:
+    """Root stress of one tooth of either gear; arrays over the positions of the force [Pa]."""
+
+    force: ToothForceData
+    static: dict[Member, Array]
+    stress: dict[Member, Array]
+
+
+def meshes(scene: Scene) -> tuple[str, ...]:
+    """All meshes of the train, by name."""
+    return () if scene.case.train is None else tuple(scene.case.train.mesh)
+
+
+def own_meshes(scene: Scene) -> tuple[str, ...]:
+    """Meshes whose teeth are described by their own pair."""
+    return tuple(name for name in meshes(scene) if train_part(scene).mesh[name].like is None)
+
+
+def needs_one_speed(scene: Scene, _subject: str) -> None:
+    """Refuse histories without a speed."""
+    if math.isnan(scene.case.dynamics.one_speed):
+        raise InputError("dynamics.speed", "(not given)", "is needed for this result", 'write speed = "10000 rpm"')
+
+
+def needs_speeds(scene: Scene, _subject: str) -> None:
+    """Refuse sweeps without speeds."""
+    if not scene.case.dynamics.speed_values.size:
+        raise InputError(
+            "dynamics.speeds", "(not given)", "is needed for this result",
+            'write speeds = { start = "2000 rpm", stop = "16000 rpm", count = 57 }',
+        )  # fmt: skip
+
+
+def _run_spectrum(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
+    from fegear.dynamics.spectra import mesh_force_spectrum
+
+    data, part = gear_train(done), scene.case.dynamics
+    i = data.train.mesh_index(name)
+    found = mesh_force_spectrum(data.train, data.errors, [part.one_speed / data.speed_ratio], part.harmonics)
+    n = np.arange(1, part.harmonics + 1)
+    count = len(data.names)
+    amplitude = found.amplitudes[i, :, :, 0]
+    table = Table(
+        f"mesh_force_spectrum_{name}",
+        (
+            Column("n", np.tile(n, count), "", "harmonic of the mesh frequency of from_pair"),
+            Column(
+                "from_pair",
+                np.repeat(np.array(data.names, dtype=str), n.size),
+                "",
+                "whose transmission error excites it",
+            ),
+            Column("frequency", found.frequencies[:, :, 0].ravel(), "Hz", "n times the mesh frequency"),
+            Column("force", amplitude.ravel(), "N", "0-peak"),
+            Column("power", found.power_lines[i, :, :, 0].ravel(), "", "one-sided power of the line [N^2]"),
+        ),
+        f"Spectrum of the force in mesh {name}",
+    )
+    values = tuple(
+        Value(f"{name}.largest_line_from_{other}", float(amplitude[j].max()), "N", None,
+              f"0-peak, harmonic {int(amplitude[j].argmax()) + 1}")
+        for j, other in enumerate(data.names)
+    )  # fmt: skip
+    speeds = part.speed_values / data.speed_ratio
+    waterfall = None
+    tables = [table]
+    if speeds.size > 1:
+        waterfall = mesh_force_spectrum(data.train, data.errors, speeds, min(part.harmonics, 64))
+        tables.append(_waterfall_table(name, i, waterfall, data))
+    settings: dict[str, object] = {"harmonics": part.harmonics, "speed": part.one_speed}
+    return Outcome(SpectrumData(data, i, found, waterfall), tuple(tables), values, settings)
+
+
+def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrain) -> Table:
+    count, harmonics, speeds = found.frequencies.shape
+    shape = (count, harmonics, speeds)
+    columns = (
+        Column("speed", np.broadcast_to(found.speeds * data.speed_ratio, shape).ravel(), "rpm", f"of {data.speed_of}"),
+        Column("n", np.broadcast_to(np.arange(1, harmonics + 1)[:, None], shape).ravel(), "", "harmonic"),
+        Column(
+            "from_pair", np.repeat(np.array(data.names, dtype=str), harmonics * speeds), "", "whose transmission error"
+        ),
+        Column("frequency", found.frequencies.ravel(), "Hz", "n times the mesh frequency"),
+        Column("force", found.amplitudes[i].ravel(), "N", "0-peak"),
+    )
+    return Table(f"mesh_force_waterfall_{name}", columns, f"Spectrum of the force in mesh {name} over speed")
+
+
+def positions(data: GearTrain, i: int, count: int) -> Array:
+    """Places of one tooth pair: evenly over its path, and on either side of every jump [m]."""
+    pair, found = data.pairs[i], data.excitations[i]
+    pitch = pair.base_pitch
+    low, high = pair.x_start + _INSIDE * pitch, pair.x_end - _INSIDE * pitch
+    cuts = np.unique(np.concatenate([data.errors[i].breaks, *(k.breaks for k in found.stiffness)]))
+    beside = [(b + j + side * 1e-7) * pitch for b in cuts for j in range(-4, 4) for side in (-1.0, 1.0)]
+    jumps = _jumps(data, i, np.array([x for x in beside if low < x < high]))
+    return np.unique(np.concatenate([np.linspace(low, high, count), jumps]))
+
+
+def _jumps(data: GearTrain, i: int, x: Array) -> Array:
+    """Places beside true corners of the transmission error; ends of fitted pieces are none."""
+    pitch = data.pairs[i].base_pitch
+    slope = data.errors[i].slope(x / pitch)
+    near = np.abs(np.diff(x)) < 3e-7 * pitch
+    kink = near & (np.abs(np.diff(slope)) > 1e-3 * np.max(np.abs(slope), initial=1e-30))
+    keep = np.zeros(x.size, dtype=bool)
+    keep[:-1] |= kink
+    keep[1:] |= kink
+    return x[keep]
+
+
+def force_history(data: GearTrain, i: int, speed: float, count: int, harmonics: int) -> ToothForce:
+    """Force on one tooth pair of mesh `i` at a speed of the reference body [rad/s]."""
+    from fegear.dynamics.tooth_force import tooth_force
+    from fegear.scene.mesh_excitation import tooth_pair_at
+
+    x = positions(data, i, count)
+    pitch = data.pairs[i].base_pitch
+    k, m = tooth_pair_at(data.excitations[i], x, pitch)
+    return tooth_force(data.train, data.errors, i, speed / data.speed_ratio, x, k, m, pitch, harmonics=harmonics)
+
+
+def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
+    data, part = gear_train(done), scene.case.dynamics
+    i = data.train.mesh_index(name)
+    force = force_history(data, i, part.one_speed, part.positions, max(part.harmonics, 256))
+    cross = force.cross.sum(axis=0)
+    table = Table(
+        f"tooth_force_{name}",
+        (
+            Column("t", force.time, "s", "zero at the pitch point"),
+            Column("x", force.x, "mm", "place of the tooth pair on the line of action"),
+            Column("force", force.total, "N", "on one tooth pair, without the other meshes' share"),
+            Column("force_with_others", force.total + cross, "N", "with the other meshes' share, at the case's phases"),
+            Column("static", force.static, "N", "static part"),
+            Column("own_increment", force.own, "N", "from this mesh's transmission error"),
+            *(
+                Column(f"increment_from_{other}", force.cross[j], "N", "from the other mesh, at zero relative phase")
+                for j, other in enumerate(data.names)
+                if j != i
+            ),
+        ),
+        f"Force on one tooth pair of mesh {name}",
+    )
+    worst, mean = int(np.argmax(force.total)), float(data.forces[i])
+    values = [
+        Value(f"{name}.largest_tooth_force", float(force.total[worst]), "N", None,
+              f"without the other meshes, at x = {force.x[worst] * 1e3:.5g} mm"),
+        Value(f"{name}.largest_static_tooth_force", float(force.static.max()), "N", None, "quasi-static"),
+        *(
+            Value(f"{name}.largest_increment_from_{other}", float(force.cross_peak[j]), "N", None,
+                  "over the engagement and all relative phases")
+            for j, other in enumerate(data.names) if j != i
+        ),
+    ]  # fmt: skip
+    remarks = []
+    if (force.total + cross).min() < -1e-6 * abs(mean):
+        remarks.append(
+            f"Mesh {name}: the linearised tooth force falls below zero, so teeth part; dynamic-factor with "
+            "effects.contact_loss computes the motion with contact loss."
+        )
+    settings: dict[str, object] = {"harmonics": max(part.harmonics, 256), "speed": part.one_speed}
+    return Outcome(ToothForceData(data, i, force), (table,), tuple(values), settings, tuple(remarks))
+
+
+def _check_root_stress(scene: Scene, name: str) -> None:
+    needs_one_speed(scene, name)
+    if "root-stress-history" in scene.case.results:
+        raise InputError(
+            "results", '"root-stress-history"', "and dynamic-root-stress would write the same tables",
+            "ask for dynamic-root-stress alone: it holds the quasi-static stress too",
+        )  # fmt: skip
+
+
+def _kernel(source: FiniteElementCompliance, pair: GearPair, member: Member, width: float) -> Callable[[Array], Array]:
+    """Largest root tension of the loaded tooth per unit force, over the place of the force on the line of action."""
+
+    def kernel(x: Array) -> Array:
+        found = source.root_stress(0, pair.radius(x, member), "tension")
+        return np.asarray(np.max(np.asarray(found), axis=0)) / width
+
+    return kernel
+
+
+def _run_root_stress(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.contact import finite_element_compliance
+    from fegear.dynamics.tooth_force import root_stress
+    from fegear.scene.tooth_influence import gear_influence
+
+    data = cast("ToothForceData", done[Task("tooth-force", name)].data)
+    pair_name = train_part(scene).pair_of(name)
+    pair, force = scene.pairs[pair_name], data.force
+    width = min(pair.driver.face_width, pair.driven.face_width)
+    both = force.total + force.cross.sum(axis=0)
+    static: dict[Member, Array] = {}
+    stress: dict[Member, Array] = {}
+    tables, values, prefix = [], [], f"{pair_name}_"
+    for number, (member, label) in enumerate(table_names(scene, pair_name).items()):
+        gear = gear_name(scene, pair_name, member)
+        kernel = _kernel(finite_element_compliance(gear_influence(scene, gear)), pair, member, width)
+        stress[member], static[member] = root_stress(both, force.x, kernel), root_stress(force.static, force.x, kernel)
+        alone = root_stress(force.total, force.x, kernel)
+        tables.append(
+            Table(
+                f"root_stress_history_{name}_{label.removeprefix(prefix)}",
+                (
+                    Column("t", force.time, "s", "zero at the pitch point"),
+                    Column("x", force.x, "mm", "place of the tooth's contact on the line of action"),
+                    Column(
+                        "stress", stress[member], "MPa", "largest root tension of the loaded tooth, all meshes' shares"
+                    ),
+                    Column("stress_own_mesh", alone, "MPa", "without the other meshes' share"),
+                    Column("static_stress", static[member], "MPa", "quasi-static"),
+                ),
+                f"Dynamic root stress of gear {gear} as {member}, mesh {name}",
+            )
+        )
+        worst = int(np.argmax(alone))
+        values.append(
+            Value(f"{name}.{member}.largest_dynamic_root_tension", float(alone[worst]), "MPa", None,
+                  f"gear {gear}, without the other meshes, contact at x = {force.x[worst] * 1e3:.5g} mm")
+        )  # fmt: skip
+        progress((number + 1) / 2)
+    return Outcome(DynamicRootStress(data, static, stress), tuple(tables), tuple(values))
+
+
+MESH_FORCE_SPECTRUM = Stage(
+    name="mesh-force-spectrum",
+    title="Mesh force spectra",
+    results=("mesh-force-spectrum",),
+    subjects=meshes,
+    run=_run_spectrum,
+    needs=needs_train,
+    check=needs_one_speed,
+)
+
+TOOTH_FORCE = Stage(
+    name="tooth-force",
+    title="Force on one tooth pair",
+    results=("tooth-force",),
+    subjects=own_meshes,
+    run=_run_force,
+    needs=needs_train,
+    check=needs_one_speed,
+)
+
+DYNAMIC_ROOT_STRESS = Stage(
+    name="dynamic-root-stress",
+    title="Dynamic root stress",
+    results=("dynamic-root-stress",),
+    subjects=own_meshes,
+    run=_run_root_stress,
+    needs=lambda _scene, name: (Task("tooth-force", name),),
+    check=_check_root_stress,
+)
