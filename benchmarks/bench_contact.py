@@ -5,6 +5,7 @@ Run with ``pytest benchmarks/bench_contact.py --benchmark-only``.
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -65,3 +66,11 @@ print(transmission_error(e, 3000.0).effective_error)
 
 def test_two_different_gears_from_cold(benchmark):
     benchmark.pedantic(lambda: subprocess.run([sys.executable, "-c", COLD], check=True, capture_output=True), rounds=3)
+
+
+def test_full_case_from_cold(benchmark, tmp_path):
+    """`fegear run` of two different gears: influence functions with errors, sharing, harmonics, root stress, tables."""
+    case = Path(__file__).parents[1] / "cases" / "pinion_and_wheel.toml"
+    command = "from fegear.cli import main; main()"
+    arguments = [sys.executable, "-c", command, "run", str(case), "--no-plots", "--out", str(tmp_path / "out")]
+    benchmark.pedantic(lambda: subprocess.run(arguments, check=True, capture_output=True), rounds=3)

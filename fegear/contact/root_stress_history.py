@@ -14,9 +14,11 @@ if TYPE_CHECKING:
 
     from fegear.contact.compliance import Side
     from fegear.contact.engagement import Engagement, Loaded
+    from fegear.contact.meshing import Contacts
     from fegear.geometry.pair import Member
 
     Array = NDArray[np.float64]
+    Kernels = dict[int, Array]
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,41 @@ class RootStressHistory:
         return np.asarray(flat.max(axis=0) if self.side == "tension" else flat.min(axis=0))
 
 
+def root_stress_kernels(
+    engagement: Engagement, contacts: Contacts, member: Member, side: Side = "tension", beyond: int = 0
+) -> Kernels:
+    """Stress along the fillet of tooth k per unit line load at each contact, (points, n, P) for each k [1/m].
+
+    Raises
+    ------
+    InputError
+        If the compliance source of this gear knows no root stress.
+    """
+    source = engagement.compliance.source(member)
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    n, positions = radius.shape
+    reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
+    kernels: Kernels = {}
+    for k in range(-reach, reach + 1):
+        kernel = source.root_stress(k, radius.ravel(), side)
+        if kernel is None:
+            raise InputError(
+                "results",
+                '"root-stress"',
+                f"cannot come from this compliance source ({source.describe()})",
+                'set pair.compliance.source = "fe"',
+            )
+        kernels[k] = kernel.reshape(kernel.shape[0], n, positions)
+    return kernels
+
+
 def root_stress_history(
-    engagement: Engagement, loaded: Loaded, member: Member, side: Side = "tension", beyond: int = 0
+    engagement: Engagement,
+    loaded: Loaded,
+    member: Member,
+    side: Side = "tension",
+    beyond: int = 0,
+    kernels: Kernels | None = None,
 ) -> RootStressHistory:
     """Superpose the fillet stress of a tooth's own load and of its neighbours' loads, then take the extreme.
 
@@ -59,35 +94,26 @@ def root_stress_history(
         The tension fillet lies below the loaded flank.
     beyond : int
         Teeth before the first and after the last pair that can touch, in addition: they feel their neighbours' loads.
+    kernels : dict, optional
+        From `root_stress_kernels` with the same arguments, when many loads are superposed at the same contacts.
 
     Raises
     ------
     InputError
         If the compliance source of this gear knows no root stress.
     """
-    source = engagement.compliance.source(member)
     contacts = loaded.grid.contacts
-    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
-    n, positions = radius.shape
+    if kernels is None:
+        kernels = root_stress_kernels(engagement, contacts, member, side, beyond)
+    n, positions = contacts.x.shape
     towards_load = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
-    reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
-    kernels: dict[int, Array] = {}
     line_load = loaded.loads / engagement.compliance.face_width
+    carrying = [other for other in range(n) if (line_load[other] > 0.0).any()]
     teeth = range(-beyond, n + beyond)
     stress = np.empty((len(teeth), *line_load.shape[1:]))
-    for k in range(-reach, reach + 1):
-        kernel = source.root_stress(k, radius.ravel(), side)
-        if kernel is None:
-            raise InputError(
-                "results",
-                '"root-stress"',
-                f"cannot come from this compliance source ({source.describe()})",
-                'set pair.compliance.source = "fe"',
-            )
-        kernels[k] = kernel.reshape(kernel.shape[0], n, positions)
     for row, tooth in enumerate(teeth):
         total = np.zeros((kernels[0].shape[0], positions, line_load.shape[2]))
-        for other in range(n):
+        for other in carrying:
             k = towards_load * (tooth - other)
             if k in kernels:
                 total += kernels[k][:, other, :, None] * line_load[other][None]

@@ -74,21 +74,25 @@ def _states(e: Engagement, x: Array, loads: tuple[float, ...]) -> list[tuple[int
 def tooth_stress(pair: LoadedPair, member: Member) -> ToothStress:
     """Follow one tooth of a gear from a base pitch before its contact to one after it."""
     from fegear.contact import root_stress_history
+    from fegear.contact.root_stress_history import root_stress_kernels
 
     e = pair.engagement
+    states = _states(e, roll_positions(pair), pair.loads)
+    contacts = states[0][1].grid.contacts
+    pull, press = (root_stress_kernels(e, contacts, member, side, 1) for side in ("tension", "compression"))
     xs: list[Array] = []
     tension: list[Array] = []
     compression: list[Array] = []
     error: list[Array] = []
     known: dict[int, tuple[Array, Array, Array, Array]] = {}
-    for row, state in _states(e, roll_positions(pair), pair.loads):
+    for row, state in states:
         if id(state) not in known:
-            pulled = root_stress_history(e, state, member, "tension", 1)
-            pressed = root_stress_history(e, state, member, "compression", 1)
+            pulled = root_stress_history(e, state, member, "tension", 1, pull)
+            pressed = root_stress_history(e, state, member, "compression", 1, press)
             off = np.zeros_like(pulled.stress)
             for other in pair.shifted:
                 again = solve_again(other, state.grid, state)
-                off = off + np.abs(root_stress_history(e, again, member, "tension", 1).stress - pulled.stress)
+                off = off + np.abs(root_stress_history(e, again, member, "tension", 1, pull).stress - pulled.stress)
             off[1:-1] += _own_error(pair, member, state)
             known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
         for found, values in zip((xs, tension, compression, error), known[id(state)], strict=True):
