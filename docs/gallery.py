@@ -117,8 +117,20 @@ def page(path: Path) -> str:
 
 
 # ---- what mkdocs calls -------------------------------------------------------------------------------------------
+def _with_unlisted(nav: list[dict[str, object]]) -> list[dict[str, object]]:
+    """Navigation with every page: those that mkdocs.yml does not list come last in the user's guide."""
+    listed = json.dumps(nav)
+    unlisted = [path for path in sorted((ROOT / "docs").glob("*.md")) if f'"{path.name}"' not in listed]
+    for section in nav:
+        guide = section.get("User's guide")
+        if isinstance(guide, list):
+            guide += [{path.read_text("utf-8").splitlines()[0].lstrip("# "): path.name} for path in unlisted]
+    return nav
+
+
 def on_config(config):
-    """Put the gallery into the navigation."""
+    """Put pages without a place and the gallery into the navigation."""
+    config.nav = _with_unlisted(config.nav)
     pages = [{_title(path): f"gallery/{path.stem}.md"} for path in cases()]
     config.nav.append({"Gallery": [{"All cases": "gallery/index.md"}, *pages]})
     return config

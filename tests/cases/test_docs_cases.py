@@ -12,12 +12,6 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_every_page_is_in_the_navigation():
-    nav = (ROOT / "mkdocs.yml").read_text("utf-8").partition("\nnav:")[2]
-    missing = [page.name for page in (ROOT / "docs").glob("*.md") if f": {page.name}\n" not in nav]
-    assert missing == []
-
-
 def test_the_site_builds_without_a_warning(tmp_path):
     pytest.importorskip("mkdocs")
     environment = {**os.environ, "FEGEAR_GALLERY": "litvin_lead", "PYTHONPATH": str(ROOT)}
@@ -33,6 +27,8 @@ def test_the_site_builds_without_a_warning(tmp_path):
     # Pages that name other cases link to pages which this shortened gallery leaves out.
     faults = [line for line in done.stderr.splitlines() if line.startswith("WARNING") and "'gallery/" not in line]
     assert faults == []
+    start = (tmp_path / "site" / "index.html").read_text("utf-8")
+    assert [p.name for p in (ROOT / "docs").glob("*.md") if f'href="{p.stem}/"' not in start] == []
     page = (tmp_path / "site" / "gallery" / "litvin_lead" / "index.html").read_text("utf-8")
     assert "fegear run cases/litvin_lead.toml" in page
     assert page.count("<img") >= 1
