@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     #: Edge length as a function of arc length, both in modules.
     Law = Callable[[Array], Array]
 
+#: Root lands shorter than this [modules] (a rack tip all but full) are left out: the fillets meet on the sector's
+#: side. Fillet and root circle are tangent there, so the outline moves by the square of it.
+_SHORTEST_LAND = 2e-4
+
 
 @dataclass(frozen=True)
 class Chain:
@@ -90,16 +94,22 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     """
     pieces = tooth.outline
     pitch_angle = 2.0 * math.pi / tooth.teeth
-    land = [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings))] if tooth.root_land else []
+    short = tooth.root_radius * tooth.root_land_half_angle < _SHORTEST_LAND
+    land = (
+        []
+        if tooth.root_land is None or short
+        else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings))]
+    )
     front_laws = _front_sizes(tooth, settings)
     front = [
         _on_curve(_boundary(piece, tooth), pieces[piece], law) for piece, law in front_laws.items() if piece in pieces
     ]
+    if not land:
+        front[0] = _from_the_side(front[0], tooth)
     back_tip = [_mirrored(chain, "tip") for chain in reversed(front) if chain.name.startswith("tip")]
     back_flank = _mirrored(_on_curve("flank", tooth.involute, _back_size(settings)), "back_flank")
-    back_fillet = _mirrored(
-        _on_curve("fillet", tooth.fillet, lambda s: np.full_like(s, settings.root_edge_length)), "back_fillet"
-    )
+    fillet = _on_curve("fillet", tooth.fillet, lambda s: np.full_like(s, settings.root_edge_length))
+    back_fillet = _mirrored(fillet if land else _from_the_side(fillet, tooth), "back_fillet")
     top = (land + front)[0].vertices
     first = float(np.hypot(*(top[:, 1] - top[:, 0])))
     outer = float(np.hypot(*top[:, 0]))
@@ -116,6 +126,14 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
     back_land = [_mirrored(chain, "root_land") for chain in land]
     return [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]
+
+
+def _from_the_side(fillet: Chain, tooth: Tooth) -> Chain:
+    """Fillet that starts in the middle of the tooth space, on the side of the sector."""
+    vertices = fillet.vertices.copy()
+    half = math.pi / tooth.teeth
+    vertices[:, 0] = tooth.root_radius * math.sin(half), tooth.root_radius * math.cos(half)
+    return Chain(fillet.name, vertices, fillet.middles)
 
 
 def _boundary(piece: str, tooth: Tooth) -> str:

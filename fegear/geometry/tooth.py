@@ -102,7 +102,10 @@ class Tooth:
     def _check_tip(self) -> None:
         if self.tip_radius <= self.base_radius:
             raise GeometryError(
-                "tip_radius", self.tip_radius, f"must exceed the base radius {self.base_radius:.6g} (in modules)"
+                "tip_radius",
+                f"{self.tip_radius:.6g}",
+                f"must exceed the base radius {self.base_radius:.6g} (in modules)",
+                "raise the tip diameter",
             )
         pointed = self.base_radius * math.hypot(1.0, float(roll_of_polar_angle(self.base_half_angle)))
         if self.tip_radius >= pointed:

@@ -10,8 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("gmsh", exc_type=ImportError)
-
 from fegear.cli import app
 from fegear.contact.crosscheck import pair_compliance_answers, root_stress_answers
 from fegear.contact.root_stress_study import root_stress_study, variants, verdict

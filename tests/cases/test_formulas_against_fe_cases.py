@@ -11,8 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("gmsh", exc_type=ImportError)
-
 from fegear.fem import stiffness_table
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas import hertz

@@ -199,6 +199,23 @@ def test_hard_gears_give_finite_monotone_answers(teeth, shift, bore, nu):
     assert (known.largest_root_stress(0, "compression", radii, 0.08)[0] < 0.0).all()
 
 
+@pytest.mark.parametrize("short_by", [1e-9, 1e-6, 1e-4, 1e-3])
+def test_racks_that_are_all_but_full_lead_to_the_full_fillet(short_by):
+    """A root land of a millionth of a module once cost millions of elements, or turned one inside out."""
+
+    def answers(rack):
+        tooth = Tooth(28, rack)
+        known = solve_influence(tooth, mesh_sector(tooth, 0.5 * tooth.root_radius, MeshSettings()), 0.3, "strain")
+        radii = np.array([14.0, 14.8])
+        assert known.mesh.triangles.shape[1] < 4000
+        return known.self_compliance(radii, 0.08), known.largest_root_stress(0, "tension", radii, 0.08)[0]
+
+    full = BasicRack.full_fillet()
+    nearly = answers(BasicRack(tip_radius=full.tip_radius - short_by, addendum=1.0, dedendum=1.25))
+    for found, limit in zip(nearly, answers(full), strict=True):
+        assert found == pytest.approx(limit, rel=5e-4 + 2.0 * short_by)
+
+
 def test_a_rounded_tip_carries_load_without_a_kink_at_the_end_of_the_flank():
     tooth = Tooth(28, tip_rounding=0.12)
     known = solve_influence(tooth, mesh_sector(tooth, 0.5 * tooth.root_radius, MeshSettings()), 0.3, "strain")

@@ -93,6 +93,13 @@ def test_full_fillet_rack_leaves_no_root_land():
     assert np.arctan2(*tooth.fillet.points(0.0)) == pytest.approx(math.pi / 30, abs=1e-14)
 
 
+def test_the_widest_rack_tip_that_a_refusal_names_is_accepted():
+    with pytest.raises(GeometryError, match="full fillet") as refused:
+        BasicRack(1.0, 1.25, 0.5)
+    widest = float(refused.value.remedy.split("at most ")[1].split()[0])
+    assert BasicRack(1.0, 1.25, widest).full_fillet_radius == pytest.approx(widest, abs=1e-6)
+
+
 def test_fillet_radius_at_the_root_circle_is_the_textbook_one():
     # Radius of curvature of a rack-cut trochoid at the root: rho + d^2 / (r + d), d = depth of the tip centre.
     tooth = Tooth(28, BasicRack(1.0, 1.25, 0.25))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.errors import InputError
+from fegear.errors import InputError, RangeError
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.settings import mesh_settings, seconds_of_gear
 from fegear.scene.stage import Forecast, Stage, Task
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: Half-width of the contact in modules when the case gives neither a width nor a load.
 USUAL_HALF_WIDTH = 0.02
+#: Wider contacts than this [modules] are refused where a case gives them: the flank is too short to hold them.
+LARGEST_HALF_WIDTH = 0.5
 #: A stress converges one order more slowly than a compliance: its tolerance is this many times the case's.
 STRESS_SHARE = 5.0
 #: Reading off one position of a solved gear [s].
@@ -90,6 +92,13 @@ def contact_half_width(scene: Scene, name: str, radii: Array) -> Array:
     """Half-width of the contact at every radius [m]: given, from Hertz for a load and a mate, or 0.02 modules."""
     part, gear = scene.case.stiffness, scene.gears[name]
     if part.contact_half_width is not None:
+        if part.contact_half_width > LARGEST_HALF_WIDTH * gear.module:
+            raise RangeError(
+                "stiffness.contact_half_width",
+                f"{part.contact_half_width * 1e3:.6g} mm",
+                f"is no contact on a flank: it exceeds half a module, {LARGEST_HALF_WIDTH * gear.module * 1e3:.6g} mm",
+                f"{USUAL_HALF_WIDTH * gear.module * 1e3:.6g} mm is usual",
+            )
         return np.full(radii.shape, part.contact_half_width)
     if part.load is None:
         return np.full(radii.shape, USUAL_HALF_WIDTH * gear.module)
