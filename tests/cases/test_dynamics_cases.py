@@ -134,3 +134,49 @@ def test_four_square_from_finite_elements():
     # the teeth that share load in double contact carry it all in single contact
     assert values["I.largest_static_tooth_force"] == pytest.approx(1615.0, rel=1e-3)
     assert any("mean load" in remark for remark in results.remarks)
+
+
+def test_lin_design_chart(tmp_path, monkeypatch):
+    """Figs. 9 and 10: with 0.75 Delta the best length is near 1.09; a killed chart keeps its finished points."""
+    monkeypatch.setenv("FEGEAR_CACHE", str(tmp_path))
+    overrides = (
+        "dynamics.chart={ amounts = [0.75], lengths = [0.7, 1.1, 1.28] }",
+        "dynamics.speeds=['9500 rpm', '10500 rpm']",
+    )
+    tables, values, _ = run("lin_design_chart", *overrides)
+    table = tables["design_chart_I"]
+    assert list(table)[:5] == ["amount", "length", "dynamic_factor", "speed [rpm]", "effective_error [um]"]
+    assert values["design_chart.best_length_0.75"] == pytest.approx(1.1)
+    assert values["design_chart.least_factor_0.75"] < 1.15
+    assert values["design_chart.unmodified"] == pytest.approx(2.118, abs=0.01)
+    # A_e ranks the lengths as the dynamic factor does
+    assert np.argmin(table["effective_error [um]"]) == np.argmin(table["dynamic_factor"])
+    kept = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*") if path.is_file()}
+    assert len(kept) >= 4
+    run.cache_clear()
+    again = run("lin_design_chart", *overrides)[0]["design_chart_I"]
+    assert np.array_equal(again["dynamic_factor"], table["dynamic_factor"])
+
+
+def test_two_stage_gearbox():
+    """Three shafts, two meshes and a branch: seven bodies have six elastic modes; the loads follow the ratios."""
+    speed = "dynamics.speeds=['5000 rpm']"
+    tables, values, results = run("two_stage_gearbox", speed, "effects.friction=false")
+    modes = tables["natural_modes"]
+    assert modes["frequency [Hz]"][0] == 0.0
+    assert np.all(np.diff(modes["frequency [Hz]"]) > 0.0)
+    assert len(modes["mode"]) == 7
+    # the branch shaft's own mode: fan against the rest, near sqrt(k (1/J_fan + 1/J_rest)); its energy lies in shafts
+    energy = modes["energy_first"] + modes["energy_second"]
+    assert energy[1:4].max() < 0.05
+    assert energy[-1] > 0.9
+    geometry = results.scene.pairs
+    radius = geometry["second"].driver.base_radius
+    assert values["second.mean_force"] == pytest.approx(80.0 * 53 / 21 / radius, rel=1e-9)
+    increments = [head for head in tables["dynamic_increments"] if head.startswith("Q_")]
+    assert len(increments) == 8
+    for mesh in ("first", "second"):
+        factor = tables[f"dynamic_factor_{mesh}"]
+        assert factor["speed [rpm]"] == pytest.approx([5000.0])
+        assert 1.0 < factor["dynamic_factor"][0] < 2.0
+        assert factor["periods"][0] == 1

@@ -11,7 +11,7 @@ from fegear.errors import InputError
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage, Task
 from fegear.scene.stages.gear_train import gear_train, needs_train, the_train
-from fegear.scene.stages.mesh_forces import force_history, meshes, needs_speeds
+from fegear.scene.stages.mesh_forces import force_history, mesh_force_range, meshes, needs_speeds
 from fegear.scene.train import train_part
 
 if TYPE_CHECKING:
@@ -156,23 +156,12 @@ def _linear_chart(scene: Scene, data: GearTrain, i: int, speeds: Array, progress
     for number, speed in enumerate(speeds):
         found = force_history(data, i, float(speed) * data.speed_ratio, part.positions, part.harmonics)
         tooth[number] = (float(found.total.max()) + float(found.cross_peak.sum())) / mean
-        mesh[number] = _mesh_force_factor(data, i, float(speed), part.harmonics, mean)
+        mesh[number] = mesh_force_range(data, i, float(speed), part.harmonics)[1] / mean
         progress((number + 1) / speeds.size)
     none = np.zeros(speeds.size)
     return SpeedChart(
         speeds, tooth, mesh, none, none.copy(), np.ones(speeds.size, dtype=np.int64), ("periodic",) * speeds.size
     )
-
-
-def _mesh_force_factor(data: GearTrain, i: int, speed: float, harmonics: int, mean: float) -> float:
-    """Largest mesh force over the mean one: k Q alpha of every mesh summed at its worst relative phase."""
-    from fegear.dynamics.spectra import mesh_force_spectrum
-
-    found = mesh_force_spectrum(data.train, data.errors, [speed], harmonics)
-    phase = np.linspace(0.0, 1.0, 16 * harmonics, endpoint=False)
-    waves = np.exp(2j * np.pi * np.outer(phase, np.arange(1, harmonics + 1)))
-    largest = [float((2.0 * np.real(waves @ found.coefficients[i, j, :, 0])).max()) for j in range(len(data.names))]
-    return 1.0 + sum(largest) / mean
 
 
 def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:

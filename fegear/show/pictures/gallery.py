@@ -14,11 +14,15 @@ if TYPE_CHECKING:
     from fegear.fem import StiffnessTable
     from fegear.scene.run import Results
     from fegear.scene.stages.crosscheck import CrosscheckData
+    from fegear.scene.stages.design_chart import DesignChartData
+    from fegear.scene.stages.dynamic_factor import DynamicFactorData
     from fegear.scene.stages.load_sharing import LoadSharingData
+    from fegear.scene.stages.mesh_forces import DynamicRootStress, SpectrumData, ToothForceData
     from fegear.scene.stages.relief import ReliefData
     from fegear.scene.stages.relief_chart import ReliefChartData, RobustnessData
     from fegear.scene.stages.root_stress_history import RootStressData
     from fegear.scene.stages.tooth_contact import ToothContactData
+    from fegear.scene.stages.train_response import IncrementsData, ModesData
     from fegear.scene.stages.transmissibility import TransmissibilityData
     from fegear.scene.stages.transmission_error import TransmissionErrorData
     from fegear.show.pictures.style import Picture
@@ -148,6 +152,63 @@ def _robustness(results: Results, task: Task, folder: Path) -> Iterator[Picture]
     yield draw_robustness(data, folder / f"robustness_{name}.png", name, metric)
 
 
+def _natural_modes(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.dynamics import draw_campbell, draw_modes
+
+    outcome = results.outcomes[task]
+    data = cast("ModesData", outcome.data)
+    if data.modes.frequencies.size > 1:
+        yield draw_modes(outcome.tables[0], folder / "natural_modes.png")
+        if data.campbell is not None and data.campbell.speeds.size > 1:
+            yield draw_campbell(data, folder / "campbell.png")
+
+
+def _dynamic_increments(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.dynamics import draw_increments
+
+    yield draw_increments(cast("IncrementsData", results.outcomes[task].data), folder / "dynamic_increments.png")
+
+
+def _mesh_force_spectrum(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.dynamics import draw_spectrum, draw_waterfall
+
+    name, data = task.subject, cast("SpectrumData", results.outcomes[task].data)
+    yield draw_spectrum(data, folder / f"mesh_force_spectrum_{name}.png")
+    if data.waterfall is not None:
+        yield draw_waterfall(data, folder / f"mesh_force_waterfall_{name}.png")
+
+
+def _tooth_force(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.dynamics import draw_tooth_force
+
+    yield draw_tooth_force(
+        cast("ToothForceData", results.outcomes[task].data), folder / f"tooth_force_{task.subject}.png"
+    )
+
+
+def _dynamic_root_stress(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.dynamics import draw_root_stress
+
+    data = cast("DynamicRootStress", results.outcomes[task].data)
+    yield draw_root_stress(data, folder / f"dynamic_root_stress_{task.subject}.png")
+
+
+def _dynamic_factor(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.dynamics import draw_dynamic_factor
+
+    data = cast("DynamicFactorData | None", results.outcomes[task].data)
+    if data is not None and data.chart.speeds.size > 1:
+        yield draw_dynamic_factor(data, folder / f"dynamic_factor_{task.subject}.png", task.subject)
+
+
+def _design_chart(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.show.pictures.dynamics import draw_design_chart
+
+    data = cast("DesignChartData", results.outcomes[task].data)
+    if data.lengths.size > 1:
+        yield draw_design_chart(data, folder / "design_chart.png")
+
+
 #: For each stage that has pictures, what draws them; others follow the same shape.
 DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
     "stiffness": _stiffness,
@@ -162,6 +223,13 @@ DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
     "robustness": _robustness,
     "tooth-contact": _tooth_contact,
     "transmissibility": _transmissibility,
+    "natural-modes": _natural_modes,
+    "dynamic-increments": _dynamic_increments,
+    "mesh-force-spectrum": _mesh_force_spectrum,
+    "tooth-force": _tooth_force,
+    "dynamic-root-stress": _dynamic_root_stress,
+    "dynamic-factor": _dynamic_factor,
+    "design-chart": _design_chart,
 }
 
 
