@@ -192,8 +192,8 @@ def test_time_integration_agrees_with_the_fourier_solution():
     t = np.linspace(0.0, state.model.period, 200)[1:-1]
     frequency = train.mesh_frequencies(SPEED)
     for m in (0, 1):
-        smooth = dynamic_error(train, found, m, m, SPEED, t * frequency[m], 30_000)
-        smooth += dynamic_error(train, found, m, 1 - m, SPEED, t * frequency[1 - m], 30_000)
+        smooth = dynamic_error(train, found, m, m, SPEED, t * frequency[m], 12_000)
+        smooth += dynamic_error(train, found, m, 1 - m, SPEED, t * frequency[1 - m], 12_000)
         exact = found[m](t * frequency[m]) - found[m].mean
         fourier = LOAD + (smooth - exact) / means[m]
         assert np.max(np.abs(path.mesh_forces(t)[:, m] - fourier)) < 1e-6

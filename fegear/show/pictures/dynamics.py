@@ -45,7 +45,7 @@ def draw_campbell(data: ModesData, path: Path) -> Picture:
         raise ValueError("a Campbell diagram needs speeds")
     made, axes = figure()
     speed = diagram.speeds * data.train.speed_ratio * _RPM
-    top = 1.25 * float(diagram.natural.max())
+    top, labelled = 1.25 * float(diagram.natural.max()), -math.inf
     for m, name in enumerate(data.train.names):
         for h in range(diagram.lines.shape[1]):
             label = f"mesh {name}, harmonics 1 to {diagram.lines.shape[1]}" if h == 0 else None
@@ -54,6 +54,9 @@ def draw_campbell(data: ModesData, path: Path) -> Picture:
             )
     for k, natural in enumerate(diagram.natural):
         axes.axhline(natural * 1e-3, color="0.4", lw=1.0)
+        if natural - labelled < 0.04 * top:
+            continue
+        labelled = float(natural)
         axes.annotate(
             f"mode {k + 1}: {natural:.0f} Hz", (1.0, natural * 1e-3), xycoords=("axes fraction", "data"),
             xytext=(-2, 2), textcoords="offset points", ha="right", fontsize=8, color="0.3",
