@@ -114,11 +114,6 @@ class HelicalGear:
         return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.helix_angle))
 
     @property
-    def transverse_pitch(self) -> float:
-        """p_t on the pitch circle [m] (A.2.2)."""
-        return math.pi * self.normal_module / math.cos(self.helix_angle)
-
-    @property
     def pitch_radius(self) -> float:
         """r_p [m] (A.2.5)."""
         return 0.5 * self.teeth * self.normal_module / math.cos(self.helix_angle)

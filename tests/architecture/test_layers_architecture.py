@@ -35,6 +35,7 @@ LAYERS = {
     "show": 7,
     "terminal": 7,
     "cli": 8,
+    "__main__": 9,
 }
 
 #: Where each heavy library may be imported.

@@ -50,6 +50,10 @@ def test_form_and_stress_correction_factor_at_the_outer_single_contact_point():
     f = root.root_form(gear, d)
     product = f.Y_F * f.Y_S
     assert product == pytest.approx(2.848, abs=5e-4)
+    # sigma_F0 = F_t / (b m_n) Y_F Y_S: 100 N/mm on module 2 mm.
+    assert root.nominal_root_stress(f, 1000.0, 10e-3, 2e-3) == pytest.approx(50e6 * product, rel=1e-14)
+    with pytest.raises(RangeError, match="positive"):
+        root.nominal_root_stress(f, 1000.0, 0.0, 2e-3)
     for member in ("driver", "driven"):
         same = root.pair_root_form(p, member)
         both = same.Y_F * same.Y_S
