@@ -7,6 +7,7 @@ import math
 import operator
 import os
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -98,35 +99,35 @@ def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
         map_points(math.sqrt, [1.0], scheduler="tcp://127.0.0.1:9")
 
 
-def test_no_worker_outlives_a_killed_parent():
+def test_no_worker_outlives_a_killed_parent(tmp_path):
     program = (
-        "import os, time\n"
         "from fegear.scene.executor import map_points\n"
+        "work = 'import pathlib, time; pathlib.Path({!r}).touch(); time.sleep(600)'\n"
         "if __name__ == '__main__':\n"
-        "    print(os.getpid(), flush=True)\n"
-        "    map_points(time.sleep, [600, 601], workers=2)\n"
+        "    map_points(exec, [work.format(name) for name in ('first', 'second')], workers=2)\n"
     )
-    group = subprocess.Popen(
-        [sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, env=ENVIRONMENT, start_new_session=True
-    )
-    assert group.stdout is not None
-    group.stdout.readline()
+    group = subprocess.Popen([sys.executable, "-c", program], cwd=tmp_path, env=ENVIRONMENT, start_new_session=True)
 
-    def members() -> list[str]:
-        listing = subprocess.run(
-            ["ps", "-o", "pid=,args=", "-g", str(group.pid)], capture_output=True, text=True, check=False
-        )
-        return [line for line in listing.stdout.splitlines() if "spawn_main" in line]
+    def wait_until(holds) -> bool:
+        for _ in range(600):
+            if holds():
+                return True
+            time.sleep(0.1)
+        return False
 
-    for _ in range(600):
-        if len(members()) >= 2:
-            break
-        time.sleep(0.1)
-    assert len(members()) >= 2
-    group.kill()
-    group.wait()
-    for _ in range(600):
-        if not members():
-            break
-        time.sleep(0.1)
-    assert members() == []
+    def nobody_is_left() -> bool:
+        try:
+            os.killpg(group.pid, 0)
+        except ProcessLookupError:
+            return True
+        return False
+
+    try:
+        assert wait_until(lambda: len(list(tmp_path.iterdir())) == 2), "both workers are at it"
+        assert not nobody_is_left()
+        group.kill()
+        group.wait()
+        assert wait_until(nobody_is_left)
+    finally:
+        if not nobody_is_left():
+            os.killpg(group.pid, signal.SIGKILL)
