@@ -192,6 +192,13 @@ def complex_modes(model: Model) -> tuple[Complex, Complex]:
     return poles * scale, (shapes @ low) / np.sqrt(norm * scale)
 
 
+def _at(model: Model, frequency: ArrayLike, method: Method) -> tuple[Array, Complex, Complex, Complex]:
+    """Frequencies w (m,), i w, the mesh's dynamic stiffness and the compliance at each, (m, ., .)."""
+    w = np.atleast_1d(np.asarray(frequency, dtype=float))
+    s = 1j * w[:, None, None]
+    return w, s, model.mesh_stiffness_matrix + s * model.mesh_damping_matrix, compliance(model, w, method)
+
+
 def transmissibility(model: HelicalPairModel, frequency: ArrayLike, method: Method = "direct") -> Transmissibility:
     """Mesh and bearing force transmissibility of a general pair (18 to 25).
 
@@ -203,10 +210,7 @@ def transmissibility(model: HelicalPairModel, frequency: ArrayLike, method: Meth
     method : {"direct", "modal", "state-space"}
         See `compliance`.
     """
-    w = np.atleast_1d(np.asarray(frequency, dtype=float))
-    H = compliance(model, w, method)
-    s = 1j * w[:, None, None]
-    a = model.mesh_stiffness_matrix + s * model.mesh_damping_matrix
+    w, s, a, H = _at(model, frequency, method)
     i, j = model.driver, model.driven
     b_i = i.in_q(i.bearing_stiffness) + s * i.in_q(i.bearing_damping)
     b_j = j.in_q(j.bearing_stiffness) + s * j.in_q(j.bearing_damping)
@@ -242,10 +246,7 @@ def reduced_transmissibility(
     method : {"direct", "modal", "state-space"}
         See `compliance`.
     """
-    w = np.atleast_1d(np.asarray(frequency, dtype=float))
-    H = compliance(model, w, method)
-    s = 1j * w[:, None, None]
-    a = model.mesh_stiffness_matrix + s * model.mesh_damping_matrix
+    w, s, a, H = _at(model, frequency, method)
     b = model.bearing_stiffness + s * model.bearing_damping
     R = a @ H
     return ReducedTransmissibility(w / model.natural_frequency, w, a - 2.0 * R @ a, R, b @ H @ a, b @ H)

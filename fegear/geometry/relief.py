@@ -259,7 +259,8 @@ def _start(
     length: float | None,
     where: str,
 ) -> float:
-    if sum(value is not None for value in (start_roll, start_radius, length)) != 1:
+    given = [value for value in (start_roll, start_radius, length) if value is not None]
+    if len(given) != 1:
         raise InputError(
             f"relief.{where}", "its start", "must be given exactly once", "as roll angle, as radius or as length"
         )
@@ -269,8 +270,7 @@ def _start(
         if start_radius < gear.base_radius:
             raise InputError("relief.start_radius", f"{start_radius * 1e3:.6g} mm", "lies inside the base circle")
         return float(roll_of_radius(gear, start_radius))
-    assert length is not None  # noqa: S101  (the count above leaves no other case)
-    return end + sign * length / gear.base_radius
+    return end + sign * given[0] / gear.base_radius
 
 
 def crowning(gear: Gear, amount: float, start_radius: float, end_radius: float) -> Crowning:

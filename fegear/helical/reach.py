@@ -83,6 +83,12 @@ def _slope_of_radius(p: Placement, z: Array, w: Complex) -> tuple[Array, Array, 
     return x2 * x2 + y2 * y2, first, second
 
 
+def _fall_of_radius(p: Placement, z: Array, w: Complex) -> tuple[Array, Array]:
+    """-d(r2^2)/dz, which falls through zero where r2^2 is least, and its slope."""
+    _, first, second = _slope_of_radius(p, z, w)
+    return -first, -second
+
+
 def reach(p: Placement, w: Complex) -> Reach:
     """Stretch of z over which the points of each pinion helix face the gear's flank.
 
@@ -113,7 +119,7 @@ def reach(p: Placement, w: Complex) -> Reach:
     with np.errstate(divide="ignore", invalid="ignore"):
         guess = np.nan_to_num(-azimuth / p.twist_1 if p.twist_1 != 0.0 else np.zeros(n), posinf=0.0, neginf=0.0)
     hi = np.maximum(hi, lo)
-    middle = falling_root(lambda z, w: tuple(-v for v in _slope_of_radius(p, z, w)[1:]), lo, hi, guess, (w,))  # type: ignore[arg-type, return-value]  # a generator of two
+    middle = falling_root(lambda z, w: _fall_of_radius(p, z, w), lo, hi, guess, (w,))
     least = _slope_of_radius(p, middle, w)[0]
     outside = np.where(least > p.tip_2**2, 1, outside).astype(np.int8)
     lows, highs = _cut_at_radius(p, w, p.tip_2, middle, lows, highs)

@@ -133,6 +133,11 @@ class TransmissibilityPart(Part):
             raise refuse("must be greater than lambda_from", key="lambda_to", value=self.lambda_to)
         return self
 
+    def _both(self) -> tuple[RigidGearPart, RigidGearPart]:
+        if self.driver is None or self.driven is None:
+            raise InputError("driver", "(pair)", "is not described", "give driver and driven, or unity_ratio")
+        return self.driver, self.driven
+
     def build(self, mesh: MeshParameters, prefix: str) -> HelicalPairModel | ReducedPairModel:
         """Make the model."""
         from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel
@@ -144,9 +149,7 @@ class TransmissibilityPart(Part):
                     mesh, mass=u.mass, aspect_ratio=u.aspect_ratio, alpha_y=u.alpha_y, alpha_z=u.alpha_z,
                     alpha_theta=u.alpha_theta, modal_damping=self.damping_ratio,
                 )  # fmt: skip
-            driver, driven = self.driver, self.driven
-            assert driver is not None  # noqa: S101  (the validator has seen to it; this tells the type checker)
-            assert driven is not None  # noqa: S101
-            return HelicalPairModel(driver.build(), driven.build(), mesh, modal_damping=self.damping_ratio)
+            driver, driven = (gear.build() for gear in self._both())
+            return HelicalPairModel(driver, driven, mesh, modal_damping=self.damping_ratio)
         except InputError as error:
             raise at(prefix, error) from None

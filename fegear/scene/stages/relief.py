@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.contact import Engagement, Loaded, TransmissionError
-    from fegear.design import LoadingFunction, TipReliefPair
+    from fegear.design import LoadingFunction, MinimumExcitationRelief, TipReliefPair
     from fegear.design.minimum_excitation import ReliefTable
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Shape
@@ -121,16 +121,15 @@ def _least_stress(
 def _relief_tables(
     scene: Scene, pair: LoadedPair, designed: Engagement, diagonal: Engagement | None, others: list[Engagement]
 ) -> tuple[dict[Member, ReliefTable], list[Table]]:
-    from fegear.design import MinimumExcitationRelief, relief_table
+    from fegear.design import relief_table
 
     found: dict[Member, ReliefTable] = {}
     tables = []
     for member, label in table_names(scene, pair.name).items():
 
         def of(e: Engagement, member: Member = member) -> MinimumExcitationRelief:
-            relief = e.driver_relief if member == "driver" else e.driven_relief
-            assert isinstance(relief, MinimumExcitationRelief)  # noqa: S101  (minimum_excitation has just put it there)
-            return relief
+            # minimum_excitation has put its own relief on both flanks
+            return cast("MinimumExcitationRelief", e.driver_relief if member == "driver" else e.driven_relief)
 
         t = found[member] = relief_table(of(designed), _POSITIONS)
         columns = [
@@ -152,10 +151,11 @@ def _relief_tables(
 
 
 def _ground_table(name: str, pair: LoadedPair, ground: dict[Shape, TipReliefPair]) -> Table:
-    rows = [(shape, m, g, getattr(g, m)) for shape, g in ground.items() for m in ("driver", "driven")]
+    members: tuple[Member, Member] = ("driver", "driven")
+    rows = [(shape, m, g, getattr(g, m)) for shape, g in ground.items() for m in members]
     p = pair.engagement.pair
     start = np.array([r.start for *_, r in rows])
-    base = np.array([p.gear(m).base_radius for _, m, *_ in rows])  # type: ignore[arg-type]  # the two members above
+    base = np.array([p.gear(m).base_radius for _, m, *_ in rows])
     return Table(
         f"grindable_{name}",
         (

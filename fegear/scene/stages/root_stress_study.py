@@ -15,6 +15,7 @@ from fegear.scene.stage import Stage
 
 if TYPE_CHECKING:
     from fegear.contact.root_stress_study import VariantStress
+    from fegear.scene.case.study import StudyPart
     from fegear.scene.load import Scene
     from fegear.scene.stage import Done, Progress
 
@@ -24,10 +25,14 @@ def _gear(scene: Scene) -> str:
     return (study.gear if study else None) or next(iter(scene.gears))
 
 
-def _check(scene: Scene, _subject: str) -> None:
-    study = scene.case.study
-    if study is None:
+def _study(scene: Scene) -> StudyPart:
+    if scene.case.study is None:
         raise InputError("study", "(not given)", "is what root-stress-study is about", "add a [study] part")
+    return scene.case.study
+
+
+def _check(scene: Scene, _subject: str) -> None:
+    study = _study(scene)
     if study.gear is not None and study.gear not in scene.gears:
         raise InputError("study.gear", f'"{study.gear}"', "is no gear of this case", nearest(study.gear, scene.gears))
     if study.gear is None and len(scene.gears) > 1:
@@ -114,8 +119,7 @@ def _run(scene: Scene, _subject: str, _done: Done, progress: Progress) -> Outcom
     from fegear.contact.root_stress_study import root_stress_study, variants
     from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 
-    study, base = scene.case.study, scene.gears[_gear(scene)]
-    assert study is not None  # noqa: S101  (the check has seen to it; this tells the type checker)
+    study, base = _study(scene), scene.gears[_gear(scene)]
     tooth, settings = base.tooth, mesh_settings(scene.case.accuracy)
     gears = variants(
         base,
