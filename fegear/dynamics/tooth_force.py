@@ -16,7 +16,7 @@ from fegear.dynamics.increments import dynamic_increments
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -35,7 +35,7 @@ class ToothForce:
     x : ndarray, shape (n,)
         Position on the line of action [m].
     time : ndarray, shape (n,)
-        Time [s], zero at the pitch point.
+        Time [s], zero when the tooth pair (or the one that lies `behind` it) is at the pitch point.
     static : ndarray, shape (n,)
         Static force [N] (3.30).
     own : ndarray, shape (n,)
@@ -95,6 +95,7 @@ def tooth_force(
     modification: ArrayLike,
     base_pitch: float,
     *,
+    behind: int = 0,
     harmonics: int = 256,
     other_phases: int = 64,
 ) -> ToothForce:
@@ -113,6 +114,8 @@ def tooth_force(
         of both teeth [m], positive for material removed.
     base_pitch : float
         Base pitch of this mesh [m].
+    behind : int
+        Base pitches by which the tooth pair whose time counts lies behind the one at `x`.
     harmonics : int
         Harmonics summed.
     other_phases : int
@@ -125,7 +128,7 @@ def tooth_force(
     frequency = train.mesh_frequencies(speed)
     if not frequency[mesh] > 0.0:
         raise InputError("speed", speed, "must not be zero: time stands still")
-    time = phase / float(frequency[mesh])
+    time = (phase - behind) / float(frequency[mesh])
     exact = errors[mesh](phase)
     static = k * (exact - m)
     smooth = errors[mesh].mean + dynamic_error(train, errors, mesh, mesh, speed, phase, harmonics)
@@ -146,6 +149,20 @@ def tooth_force(
     return ToothForce(place, time, static, own, cross, peak)
 
 
-def root_stress(force: ArrayLike, x: ArrayLike, kernel: Callable[[Array], Array]) -> Array:
-    """Root stress history [Pa] of a tooth: force [N] times the stress per unit force [Pa/N] at each position (3.37)."""
-    return np.asarray(force, dtype=float) * kernel(np.asarray(x, dtype=float))
+def root_stress(forces: Mapping[int, ArrayLike], kernels: Mapping[int, ArrayLike]) -> Array:
+    """Largest root tension of a tooth at each position (3.37), from its own force and its neighbours'.
+
+    Parameters
+    ----------
+    forces : mapping of int to array_like, shape (n,)
+        Force on the tooth pair k base pitches ahead of this one at the same moment [N]; 0 is this one's own.
+    kernels : mapping of int to array_like, shape (points, n)
+        Stress along the fillet of this tooth per unit of that force [Pa/N].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [Pa].
+    """
+    fillet = sum(np.asarray(kernels[k]) * np.asarray(force)[None, :] for k, force in forces.items())
+    return np.asarray(np.max(fillet, axis=0))

@@ -100,21 +100,19 @@ def check_pair(scene: Scene, name: str) -> None:
             f"{key}.compliance.of", '"tooth"', "takes the table for a tooth of either gear, but the gears differ",
             'give the compliance of the pair and set of = "pair"',
         )  # fmt: skip
-    gears = [scene.case.gear[gear_name(scene, name, member)] for member in MEMBERS]
-    if effects.spacing_errors and all(gear.spacing_errors is None for gear in gears):
+    if effects.spacing_errors and all(gear.spacing_errors is None for gear in scene.case.gear.values()):
         raise InputError(
-            "effects.spacing_errors", "true", f"finds no spacing_errors on the gears of {key}",
+            "effects.spacing_errors", "true", "finds no gear with spacing_errors in this case",
             f"give gear.{part.driver}.spacing_errors, or leave the effect out",
         )  # fmt: skip
 
 
 def check_relief(scene: Scene, name: str) -> None:
-    """Refuse the effect relief where neither gear of the pair has any."""
+    """Refuse the effect relief where no gear of the case has any: other pairs may do without."""
     part = scene.case.pair[name]
-    gears = [scene.case.gear[gear_name(scene, name, member)] for member in MEMBERS]
-    if scene.case.effects.relief and all(gear.relief is None for gear in gears):
+    if scene.case.effects.relief and all(gear.relief is None for gear in scene.case.gear.values()):
         raise InputError(
-            "effects.relief", "true", f"finds no relief on the gears of pair.{name}",
+            "effects.relief", "true", "finds no gear with a relief in this case",
             f"give gear.{part.driver}.relief, or leave the effect out",
         )  # fmt: skip
 

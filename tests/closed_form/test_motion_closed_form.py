@@ -74,13 +74,14 @@ def test_observed_order(order):
     x, v = np.array([3.0]), np.array([0.5])
     exact = propagate(packed, x, v, packed.period, tolerance=1e-16).x
     errors = []
-    for steps in (32, 64, 128):
+    counts = (24, 32, 48, 64, 96, 128)
+    for steps in counts:
         got = propagate(packed, x, v, packed.period, tolerance=1e30, order=order, longest=packed.period / steps)
         errors.append(float(np.max(np.abs(got.x - exact))))
-    observed = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
-    # x carries the series to its order, velocities one less: the motion converges with order - 1 or better
-    assert np.all(observed > order - 1.3)
-    assert np.all(observed < order + 1.7)
+    # x carries the series to its order, velocities one less: the motion converges with order - 1 or better. Errors of
+    # single steps cancel by chance at some step counts, so the order is the slope through all of them.
+    observed = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    assert order - 1.3 < observed < order + 1.0
 
 
 def test_energy_balance():

@@ -43,14 +43,8 @@ def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
 def _check(scene: Scene, _subject: str) -> None:
     check_train(scene)
     part = train_part(scene)
-    names = list(dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh))
-    if all(scene.case.gear[gear].relief is None for name in names for gear in _gears(scene, name)):
-        for name in names:
-            check_relief(scene, name)
-
-
-def _gears(scene: Scene, pair: str) -> tuple[str, str]:
-    return scene.case.pair[pair].driver, scene.case.pair[pair].driven
+    for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh):
+        check_relief(scene, name)
 
 
 def assemble(scene: Scene, excitations: dict[str, MeshExcitation]) -> GearTrain:

@@ -1,30 +1,24 @@
-"""Stages ``mesh-force-spectrum``, ``tooth-force``, ``dynamic-root-stress``: the linearised train over frequency."""
+"""Stages ``mesh-force-spectrum`` and ``tooth-force``: forces in the linearised train."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.errors import InputError
-from fegear.scene.loaded_pair import gear_name
 from fegear.scene.outcome import Column, Outcome, Table, Value
-from fegear.scene.stage import Stage, Task
+from fegear.scene.stage import Stage
 from fegear.scene.stages.gear_train import gear_train, needs_train
-from fegear.scene.stages.root_stress_history import table_names
 from fegear.scene.train import train_part
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
-    from fegear.contact.fe_compliance import FiniteElementCompliance
     from fegear.dynamics.spectra import MeshForceSpectrum
     from fegear.dynamics.tooth_force import ToothForce
-    from fegear.geometry.pair import GearPair, Member
     from fegear.scene.load import Scene
     from fegear.scene.stage import Done, Progress
     from fegear.scene.train import GearTrain
@@ -52,15 +46,6 @@ class ToothForceData:
     train: GearTrain
     mesh: int
     force: ToothForce
-
-
-@dataclass(frozen=True)
-class DynamicRootStress:
-    """Root stress of one tooth of either gear; arrays over the positions of the force [Pa]."""
-
-    force: ToothForceData
-    static: dict[Member, Array]
-    stress: dict[Member, Array]
 
 
 def meshes(scene: Scene) -> tuple[str, ...]:
@@ -168,13 +153,23 @@ def _jumps(data: GearTrain, i: int, x: Array) -> Array:
 
 def force_history(data: GearTrain, i: int, speed: float, count: int, harmonics: int) -> ToothForce:
     """Force on one tooth pair of mesh `i` at a speed of the reference body [rad/s]."""
+    return force_at(data, i, speed, positions(data, i, count), harmonics)
+
+
+def force_at(
+    data: GearTrain, i: int, speed: float, x: Array, harmonics: int, pairs_ahead: int = 0, other_phases: int = 64
+) -> ToothForce:
+    """Force on the tooth pair that is so many base pitches ahead of the one at x [m]; zero off the path of contact."""
     from fegear.dynamics.tooth_force import tooth_force
     from fegear.scene.mesh_excitation import tooth_pair_at
 
-    x = positions(data, i, count)
     pitch = data.pairs[i].base_pitch
-    k, m = tooth_pair_at(data.excitations[i], x, pitch)
-    found = tooth_force(data.train, data.errors, i, speed / data.speed_ratio, x, k, m, pitch, harmonics=harmonics)
+    there = x + pairs_ahead * pitch
+    k, m = tooth_pair_at(data.excitations[i], there, pitch)
+    found = tooth_force(
+        data.train, data.errors, i, speed / data.speed_ratio, there, k, m, pitch,
+        behind=pairs_ahead, harmonics=harmonics, other_phases=other_phases,
+    )  # fmt: skip
     # a tooth pair that its modification holds apart is not pulled
     static = np.maximum(found.static, 0.0)
     return replace(found, static=static, own=np.maximum(found.total, 0.0) - static)
@@ -235,67 +230,6 @@ def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outc
     return Outcome(ToothForceData(data, i, force), (table,), tuple(values), settings, tuple(remarks))
 
 
-def _check_root_stress(scene: Scene, name: str) -> None:
-    needs_one_speed(scene, name)
-    if "root-stress-history" in scene.case.results:
-        raise InputError(
-            "results", '"root-stress-history"', "and dynamic-root-stress would write the same tables",
-            "ask for dynamic-root-stress alone: it holds the quasi-static stress too",
-        )  # fmt: skip
-
-
-def _kernel(source: FiniteElementCompliance, pair: GearPair, member: Member, width: float) -> Callable[[Array], Array]:
-    """Largest root tension of the loaded tooth per unit force, over the place of the force on the line of action."""
-
-    def kernel(x: Array) -> Array:
-        found = source.root_stress(0, pair.radius(x, member), "tension")
-        return np.asarray(np.max(np.asarray(found), axis=0)) / width
-
-    return kernel
-
-
-def _run_root_stress(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
-    from fegear.contact import finite_element_compliance
-    from fegear.dynamics.tooth_force import root_stress
-    from fegear.scene.tooth_influence import gear_influence
-
-    data = cast("ToothForceData", done[Task("tooth-force", name)].data)
-    pair_name = train_part(scene).pair_of(name)
-    pair, force = scene.pairs[pair_name], data.force
-    width = min(pair.driver.face_width, pair.driven.face_width)
-    both = force.total + force.cross.sum(axis=0)
-    static: dict[Member, Array] = {}
-    stress: dict[Member, Array] = {}
-    tables, values, prefix = [], [], f"{pair_name}_"
-    for number, (member, label) in enumerate(table_names(scene, pair_name).items()):
-        gear = gear_name(scene, pair_name, member)
-        kernel = _kernel(finite_element_compliance(gear_influence(scene, gear)), pair, member, width)
-        stress[member], static[member] = root_stress(both, force.x, kernel), root_stress(force.static, force.x, kernel)
-        alone = root_stress(force.total, force.x, kernel)
-        tables.append(
-            Table(
-                f"root_stress_history_{name}_{label.removeprefix(prefix)}",
-                (
-                    Column("t", force.time, "s", "zero at the pitch point"),
-                    Column("x", force.x, "mm", "place of the tooth's contact on the line of action"),
-                    Column(
-                        "stress", stress[member], "MPa", "largest root tension of the loaded tooth, all meshes' shares"
-                    ),
-                    Column("stress_own_mesh", alone, "MPa", "without the other meshes' share"),
-                    Column("static_stress", static[member], "MPa", "quasi-static"),
-                ),
-                f"Dynamic root stress of gear {gear} as {member}, mesh {name}",
-            )
-        )
-        worst = int(np.argmax(alone))
-        values.append(
-            Value(f"{name}.{member}.largest_dynamic_root_tension", float(alone[worst]), "MPa", None,
-                  f"gear {gear}, without the other meshes, contact at x = {force.x[worst] * 1e3:.5g} mm")
-        )  # fmt: skip
-        progress((number + 1) / 2)
-    return Outcome(DynamicRootStress(data, static, stress), tuple(tables), tuple(values))
-
-
 MESH_FORCE_SPECTRUM = Stage(
     name="mesh-force-spectrum",
     title="Mesh force spectra",
@@ -314,14 +248,4 @@ TOOTH_FORCE = Stage(
     run=_run_force,
     needs=needs_train,
     check=needs_one_speed,
-)
-
-DYNAMIC_ROOT_STRESS = Stage(
-    name="dynamic-root-stress",
-    title="Dynamic root stress",
-    results=("dynamic-root-stress",),
-    subjects=own_meshes,
-    run=_run_root_stress,
-    needs=lambda _scene, name: (Task("tooth-force", name),),
-    check=_check_root_stress,
 )

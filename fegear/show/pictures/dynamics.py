@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from fegear.scene.outcome import Table
     from fegear.scene.stages.design_chart import DesignChartData
     from fegear.scene.stages.dynamic_factor import DynamicFactorData
-    from fegear.scene.stages.mesh_forces import DynamicRootStress, SpectrumData, ToothForceData
+    from fegear.scene.stages.dynamic_root_stress import DynamicRootStress
+    from fegear.scene.stages.mesh_forces import SpectrumData, ToothForceData
     from fegear.scene.stages.train_response import IncrementsData, ModesData
 
 _COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK)

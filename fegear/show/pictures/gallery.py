@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from fegear.scene.stages.crosscheck import CrosscheckData
     from fegear.scene.stages.design_chart import DesignChartData
     from fegear.scene.stages.dynamic_factor import DynamicFactorData
+    from fegear.scene.stages.dynamic_root_stress import DynamicRootStress
     from fegear.scene.stages.load_sharing import LoadSharingData
-    from fegear.scene.stages.mesh_forces import DynamicRootStress, SpectrumData, ToothForceData
+    from fegear.scene.stages.mesh_forces import SpectrumData, ToothForceData
     from fegear.scene.stages.relief import ReliefData
     from fegear.scene.stages.relief_chart import ReliefChartData, RobustnessData
     from fegear.scene.stages.root_stress_history import RootStressData
