@@ -47,6 +47,22 @@ def test_four_square_tooth_force():
     assert 5.0 < values["I.largest_increment_from_II"] / POUND < 7.5
 
 
+def test_four_square_test_gears_of_least_excitation():
+    """Figs. 23, 25: 366 lb largest, 17.6 lb at x = 41 A/64, 5 to 7 lb from the slave gears; lines 1e3 to 1e4 lower."""
+    tables, values, _ = run("four_square_minimum_excitation")
+    table = tables["tooth_force_I"]
+    assert values["I.largest_tooth_force"] / POUND == pytest.approx(366.0, abs=0.5)
+    last = np.interp(41 / 64 * pitch_mm(), table["x [mm]"], table["force [N]"])
+    assert last / POUND == pytest.approx(17.6, abs=0.3)
+    assert 5.0 < values["I.largest_increment_from_II"] / POUND < 7.0
+    other, _, _ = run("four_square_dynamics")
+    ratio = []
+    for found in (other, tables):
+        spectrum = found["mesh_force_spectrum_I"]
+        ratio.append(spectrum["power"][spectrum["from_pair"] == "I"])
+    assert 1e3 < np.median(ratio[0] / ratio[1]) < 1e4
+
+
 def test_four_square_spectrum_and_root_stress():
     tables, _, _ = run("four_square_dynamics")
     table = tables["mesh_force_spectrum_I"]
