@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.errors import InputError
-from fegear.scene.executor import Failure, count_kept, map_points
+from fegear.scene.executor import count_kept, map_points
 from fegear.scene.load import build_scene, read_document, set_key
 from fegear.scene.outcome import Column, Table, Value
 from fegear.scene.plan import make_plan
+from fegear.scene.point_job import Failure
 from fegear.scene.run import run_plan
 from fegear.scene.stages import STAGES
 from fegear.store import shape_keeper

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import fegear
-from fegear.scene.executor import Failure
+from fegear.scene.point_job import Failure
 from fegear.scene.sweep import Point
 from fegear.show.netcdf import put
 

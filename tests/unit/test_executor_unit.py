@@ -15,7 +15,8 @@ import time
 import pytest
 
 from fegear.errors import InputError
-from fegear.scene.executor import Failure, computing_by, count_kept, map_points
+from fegear.scene.executor import computing_by, count_kept, map_points
+from fegear.scene.point_job import Failure
 from fegear.store import Store
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
@@ -94,7 +95,7 @@ def test_a_cluster_gives_the_same(scheduler, tmp_path):
 
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("fegear.scene.executor._PATIENCE", 0.5)
+    monkeypatch.setattr("fegear.scene.cluster._PATIENCE", 0.5)
     with pytest.raises(InputError, match=re.escape("--scheduler = tcp://127.0.0.1:9: does not answer")):
         map_points(math.sqrt, [1.0], scheduler="tcp://127.0.0.1:9")
 

@@ -151,7 +151,8 @@ def _check(scene: Scene, subject: str) -> None:
 
 def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
     from fegear.design import welbourn_amount
-    from fegear.scene.executor import Failure, map_points
+    from fegear.scene.executor import map_points
+    from fegear.scene.point_job import Failure
     from fegear.store import Store, cache_folder
 
     part, name, data = _chart(scene), _mesh(scene), gear_train(done)

@@ -94,7 +94,7 @@ def _run_spectrum(scene: Scene, name: str, done: Done, _progress: Progress) -> O
             ),
             Column("frequency", found.frequencies[:, :, 0].ravel(), "Hz", "n times the mesh frequency"),
             Column("force", amplitude.ravel(), "N", "0-peak"),
-            Column("power", found.power_lines[i, :, :, 0].ravel(), "", "one-sided power of the line [N^2]"),
+            Column("power", found.power_lines[i, :, :, 0].ravel(), "N^2", "one-sided power of the line"),
         ),
         f"Spectrum of the force in mesh {name}",
     )
