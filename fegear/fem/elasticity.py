@@ -1,11 +1,13 @@
-"""Plane elasticity of one sector by scikit-fem: stiffness matrix and the unknowns along named boundaries."""
+"""Plane elasticity of one sector: the stiffness of every curved triangle, and the unknowns along named boundaries."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from fegear.fem.triangle import quadrature, triangle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,25 +18,43 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Index = NDArray[np.int64]
 
+#: A middle node this near to the middle of its edge, as a share of the edge, leaves the edge straight.
+_STRAIGHT = 1e-12
+
 
 @dataclass(frozen=True)
 class SectorElasticity:
-    """The stiffness of one free sector, E = 1.
+    """The stiffness of one free sector, E = 1, element by element.
+
+    Unknown 2 i + c is component c (x, y) of node i. Nodes: the mesh's vertices, then those inside its edges, then
+    those inside its elements; with order 2 they are the mesh's points.
 
     Parameters
     ----------
-    stiffness : scipy sparse matrix, shape (n, n)
+    stiffness : ndarray, shape (M, 2 n, 2 n)
+        Of every element.
+    element_dofs : ndarray of int, shape (M, 2 n)
+        The unknowns that its rows belong to.
+    inside : int
+        How many of an element's unknowns, the last ones, are its own.
+    centres : ndarray, shape (2, M)
+        Where the elements lie [modules].
     edge_dofs : dict of str to ndarray of int, shape (2, order + 1, edges)
-        Unknowns (x and y) of the Lagrange nodes along each boundary edge, from its first to its second vertex.
+        Unknowns (x and y) of the nodes along each boundary edge, from its first to its second vertex.
     node_dofs : ndarray of int, shape (2, N)
         Unknowns at the mesh's points (vertices; middle nodes too where the order is 2, else -1).
-    order : int
+    order, size : int
+        Order of the elements; number of unknowns.
     """
 
-    stiffness: Any
+    stiffness: Array
+    element_dofs: Index
+    inside: int
+    centres: Array
     edge_dofs: dict[str, Index]
     node_dofs: Index
     order: int
+    size: int
 
 
 def lame(poisson_ratio: float, plane: Plane) -> tuple[float, float]:
@@ -47,7 +67,7 @@ def lame(poisson_ratio: float, plane: Plane) -> tuple[float, float]:
 
 
 def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -> SectorElasticity:
-    """Assemble the stiffness matrix on curved (isoparametric) triangles.
+    """Stiffness of every element of a mesh of curved (isoparametric) triangles.
 
     Parameters
     ----------
@@ -61,46 +81,90 @@ def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -
     -------
     SectorElasticity
     """
-    import skfem
-    from skfem.helpers import ddot, sym_grad, trace
+    vertices, elements, per_edge = mesh.vertex_count, mesh.triangles.shape[1], order - 1
+    per_element = (order - 1) * (order - 2) // 2
+    edges = mesh.points.shape[1] - vertices
 
-    lam, mu = lame(poisson_ratio, plane)
-    six = _sorted_elements(mesh.triangles)
-    # Coordinates centred on the tooth: the inverse maps of scikit-fem work with absolute tolerances.
-    centre = np.array([[0.0], [float(mesh.points[1].max())]])
-    grid = skfem.MeshTri2(np.ascontiguousarray(mesh.points - centre), six, sort_t=False, validate=False)
-    element = {2: skfem.ElementTriP2, 3: skfem.ElementTriP3, 4: skfem.ElementTriP4}[order]()
-    basis = skfem.Basis(grid, skfem.ElementVector(element), intorder=2 * order)
+    def on_edge(first: Index, second: Index, middle: Index) -> Index:
+        """Nodes inside edges from their first to their second vertex, shape (order - 1, edges)."""
+        step = np.arange(per_edge)[:, None]
+        # An edge numbers its nodes from its lower vertex to its higher.
+        step = np.where(first < second, step, per_edge - 1 - step)
+        return np.asarray(vertices + (middle - vertices) * per_edge + step)
 
-    @skfem.BilinearForm
-    def energy(u: Any, v: Any, _w: Any) -> Any:
-        strain, test = sym_grad(u), sym_grad(v)
-        return lam * trace(strain) * trace(test) + 2.0 * mu * ddot(strain, test)
-
-    stiffness = energy.assemble(basis)
-    facets = {tuple(pair): i for i, pair in enumerate(grid.facets.T.tolist())}
-    edge_dofs: dict[str, Index] = {}
-    for name, edges in mesh.edges.items():
-        found = np.array([facets[min(a, b), max(a, b)] for a, b in edges[:2].T.tolist()])
-        first, second = basis.nodal_dofs[:, edges[0]], basis.nodal_dofs[:, edges[1]]
-        inner = basis.facet_dofs[:, found].reshape(order - 1, 2, -1).transpose(1, 0, 2)
-        # Facet unknowns run from the lower vertex number to the higher (the elements' vertices are sorted).
-        inner = np.where(edges[0] < edges[1], inner, inner[:, ::-1])
-        edge_dofs[name] = np.concatenate([first[:, None], inner, second[:, None]], axis=1).astype(np.int64)
+    corners, middles = mesh.triangles[:3], mesh.triangles[3:]
+    sides = [on_edge(corners[i], corners[(i + 1) % 3], middles[i]) for i in range(3)]
+    first_inner = vertices + edges * per_edge
+    own = first_inner + np.arange(elements) * per_element + np.arange(per_element)[:, None]
+    nodes = np.concatenate([corners, *sides, own])
     node_dofs = np.full((2, mesh.points.shape[1]), -1, dtype=np.int64)
-    node_dofs[:, : mesh.vertex_count] = basis.nodal_dofs[:, : mesh.vertex_count]
-    if order == 2:
-        middle = np.zeros(grid.nfacets, dtype=np.int64)
-        middle[grid.t2f] = six[3:]
-        node_dofs[:, middle] = basis.facet_dofs
-    return SectorElasticity(stiffness.tocsc(), edge_dofs, node_dofs, order)
+    known = mesh.points.shape[1] if order == 2 else vertices
+    node_dofs[:, :known] = 2 * np.arange(known) + np.array([[0], [1]])
+    edge_dofs = {
+        name: 2 * np.concatenate([e[:1], on_edge(*e), e[1:2]]) + np.array([0, 1])[:, None, None]
+        for name, e in mesh.edges.items()
+    }
+    return SectorElasticity(
+        stiffness=_element_stiffness(mesh, *lame(poisson_ratio, plane), order),
+        element_dofs=(2 * nodes.T[:, :, None] + np.array([0, 1])).reshape(elements, -1),
+        inside=2 * per_element,
+        centres=mesh.points[:, corners].mean(axis=1),
+        edge_dofs=edge_dofs,
+        node_dofs=node_dofs,
+        order=order,
+        size=2 * (first_inner + elements * per_element),
+    )
 
 
-def _sorted_elements(triangles: Index) -> Index:
-    """Sort each element's vertices and carry the middle nodes along (scikit-fem does not for curved triangles)."""
-    order = np.argsort(triangles[:3], axis=0)
-    vertices = np.take_along_axis(triangles[:3], order, axis=0)
-    # The middle node opposite to vertex i of the old numbering: 1-2, 2-0, 0-1.
-    opposite = triangles[[4, 5, 3]]
-    moved = np.take_along_axis(opposite, order, axis=0)
-    return np.ascontiguousarray(np.concatenate([vertices, moved[[2, 0, 1]]]))
+def _element_stiffness(mesh: SectorMesh, lam: float, mu: float, order: int) -> Array:
+    """Stiffness matrices of all elements, shape (M, 2 n, 2 n), unknowns x and y node by node."""
+    # Coordinates centred on the tooth keep the digits of small elements far from the gear's axis.
+    points = mesh.points - np.array([[0.0], [float(mesh.points[1].max())]])
+    places = points[:, mesh.triangles]  # (2, 6, M)
+    products = np.empty((mesh.triangles.shape[1], 2, 2, triangle(order).nodes.shape[1] ** 2))
+    straight = _is_straight(places)
+    products[straight] = _products_straight(places[:, :3, straight], order)
+    products[~straight] = _products_curved(places[:, :, ~straight], order)
+    n = triangle(order).nodes.shape[1]
+    d = products.reshape(-1, 2, 2, n, n)
+    stiffness = np.empty((d.shape[0], n, 2, n, 2))
+    for a in range(2):
+        b = 1 - a
+        stiffness[:, :, a, :, a] = (lam + 2.0 * mu) * d[:, a, a] + mu * d[:, b, b]
+        stiffness[:, :, a, :, b] = lam * d[:, a, b] + mu * d[:, b, a]
+    return stiffness.reshape(-1, 2 * n, 2 * n)
+
+
+def _is_straight(places: Array) -> NDArray[np.bool_]:
+    corners = places[:, :3]
+    ends = corners[:, [1, 2, 0]]
+    off = np.abs(places[:, 3:] - 0.5 * (corners + ends)).max(axis=(0, 1))
+    return np.asarray(off <= _STRAIGHT * np.abs(ends - corners).max(axis=(0, 1)))
+
+
+def _products_straight(corners: Array, order: int) -> Array:
+    """Integrals of dN_i/dx_a dN_j/dx_b on straight elements, from those on the reference triangle, (M, 2, 2, n n)."""
+    u, v, weight = quadrature(order)
+    slope = triangle(order).slopes(u, v)
+    reference = np.einsum("kqi,lqj,q->klij", slope, slope, weight)
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    determinant = a[0] * b[1] - a[1] * b[0]
+    inverse = np.array([[b[1], -b[0]], [-a[1], a[0]]]) / determinant  # d(u, v) / d(x, y)
+    metric = np.einsum("kam,lbm,m->mabkl", inverse, inverse, determinant)
+    count, n = determinant.size, slope.shape[2]
+    return np.asarray(metric.reshape(count * 4, 4) @ reference.reshape(4, n * n)).reshape(count, 2, 2, n * n)
+
+
+def _products_curved(places: Array, order: int) -> Array:
+    """The same on elements with curved edges, by quadrature of degree 2 order + 1."""
+    u, v, weight = quadrature(order + 1)
+    geometry = triangle(2).slopes(u, v)
+    a, b = (np.einsum("cim,qi->cmq", places, along) for along in geometry)
+    determinant = a[0] * b[1] - a[1] * b[0]
+    inverse = np.array([[b[1], -b[0]], [-a[1], a[0]]]) / determinant  # (uv, xy, M, q)
+    slope = triangle(order).slopes(u, v)
+    gradient = np.einsum("kamq,kqi->maqi", inverse, slope)  # (M, 2, q, n)
+    weighted = gradient * (weight * determinant)[:, None, :, None]
+    count, n = determinant.shape[0], slope.shape[2]
+    flat = np.matmul(gradient.transpose(0, 1, 3, 2)[:, :, None], weighted[:, None])
+    return np.asarray(flat).reshape(count, 2, 2, n * n)

@@ -68,15 +68,16 @@ def gear_field(
     """
     z = mesh.teeth
     elasticity = assemble(mesh, poisson_ratio, plane, order=2)
-    ring = close_ring(mesh, elasticity, reach=z // 2)
     flank = loaded_flank(mesh, elasticity, tooth, margin=0.15)
-    loads = np.zeros((ring.size, 1))
-    loads[flank.dofs] = flank.patches(flank.arc_of_radius(np.array([radius])), np.array([half_width]))
+    ring = close_ring(mesh, elasticity, flank.dofs, reach=z // 2, expandable=True)
+    forces = flank.patches(flank.arc_of_radius(np.array([radius])), np.array([half_width]))
+    loads = np.zeros(ring.size)
+    loads[flank.dofs] = forces[:, 0]
     sectors = [(k + z // 2) % z - z // 2 for k in range(z)]  # clockwise from tooth 0, within the reach
-    response = ring.field(loads, sectors)
+    response = ring.field(flank.dofs, forces, sectors)
     displacement = np.stack([response[k][:, 0][elasticity.node_dofs] for k in sectors])
     stress = _nodal_stress(mesh, displacement, poisson_ratio, plane)
-    return GearField(mesh, displacement, stress, loads[:, 0][elasticity.node_dofs])
+    return GearField(mesh, displacement, stress, loads[elasticity.node_dofs])
 
 
 def _nodal_stress(mesh: SectorMesh, displacement: Array, poisson_ratio: float, plane: Plane) -> Array:

@@ -196,7 +196,7 @@ def solve_influence(
     Influence
     """
     # Loaded before it is limited: scipy brings a BLAS of its own.
-    import scipy.sparse.linalg  # noqa: F401
+    import scipy.linalg  # noqa: F401
     from threadpoolctl import threadpool_limits
 
     # Many small dense matrices: on a busy machine a second BLAS thread makes them ten times slower, never faster.
@@ -217,18 +217,16 @@ def _solve(
     started = time.perf_counter()
     reach = min(reach, (tooth.teeth - 1) // 2)
     elasticity = assemble(mesh, poisson_ratio, plane, order)
-    assembled = time.perf_counter()
-    ring = close_ring(mesh, elasticity, reach)
-    closed = time.perf_counter()
     flank = loaded_flank(mesh, elasticity, tooth, margin)
     fillets: dict[Side, FilletStrain] = {
         "tension": fillet_strain(mesh, elasticity, "fillet"),
         "compression": fillet_strain(mesh, elasticity, "back_fillet"),
     }
+    assembled = time.perf_counter()
     watch = np.concatenate([flank.dofs, fillets["tension"].dofs, fillets["compression"].dofs])
-    forces = np.zeros((ring.size, flank.dofs.size))
-    forces[flank.dofs, np.arange(flank.dofs.size)] = 1.0
-    response = ring.respond(forces, watch)
+    ring = close_ring(mesh, elasticity, watch, reach)
+    closed = time.perf_counter()
+    response = ring.respond(flank.dofs, watch)
     n, t = flank.dofs.size, fillets["tension"].dofs.size
     modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
     compliance: dict[int, Array] = {}

@@ -1,23 +1,26 @@
 """The whole gear at the price of one tooth: condense a sector onto its sides and close the ring by Fourier harmonics.
 
-One sector is factored with its sides held. What remains couples only the unknowns of side A and side B, in polar
-components; harmonic n of the ring ties them by u_B = exp(i theta_n) u_A, theta_n = 2 pi n / z, and has the matrix
+One sector is condensed onto its ports: the unknowns that are loaded or looked at, and those of its sides. Without the
+ports inside, what remains couples only the unknowns of side A and side B, in polar components; harmonic n of the ring
+ties them by u_B = exp(i theta_n) u_A, theta_n = 2 pi n / z, and has the matrix
 
     K_n = (S_aa + S_bb) + e S_ab + conj(e) S_ba,   e = exp(i theta_n).
 
 Loads act on sector 0 only, so the response of sector k follows from the real matrices
-H_k = (1/z) sum_n exp(i k theta_n) / K_n; harmonics n and z - n are conjugate and share one inverse.
+H_k = (1/z) sum_n exp(i k theta_n) / K_n; harmonics n and z - n are conjugate and share one inverse. For a few
+neighbours of many teeth the same H_k come cheaper from joining sectors, two and two.
 """
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from fegear.errors import FegearError, InputError
+from fegear.fem.condensation import Condensed, condense
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -34,108 +37,104 @@ _BATCH = 2_000_000
 
 @dataclass(frozen=True)
 class Ring:
-    """A factored ring of z equal sectors with the bore held; E = 1, lengths in modules.
+    """A condensed ring of z equal sectors with the bore held; E = 1, lengths in modules.
+
+    With row matrices A, B (how a port follows the polar motion of its sector's sides A and B) and G (ports' motion
+    under forces on ports with the sides held), the response of sector k to forces f on sector 0 is
+
+        u_k = A (H_k A' + H_k-1 B') f + B (H_k+1 A' + H_k B') f + (k = 0) G f.
 
     Parameters
     ----------
-    factor : SuperLU
-        Of the inner unknowns (neither bore nor sides).
-    inner, side_a, side_b : ndarray of int
-        Unknowns inside, and on the two sides in matching order (x and y of a node beside each other).
-    polar : ndarray, shape (2, 2, nodes)
-        Turns each side node's polar components (on side A, side B alike) into x and y: see `_polar`.
-    side_response_a, side_response_b : ndarray, shape (inner, m)
-        Y_a, Y_b: inner response to unit polar side displacements, with the sign of S_pp^-1 S_pa.
+    sector : Condensed
+        Its `kept` are the ports, the sides first.
+    follow_a, follow_b : ndarray, shape (ports, m)
+        A and B.
+    own : ndarray, shape (ports, ports)
+        G; symmetric, zero for the sides.
     coupling : dict of int to ndarray, shape (m, m)
         H_k for k = -reach-1 .. reach+1.
-    teeth, reach, size : int
-        z, the neighbours K that can be asked for, the number of unknowns of a sector.
+    teeth, reach : int
+        z, the neighbours K that can be asked for.
     seconds : dict of str to float
     """
 
-    factor: Any
-    inner: Index
-    side_a: Index
-    side_b: Index
-    turn_a: Array
-    turn_b: Array
-    side_response_a: Array
-    side_response_b: Array
+    sector: Condensed
+    follow_a: Array
+    follow_b: Array
+    own: Array
     coupling: dict[int, Array]
     teeth: int
     reach: int
-    size: int
     seconds: dict[str, float]
 
-    def respond(self, loads: Array, watch: Index, reach: int | None = None) -> dict[int, Array]:
-        """Displacements of watched unknowns on sectors -reach..reach under loads on sector 0.
+    @property
+    def size(self) -> int:
+        """Number of unknowns of a sector."""
+        return self.sector.size
+
+    def respond(self, loaded: Index, watch: Index, forces: Array | None = None) -> dict[int, Array]:
+        """Displacements of watched ports on sectors -reach..reach under forces on sector 0.
 
         Parameters
         ----------
-        loads : ndarray, shape (size, P)
-            Forces on the unknowns of sector 0, its sides included.
+        loaded : ndarray of int, shape (n,)
+            Unknowns that are loaded; ports.
         watch : ndarray of int, shape (q,)
-            Unknowns of a sector whose displacement is wanted, in that sector's own frame.
-        reach : int, optional
-            At most the ring's own.
+            Unknowns of a sector whose displacement is wanted, in that sector's own frame; ports.
+        forces : ndarray, shape (n, P), optional
+            By default a unit force on each in turn.
 
         Returns
         -------
         dict of int to ndarray, shape (q, P)
         """
-        reach = self.reach if reach is None else reach
-        inside = self.factor.solve(np.ascontiguousarray(loads[self.inner]))
-        drive_a, drive_b = self._drive(loads)
-        row = np.full(self.size, -1, dtype=np.int64)
-        row[self.inner] = np.arange(self.inner.size)
-        rows = row[watch]
-        ya = np.where(rows[:, None] >= 0, self.side_response_a[rows], 0.0)
-        yb = np.where(rows[:, None] >= 0, self.side_response_b[rows], 0.0)
-        own = np.where(rows[:, None] >= 0, inside[rows], 0.0)
-        # Watched unknowns on the sides move with the sides themselves.
-        ta, tb = self._side_rows(watch)
+        rows, columns = self._ports(watch), self._ports(loaded)
+        drive_a, drive_b = self.follow_a[columns].T, self.follow_b[columns].T
+        own = self.own[rows[:, None], columns]
+        if forces is not None:
+            drive_a, drive_b, own = drive_a @ forces, drive_b @ forces, own @ forces
+        both = np.hstack([self.follow_a[rows], self.follow_b[rows]])
         answer = {}
-        for k in range(-reach, reach + 1):
-            a, b = self._side_motion(k, drive_a, drive_b), self._side_motion(k + 1, drive_a, drive_b)
-            answer[k] = (ta - ya) @ a + (tb - yb) @ b + (own if k % self.teeth == 0 else 0.0)
+        for k in range(-self.reach, self.reach + 1):
+            sides = [self.coupling[j] @ drive_a + self.coupling[j - 1] @ drive_b for j in (k, k + 1)]
+            answer[k] = both @ np.vstack(sides)
+            if k % self.teeth == 0:
+                answer[k] += own
         return answer
 
-    def _drive(self, loads: Array) -> tuple[Array, Array]:
-        f = loads[self.inner]
-        return (
-            self.turn_a.T @ loads[self.side_a] - self.side_response_a.T @ f,
-            self.turn_b.T @ loads[self.side_b] - self.side_response_b.T @ f,
-        )
+    def _ports(self, unknowns: Index) -> Index:
+        order = np.argsort(self.sector.kept)
+        place = np.minimum(np.searchsorted(self.sector.kept, unknowns, sorter=order), order.size - 1)
+        found = order[place]
+        if (self.sector.kept[found] != unknowns).any():
+            raise ValueError("only ports of the ring can be loaded or watched")
+        return found
 
-    def _side_motion(self, k: int, drive_a: Array, drive_b: Array) -> Array:
-        """Polar displacement of side A of sector k (which is side B of sector k - 1)."""
-        return self.coupling[k] @ drive_a + self.coupling[k - 1] @ drive_b
+    def field(self, loaded: Index, forces: Array, sectors: list[int]) -> dict[int, Array]:
+        """Displacements of every unknown of chosen sectors (only within the reach), each in its own frame.
 
-    def _side_rows(self, watch: Index) -> tuple[Array, Array]:
-        rows = []
-        for side, turn in ((self.side_a, self.turn_a), (self.side_b, self.turn_b)):
-            place = np.full(self.size, -1, dtype=np.int64)
-            place[side] = np.arange(side.size)
-            at = place[watch]
-            rows.append(np.where(at[:, None] >= 0, turn[at], 0.0))
-        return rows[0], rows[1]
-
-    def field(self, loads: Array, sectors: list[int]) -> dict[int, Array]:
-        """Displacements of every unknown of chosen sectors (only within the reach), each in its own frame."""
-        everything = np.arange(self.size)
-        response = self.respond(loads, everything, max(abs(k) for k in sectors))
-        return {k: response[k] for k in sectors}
+        The ring must have been closed with `expandable`.
+        """
+        response = self.respond(loaded, self.sector.kept, forces)
+        return {k: self.sector.expand(response[k]) for k in sectors}
 
 
-def close_ring(mesh: SectorMesh, elasticity: SectorElasticity, reach: int = 1) -> Ring:
-    """Factor a sector once and close the ring.
+def close_ring(
+    mesh: SectorMesh, elasticity: SectorElasticity, ports: Index, reach: int = 1, *, expandable: bool = False
+) -> Ring:
+    """Condense a sector once and close the ring.
 
     Parameters
     ----------
     mesh : SectorMesh
     elasticity : SectorElasticity
+    ports : ndarray of int
+        Unknowns that will be loaded or watched.
     reach : int
         K: neighbours -K..K can be asked for afterwards.
+    expandable : bool
+        Whether `Ring.field` will be asked for.
 
     Returns
     -------
@@ -148,7 +147,7 @@ def close_ring(mesh: SectorMesh, elasticity: SectorElasticity, reach: int = 1) -
     FegearError
         If the stiffness is singular.
     """
-    from scipy.sparse.linalg import splu
+    from scipy.linalg import lapack
 
     started = time.perf_counter()
     z = mesh.teeth
@@ -156,50 +155,52 @@ def close_ring(mesh: SectorMesh, elasticity: SectorElasticity, reach: int = 1) -
     bore = np.unique(elasticity.edge_dofs["bore"])
     free = ~np.isin(side_a, bore)
     side_a, side_b, angle_a = side_a[free], side_b[free], angle_a[free[::2]]
-    size = elasticity.stiffness.shape[0]
-    held = np.concatenate([bore, side_a, side_b])
-    inner = np.setdiff1d(np.arange(size), held)
-    K = elasticity.stiffness
     sides = np.concatenate([side_a, side_b])
-    try:
-        factor = splu(
-            K[inner][:, inner].tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            options={"SymmetricMode": True},
-            diag_pivot_thresh=0.0,
-        )
-    except RuntimeError as problem:
-        raise FegearError(f"the sector's stiffness cannot be factored: {problem}") from problem
-    factored = time.perf_counter()
-    turn_a, turn_b = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / z)
-    border = K[inner][:, sides]
-    m = side_a.size
-    y = factor.solve(border.toarray())
-    condensed = K[sides][:, sides].toarray() - border.T @ y
-    turn = np.zeros((2 * m, 2 * m))
-    turn[:m, :m], turn[m:, m:] = turn_a, turn_b
-    condensed = turn.T @ condensed @ turn
-    condensed = 0.5 * (condensed + condensed.T)
-    coupling = _ring_coupling(condensed, z, reach + 1)
+    inner = np.setdiff1d(ports, np.concatenate([bore, sides]))
+    sector = condense(elasticity, np.concatenate([sides, inner]), bore, expandable=expandable)
+    condensed = time.perf_counter()
+    m, n = side_a.size, sides.size
+    turn = np.zeros((n, n))
+    turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / z)
+    S = sector.stiffness
+    factor, failed = lapack.dpotrf(S[n:, n:], lower=1)
+    if failed:
+        raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
+    own = np.zeros_like(S)
+    triangle = np.tril(cast("Array", lapack.dpotri(factor, lower=1)[0])) if inner.size else S[n:, n:]
+    own[n:, n:] = triangle + np.tril(triangle, -1).T
+    follow = np.vstack([turn, -own[n:, n:] @ (S[n:, :n] @ turn)])
+    border = S[:n, n:] @ follow[n:]
+    held = turn.T @ (S[:n, :n] @ turn + border)
+    coupling = _coupling(0.5 * (held + held.T), z, reach + 1)
     return Ring(
-        factor=factor,
-        inner=inner,
-        side_a=side_a,
-        side_b=side_b,
-        turn_a=turn_a,
-        turn_b=turn_b,
-        side_response_a=y[:, :m] @ turn_a,
-        side_response_b=y[:, m:] @ turn_b,
+        sector=sector,
+        follow_a=follow[:, :m],
+        follow_b=follow[:, m:],
+        own=own,
         coupling=coupling,
         teeth=z,
         reach=reach,
-        size=size,
-        seconds={"factorization": factored - started, "ring": time.perf_counter() - factored},
+        seconds={"condensation": condensed - started, "ring": time.perf_counter() - condensed},
     )
 
 
-def _ring_coupling(condensed: Array, z: int, reach: int) -> dict[int, Array]:
-    """H_k = (1/z) sum_n exp(i k theta_n) / K_n for k = -reach..reach, shape (m, m) each."""
+def _coupling(condensed: Array, z: int, reach: int) -> dict[int, Array]:
+    """H_k for k = -reach..reach, by the cheaper way."""
+    if 2 * reach + 1 < z:
+        return coupling_by_doubling(condensed, z, reach)
+    return coupling_by_harmonics(condensed, z, reach)
+
+
+def coupling_by_harmonics(condensed: Array, z: int, reach: int) -> dict[int, Array]:
+    """H_k = (1/z) sum_n exp(i k theta_n) / K_n for k = -reach..reach, shape (m, m) each.
+
+    Parameters
+    ----------
+    condensed : ndarray, shape (2 m, 2 m)
+        Stiffness of one sector between its sides A and B, in polar components.
+    z, reach : int
+    """
     m = condensed.shape[0] // 2
     diagonal = condensed[:m, :m] + condensed[m:, m:]
     ahead = condensed[:m, m:]
@@ -217,6 +218,42 @@ def _ring_coupling(condensed: Array, z: int, reach: int) -> dict[int, Array]:
             phase = weight * np.exp(1j * k * theta)
             total[k] += np.tensordot(phase.real, inverse.real, 1) - np.tensordot(phase.imag, inverse.imag, 1)
     return {k: (total[k] if k >= 0 else total[-k].T) for k in range(-reach, reach + 1)}
+
+
+def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Array]:
+    """Return the same for a few neighbours of a ring of many teeth, in some log2(z) real steps.
+
+    Two chains of sectors joined, the side between them eliminated, are one longer chain; so all sectors but those
+    between sides -reach and reach become one, whose ends close the ring.
+    """
+    m = condensed.shape[0] // 2
+
+    def joined(one: Array, other: Array) -> Array:
+        between = one[m:, m:] + other[:m, :m]
+        border = np.hstack([one[m:, :m], other[:m, m:]])
+        chain = np.zeros_like(one)
+        chain[:m, :m], chain[m:, m:] = one[:m, :m], other[m:, m:]
+        chain -= border.T @ np.linalg.solve(between, border)
+        return 0.5 * (chain + chain.T)
+
+    rest: Array | None = None
+    power, left = condensed, z - 2 * reach
+    while left:
+        if left & 1:
+            rest = power if rest is None else joined(rest, power)
+        left >>= 1
+        power = joined(power, power) if left else power
+    sides = 2 * reach + 1
+    whole = np.zeros((sides, m, sides, m))
+    for chain, first, last in [*((condensed, i, i + 1) for i in range(2 * reach)), (rest, sides - 1, 0)]:
+        if chain is not None:
+            block = chain.reshape(2, m, 2, m)
+            ends = np.array([first, last])
+            whole[ends[:, None], :, ends] += block.transpose(0, 2, 1, 3)
+    right = np.zeros((sides, m, m))
+    right[reach] = np.eye(m)
+    found = np.linalg.solve(whole.reshape(sides * m, -1), right.reshape(-1, m)).reshape(sides, m, m)
+    return {k: (found[reach + k] if k >= 0 else found[reach - k].T) for k in range(-reach, reach + 1)}
 
 
 def _polar(angle: Array) -> Array:

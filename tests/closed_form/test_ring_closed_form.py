@@ -2,14 +2,17 @@
 
 import functools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from fegear.errors import FegearError
+from fegear.fem.condensation import condense
 from fegear.fem.elasticity import assemble
 from fegear.fem.influence import solve_influence
 from fegear.fem.mesh import SectorMesh, with_middle_nodes
-from fegear.fem.ring import close_ring
+from fegear.fem.ring import close_ring, coupling_by_doubling, coupling_by_harmonics
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import MeshSettings
 from fegear.geometry import BasicRack, Tooth
@@ -42,7 +45,8 @@ def rim_motion(teeth, radial, around, order, direction, nu=0.3):
     """Mean radial and tangential motion of the rim under a uniform traction of one on all sectors."""
     mesh = annulus(teeth, radial, around)
     elasticity = assemble(mesh, nu, "strain", order)
-    ring = close_ring(mesh, elasticity, reach=teeth // 2)
+    dofs = elasticity.edge_dofs["flank"]
+    ring = close_ring(mesh, elasticity, np.unique(dofs), teeth // 2, expandable=True)
     x, w = np.polynomial.legendre.leggauss(6)
     xi = 0.5 + 0.5 * x
     from fegear.fem.trace import lagrange, quadratic_edge
@@ -51,11 +55,12 @@ def rim_motion(teeth, radial, around, order, direction, nu=0.3):
     out = position / np.hypot(*position)
     force = out if direction == "radial" else np.stack([out[1], -out[0]])
     values = np.einsum("iq,cnq,nq,q->cin", lagrange(order, xi), force, np.hypot(*tangent), 0.5 * w)
-    loads = np.zeros((ring.size, 1))
-    np.add.at(loads[:, 0], elasticity.edge_dofs["flank"], values)
-    dofs = elasticity.edge_dofs["flank"]
-    response = ring.respond(loads, np.arange(ring.size))
-    total = sum(response[k][:, 0] for k in range(-(teeth // 2), (teeth + 1) // 2))
+    loads = np.zeros(ring.size)
+    np.add.at(loads, dofs, values)
+    loaded = np.unique(dofs)
+    sectors = range(-(teeth // 2), (teeth + 1) // 2)
+    response = ring.field(loaded, loads[loaded, None], list(sectors))
+    total = sum(response[k][:, 0] for k in sectors)
     middle = dofs[:, 0, around // 2]
     node = mesh.points[:, mesh.edges["flank"][0, around // 2]]
     radial_part = total[middle] @ node / np.hypot(*node)
@@ -224,3 +229,43 @@ def test_a_rounded_tip_carries_load_without_a_kink_at_the_end_of_the_flank():
     radii = np.sqrt(np.linspace(tooth.form_radius**2, tooth.involute_tip_radius**2, 60))
     c = known.self_compliance(radii, 0.08, 0.02)
     assert (np.diff(c[-10:], 2) > 0.0).all()
+
+
+@pytest.mark.parametrize(("teeth", "reach"), [(9, 2), (28, 3), (101, 1), (500, 2)])
+def test_joining_sectors_two_and_two_is_summing_harmonics(teeth, reach):
+    # A random stiff sector: its sides tied to each other and, softly, to the ground.
+    links = np.random.default_rng(1).standard_normal((30, 6))
+    sector = links.T @ links + 1e-3 * np.eye(6)
+    by_joining, by_harmonics = (f(sector, teeth, reach) for f in (coupling_by_doubling, coupling_by_harmonics))
+    largest = np.abs(by_harmonics[0]).max()
+    for k in range(-reach, reach + 1):
+        assert np.abs(by_joining[k] - by_harmonics[k]).max() < 1e-11 * largest
+
+
+def test_condensation_of_a_sector_is_the_schur_complement_and_expands_to_the_whole_solution():
+    tooth = Tooth(12)
+    mesh = mesh_sector(tooth, 0.5 * tooth.root_radius, MeshSettings().scaled(5.0))
+    for order in (2, 3, 4):
+        elasticity = assemble(mesh, 0.3, "strain", order)
+        whole = np.zeros((elasticity.size, elasticity.size))
+        for dofs, matrix in zip(elasticity.element_dofs, elasticity.stiffness, strict=True):
+            whole[np.ix_(dofs, dofs)] += matrix
+        held, kept = np.unique(elasticity.edge_dofs["bore"]), np.unique(elasticity.edge_dofs["flank"])[::-1]
+        gone = np.setdiff1d(np.arange(elasticity.size), np.concatenate([held, kept]))
+        inner = np.linalg.solve(whole[np.ix_(gone, gone)], whole[np.ix_(gone, kept)])
+        schur = whole[np.ix_(kept, kept)] - whole[np.ix_(kept, gone)] @ inner
+        found = condense(elasticity, kept, held, expandable=True)
+        assert np.abs(found.stiffness - schur).max() < 1e-10 * np.abs(schur).max()
+        given = np.random.default_rng(2).standard_normal((kept.size, 2))
+        u = found.expand(given)
+        assert np.abs(u[gone] + inner @ given).max() < 1e-10 * np.abs(u).max()
+        assert (u[held] == 0.0).all()
+        assert (u[kept] == given).all()
+
+
+def test_a_sector_that_nothing_holds_is_refused():
+    mesh = annulus(12, 2, 2)
+    elasticity = assemble(mesh, 0.3, "strain", 2)
+    loose = replace(elasticity, stiffness=np.zeros_like(elasticity.stiffness))
+    with pytest.raises(FegearError, match="not positive definite"):
+        close_ring(mesh, loose, np.unique(elasticity.edge_dofs["flank"]))
