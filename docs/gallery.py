@@ -18,6 +18,7 @@ from pathlib import Path
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
+from pygments.formatters import HtmlFormatter
 
 from fegear.plain import code_version, content_key
 
@@ -118,13 +119,12 @@ def page(path: Path) -> str:
 
 # ---- what mkdocs calls -------------------------------------------------------------------------------------------
 def _with_unlisted(nav: list[dict[str, object]]) -> list[dict[str, object]]:
-    """Navigation with every page: those that mkdocs.yml does not list come last in the user's guide."""
-    listed = json.dumps(nav)
-    unlisted = [path for path in sorted((ROOT / "docs").glob("*.md")) if f'"{path.name}"' not in listed]
-    for section in nav:
-        guide = section.get("User's guide")
-        if isinstance(guide, list):
-            guide += [{path.read_text("utf-8").splitlines()[0].lstrip("# "): path.name} for path in unlisted]
+    """Navigation with every page: those that mkdocs.yml does not list come last in "How it is done"."""
+    listed, docs = json.dumps(nav), ROOT / "docs"
+    names = [path.relative_to(docs).as_posix() for path in sorted(docs.rglob("*.md"))]
+    unlisted = [name for name in names if f'"{name}"' not in listed]
+    (section,) = (pages for part in nav for title, pages in part.items() if title == "How it is done")
+    section += [{(docs / name).read_text("utf-8").splitlines()[0].lstrip("# "): name} for name in unlisted]
     return nav
 
 
@@ -141,6 +141,8 @@ def on_files(files, config):
     MADE.mkdir(parents=True, exist_ok=True)
     with ThreadPoolExecutor(max(1, min(4, os.cpu_count() or 1))) as pool:
         list(pool.map(_run, cases()))
+    colours = HtmlFormatter(style="default").get_style_defs(".highlight")
+    files.append(File.generated(config, "code.css", content=colours))
     for name, source in _OUTSIDE.items():
         files.append(File.generated(config, name, content=source.read_text("utf-8")))
     index = ["# Gallery", "", "Each page is one file of `cases/` and what `fegear run` makes of it.", ""]
@@ -159,5 +161,6 @@ def on_page_markdown(markdown, page, **_others):
     """Let links that hold in the repository hold in the site."""
     if page.file.src_uri == "index.md":
         markdown = markdown.replace("](docs/", "](")
-    markdown = markdown.replace("](../meshes/README.md)", "](meshes.md)")
-    return re.sub(r"\]\((?:\.\./)?cases/(\w+)\.toml\)", r"](gallery/\1.md)", markdown)
+    top = "../" * page.file.src_uri.count("/")
+    markdown = re.sub(r"\]\((?:\.\./)+meshes/README\.md\)", f"]({top}meshes.md)", markdown)
+    return re.sub(r"\]\((?:\.\./)*cases/(\w+)\.toml\)", rf"]({top}gallery/\1.md)", markdown)

@@ -48,10 +48,11 @@ def test_the_commands_are_there_and_set_themselves_up():
 
 
 def test_every_link_leads_somewhere():
-    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    pages = [ROOT / "README.md", ROOT / "meshes" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     for page in pages:
         for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
-            if "://" not in link:
+            # What a page's own run makes is under results/: docs/executed.py refuses a link to what it does not make.
+            if "://" not in link and not link.startswith("results/"):
                 assert (page.parent / link).exists(), f"{page.name} links to {link}"
 
 

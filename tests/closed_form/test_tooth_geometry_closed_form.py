@@ -13,6 +13,7 @@ from fegear.errors import GeometryError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth, interference
 from fegear.geometry.curves import arc_length
 from fegear.geometry.involute import polar_angle, roll_of_polar_angle
+from fegear.geometry.span import span, span_teeth
 
 racks = st.sampled_from(
     [
@@ -208,3 +209,28 @@ def test_bore_outside_the_body_and_unequal_base_pitches_are_refused():
         Gear(Tooth(28), 1e-3, 13e-3)
     with pytest.raises(GeometryError, match="equal"):
         GearPair(_gear(20), _gear(20, module=1.1e-3))
+
+
+@pytest.mark.parametrize(("z", "k", "span_1"), [(20, 3, 7.660439), (30, 4, 10.752626), (50, 6, 16.937000)])
+def test_span_over_k_teeth_is_that_of_the_textbooks_tables(z, k, span_1):
+    gear = Gear(Tooth(z, BasicRack(1.0, 1.25, 0.25)), module=3e-3, bore_radius=1e-3)
+    assert span_teeth(gear) == k
+    assert span(gear, k) == pytest.approx(span_1 * 3e-3, rel=1e-6)
+
+
+@given(teeth())
+@settings(max_examples=30, deadline=None)
+def test_span_is_the_distance_of_parallel_tangents_to_opposite_flanks(tooth):
+    gear = Gear(tooth, module=1.0, bore_radius=0.1)
+    k = span_teeth(gear)
+    length = span(gear, k)
+    # The discs touch the outer flanks of k teeth, where these are parallel: the chord between both points is the span.
+    radius = math.hypot(gear.base_radius, length / 2)
+    turn = math.pi / tooth.teeth * (k - 1) + float(tooth.half_thickness_angle(radius))
+    assert 2.0 * radius * math.sin(turn) == pytest.approx(length, rel=1e-10)
+
+
+def test_span_beyond_the_involute_is_refused():
+    gear = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), module=1e-3, bore_radius=1e-3)
+    with pytest.raises(GeometryError, match="measure over 4 teeth"):
+        span(gear, 8)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.geometry import interference
+from fegear.geometry.span import span, span_teeth
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Forecast, Stage
 
@@ -38,6 +39,8 @@ def _run(scene: Scene, _subject: str, _done: Done, _progress: Progress) -> Outco
         values = np.array([getattr(gear, attribute) for gear in gears.values()])
         return Column(name, values, "mm", meaning)
 
+    counts = [span_teeth(gear) for gear in gears.values()]
+    spans = [span(gear, count) for gear, count in zip(gears.values(), counts, strict=True)]
     table = Table(
         "geometry",
         (
@@ -52,6 +55,8 @@ def _run(scene: Scene, _subject: str, _done: Done, _progress: Progress) -> Outco
             column("root_radius", "root_radius", "root circle"),
             column("bore_radius", "bore_radius", "radius at which the body is held"),
             column("face_width", "face_width", "face width"),
+            Column("span_teeth", np.array(counts), "", "k, teeth of the span measurement"),
+            Column("span", np.array(spans), "mm", "base tangent length W_k over them, allowance included"),
         ),
         "Gears",
     )

@@ -150,9 +150,12 @@ def _relief_tables(
     return found, tables
 
 
-def _ground_table(name: str, pair: LoadedPair, ground: dict[Shape, TipReliefPair]) -> Table:
+def _ground_table(
+    name: str, pair: LoadedPair, ground: dict[Shape, TipReliefPair], te: dict[str, TransmissionError]
+) -> Table:
+    # What is left comes from the same evaluation as the single values, not from the search's coarser one.
     members: tuple[Member, Member] = ("driver", "driven")
-    rows = [(shape, m, g, getattr(g, m)) for shape, g in ground.items() for m in members]
+    rows = [(shape, m, te[f"{shape} tip relief"], getattr(g, m)) for shape, g in ground.items() for m in members]
     p = pair.engagement.pair
     start = np.array([r.start for *_, r in rows])
     base = np.array([p.gear(m).base_radius for _, m, *_ in rows])
@@ -164,10 +167,8 @@ def _ground_table(name: str, pair: LoadedPair, ground: dict[Shape, TipReliefPair
             Column("amount", np.array([r.amount for *_, r in rows]), "um", "removal at the tip"),
             Column("start_roll_angle", start, "deg", "where the relief starts"),
             Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius"),
-            Column(
-                "te_peak_to_peak", np.array([g.peak_to_peak[0] for _, _, g, _ in rows]), "um", "left at design load"
-            ),
-            Column("te_effective", np.array([g.effective_error[0] for _, _, g, _ in rows]), "um", "A_e left"),
+            Column("te_peak_to_peak", np.array([t.peak_to_peak for _, _, t, _ in rows]), "um", "left at design load"),
+            Column("te_effective", np.array([t.effective_error for _, _, t, _ in rows]), "um", "A_e left"),
         ),
         f"Tip reliefs of {name} that a shop can grind",
     )
@@ -201,9 +202,9 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
         ground[shape] = grindable(designed, load, shape, part.metric)
         states[f"{shape} tip relief"] = ground[shape].applied(plain)
         progress(0.3 + 0.5 * (number + 1) / len(part.grind))
-    if ground:
-        tables.append(_ground_table(name, pair, ground))
     te = {label: transmission_error(state, load, HARMONICS) for label, state in states.items()}
+    if ground:
+        tables.append(_ground_table(name, pair, ground, te))
     loads = sorted({*pair.loads, load})
     x = roll_positions(pair)
     curves = {label: state.solve(state.grid(x), loads) for label, state in states.items()}

@@ -177,6 +177,6 @@ def draw_robustness(data: RobustnessData, path: Path, name: str, metric: str) ->
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("load over design load")
     axes.set_ylabel(("peak-to-peak" if metric == "peak_to_peak" else "effective") + " transmission error [µm]")
-    legend(axes, 2)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=9, title="worst (thick), least (thin)")
     caption = f"Pair {name}: worst (thick) and least (thin) of all combinations of spacing error and relief tolerance."
     return save(made, path, f"Robustness of the reliefs of {name}", caption)

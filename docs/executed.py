@@ -1,0 +1,66 @@
+"""Hook of mkdocs: every page's commands and programs are run, and the page shows the pictures that they made.
+
+A page links to what its reader will find, ``results/drive/plots/tooth.png``; the site has that file from the page's own
+run. Runs are kept in ``results/pages`` and made anew when the page or the program changes. ``FEGEAR_GALLERY``, if set,
+names the pages to run as it names the cases.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from mkdocs.exceptions import PluginError
+from mkdocs.structure.files import File
+from snippets import execute, runs
+
+from fegear.plain import code_version, content_key
+
+DOCS = Path(__file__).resolve().parent
+MADE = DOCS.parent / "results" / "pages"
+_MADE_LINK = re.compile(r"\]\((results/[^)#]+)\)")
+
+
+def pages() -> list[Path]:
+    """Pages with something to run."""
+    wanted = os.environ.get("FEGEAR_GALLERY")
+    found = [page for page in sorted(DOCS.rglob("*.md")) if runs(page)]
+    return [page for page in found if wanted is None or page.stem in wanted.split(",")]
+
+
+def _folder(page: Path) -> Path:
+    return MADE / page.relative_to(DOCS).with_suffix("")
+
+
+def _run(page: Path) -> None:
+    folder = _folder(page)
+    stamp = folder.with_suffix(".key")
+    key = content_key(code_version(), page.read_text("utf-8"), (DOCS / "snippets.py").read_text("utf-8"))
+    if stamp.is_file() and stamp.read_text() == key:
+        return
+    stamp.unlink(missing_ok=True)
+    if fault := execute(page, folder):
+        raise PluginError(f"{page.relative_to(DOCS.parent)} does not do what it says: {fault}")
+    stamp.write_text(key)
+
+
+def on_files(files, config):
+    """Run the pages, two at a time, and add the files that they show."""
+    with ThreadPoolExecutor(max(1, min(4, os.cpu_count() or 1))) as pool:
+        list(pool.map(_run, pages()))
+    for page in pages():
+        relative = page.relative_to(DOCS)
+        for link in dict.fromkeys(_MADE_LINK.findall(page.read_text("utf-8"))):
+            made = _folder(page) / link
+            if not made.is_file():
+                raise PluginError(f"{relative} shows {link}, which its commands do not make")
+            shown = relative.with_suffix("").as_posix() + f"_files/{link}"
+            files.append(File.generated(config, shown, abs_src_path=str(made)))
+    return files
+
+
+def on_page_markdown(markdown, page, **_others):
+    """Let links to results lead to the page's own run."""
+    return _MADE_LINK.sub(rf"]({Path(page.file.src_uri).stem}_files/\1)", markdown)

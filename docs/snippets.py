@@ -1,0 +1,211 @@
+"""Run what a page of the docs tells its reader to type, and hold what is printed against what the page says.
+
+``python docs/snippets.py PAGE FOLDER`` goes through the fenced blocks of the page in their order, in FOLDER:
+
+- a block whose first line is ``# name.ext`` is a file of that name (a case, a table, a program), and with
+  ``# name.ext, continued`` the rest of it;
+- ``sh`` is run by the shell and ``python`` in one namespace for the whole page; a block that starts with
+  ``# needs PROGRAM`` is passed over where that program is not installed;
+- ``text`` is what the block before it prints. Numbers may differ in the last printed digit or by 0.4 %, error estimates
+  (after ``+-``) by a factor of three; ``...`` stands for anything in a line, and alone for any lines.
+
+Commands end with code 0 unless the page shows the refusal (a line that starts with ``fegear: ``).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import re
+import shutil
+import subprocess
+import sys
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+_FENCE = re.compile(r"^```([\w-]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+_FILE = re.compile(r"# ([\w.-]+\.(?:toml|csv|py))(, continued)?$")
+_NEEDS = re.compile(r"# needs ([\w-]+)$")
+_NUMBER = r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
+_RELATIVE, _ESTIMATE = 4e-3, 3.0
+
+
+class DifferentError(AssertionError):
+    """What a block prints is not what its page says."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its language, its text and the line of the page where it starts."""
+
+    kind: str
+    text: str
+    line: int
+
+    @property
+    def file(self) -> str | None:
+        """Name of the file that the block is, if it is one."""
+        found = _FILE.match(self.text.partition("\n")[0])
+        return found[1] if found else None
+
+    def write(self) -> None:
+        """Write the file, or what comes after an earlier block of it."""
+        found = _FILE.match(self.text.partition("\n")[0])
+        if found:
+            before = Path(found[1]).read_text("utf-8") if found[2] else ""
+            Path(found[1]).write_text(before + self.text, "utf-8")
+
+    @property
+    def missing(self) -> bool:
+        """True if the block needs a program that is not installed."""
+        found = _NEEDS.match(self.text.partition("\n")[0])
+        return bool(found) and shutil.which(found[1]) is None
+
+
+def blocks(page: Path) -> list[Block]:
+    """Fenced blocks of a page in their order."""
+    text = page.read_text("utf-8")
+    return [Block(m[1], m[2], text.count("\n", 0, m.start()) + 1) for m in _FENCE.finditer(text)]
+
+
+def runs(page: Path) -> bool:
+    """True if the page has something to run."""
+    return any(b.kind in ("sh", "python") and b.file is None for b in blocks(page))
+
+
+def compare(expected: str, got: str) -> None:
+    """Raise `DifferentError` unless `got` is what a page says (see the module)."""
+    have = [line.rstrip() for line in got.strip("\n").splitlines()]
+    where = 0
+    skipping = False
+    for line in expected.strip("\n").splitlines():
+        if line.strip() == "...":
+            skipping = True
+            continue
+        while skipping and where < len(have) and not _same_line(line, have[where]):
+            where += 1
+        if where >= len(have) or not _same_line(line, have[where]):
+            found = have[where] if where < len(have) else "(the end)"
+            raise DifferentError(f"expected\n  {line}\nprinted\n  {found}\nin\n{got}")
+        where, skipping = where + 1, False
+    if where < len(have) and not skipping:
+        raise DifferentError(f"more is printed than expected:\n{chr(10).join(have[where:])}")
+
+
+def _same_line(expected: str, got: str) -> bool:
+    parts = re.split(rf"((?<![\w.]){_NUMBER}|\.\.\.)", expected.rstrip())
+    pattern = "".join(
+        re.escape(part) if i % 2 == 0 else (".*?" if part == "..." else f"({_NUMBER})") for i, part in enumerate(parts)
+    )
+    found = re.fullmatch(pattern, got)
+    if not found:
+        return False
+    told = [(parts[i - 1], part) for i, part in enumerate(parts) if i % 2 and part != "..."]
+    return all(_same_number(before, part, g) for (before, part), g in zip(told, found.groups(), strict=True))
+
+
+def _same_number(before: str, expected: str, got: str) -> bool:
+    a, b = float(expected), float(got)
+    if before.rstrip().endswith("+-"):
+        return a == b or (a > 0.0 and 1.0 / _ESTIMATE < b / a < _ESTIMATE)
+    mantissa, _, exponent = expected.lower().partition("e")
+    if "." not in mantissa and not exponent:
+        return a == b or (abs(a) >= 1000.0 and abs(a - b) <= _RELATIVE * abs(a))
+    digits = len(mantissa.partition(".")[2])
+    last = 10.0 ** (int(exponent or 0) - digits)
+    return abs(a - b) <= max(1.5 * last, _RELATIVE * abs(a))
+
+
+def run_page(page: Path) -> int:
+    """Run a page in the current folder; the number of blocks that were run or compared.
+
+    Raises
+    ------
+    DifferentError
+        With the page's line, if a block does not do what the page says.
+    """
+    names: dict[str, object] = {"__name__": "__main__"}
+    printed: str | None = None
+    refused = ""
+    done = 0
+    for block in blocks(page):
+        where = f"{page.name}, line {block.line}"
+        if block.kind == "text":
+            if printed is not None:
+                try:
+                    compare(block.text, printed)
+                except DifferentError as error:
+                    raise DifferentError(f"{where}: {error}") from None
+                if refused and not re.search(r"^fegear: ", block.text, re.MULTILINE):
+                    raise DifferentError(f"{where}: {refused}")
+                done += 1
+            printed, refused = None, ""
+            continue
+        if refused:
+            raise DifferentError(refused)
+        printed = None
+        if block.missing:
+            continue
+        if block.file:
+            block.write()
+        elif block.kind == "sh":
+            ran = subprocess.run(["sh", "-eu", "-c", block.text], capture_output=True, text=True, check=False)
+            printed = ran.stdout + (ran.stderr if ran.returncode else "")
+            refused = f"{where}: ends with {ran.returncode}: {ran.stderr}{ran.stdout}" if ran.returncode else ""
+            done += 1
+        elif block.kind == "python":
+            printed = _python(block, names, where)
+            done += 1
+    if refused:
+        raise DifferentError(refused)
+    return done
+
+
+def _python(block: Block, names: dict[str, object], where: str) -> str:
+    out = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(out):
+            exec(compile(block.text, where, "exec"), names)
+    except Exception:  # noqa: BLE001  (whatever the page's program raises is the page's fault)
+        raise DifferentError(f"{where}: {traceback.format_exc(limit=-3)}") from None
+    return out.getvalue()
+
+
+def prepare(folder: Path) -> dict[str, str]:
+    """Make `folder` look like a user's, with ``cases/`` and ``meshes/`` at hand; the environment to run a page in."""
+    shutil.rmtree(folder, ignore_errors=True)
+    programs = folder / ".bin"
+    programs.mkdir(parents=True)
+    for name in ("cases", "meshes"):
+        (folder / name).symlink_to(ROOT / name)
+    for name, module in (("fegear", " -m fegear"), ("dask", " -m dask"), ("python", "")):
+        script = programs / name
+        script.write_text(f'#!/bin/sh\nexec "{sys.executable}"{module} "$@"\n')
+        script.chmod(0o755)
+    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    return {
+        **os.environ,
+        "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
+        "PYTHONPATH": path,
+        "FEGEAR_CACHE": str(folder / ".cache"),
+        "OMP_NUM_THREADS": "1",
+        "MPLBACKEND": "agg",
+    }
+
+
+def execute(page: Path, folder: Path) -> str:
+    """Run a page in a folder of its own, in a process of its own; what went wrong, or nothing."""
+    environment = prepare(folder)
+    command = [sys.executable, str(Path(__file__)), str(page)]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    return done.stderr or f"ends with {done.returncode}" if done.returncode else ""
+
+
+if __name__ == "__main__":
+    try:
+        run_page(Path(sys.argv[1]))
+    except DifferentError as difference:
+        sys.exit(str(difference))
