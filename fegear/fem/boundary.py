@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.errors import RangeError
 from fegear.geometry.curves import Curve, arc_length
 
 if TYPE_CHECKING:
@@ -30,6 +31,12 @@ if TYPE_CHECKING:
 #: Root lands shorter than this [modules] (a rack tip all but full) are left out: the fillets meet on the sector's
 #: side. Fillet and root circle are tangent there, so the outline moves by the square of it.
 _SHORTEST_LAND = 2e-4
+#: A fillet turns by up to 70 degrees however short it is: elements with fewer edges along it may turn inside out.
+_FEWEST_FILLET_EDGES = 4
+#: Bores that can be meshed. Nearer the centre the whole gear turns about its bore so freely, with the inverse square of
+#: the radius, that nothing is left of the digits of a tooth's own strain; a thinner rim [modules] takes elements
+#: without number.
+_SMALLEST_BORE, _THINNEST_RIM = 1e-4, 5e-3
 
 
 @dataclass(frozen=True)
@@ -51,12 +58,22 @@ class Chain:
     middles: Array
 
 
-def graded(length: float, size: Law, samples: int = 513) -> Array:
-    """Arc lengths of nodes whose spacing follows `size`, from 0 to `length`, shape (n + 1,)."""
-    s = np.linspace(0.0, length, samples)
+def graded(length: float, size: Law, *, fewest: int = 1, at: Array | None = None) -> Array:
+    """Arc lengths of nodes whose spacing follows `size`, from 0 to `length`, shape (n + 1,).
+
+    Parameters
+    ----------
+    length : float
+    size : callable
+    fewest : int
+        Least number of edges.
+    at : ndarray, optional
+        Where to sample `size`, from 0 to `length`; by default evenly, which is not enough for one that nearly vanishes.
+    """
+    s = np.linspace(0.0, length, 513) if at is None else at
     density = 1.0 / size(s)
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
-    edges = max(1, round(float(count[-1])))
+    edges = max(fewest, round(float(count[-1])))
     nodes = np.interp(np.linspace(0.0, count[-1], edges + 1), count, s)
     nodes[0], nodes[-1] = 0.0, length
     return nodes
@@ -64,7 +81,7 @@ def graded(length: float, size: Law, samples: int = 513) -> Array:
 
 def _on_curve(name: str, curve: Curve, size: Law) -> Chain:
     parameter, length = arc_length(curve)
-    nodes = graded(float(length[-1]), size)
+    nodes = graded(float(length[-1]), size, fewest=_FEWEST_FILLET_EDGES if name == "fillet" else 1)
     halves = np.sort(np.concatenate([nodes, 0.5 * (nodes[1:] + nodes[:-1])]))
     points = curve.points(np.interp(halves, length, parameter))
     points[:, 0], points[:, -1] = curve.points(curve.start), curve.points(curve.end)
@@ -91,7 +108,13 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     -------
     list of Chain
         Consecutive chains share their end points exactly.
+
+    Raises
+    ------
+    RangeError
+        If the bore lies so near the centre or the outline that elements cannot resolve what is left.
     """
+    check_bore(tooth, bore_radius)
     pieces = tooth.outline
     pitch_angle = 2.0 * math.pi / tooth.teeth
     short = tooth.root_radius * tooth.root_land_half_angle < _SHORTEST_LAND
@@ -126,6 +149,38 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
     back_land = [_mirrored(chain, "root_land") for chain in land]
     return [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]
+
+
+def check_bore(tooth: Tooth, bore_radius: float, module: float | None = None) -> None:
+    """Refuse bores so near the centre or the outline that elements cannot resolve what is left.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    bore_radius : float
+        [modules].
+    module : float, optional
+        [m]; if given, the refusal is told in millimetres.
+
+    Raises
+    ------
+    RangeError
+    """
+    root = tooth.root_radius
+    lowest, highest = _SMALLEST_BORE * root, root - _THINNEST_RIM
+    if lowest <= bore_radius <= highest:
+        return
+    unit, name = (1.0, "modules") if module is None else (1e3 * module, "mm")
+    near = "the centre" if bore_radius < lowest else f"the root circle of radius {root * unit:.6g} {name}"
+    # rounded inward, so that what is told is accepted
+    step = 10.0 ** (math.floor(math.log10(highest * unit)) - 5)
+    raise RangeError(
+        "bore_radius",
+        f"{bore_radius * unit:.9g} {name}",
+        f"lies too near {near} for finite elements",
+        f"choose between {1.001 * lowest * unit:.4g} and {math.floor(highest * unit / step) * step:.6g} {name}: "
+        "the radius at which shaft or hub hold the body",
+    )
 
 
 def _from_the_side(fillet: Chain, tooth: Tooth) -> Chain:
@@ -185,7 +240,11 @@ def _rotation(angle: float) -> Array:
 
 def _side(top: Array, bore_radius: float, size: Law) -> Chain:
     outer = float(np.hypot(*top))
-    radii = outer - graded(outer - bore_radius, size)[::-1]
+    # Evenly in depth down to the bore, and evenly in the logarithm of the radius for bores near the centre.
+    depths = outer - np.geomspace(outer, bore_radius, 513)
+    depths[0], depths[-1] = 0.0, outer - bore_radius
+    at = np.union1d(np.linspace(0.0, outer - bore_radius, 513), np.clip(depths, 0.0, outer - bore_radius))
+    radii = outer - graded(outer - bore_radius, size, at=at)[::-1]
     direction = top / outer
     middles = np.multiply.outer(direction, 0.5 * (radii[1:] + radii[:-1]))
     return Chain("side_b", np.multiply.outer(direction, radii), middles)

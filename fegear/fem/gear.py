@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.fem.boundary import check_bore
 from fegear.fem.influence import Influence, Side, solve_influence
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import MeshSettings
@@ -32,6 +33,8 @@ _COARSER = 1.6
 #: 1 / (1.6^4 - 1) = 0.18 in energy and 0.5 in stress, but meshes that gmsh draws anew scatter about that.
 _MESH_SHARE = 0.5
 _SCATTER_SHARE = 1.0
+#: In plane strain beyond this Poisson's ratio elements begin to lock: the order of convergence falls, more is left.
+_LOCKING_RATIO, _LOCKING_SHARE = 0.45, 1.2
 #: The second patch is this much wider. The patch's own error grows about linearly with its width, so a difference
 #: over half a width more stands for about itself.
 _WIDER = 1.5
@@ -227,6 +230,11 @@ def solve_gear(
     Returns
     -------
     GearInfluence
+
+    Raises
+    ------
+    RangeError
+        If the bore lies too near the centre or the outline to be meshed.
     """
     started = time.perf_counter()
     settings = settings or MeshSettings()
@@ -250,8 +258,10 @@ def solve_gear(
         found = [solve(p) for p in (orders if estimate_error else orders[:1])]
         fine, coarse, share = found[0], found[-1] if estimate_error else None, 1.0
     else:
+        check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
         say("influence functions")
-        fine, share = influence_of_shape(*shape, settings, reach), _MESH_SHARE
+        locking = gear.plane_assumption == "strain" and material.poisson_ratio > _LOCKING_RATIO
+        fine, share = influence_of_shape(*shape, settings, reach), _LOCKING_SHARE if locking else _MESH_SHARE
         if estimate_error:
             say("influence functions on a coarser mesh, for the error")
             coarse = influence_of_shape(*shape, settings.scaled(_COARSER), reach)

@@ -90,8 +90,8 @@ class Influence:
         """
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
         low, high, closest = self.flank.flank_start, self.flank.flank_end, self.corner_distance
-        if self.flank.upper_corner:
-            arc = np.minimum(arc, high - closest)
+        # A tip rounded by less than the corner distance is a corner still: the flank's end is as far off as is missing.
+        arc = np.minimum(arc, high - max(closest - self.flank.beyond, 0.0))
         if self.flank.lower_corner:
             arc = np.maximum(arc, low + closest)
         room = np.minimum(arc - low, high - arc)

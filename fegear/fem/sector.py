@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.errors import FegearError, MissingLibraryError
+from fegear.errors import FegearError, InputError, MissingLibraryError
 from fegear.fem.boundary import sector_boundary
 from fegear.fem.mesh import SectorMesh, with_middle_nodes
 
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 #: What gmsh's wheel needs from the system, for the error message.
 SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
+
+#: How often, and by which factor, edges are shortened when elements turn inside out.
+_MOST_REFINEMENTS, _FINER = 4, 0.6
 
 
 def load_gmsh() -> Any:
@@ -49,13 +52,37 @@ def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> Sec
     bore_radius : float
         [modules].
     settings : MeshSettings
+        Where they are too coarse for a sound mesh (a curved boundary may turn an element inside out), finer ones are
+        taken.
 
     Returns
     -------
     SectorMesh
         Side B's nodes are side A's, turned by one pitch.
+
+    Raises
+    ------
+    RangeError
+        If the bore lies too near the centre or the outline to be meshed.
+    FegearError
+        If gmsh fails, or no finer mesh is sound either.
     """
     started = time.perf_counter()
+    for _ in range(_MOST_REFINEMENTS):
+        try:
+            return _mesh(tooth, bore_radius, settings, started)
+        except InputError as problem:
+            if problem.key != "mesh":
+                raise
+            told = problem
+            settings = settings.scaled(_FINER)
+    raise FegearError(
+        f"No sound mesh of the tooth sector was found: at edges of {settings.root_edge_length:.3g} modules along the "
+        f"fillet it still {told.rule}. Choose a thicker rim or a larger fillet."
+    ) from told
+
+
+def _mesh(tooth: Tooth, bore_radius: float, settings: MeshSettings, started: float) -> SectorMesh:
     chains = sector_boundary(tooth, bore_radius, settings)
     polygon = np.hstack([chain.vertices[:, :-1] for chain in chains])
     vertices, triangles = _fill(polygon)

@@ -118,6 +118,11 @@ class LoadedFlank:
         return float(self.arc[self.after_flank_edge])
 
     @property
+    def beyond(self) -> float:
+        """Length of the run beyond the flank's end, on a tip rounding [modules]; 0 at a corner."""
+        return 0.0 if self.upper_corner else float(self.arc[-1]) - self.flank_end
+
+    @property
     def nodes(self) -> int:
         """Number of Lagrange nodes along the run."""
         return self.dofs.size // 2
@@ -188,7 +193,9 @@ class LoadedFlank:
         length = np.diff(self.arc)[edge][:, None]
         xi = (s[position][:, None] + a[position][:, None] * np.sin(theta) - self.arc[edge][:, None]) / length
         inward = self._normal(edge, xi)
-        inward[:, edge >= self.after_flank_edge] = self._inward(np.array([self.flank_end]))[2][:, :, None]
+        # of the flank's last edge: a small rounding may be a single edge, whose own tangent there is degrees off
+        last = self._normal(np.array([self.after_flank_edge - 1]), np.array([1.0]))
+        inward[:, edge >= self.after_flank_edge] = last[:, :, None]
         values = np.einsum("inq,cnq,nq->cni", lagrange(self.order, xi), inward, weight)
         loads = np.zeros((2, self.nodes, s.size))
         node = edge[:, None] * self.order + np.arange(self.order + 1)

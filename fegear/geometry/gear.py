@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from fegear.geometry.tooth import Tooth
 
 Plane = Literal["strain", "stress"]
+#: Compliances at this value are within 1e-4 of those at 0.5; beyond it elements stiffen and digits are lost.
+_LARGEST_POISSON_RATIO = 0.4999
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +72,8 @@ class Gear:
     ------
     GeometryError
         If module, bore or face width break their rules.
+    InputError
+        If the plane assumption is unknown, or plane strain meets a material that is as good as incompressible.
     """
 
     tooth: Tooth
@@ -98,6 +102,14 @@ class Gear:
             t = self.tooth
             thickness = 2.0 * self.pitch_radius * float(t.half_thickness_angle(max(t.pitch_radius, t.base_radius)))
             object.__setattr__(self, "plane", "strain" if self.face_width >= 5.0 * thickness else "stress")
+        nu = self.material.poisson_ratio
+        if self.plane == "strain" and nu > _LARGEST_POISSON_RATIO:
+            raise InputError(
+                "material.poisson_ratio",
+                nu,
+                "is incompressible, which plane strain with displacements alone cannot tell from rigid",
+                f"choose at most {_LARGEST_POISSON_RATIO}, which is within 1e-4 of the limit, or plane stress",
+            )
 
     @property
     def plane_assumption(self) -> Plane:

@@ -20,6 +20,12 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
+#: Half the thickness of the thinnest neck that undercut may leave [modules].
+_THINNEST_NECK = 0.02
+#: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.
+_SLIGHT_UNDERCUT = 1e-4
+
+
 @dataclass(frozen=True)
 class Tooth:
     """A generated external spur tooth; every length in modules, so that one tooth serves every size.
@@ -45,7 +51,8 @@ class Tooth:
     Raises
     ------
     GeometryError
-        If the tooth cannot exist: pointed, tip below the form circle, negative root land, rounding too large.
+        If the tooth cannot exist: pointed, cut off by undercut, tip below the form circle, negative root land, rounding
+        too large.
     """
 
     teeth: int
@@ -127,6 +134,15 @@ class Tooth:
             raise GeometryError(key, getattr(self, key), "takes away the whole involute", "choose a smaller one")
         if self.tip_half_angle <= 0.0:
             raise GeometryError(key, getattr(self, key), "is wider than the tip allows", "choose a smaller one")
+        neck = float(self.fillet.points(np.linspace(self.fillet.start, self.fillet.end, 257))[0].min())
+        if neck < _THINNEST_NECK:
+            raise GeometryError(
+                "profile_shift",
+                self.profile_shift,
+                "lets the rack undercut the tooth from both sides until "
+                + ("it is cut off" if neck <= 0.0 else f"a neck of {2.0 * neck:.2g} modules is left"),
+                "raise the profile shift or the number of teeth",
+            )
 
     # ---- circles and angles -------------------------------------------------------------------------------------
     @property
@@ -219,6 +235,14 @@ class Tooth:
             t = math.sqrt(max(math.hypot(x, y) ** 2 / self.base_radius**2 - 1.0, 0.0))
             return float(np.arctan2(x, y) - (self.base_half_angle - polar_angle(t)))
 
+        slight = -self._tangent_roll
+        if slight < _SLIGHT_UNDERCUT:
+            # The trochoid leaves the involute's other branch at the roll angle -slight along its tangent and meets this
+            # branch where 2 x^3 + 3 x^2 = 1, x = roll / slight; the angles themselves, slight^3, drown in round-off.
+            roll = 0.5 * slight
+            target = float(self.radius_of_roll(roll))
+            below = radius(fillet.start) < target < radius(fillet.end)
+            return (brentq(lambda b: radius(b) - target, 0.0, fillet.end) if below else fillet.end), roll
         # The trochoid's radius grows with beta; below the base circle there is no involute to meet.
         low = fillet.start
         if radius(low) < self.base_radius:

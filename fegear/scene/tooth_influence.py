@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from fegear.errors import RangeError
+from fegear.scene.case.part import at
 from fegear.scene.settings import mesh_settings
 from fegear.scene.tooth_mesh import own_sector_mesh
 
@@ -42,14 +44,22 @@ def gear_influence(scene: Scene, name: str, progress: Callable[[str], None] | No
         Name of the gear.
     progress : callable, optional
         Called with the name of each step as it starts.
+
+    Raises
+    ------
+    RangeError
+        If the gear's bore cannot be meshed, under its key in the case.
     """
     from fegear.fem import solve_gear
 
     mesh = own_sector_mesh(scene, name)
-    return solve_gear(
-        scene.gears[name],
-        mesh_settings(scene.case.accuracy),
-        reach=needed_reach(scene, name),
-        mesh=mesh,
-        progress=progress,
-    )
+    try:
+        return solve_gear(
+            scene.gears[name],
+            mesh_settings(scene.case.accuracy),
+            reach=needed_reach(scene, name),
+            mesh=mesh,
+            progress=progress,
+        )
+    except RangeError as error:
+        raise at(f"gear.{name}", error) from None

@@ -1,7 +1,7 @@
 """The spline against what splines reproduce, their order, and scipy's."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
@@ -9,7 +9,6 @@ from fegear.contact.spline import spline
 
 
 @given(st.integers(4, 40), st.integers(0, 10**6))
-@settings(max_examples=50, deadline=None)
 def test_equals_scipys_not_a_knot(n, seed):
     rng = np.random.default_rng(seed)
     x = np.cumsum(0.05 + rng.random(n))

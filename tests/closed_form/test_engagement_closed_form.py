@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.contact.engagement import Engagement
@@ -83,7 +83,6 @@ def relieved(e, amount=15e-6, length=2e-3):
 @given(
     st.sampled_from([STANDARD, HIGH]), st.floats(-3.0, 4.0), st.floats(0.0, 30e-6), st.booleans(), st.integers(0, 10**6)
 )
-@settings(max_examples=40, deadline=None)
 def test_laws_of_contact_hold_over_seven_decades_of_load(pair, log_load, amount, corners, seed):
     rng = np.random.default_rng(seed)
     e = replace(

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.geometry.helical_gear import HelicalGear
@@ -61,7 +61,6 @@ def test_surfaces_are_those_of_appendix_1():
 
 
 @given(helical_gears())
-@settings(max_examples=40, deadline=None)
 def test_straight_rack_generates_the_involute_helicoid(gear):
     flank, helicoid = RackFlank(gear), InvoluteHelicoid.of(gear, "space")
     s, z = grid(flank)
@@ -73,7 +72,6 @@ def test_straight_rack_generates_the_involute_helicoid(gear):
 
 
 @given(helical_gears(), st.sampled_from([0.0, 1.5, -0.5]), st.sampled_from([0.0, 5.0]))
-@settings(max_examples=40, deadline=None)
 def test_derivative_normal_and_curvature_of_the_generated_flank_agree_with_differences(gear, parabola, crown):
     flank = RackFlank(gear, parabola, crown)
     s, z = grid(flank)
@@ -95,7 +93,6 @@ def test_derivative_normal_and_curvature_of_the_generated_flank_agree_with_diffe
 
 
 @given(helical_gears())
-@settings(max_examples=40, deadline=None)
 def test_helicoid_is_developable_and_its_separation_is_a_distance(gear):
     flank = InvoluteHelicoid.of(gear, "tooth")
     t, z = np.meshgrid(np.linspace(0.2, 0.6, 5) * gear.base_radius, np.linspace(-0.01, 0.01, 5))

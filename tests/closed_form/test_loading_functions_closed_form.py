@@ -5,7 +5,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.design.loading import LoadingFunction, Ramp, slope_trade_off
@@ -44,13 +44,11 @@ def by_quadrature(f, g):
 
 
 @given(functions(), st.one_of(st.floats(0.0, 40.0), st.sampled_from([0.0, 1e-9, 1e-4, 1.0])))
-@settings(max_examples=300, deadline=None)
 def test_spectrum_equals_quadrature(f, order):
     assert abs(f.spectrum(order / A) - by_quadrature(f, order / A)) <= 1e-12 * A
 
 
 @given(functions(), st.floats(-1.0, 1.0))
-@settings(max_examples=200, deadline=None)
 def test_the_loads_of_all_pairs_add_up(f, where):
     x = f.centre + where * A + np.arange(-6, 7) * A
     # at the jumps of a path with vertical ends both neighbours may count
@@ -60,7 +58,6 @@ def test_the_loads_of_all_pairs_add_up(f, where):
 
 
 @given(functions())
-@settings(max_examples=100, deadline=None)
 def test_loading_is_symmetric_monotone_and_peaks_at_F(f):
     x = f.centre - f.length * np.linspace(0.5, 0.0, 501)[1:]
     if any(width == 0.0 for _, _, width, _ in f.terms):

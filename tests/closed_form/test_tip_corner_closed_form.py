@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -49,7 +49,6 @@ def turned_until_touching(pair, u_driver):
 
 @given(st.sampled_from([(28, 28), (17, 60), (45, 20), (12, 100)]), st.floats(0.02, 0.9))
 @example((12, 100), 0.02)
-@settings(max_examples=40, deadline=None)
 def test_gap_equals_turning_the_gears_until_they_touch(teeth, where):
     pair = pair_of(*teeth, 0.3 if teeth[0] < 18 else 0.0)
     corner = CornerContact(pair, "driven")
@@ -63,7 +62,6 @@ def test_gap_equals_turning_the_gears_until_they_touch(teeth, where):
 
 
 @given(st.integers(10, 80), st.integers(18, 80), st.floats(0.0, 1.0))
-@settings(max_examples=40, deadline=None)
 def test_the_reversed_pair_sees_the_mirror_image(z1, z2, where):
     pair = pair_of(z1, z2, 0.5 if z1 < 18 else 0.0)
     one, other = CornerContact(pair, "driven"), CornerContact(pair.reversed(), "driver")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import root
 
@@ -63,7 +63,7 @@ def largest_gear_angle(pair, phi_1, n=161, zooms=9):
     st.integers(19, 60), st.integers(19, 120), st.sampled_from([0.0, 1e-6, 5.0, 20.0, 35.0]),
     st.floats(0.01, 0.15), st.sampled_from(["left", "right"]), st.sampled_from([0.0, 2e-4]),
 )  # fmt: skip
-@settings(max_examples=20, deadline=None)
+@pytest.mark.examples(20, 400)
 def test_aligned_drives_transmit_exactly(n1, n2, beta, width, hand, apart):
     pair = make(n1, n2, beta, hand if beta else "spur", width, errors=Misalignment(centre_distance=apart))
     assume(pair.transverse_contact_ratio > 1.02)
@@ -84,7 +84,6 @@ angles = st.floats(-6.0, 6.0).map(lambda a: a * ARCMIN)
     st.integers(19, 60), st.integers(19, 120), st.sampled_from([0.0, 0.5, 12.0, 30.0]), angles, angles, angles,
     st.sampled_from([0.0, 1e-4]), st.sampled_from([0.0, 2.0]), st.sampled_from([0.0, 4.0]), st.floats(0.0, 1.0),
 )  # fmt: skip
-@settings(max_examples=40, deadline=None)
 def test_earliest_contact_is_the_largest_gear_angle_of_a_plain_search(
     n1, n2, beta, shaft, lead, profile, apart, parabola, crown, where
 ):
@@ -130,7 +129,7 @@ def test_corners_and_slivers_where_the_reach_closes(teeth, beta, errors, where):
 
 
 @given(st.sampled_from([0.0, 15.0, 30.0]), angles, angles, angles, st.sampled_from([0.0, 2.0]))
-@settings(max_examples=8, deadline=None)
+@pytest.mark.examples(8, 150)
 def test_mirrored_hands_with_mirrored_shafts_have_the_same_error(beta, shaft, lead, profile, parabola):
     assume(beta > 0.0 or lead == 0.0)  # a lead error gives a spur gear a hand
     hands = ("left", "right") if beta else ("spur", "spur")
@@ -268,7 +267,7 @@ def test_edge_contact_solves_the_papers_equations_10_and_11():
 
 
 @given(st.integers(19, 60), st.integers(19, 90), angles)
-@settings(max_examples=15, deadline=None)
+@pytest.mark.examples(15, 300)
 def test_spur_gears_with_a_shaft_angle_touch_at_a_face_end(n1, n2, shaft):
     assume(abs(shaft) > 0.1 * ARCMIN)
     pair = make(n1, n2, 0.0, "spur", 0.03, errors=Misalignment(shaft_angle=shaft))
@@ -290,7 +289,6 @@ def test_face_ends_that_stick_out_change_the_edge_not_the_slope():
 
 
 @given(st.lists(st.floats(-2.0, 2.0), min_size=1, max_size=20), st.floats(1e-6, 1e3))
-@settings(max_examples=50, deadline=None)
 def test_bracketed_roots_are_found_or_pinned_to_the_end(centres, steep):
     c = np.array(centres)
     lo, hi = np.full(c.size, -1.0), np.full(c.size, 1.0)

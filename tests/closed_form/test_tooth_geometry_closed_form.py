@@ -6,7 +6,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fegear.errors import GeometryError
@@ -38,7 +38,6 @@ def teeth(draw):
 
 
 @given(teeth())
-@settings(max_examples=60, deadline=None)
 def test_fillet_and_involute_meet_in_one_point_and_tangent(tooth):
     junction = tooth.fillet.points(tooth.fillet.end) - tooth.involute.points(tooth.involute.start)
     assert np.abs(junction).max() < 1e-12 * max(1.0, tooth.teeth / 28)
@@ -48,7 +47,6 @@ def test_fillet_and_involute_meet_in_one_point_and_tangent(tooth):
 
 
 @given(teeth())
-@settings(max_examples=60, deadline=None)
 def test_trochoid_lies_at_the_tip_radius_from_the_path_of_the_tip_centre(tooth):
     beta = np.linspace(tooth.fillet.start, tooth.fillet.end, 50)
     distance = np.hypot(*(tooth.fillet.points(beta) - tooth.fillet.centres(beta)))
@@ -56,7 +54,6 @@ def test_trochoid_lies_at_the_tip_radius_from_the_path_of_the_tip_centre(tooth):
 
 
 @given(teeth())
-@settings(max_examples=30, deadline=None)
 def test_outline_is_closed_and_its_derivatives_agree_with_differences(tooth):
     pieces = list(tooth.outline.values())
     for left, right in itertools.pairwise(pieces):
@@ -171,7 +168,6 @@ def _gear(teeth, shift=0.0, module=1e-3, **more):
 
 
 @given(st.integers(15, 120), st.integers(15, 120), st.floats(-0.2, 0.5), st.floats(0.0, 0.5))
-@settings(max_examples=40, deadline=None)
 def test_both_gears_see_the_same_path_of_contact(z1, z2, x1, x2):
     pair = GearPair(_gear(z1, x1), _gear(z2, x2))
     back = pair.reversed()

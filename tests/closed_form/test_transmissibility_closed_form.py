@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fegear.dynamics.helical_pair import HelicalPairModel, P, ReducedPairModel, RigidGear
@@ -75,7 +75,6 @@ def test_ten_and_five_degrees_of_freedom_agree():
 
 
 @given(st.integers(0, 1000), st.floats(0.0, 45.0), st.floats(-1.0, 1.0))
-@settings(max_examples=25, deadline=None)
 def test_direct_state_space_and_plain_inversion_agree_for_general_damping(seed, psi, kappa):
     model = unequal(seed, psi=psi, kappa=kappa)
     w = model.natural_frequency * np.linspace(0.1, 2.0, 15)
@@ -105,7 +104,6 @@ def test_direct_and_modal_sum_agree_for_proportional_damping():
 
 
 @given(st.integers(0, 1000), st.floats(0.05, 2.5))
-@settings(max_examples=25, deadline=None)
 def test_forces_balance_on_every_gear(seed, ratio):
     model = unequal(seed)
     w = ratio * model.natural_frequency
@@ -208,7 +206,6 @@ def test_nonsense_is_refused(build, error, words):
 
 
 @given(st.floats(-0.9, 0.9), st.floats(0.01, 0.2), st.integers(3, 40))
-@settings(max_examples=40, deadline=None)
 def test_uniform_contact_from_one_end_has_the_papers_mu(kappa, width, n):
     b = 0.5 * width
     lo, hi = (-b, b * (2.0 * kappa + 1.0)) if kappa < 0.0 else (b * (2.0 * kappa - 1.0), b)
@@ -222,7 +219,6 @@ def test_uniform_contact_from_one_end_has_the_papers_mu(kappa, width, n):
 
 
 @given(st.floats(-0.8, 0.8), st.floats(-0.9, 0.9))
-@settings(max_examples=20, deadline=None)
 def test_mesh_matrix_is_never_indefinite(psi, kappa):
     for mu in (kappa**2, partial_face_mu(kappa)):
         matrix = MeshParameters(2.0, kappa, mu, psi).matrix()

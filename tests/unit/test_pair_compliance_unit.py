@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.errors import GeometryError, RangeError
@@ -77,7 +77,6 @@ def teeth(draw: st.DrawFn) -> Tooth:
         return Tooth(28, RACK)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(teeth(), st.floats(0.0, 1.0))
 def test_any_tooth_gives_finite_numbers_or_reasons(tooth, where):
     radius = tooth.form_radius + where * (tooth.involute_tip_radius - tooth.form_radius)

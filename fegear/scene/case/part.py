@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
@@ -24,6 +25,15 @@ def refuse(rule: str, remedy: str = "", *, value: object = None, key: str = "") 
     return PydanticCustomError("fegear", "{rule}", {"rule": rule, "remedy": remedy, "shown": value, "key": key})
 
 
+#: Magnitudes that a machine can have, in SI. Beyond them products overflow, and no refusal after that would say why.
+SMALLEST, LARGEST = 1e-30, 1e30
+
+
+def plausible(number: float) -> bool:
+    """Whether a value is zero or of a size that can be computed with."""
+    return number == 0.0 or SMALLEST <= abs(number) <= LARGEST
+
+
 def quantity(dimension: str, *, positive: bool = False, not_negative: bool = False) -> BeforeValidator:
     """Validator that reads a quantity of `dimension` into SI and holds it against its range."""
 
@@ -35,6 +45,8 @@ def quantity(dimension: str, *, positive: bool = False, not_negative: bool = Fal
         except InputError as error:
             raise refuse(error.rule, error.remedy, value=error.value) from None
         shown = f'"{value}"' if isinstance(value, str) else value
+        if not plausible(number):
+            raise refuse(f"is {number:.3g} in SI units, beyond any machine", "check the unit", value=shown)
         if positive and number <= 0.0:
             raise refuse("must be greater than zero", value=shown)
         if not_negative and number < 0.0:
@@ -45,8 +57,12 @@ def quantity(dimension: str, *, positive: bool = False, not_negative: bool = Fal
 
 
 def _number(value: object) -> object:
-    """Let a whole number stand for a float, as TOML users write ``addendum = 1``."""
-    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+    """Let a whole number stand for a float, as TOML users write ``addendum = 1``, and refuse absurd sizes."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        value = float(value) if abs(value) <= LARGEST else math.copysign(math.inf, value)
+    if isinstance(value, float) and math.isfinite(value) and not plausible(value):
+        raise refuse("is beyond any machine", "check the number")
+    return value
 
 
 Number = Annotated[float, BeforeValidator(_number)]
