@@ -135,7 +135,9 @@ class MeshExcitation:
         shares : tuple of Periodic
             Share of the load that each tooth pair in reach carries; they sum to one. One spring without them.
         """
-        separation = combine((error, stiffness), lambda z, k: z - load / k, tolerance=1e-10)
+        # Of perfect flanks that deflect in proportion to the load nothing is left but round-off.
+        deflection = float(np.abs(error(np.linspace(0.0, 1.0, 33))).max())
+        separation = combine((error, stiffness), lambda z, k: z - load / k, tolerance=1e-10, scale=deflection)
         if not shares:
             return cls((stiffness,), (separation,))
         parts = tuple(combine((share, stiffness), lambda q, k: q * k, tolerance=1e-10) for share in shares)

@@ -74,6 +74,7 @@ class Periodic:
         tolerance: float = 1e-12,
         pitches: int = 1,
         shortest: float = 0.0,
+        scale: float = 0.0,
     ) -> Periodic:
         """Fit a vectorised function of the period fraction s, smooth between `breaks`, halving pieces as needed.
 
@@ -91,6 +92,8 @@ class Periodic:
             Base pitches in one period.
         shortest : float
             Pieces of at most this length [periods] are taken as they are (a square root's tip, a clipped logarithm).
+        scale : float
+            Size beside which errors count where the function itself is smaller: a difference of things so large.
 
         Raises
         ------
@@ -105,7 +108,7 @@ class Periodic:
         if len(cuts) > 2 and cuts[-1] - cuts[-2] <= 1e-12:
             del cuts[-2]
         waiting = list(zip(cuts[-2::-1], cuts[:0:-1], strict=True))
-        starts, rows, scale = [], [], 0.0
+        starts, rows = [], []
         while waiting:
             a, b = waiting.pop()
             h = b - a
@@ -234,6 +237,7 @@ def combine(
     degree: int = 8,
     tolerance: float = 1e-12,
     shortest: float = 0.0,
+    scale: float = 0.0,
 ) -> Periodic:
     """Fit ``rule(part_1(phase), part_2(phase), ...)`` over the common period of all parts.
 
@@ -248,6 +252,7 @@ def combine(
         tolerance=tolerance,
         pitches=pitches,
         shortest=shortest,
+        scale=scale,
     )
 
 

@@ -174,6 +174,7 @@ def solve_influence(
     reach: int = 1,
     corner_distance: float = 0.02,
     margin: float = 0.15,
+    sector_teeth: int = 0,
 ) -> Influence:
     """Solve one ring for all that can be asked of its teeth.
 
@@ -190,6 +191,9 @@ def solve_influence(
         Contacts nearer than this to a corner of the flank are modelled at this distance [modules].
     margin : float
         How far below the flank a patch may reach into the fillet [modules].
+    sector_teeth : int
+        Solve a sector of so many teeth with free sides, loaded in the middle, instead of the ring; the reach is then
+        at most (sector_teeth - 1) // 2.
 
     Returns
     -------
@@ -201,7 +205,7 @@ def solve_influence(
 
     # Many small dense matrices: on a busy machine a second BLAS thread makes them ten times slower, never faster.
     with threadpool_limits(limits=1, user_api="blas"):
-        return _solve(tooth, mesh, poisson_ratio, plane, order, reach, corner_distance, margin)
+        return _solve(tooth, mesh, poisson_ratio, plane, order, reach, corner_distance, margin, sector_teeth)
 
 
 def _solve(
@@ -213,9 +217,10 @@ def _solve(
     reach: int,
     corner_distance: float,
     margin: float,
+    sector_teeth: int,
 ) -> Influence:
     started = time.perf_counter()
-    reach = min(reach, (tooth.teeth - 1) // 2)
+    reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
     elasticity = assemble(mesh, poisson_ratio, plane, order)
     flank = loaded_flank(mesh, elasticity, tooth, margin)
     fillets: dict[Side, FilletStrain] = {
@@ -224,7 +229,7 @@ def _solve(
     }
     assembled = time.perf_counter()
     watch = np.concatenate([flank.dofs, fillets["tension"].dofs, fillets["compression"].dofs])
-    ring = close_ring(mesh, elasticity, watch, reach)
+    ring = close_ring(mesh, elasticity, watch, reach, sector_teeth=sector_teeth)
     closed = time.perf_counter()
     response = ring.respond(flank.dofs, watch)
     n, t = flank.dofs.size, fillets["tension"].dofs.size

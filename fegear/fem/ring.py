@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.errors import FegearError, InputError
+from fegear.fem.chain import chain_coupling
 from fegear.fem.condensation import Condensed, condense
 
 if TYPE_CHECKING:
@@ -44,6 +45,9 @@ class Ring:
 
         u_k = A (H_k A' + H_k-1 B') f + B (H_k+1 A' + H_k B') f + (k = 0) G f.
 
+    A row of a few sectors with free sides is of the same form, but what side B does is not what side A does one
+    sector on; hence the two mappings.
+
     Parameters
     ----------
     sector : Condensed
@@ -52,8 +56,9 @@ class Ring:
         A and B.
     own : ndarray, shape (ports, ports)
         G; symmetric, zero for the sides.
-    coupling : dict of int to ndarray, shape (m, m)
-        H_k for k = -reach-1 .. reach+1.
+    from_a, from_b : dict of int to ndarray, shape (m, m)
+        Motion of side A of sector k under forces on side A (H_k) and on side B (H_k-1) of sector 0, for
+        k = -reach .. reach+1.
     teeth, reach : int
         z, the neighbours K that can be asked for.
     seconds : dict of str to float
@@ -63,7 +68,8 @@ class Ring:
     follow_a: Array
     follow_b: Array
     own: Array
-    coupling: dict[int, Array]
+    from_a: dict[int, Array]
+    from_b: dict[int, Array]
     teeth: int
     reach: int
     seconds: dict[str, float]
@@ -97,7 +103,7 @@ class Ring:
         both = np.hstack([self.follow_a[rows], self.follow_b[rows]])
         answer = {}
         for k in range(-self.reach, self.reach + 1):
-            sides = [self.coupling[j] @ drive_a + self.coupling[j - 1] @ drive_b for j in (k, k + 1)]
+            sides = [self.from_a[j] @ drive_a + self.from_b[j] @ drive_b for j in (k, k + 1)]
             answer[k] = both @ np.vstack(sides)
             if k % self.teeth == 0:
                 answer[k] += own
@@ -121,7 +127,13 @@ class Ring:
 
 
 def close_ring(
-    mesh: SectorMesh, elasticity: SectorElasticity, ports: Index, reach: int = 1, *, expandable: bool = False
+    mesh: SectorMesh,
+    elasticity: SectorElasticity,
+    ports: Index,
+    reach: int = 1,
+    *,
+    expandable: bool = False,
+    sector_teeth: int = 0,
 ) -> Ring:
     """Condense a sector once and close the ring.
 
@@ -135,6 +147,8 @@ def close_ring(
         K: neighbours -K..K can be asked for afterwards.
     expandable : bool
         Whether `Ring.field` will be asked for.
+    sector_teeth : int
+        Leave the ring open: so many sectors in a row with free sides, the middle one loaded. 0 for the ring.
 
     Returns
     -------
@@ -143,11 +157,17 @@ def close_ring(
     Raises
     ------
     InputError
-        If the sides do not match node by node.
+        If the sides do not match node by node, or the row of sectors is too short for the reach.
     FegearError
         If the stiffness is singular.
     """
     from scipy.linalg import lapack
+
+    if sector_teeth and not 2 * reach + 1 <= sector_teeth <= mesh.teeth:
+        raise InputError(
+            "sector_teeth", sector_teeth, f"must lie between {2 * reach + 1} and {mesh.teeth}",
+            "the neighbours that are asked for must be in the sector",
+        )  # fmt: skip
 
     started = time.perf_counter()
     z = mesh.teeth
@@ -172,13 +192,19 @@ def close_ring(
     follow = np.vstack([turn, -own[n:, n:] @ (S[n:, :n] @ turn)])
     border = S[:n, n:] @ follow[n:]
     held = turn.T @ (S[:n, :n] @ turn + border)
-    coupling = _coupling(0.5 * (held + held.T), z, reach + 1)
+    held = 0.5 * (held + held.T)
+    if sector_teeth:
+        from_a, from_b = chain_coupling(held, sector_teeth, reach)
+    else:
+        from_a = _coupling(held, z, reach + 1)
+        from_b = {k: from_a[k - 1] for k in range(-reach, reach + 2)}
     return Ring(
         sector=sector,
         follow_a=follow[:, :m],
         follow_b=follow[:, m:],
         own=own,
-        coupling=coupling,
+        from_a=from_a,
+        from_b=from_b,
         teeth=z,
         reach=reach,
         seconds={"condensation": condensed - started, "ring": time.perf_counter() - condensed},

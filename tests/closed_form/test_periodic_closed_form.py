@@ -152,3 +152,13 @@ def test_linearised_about_the_mean_load():
     for found in (MeshExcitation.at_mean_load(k, z, 1000.0), MeshExcitation.at_mean_load(k, z, 1000.0, (share, other))):
         assert found.approach(1000.0, s) == pytest.approx(z(s), abs=1e-14)
         assert found.total_stiffness()(s) == pytest.approx(k(s), rel=1e-9)
+
+
+def test_perfect_flanks_that_deflect_in_proportion_leave_no_separation():
+    """z - W/k is then nothing but round-off, which no polynomial follows."""
+    k = Periodic.fit(lambda s: 2e8 * (1 + 0.2 * np.cos(2 * np.pi * s)))
+    z = Periodic.fit(lambda s: 1000.0 / k(s))
+    found = MeshExcitation.at_mean_load(k, z, 1000.0)
+    assert np.abs(found.separation[0](np.linspace(0, 1, 50))).max() < 1e-15
+    noise = np.random.default_rng(1)
+    assert np.abs(Periodic.fit(lambda s: 1e-19 * noise.standard_normal(s.size), scale=1e-6).mean) < 1e-16
