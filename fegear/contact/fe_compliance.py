@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,15 +36,12 @@ class FiniteElementCompliance:
     influence : GearInfluence
     own_spline : Spline
         c_0 at the patch's half-width [m^2/N] over the roll length [m].
-    neighbours : mapping of int to ndarray, shape (m, m)
-        Chebyshev coefficients of c_k(p, q).
     lowest, highest : float
         Roll lengths of the ends of the flank [m].
     """
 
     influence: GearInfluence
     own_spline: Spline
-    neighbours: Mapping[int, Array]
     lowest: float
     highest: float
 
@@ -59,6 +57,19 @@ class FiniteElementCompliance:
     def log_slope(self) -> float:
         """kappa [m^2/N]."""
         return self.influence.log_slope
+
+    @cached_property
+    def neighbours(self) -> Mapping[int, Array]:
+        """Chebyshev coefficients of c_k(p, q), shape (m, m) each; made when a neighbour is first asked for."""
+        rb, m = self.influence.gear.base_radius, _NEIGHBOUR_POINTS
+        t = np.cos(math.pi * (np.arange(m) + 0.5) / m)
+        nodes = np.hypot(rb, 0.5 * (self.lowest + self.highest) + 0.5 * (self.highest - self.lowest) * t)
+        to_coefficients = np.linalg.inv(np.polynomial.chebyshev.chebvander(t, m - 1))
+        found = {}
+        for k in range(1, self.reach + 1):
+            found[k] = to_coefficients @ self.influence.neighbour(k, nodes, nodes) @ to_coefficients.T
+            found[-k] = found[k].T  # reciprocity, exact for pressure-weighted deflections
+        return found
 
     def _roll_length(self, radius: ArrayLike) -> Array:
         r, rb = np.asarray(radius, dtype=float), self.influence.gear.base_radius
@@ -117,13 +128,4 @@ def finite_element_compliance(influence: GearInfluence) -> FiniteElementComplian
     lengths = np.concatenate([low + (high - corner - low) * (s * s * (3.0 - 2.0 * s))[:-1], high - corner * (1.0 - s)])
     radii = np.clip(np.hypot(rb, lengths), bottom, top)
     own = influence.self_compliance(radii, influence.patch_half_width)
-    m = _NEIGHBOUR_POINTS
-    t = np.cos(math.pi * (np.arange(m) + 0.5) / m)
-    nodes = np.hypot(rb, 0.5 * (low + high) + 0.5 * (high - low) * t)
-    to_coefficients = np.linalg.inv(np.polynomial.chebyshev.chebvander(t, m - 1))
-    neighbours = {}
-    for k in range(1, influence.reach + 1):
-        values = influence.neighbour(k, nodes, nodes)
-        neighbours[k] = to_coefficients @ values @ to_coefficients.T
-        neighbours[-k] = neighbours[k].T  # reciprocity, exact for pressure-weighted deflections
-    return FiniteElementCompliance(influence, spline(lengths, own), neighbours, low, high)
+    return FiniteElementCompliance(influence, spline(lengths, own), low, high)

@@ -72,13 +72,22 @@ class ShiftedCompliance:
         return f"{self.base.describe()}, shifted by its estimated error"
 
 
-def shifted_by_error(base: FiniteElementCompliance) -> tuple[ShiftedCompliance, ShiftedCompliance]:
-    """The source with its loaded tooth softer by the estimated error, and with its neighbours softer by theirs."""
+def shifted_by_error(base: FiniteElementCompliance) -> ShiftedCompliance:
+    """The source with its loaded tooth softer by the estimated error."""
     known = base.influence
-    low = max(known.lowest_radius, known.gear.form_radius)
-    high = min(known.highest_radius, known.gear.involute_tip_radius)
+    low, high = _flank(base)
     radii = np.linspace(low, high, _POINTS)
-    own = known.self_error(radii, base.reference_half_width(radii))
-    few = np.linspace(low, high, 4)
-    beside = max((float(np.nanmax(known.neighbour_error(k, few, few))) for k in range(1, base.reach + 1)), default=0.0)
-    return ShiftedCompliance(base, radii, own), ShiftedCompliance(base, radii, np.zeros_like(own), beside)
+    return ShiftedCompliance(base, radii, known.self_error(radii, base.reference_half_width(radii)))
+
+
+def neighbours_shifted_by_error(base: FiniteElementCompliance) -> ShiftedCompliance:
+    """The source with its neighbours softer by their estimated error."""
+    few = np.linspace(*_flank(base), 4)
+    errors = (float(np.nanmax(base.influence.neighbour_error(k, few, few))) for k in range(1, base.reach + 1))
+    return ShiftedCompliance(base, few, np.zeros_like(few), max(errors, default=0.0))
+
+
+def _flank(base: FiniteElementCompliance) -> tuple[float, float]:
+    """Radii between which the flank is in use [m]."""
+    known = base.influence
+    return max(known.lowest_radius, known.gear.form_radius), min(known.highest_radius, known.gear.involute_tip_radius)

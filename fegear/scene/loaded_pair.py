@@ -118,7 +118,7 @@ def check_relief(scene: Scene, name: str) -> None:
 
 
 def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
-    """Data of the pair that the scene's effects leave out, in words."""
+    """Data of the pair that its effects leave out, and corners that cannot touch, in words."""
     remarks, effects = [], scene.case.effects
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
         part = scene.case.gear[gear]
@@ -126,16 +126,6 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
             remarks.append(f"Gear {gear} has a relief, but effects.relief is off: its flanks are taken as involutes.")
         if part.spacing_errors is not None and not effects.spacing_errors:
             remarks.append(f"Gear {gear} has spacing_errors, but the effect is off: its teeth are taken as even.")
-    if scene.case.pair[name].compliance.source == "fe":
-        if not effects.neighbour_coupling:
-            remarks.append(
-                f"Pair {name}: effects.neighbour_coupling is off, so loaded teeth do not deflect their neighbours."
-            )
-        if effects.hertz == "none":
-            remarks.append(
-                f"Pair {name}: effects.hertz is off, so contacts keep the half-width of the finite-element patch; "
-                'set effects.hertz = "load-dependent" for real ones.'
-            )
     pair = scene.pairs[name]
     if effects.corner_contact:
         from fegear.geometry import interference
@@ -193,16 +183,17 @@ def _sources(
     except InputError as error:
         raise at(f"pair.{name}", error) if error.key.startswith("compliance") else error from None
     from fegear.contact import finite_element_compliance
-    from fegear.contact.shifted_compliance import shifted_by_error
+    from fegear.contact.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
 
     names = [gear_name(scene, name, member) for member in MEMBERS]
     solved = {gear: finite_element_compliance(gear_influence(scene, gear, progress)) for gear in dict.fromkeys(names)}
     first, second = (solved[gear] for gear in names)
-    own1, beside1 = shifted_by_error(first)
-    own2, beside2 = (own1, beside1) if second is first else shifted_by_error(second)
+    own1 = shifted_by_error(first)
+    own2 = own1 if second is first else shifted_by_error(second)
     shifted: list[tuple[GearCompliance, GearCompliance]] = [(own1, second), (first, own2)]
     if scene.case.effects.neighbour_coupling:
-        shifted.append((beside1, beside2))
+        beside = {gear: neighbours_shifted_by_error(found) for gear, found in solved.items()}
+        shifted.append((beside[names[0]], beside[names[1]]))
     return (first, second), shifted
 
 
@@ -306,8 +297,45 @@ def spacing_errors(scene: Scene, gear: str) -> Array:
     return errors
 
 
-def _wants_delta(part: ReliefPart | None) -> bool:
+def wants_delta(part: ReliefPart | None) -> bool:
+    """Whether a relief's amount is given in Welbourn's Delta."""
     return part is not None and any(end.amount_over_delta is not None for end in (*part.tip, *part.root))
+
+
+def spaced(scene: Scene, name: str, engagement: Engagement) -> Engagement:
+    """The engagement with the spacing errors of its gears."""
+    driver, driven = (spacing_errors(scene, gear_name(scene, name, member)) for member in MEMBERS)
+    return replace(engagement, driver_spacing=driver, driven_spacing=driven)
+
+
+def relieved(scene: Scene, name: str, engagement: Engagement) -> Engagement:
+    """The engagement with the reliefs of its gears.
+
+    Raises
+    ------
+    InputError
+        If a relief does not fit its gear; the key is the one of the case file.
+    """
+    from fegear.design import welbourn_amount
+
+    pair, nominal = engagement.pair, engagement.compliance.nominal_load
+    names = {member: gear_name(scene, name, member) for member in MEMBERS}
+    parts = {member: scene.case.gear[gear].relief for member, gear in names.items()}
+    delta = math.nan
+    if any(wants_delta(p) for p in parts.values()):
+        spacing = (engagement.driver_spacing, engagement.driven_spacing)
+        largest = max((float(np.abs(e).max()) for e in spacing if e.size), default=0.0)
+        try:
+            delta = welbourn_amount(engagement, nominal, largest)
+        except InputError as error:
+            raise at(f"gear.{names['driver']}", error, {"relief.amount": "relief.tip.amount_over_delta"}) from None
+    built: dict[Member, Relief] = {}
+    for member, p in parts.items():
+        try:
+            built[member] = CombinedRelief() if p is None else build_relief(scene, pair, member, p, delta)
+        except InputError as error:
+            raise at(f"gear.{names[member]}", error) from None
+    return replace(engagement, driver_relief=built["driver"], driven_relief=built["driven"])
 
 
 def build_loaded_pair(scene: Scene, name: str, progress: Callable[[str], None] | None = None) -> LoadedPair:
@@ -319,34 +347,16 @@ def build_loaded_pair(scene: Scene, name: str, progress: Callable[[str], None] |
         If a relief or an error list does not fit its gear; the key is the one of the case file.
     """
     from fegear.contact import Engagement, PairCompliance
-    from fegear.design import welbourn_amount
 
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     nominal = part.normal_load(pair) or math.nan
     (driver, driven), shifted = _sources(scene, name, progress)
     compliance = PairCompliance(pair, driver, driven, effects.neighbour_coupling, effects.hertz, nominal)
-    names = {member: gear_name(scene, name, member) for member in MEMBERS}
-    spacing = {m: spacing_errors(scene, g) if effects.spacing_errors else np.empty(0) for m, g in names.items()}
-    engagement = Engagement(
-        compliance, driver_spacing=spacing["driver"], driven_spacing=spacing["driven"],
-        corner_contact=effects.corner_contact,
-    )  # fmt: skip
+    engagement = Engagement(compliance, corner_contact=effects.corner_contact)
+    if effects.spacing_errors:
+        engagement = spaced(scene, name, engagement)
     if effects.relief:
-        parts = {member: scene.case.gear[gear].relief for member, gear in names.items()}
-        delta = math.nan
-        if any(_wants_delta(p) for p in parts.values()):
-            largest = max((float(np.abs(e).max()) for e in spacing.values() if e.size), default=0.0)
-            try:
-                delta = welbourn_amount(engagement, nominal, largest)
-            except InputError as error:
-                raise at(f"gear.{names['driver']}", error, {"relief.amount": "relief.tip.amount_over_delta"}) from None
-        built: dict[Member, Relief] = {}
-        for member, p in parts.items():
-            try:
-                built[member] = CombinedRelief() if p is None else build_relief(scene, pair, member, p, delta)
-            except InputError as error:
-                raise at(f"gear.{names[member]}", error) from None
-        engagement = replace(engagement, driver_relief=built["driver"], driven_relief=built["driven"])
+        engagement = relieved(scene, name, engagement)
     others = tuple(replace(engagement, compliance=_with(compliance, *sources)) for sources in shifted)
     told = tuple(dict.fromkeys((driver.describe(), driven.describe())))
     return LoadedPair(name, engagement, others, part.all_loads(pair), nominal, told)

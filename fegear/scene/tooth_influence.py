@@ -20,9 +20,12 @@ if TYPE_CHECKING:
 def needed_reach(scene: Scene, name: str) -> int:
     """How many neighbours on either side a gear's solution must know: as many as share the load in any of its pairs.
 
-    All stages ask for the same number, so that they find the same solution.
+    All stages ask for the same number, so that they find the same solution. Without neighbour coupling it is one, which
+    comes with the solution: the size of what is left out is told from it.
     """
     reach = 1
+    if not scene.case.effects.neighbour_coupling:
+        return reach
     for key, part in scene.case.pair.items():
         if key in scene.pairs and name in (part.driver, part.driven):
             ratio = scene.pairs[key].contact_ratio

@@ -111,7 +111,7 @@ def test_without_corner_contact_the_run_says_what_that_costs():
     te = tables["transmission_error_I"]
     assert np.interp(1.5, te["x"], te["te"]) == pytest.approx(25.467, rel=1e-3)
     remark = next(r for r in results.remarks if "corner_contact is off" in r)
-    assert "set effects.corner_contact = true" in remark
+    assert "Write corner_contact = true under [effects]" in remark
 
 
 def test_nasa_gears_relief_with_coupling():

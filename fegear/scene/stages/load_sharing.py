@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.contact import PairHistory
-    from fegear.contact.transmission_error import OffPathWarning
     from fegear.scene.load import Scene
     from fegear.scene.stage import Done, Progress
 
@@ -34,12 +33,10 @@ class LoadSharingData:
     pair : LoadedPair
     history : PairHistory
         Under every load of the case.
-    warning : OffPathWarning or None
     """
 
     pair: LoadedPair
     history: PairHistory
-    warning: OffPathWarning | None
 
 
 def _columns(h: PairHistory, i: int) -> tuple[Column, ...]:
@@ -59,7 +56,7 @@ def _at_corner(pair: LoadedPair, h: PairHistory) -> Array:
 
 
 def _run(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
-    from fegear.contact import off_path_warning, pair_history
+    from fegear.contact import pair_history
 
     pair = loaded_pair(done, name)
     e = pair.engagement
@@ -89,17 +86,14 @@ def _run(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
             None if relative is None else 0.5 * relative * float(pressure[hardest]), f"smooth flanks, {where}",
         ),
     )  # fmt: skip
-    warning = off_path_warning(e, pair.nominal)
-    remarks = [] if warning is None else [f"Pair {name}: {warning.sentence}."]
+    remarks = []
     if scene.case.effects.corner_contact and (off_path * history.load[:, i]).max() > 0.0:
         worst = float((off_path * history.load[:, i]).max())
         remarks.append(
             f"Pair {name}: tip corners touch off the path and carry up to {worst:.4g} N ({worst / pair.nominal:.1%}); "
             "hertz_pressure there is that of smooth flanks, the true one is higher."
         )
-    return Outcome(
-        LoadSharingData(pair, history, warning), tuple(tables), values, {"positions": _POSITIONS}, tuple(remarks)
-    )
+    return Outcome(LoadSharingData(pair, history), tuple(tables), values, {"positions": _POSITIONS}, tuple(remarks))
 
 
 def _difference(history: PairHistory, other: PairHistory) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from fegear.scene.left_out import pair_remarks
 from fegear.scene.loaded_pair import LoadedPair, build_loaded_pair, check_pair, effect_remarks
 from fegear.scene.outcome import Outcome
 from fegear.scene.stage import Stage, Task
@@ -62,7 +63,7 @@ def _run(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
         "nominal_load": pair.nominal,
         "loads": list(pair.loads),
     }
-    return Outcome(pair, (), (), settings, effect_remarks(scene, name))
+    return Outcome(pair, (), (), settings, (*effect_remarks(scene, name), *pair_remarks(scene, pair)))
 
 
 LOADED_PAIR = Stage(

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.errors import InputError
 from fegear.scene.case.design import DesignPart
+from fegear.scene.left_out import design_remarks
 from fegear.scene.loaded_pair import LoadedPair, gear_name
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage
@@ -256,8 +257,6 @@ def _values(
 
 
 def _remarks(scene: Scene, name: str, designed: Engagement, te: dict[str, TransmissionError]) -> tuple[str, ...]:
-    from fegear.contact import off_path_warning
-
     remarks = []
     if "diagonal only" in te:
         d, n = te["diagonal only"].peak_to_peak, te["no relief"].peak_to_peak
@@ -265,11 +264,7 @@ def _remarks(scene: Scene, name: str, designed: Engagement, te: dict[str, Transm
             f"Pair {name}: a design without the neighbours' loads (Mark 5.4) would leave {d * 1e6:.3g} um, "
             f"{d / te['diagonal only'].mean:.1%} of the mean, peak to peak, and {d / n:.0%} of what no relief leaves."
         )
-    if not scene.case.effects.corner_contact:
-        warning = off_path_warning(designed, te["designed"].load)
-        if warning is not None:
-            remarks.append(f"Pair {name}, designed relief: {warning.sentence}.")
-    return tuple(remarks)
+    return (*remarks, *design_remarks(scene, name, designed, te["designed"].load))
 
 
 RELIEF = Stage(

@@ -1,0 +1,165 @@
+"""What a scene leaves out is told with its size, and the size is that of the run with the effect on."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.scene.left_out import pair_changes, pair_remarks
+from fegear.scene.load import read_scene
+from fegear.scene.plan import make_plan
+from fegear.scene.run import run_plan
+from fegear.scene.stage import Task
+from fegear.scene.stages import STAGES
+
+CASES = Path(__file__).parents[2] / "cases"
+COARSE = "accuracy.tolerance=1e-2"
+OFF = {
+    "corner_contact": "false", "neighbour_coupling": "false", "hertz": "none", "relief": "false",
+    "spacing_errors": "false",
+}  # fmt: skip
+ON = {**dict.fromkeys(OFF, "true"), "hertz": "load-dependent"}
+#: Pairs and loads: equal and unequal gears, two and three pairs in contact, finite elements and a closed form.
+PAIRS = {
+    "calculix_pair": (
+        "pair.I.loads=['20 N', '800 N']",
+        'results=["load-sharing", "transmission-error", "root-stress-history"]',
+    ),
+    "pinion_and_wheel": ("pair.I.loads=['300 N', '9000 N']", 'results=["transmission-error", "load-sharing"]'),
+    "high_contact_ratio": ("pair.I.loads=['500 N']", 'results=["transmission-error", "load-sharing"]'),
+    "lin_tip_relief": ("pair.I.loads=['2000 N', '11000 N']", 'results=["transmission-error", "load-sharing"]'),
+}  # fmt: skip
+
+
+@functools.cache
+def run(name: str, *overrides: str):
+    scene = read_scene(CASES / f"{name}.toml", (COARSE, *PAIRS.get(name, ()), *overrides))
+    return run_plan(scene, make_plan(scene, STAGES))
+
+
+def columns(results, table: str) -> dict[str, np.ndarray]:
+    found = next(t for t in results.tables if t.name == table)
+    return {column.name: np.asarray(column.values) for column in found.columns}
+
+
+def true_change(before, after, answer: str, load: float) -> float:
+    """Between two runs, from what they wrote down."""
+    if answer == "root tension":
+
+        def largest(results):
+            return max(
+                c["stress"].max()
+                for c in (columns(results, t.name) for t in results.tables if t.name.startswith("root_stress_history"))
+            )
+
+        return abs(largest(after) - largest(before))
+    table, column = {
+        "transmission error": ("transmission_error_loads_I", "te"),
+        "load on a tooth pair": ("load_sharing_loads_I", "load"),
+    }[answer]
+    a, b = (columns(results, table) for results in (before, after))
+    (xa, ya), (xb, yb) = ((c["x"][c["total_load"] == load], c[column][c["total_load"] == load]) for c in (a, b))
+    # beside a jump the two tables' positions differ
+    x = np.union1d(xa, xb)
+    inside = (x >= max(xa[0], xb[0])) & (x <= min(xa[-1], xb[-1]))
+    shared = np.interp(x, xb, yb) - np.interp(x, xa, ya)
+    off = np.interp(x, xb, yb)[~inside] if answer == "load on a tooth pair" else np.zeros(0)
+    return float(np.abs(np.concatenate([shared[inside], off])).max())
+
+
+def effects(**chosen: str) -> tuple[str, ...]:
+    return tuple(f"effects.{name}={value}" for name, value in chosen.items())
+
+
+@pytest.mark.parametrize(
+    ("name", "effect", "among"),
+    [
+        ("calculix_pair", "corner_contact", {}),
+        ("calculix_pair", "neighbour_coupling", {"hertz": "load-dependent", "corner_contact": "true"}),
+        ("calculix_pair", "hertz", {"neighbour_coupling": "true", "corner_contact": "true"}),
+        ("calculix_pair", "corner_contact", {"hertz": "load-dependent", "neighbour_coupling": "true"}),
+        ("pinion_and_wheel", "corner_contact", {"hertz": "load-dependent"}),
+        ("pinion_and_wheel", "neighbour_coupling", {}),
+        ("pinion_and_wheel", "hertz", {}),
+        ("high_contact_ratio", "corner_contact", {"hertz": "load-dependent"}),
+        ("high_contact_ratio", "neighbour_coupling", {"hertz": "load-dependent"}),
+        ("lin_tip_relief", "corner_contact", {"relief": "true", "hertz": "load-dependent"}),
+        ("lin_tip_relief", "hertz", {"relief": "true"}),
+        ("lin_tip_relief", "relief", {"hertz": "load-dependent"}),
+    ],
+)
+def test_the_size_told_is_that_of_the_run_with_the_effect_on(name, effect, among):
+    off = {**OFF, **among, effect: OFF[effect]}
+    before = run(name, *effects(**off))
+    after = run(name, *effects(**{**off, effect: ON[effect]}))
+    pair = before.outcomes[Task("loaded-pair", "I")].data
+    compared = 0
+    for load in (pair.loads[0], pair.nominal, pair.loads[-1]):
+        found, wrong = pair_changes(before.scene, pair, [load])
+        assert not wrong
+        for change in found[effect]:
+            if change.answer == "root tension" and load != pair.nominal:
+                continue  # its values are for the nominal load
+            true = true_change(before, after, change.answer, load)
+            # straight lines between the positions of the load's table leave about a hundredth of the load
+            seen = 0.03 if change.answer == "load on a tooth pair" else 1e-3
+            if true < seen * change.scale:
+                assert change.share < 2.0 * seen
+                continue
+            assert 0.5 * true < abs(change.size) < 2.0 * true, (change, true)
+            compared += 1
+    assert compared >= 1
+
+
+@pytest.mark.parametrize("effect", ["corner_contact", "neighbour_coupling", "hertz"])
+def test_it_is_told_above_the_tolerance_and_not_below(effect):
+    results = ('results=["transmission-error"]',)
+    off = {"corner_contact": "true", "neighbour_coupling": "true", "hertz": "load-dependent", effect: OFF[effect]}
+    asked = (*results, *effects(**off))
+    before, after = (
+        run("calculix_pair", *asked),
+        run("calculix_pair", *results, *effects(**{**off, effect: ON[effect]})),
+    )
+    pair = before.outcomes[Task("loaded-pair", "I")].data
+    load, te = pair.loads[-1], columns(before, "transmission_error_loads_I")
+    share = true_change(before, after, "transmission error", load) / te["te"][te["total_load"] == load].mean()
+
+    def told(tolerance: float) -> list[str]:
+        scene = read_scene(CASES / "calculix_pair.toml", (*PAIRS["calculix_pair"], *asked))
+        case = scene.case.model_copy(
+            update={"accuracy": scene.case.accuracy.model_copy(update={"tolerance": tolerance})}
+        )
+        one_load = replace(pair, loads=(load,), nominal=load)
+        return [r for r in pair_remarks(replace(scene, case=case), one_load) if effect in r]
+
+    assert len(told(share / 2.2)) == 1
+    assert told(share * 2.2) == []
+    remark = told(share / 2.2)[0]
+    line = f'{effect} = "load-dependent"' if effect == "hertz" else f"{effect} = true"
+    assert f"Write {line} under [effects]." in remark
+    assert " um (" in remark
+
+
+def test_nothing_is_told_where_everything_is_on():
+    on = effects(corner_contact="true", neighbour_coupling="true", hertz="load-dependent")
+    assert not [r for r in run("calculix_pair", *on).remarks if "would change" in r]
+
+
+def test_wrong_data_of_an_effect_that_is_off_does_not_stop_the_run():
+    far = "gear.a.relief={ tip = { amount = '10 um', start_radius = '900 mm' } }"
+    results = run("lin_tip_relief", "effects.relief=false", far)
+    assert any("relief is off, and could not be had as it is given" in r for r in results.remarks)
+
+
+def test_uneven_teeth_that_are_left_out_are_told_with_their_size():
+    errors = [0.0] * 28
+    errors[5] = 4.0
+    given = "gear.a.spacing_errors={ values = [" + ", ".join(f"'{e} um'" for e in errors) + "] }"
+    results = run("lin_tip_relief", "effects.relief=false", given)
+    remark = next(r for r in results.remarks if r.startswith("Pair I: spacing_errors is off"))
+    # the pair alone on the path takes the whole error; both gears are the same part
+    assert "by +8 um" in remark
