@@ -58,6 +58,8 @@ class MeshExcitation:
         The first slot's positions run from this many base pitches past the pitch point.
     slotted : bool
         Whether slots are tooth pairs at their places, and not one spring for the whole gear pair.
+    parting : bool
+        Whether teeth part where their spring would pull; otherwise the gear pair is linear.
     """
 
     stiffness: tuple[Periodic, ...]
@@ -66,6 +68,7 @@ class MeshExcitation:
     phase: float = 0.0
     first_slot: int = 0
     slotted: bool = False
+    parting: bool = True
 
     def __post_init__(self) -> None:
         if not self.stiffness or len(self.stiffness) != len(self.separation):
@@ -142,6 +145,37 @@ class MeshExcitation:
             return cls((stiffness,), (separation,))
         parts = tuple(combine((share, stiffness), lambda q, k: q * k, tolerance=1e-10) for share in shares)
         return cls(parts, (separation,) * len(parts))
+
+    def never_parting(self, load: float, tolerance: float = 1e-9) -> MeshExcitation:
+        """The same gear pair linear about a mean load [N]: teeth that bear under it stay in contact, and share as then.
+
+        The stiffness still varies with the phase. Without load all teeth bear.
+        """
+        if len(self.stiffness) == 1 or not load > 0.0:
+            return replace(self, parting=False)
+        parts = (*self.stiffness, *self.separation)
+        pitches = math.lcm(*(part.pitches for part in parts))
+        kinks = self.contact_changes(load)
+        cuts = np.unique(np.concatenate([*(part.breaks_over(pitches) for part in parts), np.array([*kinks])]))
+
+        def fit(function: Callable[[Array], Array]) -> Periodic:
+            return Periodic.fit(lambda s: function(s * pitches), cuts / pitches, tolerance=tolerance, pitches=pitches)
+
+        def push(j: int, s: Array) -> Array:
+            return np.maximum(self.stiffness[j](s) * (self.approach(load, s) - self.separation[j](s)), 0.0)
+
+        def bearing(s: Array) -> Array:
+            return np.sum([np.where(push(j, s) > 0.0, k(s), 0.0) for j, k in enumerate(self.stiffness)], axis=0)
+
+        def carried(j: int) -> Periodic:
+            return fit(lambda s: push(j, s) / load * bearing(s))
+
+        # Perfect flanks have a separation of zero: beside the deflection it can be fitted even then.
+        usual = load * self.mean_compliance()
+        separation = fit(lambda s: usual + self.approach(load, s) - load / bearing(s)).plus(-usual)
+        count = len(self.stiffness)
+        stiffness = tuple(carried(j) for j in range(count))
+        return replace(self, stiffness=stiffness, separation=(separation,) * count, parting=False)
 
     def at_phase(self, phase: float) -> MeshExcitation:
         """The same gear pair at another phase at time zero [base pitches]."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.periodic import combine
+from fegear.dynamics.periodic import Periodic
 from fegear.errors import InputError, RangeError
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.dynamics.excitation import MeshExcitation
-    from fegear.dynamics.periodic import Periodic
     from fegear.dynamics.train import Mesh
 
     Array = NDArray[np.float64]
@@ -114,36 +113,30 @@ def with_friction(
     reach_a, reach_b = (abs(r) * math.tan(pressure_angle) for r in (mesh.radius_a, mesh.radius_b))
     sense_a, sense_b = math.copysign(1.0, mesh.radius_a), -math.copysign(1.0, mesh.radius_b)
     kinks = tuple(excitation.contact_changes(load)) if load > 0.0 else ()
-    found = []
-    for j, (k, m) in enumerate(zip(excitation.stiffness, excitation.separation, strict=True)):
-        slot = excitation.first_slot + j
+    parts = (*excitation.stiffness, *excitation.separation)
+    pitches = math.lcm(*(part.pitches for part in parts))
+    cuts = np.unique(np.concatenate([*(part.breaks_over(pitches) for part in parts), np.array([*kinks])])) / pitches
+    known: dict[bytes, Array] = {}
 
-        def torque(
-            phase_part: Array, stiffness: Array, separation: Array, error: Array, *, a: bool, slot: int = slot
-        ) -> Array:
-            x = (phase_part + slot) * base_pitch
-            arm_a, arm_b = reach_a + x, reach_b - x
-            v_a, v_b = speed / abs(mesh.radius_a) * arm_a, speed / abs(mesh.radius_b) * arm_b
-            static = np.maximum(stiffness * (error - separation), 0.0)
-            mu = coefficient(np.abs(v_a - v_b), v_a + v_b, static) * np.where(stiffness > 0.0, 1.0, 0.0)
-            slip = np.sign(v_a - v_b)
-            return -slip * mu * arm_a * sense_a if a else slip * mu * arm_b * sense_b
+    def static_force(j: int, phase: Array) -> Array:
+        key = phase.tobytes()
+        if key not in known:  # the torques of all slots are asked for at the same places
+            known[key] = excitation.approach(load, phase)
+        return np.maximum(excitation.stiffness[j](phase) * (known[key] - excitation.separation[j](phase)), 0.0)
 
-        def of(phase: Array, a: bool, torque: Callable[..., Array] = torque, k: Periodic = k, m: Periodic = m) -> Array:
-            part = phase - np.floor(phase)
-            return torque(part, k(phase), m(phase), excitation.approach(load, phase), a=a)
+    def torque(j: int, phase: Array, *, a: bool) -> Array:
+        x = (phase - np.floor(phase) + excitation.first_slot + j) * base_pitch
+        arm_a, arm_b = reach_a + x, reach_b - x
+        v_a, v_b = speed / abs(mesh.radius_a) * arm_a, speed / abs(mesh.radius_b) * arm_b
+        bears = np.where(excitation.stiffness[j](phase) > 0.0, 1.0, 0.0)
+        mu = coefficient(np.abs(v_a - v_b), v_a + v_b, static_force(j, phase)) * bears
+        slip = np.sign(v_a - v_b)
+        return -slip * mu * arm_a * sense_a if a else slip * mu * arm_b * sense_b
 
-        parts = (*excitation.stiffness, *excitation.separation)
-        ramp = replace(k, breaks=np.array([0.0, 1.0]), coefficients=np.array([[0.5, 0.5]]), pitches=1)
-        pair = tuple(
-            combine(
-                (ramp, *parts),
-                lambda s, *_, a=a, of=of: of(s, a),
-                extra_breaks=kinks,
-                tolerance=tolerance,
-                shortest=SHORTEST,
-            )
-            for a in (True, False)
+    def fitted(j: int, *, a: bool) -> Periodic:
+        return Periodic.fit(
+            lambda s: torque(j, s * pitches, a=a), cuts, tolerance=tolerance, pitches=pitches, shortest=SHORTEST
         )
-        found.append((pair[0], pair[1]))
-    return replace(excitation, friction=tuple(found))
+
+    slots = range(len(excitation.stiffness))
+    return replace(excitation, friction=tuple((fitted(j, a=True), fitted(j, a=False)) for j in slots))

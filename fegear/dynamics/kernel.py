@@ -151,7 +151,8 @@ def _run(  # noqa: C901  (one loop: splitting it would cost the array views thei
     """Integrate from t0 to t1; see `motion.Packed` for the arrays.
 
     x0, v0: (n, columns), column 0 the motion, the others tangents. `status`: 1 where a spring pushes (changed in
-    place); `fresh`: set it from the state first. `keep`: number of steps to record (0 for none).
+    place); `fresh`: set it from the state first. `side`: 1 on the front flanks, -1 on the back flanks, 0 where teeth
+    never part. `keep`: number of steps to record (0 for none).
     """
     n, columns = x0.shape
     springs, meshes, degree = mesh_of.shape[0], approach.shape[0], poly.shape[2] - 1
@@ -213,9 +214,8 @@ def _run(  # noqa: C901  (one loop: splitting it would cost the array views thei
                 for i in range(n):
                     gap += approach[mesh_of[s], i] * x[i, 0]
                     slope += approach[mesh_of[s], i] * v[i, 0]
-                status[s] = (
-                    1 if exists[s] == 1 and (side[s] * gap > 0.0 or (gap == 0.0 and side[s] * slope > 0.0)) else 0
-                )
+                pushes = side[s] == 0.0 or side[s] * gap > 0.0 or (gap == 0.0 and side[s] * slope > 0.0)
+                status[s] = 1 if exists[s] == 1 and pushes else 0
             check[s] = 0
         # Taylor coefficients of the motion
         for i in range(n):
@@ -304,7 +304,7 @@ def _run(  # noqa: C901  (one loop: splitting it would cost the array views thei
         # the first change of contact on the way
         changed = -1
         for s in range(springs):
-            if exists[s] == 0 or h == 0.0:
+            if exists[s] == 0 or h == 0.0 or side[s] == 0.0:
                 continue
             for k in range(order + 1):
                 value = 0.0
@@ -320,7 +320,7 @@ def _run(  # noqa: C901  (one loop: splitting it would cost the array views thei
             front, back = False, False
             for s in range(springs):
                 if mesh_of[s] == m and status[s] == 1:
-                    if side[s] > 0.0:
+                    if side[s] >= 0.0:
                         front = True
                     else:
                         back = True
@@ -338,7 +338,8 @@ def _run(  # noqa: C901  (one loop: splitting it would cost the array views thei
                 low[m] = min(low[m], -_peak(load0, slide[:, : order - 1], springs, mesh_of, m, -1, h, -1.0))
             for s in range(springs):
                 if status[s] == 1:
-                    value = _peak(load0, slide[:, : order - 1], springs, mesh_of, mesh_of[s], s, h, side[s])
+                    sign = -1.0 if side[s] < 0.0 else 1.0
+                    value = _peak(load0, slide[:, : order - 1], springs, mesh_of, mesh_of[s], s, h, sign)
                     tooth[s] = max(tooth[s], value)
         if steps < keep:
             record_t[steps] = t

@@ -142,7 +142,7 @@ def static_state(packed: Packed, time: float = 0.0) -> tuple[Array, Array]:
     k, e = _values(packed, 0, time), _values(packed, 1, time)
     rows = packed.approach[packed.mesh_of][:, packed.free]
     K = packed.K[np.ix_(packed.free, packed.free)]
-    active = (k > 0.0) & (packed.side > 0.0)
+    active = (k > 0.0) & (packed.side >= 0.0)
     y: Array = np.zeros(int(packed.free.sum()))
     for _ in range(60):
         weight = np.where(active, k, 0.0)
@@ -150,7 +150,7 @@ def static_state(packed: Packed, time: float = 0.0) -> tuple[Array, Array]:
         y = np.asarray(
             np.linalg.lstsq(matrix, packed.f[packed.free] + rows.T @ (weight * e), rcond=1e-13)[0], dtype=float
         )
-        now = (k > 0.0) & (packed.side * (rows @ y - e) > 0.0)
+        now = (k > 0.0) & ((packed.side * (rows @ y - e) > 0.0) | (packed.side == 0.0))
         if np.array_equal(now, active):
             break
         if not np.any(now):

@@ -96,8 +96,8 @@ def _spring_tables(
         none = Periodic.constant(0.0)
         for j, (k, e) in enumerate(zip(excitation.stiffness, excitation.separation, strict=True)):
             a, b = excitation.friction[j] if excitation.friction else (none, none)
-            springs.append((m, 1.0, (k, e, a, b)))
-        if math.isfinite(mesh.backlash):
+            springs.append((m, 1.0 if excitation.parting else 0.0, (k, e, a, b)))
+        if math.isfinite(mesh.backlash) and excitation.parting:
             total = excitation.total_stiffness() if len(excitation.stiffness) > 1 else excitation.stiffness[0]
             springs.append((m, -1.0, (total, Periodic.constant(-mesh.backlash), none, none)))
     degree = max(part.coefficients.shape[1] - 1 for _, _, parts in springs for part in parts)

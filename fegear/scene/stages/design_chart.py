@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.errors import FegearError, InputError
+from fegear.scene.motion import excitations_at
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage, Task
-from fegear.scene.stages.dynamic_factor import check_motion, excitations_at
+from fegear.scene.stages.dynamic_factor import check_motion
 from fegear.scene.stages.gear_train import assemble, gear_train, the_train
 from fegear.scene.stages.loaded_pair import loaded_pair
 from fegear.scene.stages.mesh_forces import needs_speeds, own_meshes

@@ -8,22 +8,19 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene.left_out_motion import motion_remarks
+from fegear.scene.motion import in_time, motion_model
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage, Task
 from fegear.scene.stages.gear_train import gear_train, needs_train, the_train
-from fegear.scene.stages.mesh_forces import force_history, mesh_force_range, meshes, needs_speeds
+from fegear.scene.stages.mesh_forces import force_history, mesh_force_range, meshes, needs_speeds, pull_remarks
 from fegear.scene.train import train_part
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from fegear.dynamics.charts import SpeedChart
-    from fegear.dynamics.excitation import MeshExcitation
-    from fegear.dynamics.motion_model import MotionModel
     from fegear.dynamics.steady_state import SteadyState
-    from fegear.scene.case.dynamics import FrictionPart
     from fegear.scene.load import Scene
     from fegear.scene.stage import Done, Progress
     from fegear.scene.train import GearTrain
@@ -48,12 +45,6 @@ class DynamicFactorData:
     speed_of: str
 
 
-def in_time(scene: Scene) -> bool:
-    """Whether the motion is computed in time: an effect calls for it that the linearised train does not know."""
-    effects = scene.case.effects
-    return effects.contact_loss or effects.parametric or effects.friction
-
-
 def check_motion(scene: Scene, _subject: str = "") -> None:
     """Refuse friction where teeth are lumped, and backlash that nothing looks at."""
     effects = scene.case.effects
@@ -66,52 +57,6 @@ def check_motion(scene: Scene, _subject: str = "") -> None:
         raise InputError(
             "effects.friction", "true", "needs tooth pairs that come and go", "set effects.parametric = true"
         )
-
-
-def _coefficient(part: FrictionPart, width: float) -> Callable[[Array, Array, Array], Array]:
-    from fegear.dynamics.friction import benedict_kelley, buckingham
-
-    if part.law == "buckingham":
-        return lambda sliding, _rolling, _force: buckingham(sliding)
-    if part.law == "constant":
-        return lambda sliding, _rolling, _force: np.full(np.shape(sliding), part.coefficient or 0.0)
-    viscosity = part.viscosity or 0.0
-    return lambda sliding, rolling, force: benedict_kelley(np.asarray(force) / width, viscosity, sliding, rolling)
-
-
-def excitations_at(scene: Scene, data: GearTrain, speed: float) -> tuple[MeshExcitation, ...]:
-    """What the scene's effects leave of each mesh, at a speed of the first body [rad/s] (friction depends on it)."""
-    from fegear.dynamics.excitation import MeshExcitation
-    from fegear.dynamics.friction import with_friction
-    from fegear.dynamics.periodic import Periodic
-
-    effects = scene.case.effects
-    found = []
-    for m, mesh in enumerate(data.train.meshes):
-        excitation, error = data.excitations[m], data.errors[m]
-        if not effects.parametric:
-            # Mark's (2.9b): constant stiffness, all fluctuation in the transmission error
-            flat = MeshExcitation.from_mesh(Periodic.constant(mesh.stiffness), error.plus(-error.mean))
-            found.append(replace(flat, phase=excitation.phase))
-            continue
-        if effects.friction:
-            pair = data.pairs[m]
-            width = min(pair.driver.face_width, pair.driven.face_width)
-            excitation = with_friction(
-                excitation, mesh, pair.base_pitch, pair.working_pressure_angle,
-                float(data.train.mesh_frequencies(speed)[m]), float(data.forces[m]),
-                _coefficient(scene.case.dynamics.friction, width),
-            )  # fmt: skip
-        found.append(excitation)
-    return tuple(found)
-
-
-def motion_model(scene: Scene, data: GearTrain, speed: float) -> MotionModel:
-    """The train at a speed of the first body [rad/s] with the scene's effects."""
-    from fegear.dynamics.motion_model import MotionModel
-
-    taken_by = scene.case.dynamics.loss_taken_by or (scene.case.train and scene.case.train.balance) or ""
-    return MotionModel(data.train, excitations_at(scene, data, speed), speed, taken_by)
 
 
 def _run_sweep(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
@@ -133,12 +78,7 @@ def _run_sweep(scene: Scene, _subject: str, done: Done, progress: Progress) -> O
             start = (state.x, state.v)
         progress((number + 1) / order.size)
     found = tuple(states[::-1] if part.direction == "down" else states)
-    remarks = []
-    lost = [data.names[m] for m in range(len(data.names)) if any(state.apart[m] > 0.0 for state in found)]
-    if lost and not scene.case.effects.contact_loss:
-        remarks.append(
-            f"effects.contact_loss is off, but teeth part at some speeds (mesh {', '.join(lost)}); it is in the motion."
-        )
+    remarks = [*motion_remarks(scene, data, found)]
     odd = [state for state in found if state.kind != "periodic"]
     if odd:
         told = ", ".join(f"{state.model.speed * data.speed_ratio * 30.0 / np.pi:.6g} rpm {state.kind}" for state in odd)
@@ -211,7 +151,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
         Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {data.speed_of}"),
         Value(f"{name}.largest_contact_loss", float(chart.apart.max()), "", None, "share of the time"),
     )
-    remarks = []
+    remarks = [] if sweep.states else [*pull_remarks(data, i, sweep.speeds, part.harmonics)]
     if sweep.states and not scene.case.effects.parametric:
         remarks.append(
             f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "

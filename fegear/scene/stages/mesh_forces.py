@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene.left_out import percent
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage
 from fegear.scene.stages.gear_train import gear_train, needs_train
 from fegear.scene.train import train_part
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from fegear.dynamics.spectra import MeshForceSpectrum
@@ -110,7 +113,8 @@ def _run_spectrum(scene: Scene, name: str, done: Done, _progress: Progress) -> O
         waterfall = mesh_force_spectrum(data.train, data.errors, speeds, min(part.harmonics, 64))
         tables.append(_waterfall_table(name, i, waterfall, data))
     settings: dict[str, object] = {"harmonics": part.harmonics, "speed": part.one_speed}
-    return Outcome(SpectrumData(data, i, found, waterfall), tuple(tables), values, settings)
+    remarks = pull_remarks(data, i, [part.one_speed / data.speed_ratio], part.harmonics)
+    return Outcome(SpectrumData(data, i, found, waterfall), tuple(tables), values, settings, remarks)
 
 
 def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrain) -> Table:
@@ -187,6 +191,25 @@ def mesh_force_range(data: GearTrain, i: int, speed: float, harmonics: int) -> t
     return mean + sum(float(p.min()) for p in parts), mean + sum(float(p.max()) for p in parts)
 
 
+def pull_remarks(data: GearTrain, i: int, speeds: Sequence[float] | Array, harmonics: int) -> tuple[str, ...]:
+    """Say how far the linearised force of mesh `i` falls below zero over speeds of the first body [rad/s], if it does.
+
+    The force that pulls is what contact loss would take away; it is as large a share of the mean force as the
+    amplitude of the dynamic mesh deflection exceeds the static one by.
+    """
+    least = [mesh_force_range(data, i, float(speed), harmonics)[0] for speed in speeds]
+    mean, worst = float(data.forces[i]), int(np.argmin(least))
+    if not mean > 0.0 > least[worst]:
+        return ()
+    name, speed = data.names[i], float(speeds[worst]) * data.speed_ratio * 30.0 / math.pi
+    told = (
+        f"Mesh {name}: the linearised mesh force falls to {least[worst]:.4g} N ({percent(-least[worst] / mean)} of the "
+        f"mean force, at {speed:.5g} rpm of {data.speed_of}), so teeth part, which this result leaves out; ask for "
+        "dynamic-factor and write contact_loss = true under [effects]."
+    )
+    return (told,)
+
+
 def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
     data, part = gear_train(done), scene.case.dynamics
     i = data.train.mesh_index(name)
@@ -220,14 +243,9 @@ def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outc
             for j, other in enumerate(data.names) if j != i
         ),
     ]  # fmt: skip
-    remarks = []
-    if data.forces[i] > 0.0 > mesh_force_range(data, i, part.one_speed / data.speed_ratio, part.harmonics)[0]:
-        remarks.append(
-            f"Mesh {name}: the linearised mesh force falls below zero, so teeth part; dynamic-factor with "
-            "effects.contact_loss computes the motion with contact loss."
-        )
+    remarks = pull_remarks(data, i, [part.one_speed / data.speed_ratio], part.harmonics)
     settings: dict[str, object] = {"harmonics": max(part.harmonics, 256), "speed": part.one_speed}
-    return Outcome(ToothForceData(data, i, force), (table,), tuple(values), settings, tuple(remarks))
+    return Outcome(ToothForceData(data, i, force), (table,), tuple(values), settings, remarks)
 
 
 MESH_FORCE_SPECTRUM = Stage(
