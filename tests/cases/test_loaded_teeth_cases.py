@@ -190,8 +190,8 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
 @pytest.mark.parametrize(
     ("case", "overrides", "words"),
     [
-        ("calculix_pair", ("effects.relief=true",), "finds no relief"),
-        ("calculix_pair", ("effects.spacing_errors=true",), "finds no spacing_errors"),
+        ("calculix_pair", ("effects.relief=true",), "finds no gear with a relief"),
+        ("calculix_pair", ("effects.spacing_errors=true",), "finds no gear with spacing_errors"),
         ("mark_tip_relief", ("effects.neighbour_coupling=true",), "neighbour_coupling.*is not known"),
         ("mark_tip_relief", ('effects.hertz="linear"',), "cannot change the contact"),
         ("mark_tip_relief", ('results=["root-stress-history"]',), "knows no root stress"),
