@@ -215,7 +215,6 @@ def test_span_over_k_teeth_is_that_of_the_textbooks_tables(z, k, span_1):
 
 
 @given(teeth())
-@settings(max_examples=30, deadline=None)
 def test_span_is_the_distance_of_parallel_tangents_to_opposite_flanks(tooth):
     gear = Gear(tooth, module=1.0, bore_radius=0.1)
     k = span_teeth(gear)
