@@ -9,7 +9,9 @@ fegear_system_packages() { # prints the Debian packages whose libraries are miss
         libGL.so.1:libgl1 libEGL.so.1:libegl1 libXrender.so.1:libxrender1 libXfixes.so.3:libxfixes3 libgomp.so.1:libgomp1; do
         case "$libraries" in *"${pair%%:*}"*) ;; *) printf ' %s' "${pair##*:}" ;; esac
     done
-    if [ "${1:-}" = test ] && ! command -v ccx >/dev/null 2>&1; then printf ' calculix-ccx'; fi
+    [ "${1:-}" = test ] || return 0
+    command -v ccx >/dev/null 2>&1 || printf ' calculix-ccx'
+    command -v chromium >/dev/null 2>&1 || command -v chromium-browser >/dev/null 2>&1 || printf ' chromium'
 }
 
 fegear_setup() {

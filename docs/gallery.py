@@ -21,6 +21,7 @@ from mkdocs.structure.files import File
 from pygments.formatters import HtmlFormatter
 
 from fegear.plain import code_version, content_key
+from fegear.show.report.citations import bibliography
 
 ROOT = Path(__file__).resolve().parents[1]
 MADE = ROOT / "results" / "gallery"
@@ -117,6 +118,15 @@ def page(path: Path) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
+def references() -> str:
+    """Text of the page of references, from the bibliography that reports cite."""
+    works = sorted(bibliography().values(), key=lambda work: (work.authors.split(". ")[-1], work.year))
+    lines = [f"- {work.full}" for work in works]
+    return "\n".join(
+        ["# References", "", "What fegear's results rest on. A report names those that its case used.", "", *lines, ""]
+    )
+
+
 # ---- what mkdocs calls -------------------------------------------------------------------------------------------
 def _with_unlisted(nav: list[dict[str, object]]) -> list[dict[str, object]]:
     """Navigation with every page: those that mkdocs.yml does not list come last in "How it is done"."""
@@ -143,6 +153,7 @@ def on_files(files, config):
         list(pool.map(_run, cases()))
     colours = HtmlFormatter(style="default").get_style_defs(".highlight")
     files.append(File.generated(config, "code.css", content=colours))
+    files.append(File.generated(config, "references.md", content=references()))
     for name, source in _OUTSIDE.items():
         files.append(File.generated(config, name, content=source.read_text("utf-8")))
     index = ["# Gallery", "", "Each page is one file of `cases/` and what `fegear run` makes of it.", ""]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
@@ -53,6 +53,9 @@ class Scene:
     pairs : dict of str to GearPair
     helical_gears : dict of str to HelicalGear
     helical_pairs : dict of str to HelicalPair
+    text : str
+        The case file as it was written, with the ``--set`` options as comments in front; empty for a case that was
+        never a file.
     """
 
     case: Case
@@ -62,6 +65,7 @@ class Scene:
     pairs: dict[str, GearPair]
     helical_gears: dict[str, HelicalGear] = field(default_factory=dict)
     helical_pairs: dict[str, HelicalPair] = field(default_factory=dict)
+    text: str = ""
 
     def file(self, text: str, key: str) -> Path:
         """Return the path of a file that the case names, or refuse if it is not there."""
@@ -86,7 +90,9 @@ def read_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
         If the file cannot be read or anything in it breaks a rule.
     """
     path = Path(path)
-    return build_scene(read_document(path, overrides), path.stem, path.parent)
+    scene = build_scene(read_document(path, overrides), path.stem, path.parent)
+    changes = "".join(f"# --set {override}\n" for override in overrides)
+    return replace(scene, text=changes + path.read_text(encoding="utf-8"))
 
 
 def read_document(path: Path, overrides: Sequence[str] = ()) -> dict[str, Any]:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fegear.scene.run import Results, Watcher
+    from fegear.scene.stage import Task
     from fegear.show.pictures.style import Picture
 
 #: Steps of writing that a watcher sees after those of the plan.
@@ -46,7 +47,7 @@ def write_results(results: Results, folder: Path, watcher: Watcher, *, plots: bo
     for table in results.tables:
         write_table(tables, table)
     write_dataset(folder / "results.nc", results)
-    pictures: list[Picture] = []
+    pictures: list[tuple[Task, Picture]] = []
     missing: list[str] = []
     if plots:
         from fegear.show.pictures.gallery import draw_all

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import base64
 import html.parser
+import io
 import json
 import re
+import subprocess
+import sys
+import zipfile
 from pathlib import Path
 
 import matplotlib.image
@@ -20,23 +24,30 @@ from fegear.scene.plan import make_plan
 from fegear.scene.run import Silence, run_plan
 from fegear.scene.stages import STAGES
 from fegear.show.pictures import deformed, tooth
+from fegear.show.report import write_report
+from fegear.show.report.blocks import value_cells
 from fegear.show.write import write_results
 
 CASES = Path(__file__).parents[2] / "cases"
 
 
-class Page(html.parser.HTMLParser):
+class PageParser(html.parser.HTMLParser):
     """Every attribute and every text of a page, and whether its tags close."""
 
-    VOID = ("meta", "img", "br")
+    VOID = ("meta", "img", "br", "link")
 
     def __init__(self, text: str):
         super().__init__()
-        self.links, self.texts, self.open = [], [], []
+        self.links, self.texts, self.open, self.images, self.plots = [], [], [], [], []
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
         self.links += [value for name, value in attrs if name in ("src", "href")]
+        told = dict(attrs)
+        if tag == "img":
+            self.images.append(told["alt"])
+        if tag == "div" and told.get("class") == "plot":
+            self.plots.append(told["id"].removeprefix("plot-"))
         if tag not in self.VOID:
             self.open.append(tag)
 
@@ -56,42 +67,93 @@ def made(tmp_path_factory):
     return results, folder
 
 
+def report(folder: Path) -> PageParser:
+    return PageParser((folder / "report.html").read_text(encoding="utf-8"))
+
+
+def carried(page: PageParser) -> dict[str, bytes]:
+    (link,) = (link for link in page.links if link.startswith("data:application/zip;base64,"))
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(link.split(",")[1]))) as packed:
+        return {name: packed.read(name) for name in packed.namelist()}
+
+
 def test_the_page_stands_alone(made):
     _, folder = made
-    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    page = report(folder)
     assert page.open == []
-    assert len(page.links) == 5 + 3
-    assert all(link.startswith("data:") for link in page.links)
-    style = (folder / "report.html").read_text(encoding="utf-8").split("</style>")[0]
+    assert all(link.startswith(("data:", "#")) for link in page.links)
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    style = text.split("</style>")[0]
     assert "@import" not in style
     assert "url(" not in style
     assert "@media print" in style
+    assert "prefers-color-scheme: dark" in style
 
 
 def test_the_page_says_what_was_asked_computed_and_how_well(made):
     results, folder = made
-    text = " ".join(Page((folder / "report.html").read_text(encoding="utf-8")).texts)
+    text = " ".join(report(folder).texts)
     for words in (
-        "Wanted: geometry, stiffness, root-stress",
-        "Why",
+        "geometry, stiffness, root-stress",
+        "Why not",
+        "effects that are off",
         "Seconds",
         "Estimated error",
+        "root edge length",
+        "To cite fegear itself",
         results.scene.case.title,
     ):
         assert words in text
     for value in results.values:
         assert value.name in text
-        assert f"{value.shown:.6g}" in text
+        told, error = value_cells(value)
+        assert told in text
+        assert error in text
     assert all(remark in text for remark in results.remarks)
 
 
-def test_the_tables_in_the_page_are_the_tables(made):
+def test_the_files_in_the_page_are_the_files(made):
     _, folder = made
-    page = Page((folder / "report.html").read_text(encoding="utf-8"))
-    csvs = [base64.b64decode(link.split(",")[1]).decode() for link in page.links if link.startswith("data:text/csv")]
-    assert csvs == [
-        (folder / "tables" / f"{name}.csv").read_text() for name in ("geometry", "stiffness_a", "root_stress_a")
-    ]
+    files = carried(report(folder))
+    assert list(files) == [
+        "tables/geometry.csv", "tables/stiffness_a.csv", "tables/root_stress_a.csv", "lin_table1.toml",
+    ]  # fmt: skip
+    for name, content in files.items():
+        if name.startswith("tables/"):
+            assert content == (folder / name).read_bytes()
+    case = files["lin_table1.toml"].decode()
+    assert case == "# --set stiffness.positions=12\n" + (CASES / "lin_table1.toml").read_text("utf-8")
+
+
+def test_curves_are_plots_and_fields_are_pictures(made):
+    _, folder = made
+    page = report(folder)
+    assert page.plots == ["compliance_a", "root_stress_a", "fillet_a", "estimated_errors"]
+    assert [alt.split(".")[0] for alt in page.images] == ["Tooth, tool and mesh of gear a", "Deformed gear a"]
+
+
+def test_the_page_of_the_same_results_is_the_same_bytes(made, tmp_path):
+    results, folder = made
+    write_report(tmp_path / "again.html", results, [], [])
+    write_report(tmp_path / "twice.html", results, [], [])
+    assert (tmp_path / "again.html").read_bytes() == (tmp_path / "twice.html").read_bytes()
+    assert carried(PageParser((tmp_path / "again.html").read_text("utf-8"))) == carried(report(folder))
+
+
+def test_the_report_needs_neither_plotly_nor_matplotlib_in_python(tmp_path):
+    probe = (
+        "import sys; from pathlib import Path; from fegear.scene.load import read_scene;"
+        "from fegear.scene.run import *;"
+        "from fegear.scene.plan import make_plan; from fegear.scene.stages import STAGES;"
+        "from fegear.show.write import write_results;"
+        f"scene = read_scene({str(CASES / 'litvin_lead.toml')!r}, ['tooth_contact.positions=20']);"
+        "results = run_plan(scene, make_plan(scene, STAGES));"
+        f"write_results(results, Path({str(tmp_path)!r}), Silence(), plots=False);"
+        "print(*[name for name in ('plotly', 'matplotlib', 'pyvista') if name in sys.modules])"
+    )
+    run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []
+    assert (tmp_path / "report.html").is_file()
 
 
 def test_pictures_are_there_and_not_empty(made):

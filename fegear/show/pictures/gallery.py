@@ -234,7 +234,9 @@ DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
 }
 
 
-def draw_all(results: Results, folder: Path, advance: Callable[[float], None]) -> tuple[list[Picture], list[str]]:
+def draw_all(
+    results: Results, folder: Path, advance: Callable[[float], None]
+) -> tuple[list[tuple[Task, Picture]], list[str]]:
     """Draw every picture of a run.
 
     Parameters
@@ -247,17 +249,18 @@ def draw_all(results: Results, folder: Path, advance: Callable[[float], None]) -
 
     Returns
     -------
-    pictures : list of Picture
+    pictures : list of (Task, Picture)
+        Each with the task whose results it shows.
     missing : list of str
         Sentences about pictures that could not be drawn for want of a system library.
     """
     folder.mkdir(exist_ok=True)
-    pictures: list[Picture] = []
+    pictures: list[tuple[Task, Picture]] = []
     missing: list[str] = []
     tasks = [task for task in results.outcomes if task.stage in DRAWERS]
     for number, task in enumerate(tasks, start=1):
         try:
-            pictures += DRAWERS[task.stage](results, task, folder)
+            pictures += ((task, picture) for picture in DRAWERS[task.stage](results, task, folder))
         except MissingLibraryError as error:
             missing.append(f"{error}".rstrip(".") + ".")
         advance(number / len(tasks))

@@ -1,0 +1,183 @@
+"""The report in a real browser: it asks nobody for anything, draws, hides what is clicked, hands out the tables."""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from fegear.scene.load import read_scene
+from fegear.scene.plan import make_plan
+from fegear.scene.run import Silence, run_plan
+from fegear.scene.stages import STAGES
+from fegear.show.write import write_results
+
+_spec = importlib.util.spec_from_file_location("chromium", Path(__file__).with_name("chromium.py"))
+assert _spec is not None
+assert _spec.loader is not None
+chromium = importlib.util.module_from_spec(_spec)
+sys.modules["chromium"] = chromium
+_spec.loader.exec_module(chromium)
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def made(folder: Path, name: str, *overrides: str) -> Path:
+    scene = read_scene(CASES / f"{name}.toml", overrides)
+    write_results(run_plan(scene, make_plan(scene, STAGES)), folder, Silence(), plots=False)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def gear(tmp_path_factory):
+    """Tables of one gear: curves with error bands, two panels, a text column."""
+    return made(tmp_path_factory.mktemp("gear"), "lin_table1", "stiffness.positions=20", "accuracy.tolerance=0.05")
+
+
+@pytest.fixture(scope="module")
+def relief(tmp_path_factory):
+    """A designed relief: families of curves behind a menu."""
+    return made(tmp_path_factory.mktemp("relief"), "mark_minimum_excitation")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium.Browser() as opened:
+        yield opened
+
+
+@pytest.fixture
+def page(browser, gear):
+    browser.size(1300, 900)
+    browser.media(prefers_color_scheme="light")
+    browser.requests.clear()
+    browser.complaints.clear()
+    browser.open(gear / "report.html")
+    return browser
+
+
+def plot(key: str) -> str:
+    return f"document.getElementById('plot-{key}')"
+
+
+def test_it_asks_for_nothing_and_complains_of_nothing(page, gear):
+    address = (gear / "report.html").absolute().as_uri()
+    assert [url for url in page.requests if url != address and not url.startswith("data:")] == []
+    assert page.complaints == []
+    assert page.run("document.documentElement.dataset.ready") == "yes"
+
+
+def test_no_button_sends_the_data_away(page):
+    names = page.run("[...document.querySelectorAll('.modebar-btn')].map(b => b.getAttribute('data-title'))")
+    assert set(names) <= {
+        "Download plot",
+        "Zoom",
+        "Pan",
+        "Reset axes",
+        "Download plot as a SVG",
+        "Download plot as SVG",
+    }
+
+
+def test_plots_are_drawn_from_the_tables(page, gear):
+    assert page.run("document.querySelectorAll('.plot .main-svg').length") >= 4
+    assert page.run("[...document.querySelectorAll('.plot')].every(p => p.querySelector('path.js-line'))") is False
+    drawn = page.run(f"{plot('compliance_a')}.data.filter(t => t.mode).map(t => [t.name, [...t.x], [...t.y]])")
+    head, *rows = [line.split(",") for line in (gear / "tables" / "stiffness_a.csv").read_text().splitlines()]
+    at = head.index("roll_angle [deg]")
+    curve = {name: (x, y) for name, x, y in drawn if len(x) == len(rows)}
+    assert curve["c<sub>0</sub>, loaded tooth"] == (
+        [float(row[at]) for row in rows], [float(row[head.index("c_self [um.mm/N]")]) for row in rows]
+    )  # fmt: skip
+    lines = f"{plot('compliance_a')}.querySelectorAll('path.js-line').length"
+    assert page.run(lines) >= 3
+
+
+def test_a_click_on_the_legend_hides_the_curve_and_another_brings_it_back(page):
+    entry = f"{plot('root_stress_a')}.querySelectorAll('.legendtoggle')[0]"
+    shown = f"{plot('root_stress_a')}.data.filter(t => t.name === 'tension').map(t => t.visible ?? true)"
+    assert set(page.run(shown)) == {True}
+    page.click(entry)
+    page.until(f"{shown}.every(v => v === 'legendonly')")
+    assert page.run(f"{plot('root_stress_a')}.data.some(t => t.name === 'compression' && (t.visible ?? true) === true)")
+    page.run("new Promise(done => setTimeout(done, 400))")  # a second click at once would be a double click
+    page.click(entry)
+    page.until(f"{shown}.every(v => v === true)")
+
+
+def test_downloads_are_the_very_files(page, gear):
+    page.click("document.querySelector('button[data-file=\"tables/stiffness_a.csv\"]')")
+    assert page.downloaded("stiffness_a.csv") == (gear / "tables" / "stiffness_a.csv").read_bytes()
+    page.click("document.getElementById('all-files')")
+    with zipfile.ZipFile(io.BytesIO(page.downloaded("lin_table1.zip"))) as packed:
+        names = {name for name in packed.namelist() if name.startswith("tables/")}
+        assert names == {f"tables/{path.name}" for path in (gear / "tables").iterdir()}
+        assert all(packed.read(name) == (gear / name).read_bytes() for name in names)
+        assert "lin_table1.toml" in packed.namelist()
+
+
+def test_tables_open_and_sort(page, gear):
+    block = "document.querySelector('.data[data-file=\"tables/stiffness_a.csv\"]')"
+    assert page.run(f"{block}.querySelectorAll('tbody tr').length") == 6
+    page.click(f"{block}.querySelector('.more')")
+    page.until(f"{block}.querySelectorAll('tbody tr').length === 20")
+    head = (gear / "tables" / "stiffness_a.csv").read_text().splitlines()[0].split(",")
+    at = head.index("c_prev [um.mm/N]")
+    page.click(f"{block}.querySelectorAll('th .sort')[{at}]")
+    page.until(f"{block}.querySelectorAll('th')[{at}].getAttribute('aria-sort') === 'ascending'")
+    page.run("new Promise(done => setTimeout(done, 50))")
+    shown = page.run(f"[...{block}.querySelectorAll('tbody tr')].map(r => Number(r.cells[{at}].textContent))")
+    assert shown == sorted(shown)
+    assert len(set(shown)) > 10
+
+
+def test_the_plan_opens(page):
+    fold = "[...document.querySelectorAll('#plan details')].at(-1)"
+    hidden = f"{fold}.querySelector('table').checkVisibility()"
+    assert page.run(hidden) is False
+    page.click(f"{fold}.querySelector('summary')")
+    page.until(hidden)
+    assert 'results does not name "transmission-error"' in page.run(f"{fold}.textContent")
+
+
+def test_dark_pages_are_dark_and_their_plots_legible(page):
+    ground = "getComputedStyle(document.body).backgroundColor"
+    text = f"getComputedStyle({plot('fillet_a')}.querySelector('.xtick text')).fill"
+    light = page.run(ground), page.run(text)
+    page.media(prefers_color_scheme="dark")
+    page.until(f"{ground} !== '{light[0]}'")
+    page.until(f"{text} !== '{light[1]}'")
+
+    def brightness(told: str) -> int:
+        return sum(int(part) for part in told[4:-1].split(",")[:3])
+
+    assert brightness(light[0]) > 600 > 300 > brightness(light[1])
+    assert brightness(page.run(ground)) < 200 < 600 < brightness(page.run(text))
+
+
+@pytest.mark.parametrize("width", [1300, 700, 360])
+def test_no_width_makes_the_page_scroll_sideways(page, width):
+    page.size(width, 800)
+    overflow = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+    page.until(f"{overflow} === 0")
+    page.until("[...document.querySelectorAll('.plot')].every(p => p.scrollWidth <= p.clientWidth + 1)")
+
+
+def test_the_menu_of_a_harris_map_changes_its_curves(page, relief):
+    page.open(relief / "report.html")
+    assert page.complaints == []
+    key = "harris_map_I"
+    shown = f"{plot(key)}.data.filter(t => t.visible === true).map(t => t.legendgroup.split(' ')[0])"
+    assert set(page.run(shown)) == {"te_no_relief"}
+    page.click(f"{plot(key)}.querySelector('.updatemenu-header')")
+    page.until(f"{plot(key)}.querySelectorAll('.updatemenu-dropdown-button').length > 1")
+    page.run("new Promise(done => setTimeout(done, 300))")
+    page.click(f"{plot(key)}.querySelectorAll('.updatemenu-dropdown-button')[1]")
+    page.until(f"new Set({shown}).has('te_designed')")
+    assert set(page.run(shown)) == {"te_designed"}
+    flat = page.run(f"{plot(key)}.data.filter(t => t.visible === true).map(t => Math.max(...t.y) - Math.min(...t.y))")
+    assert min(flat) < 1e-6  # at the design load the designed relief leaves nothing

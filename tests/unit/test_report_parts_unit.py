@@ -1,0 +1,126 @@
+"""Parts of reports: digits that the error leaves, citations of every stage, pages that other commands make."""
+
+from __future__ import annotations
+
+import ast
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.scene.load import read_scene
+from fegear.scene.outcome import Column, Table, Value
+from fegear.scene.plan import make_plan
+from fegear.scene.stage import Task
+from fegear.scene.stages import STAGES
+from fegear.show.report import Page, Section, write_page
+from fegear.show.report.blocks import DataTable, Facts, Plot, Values
+from fegear.show.report.citations import SOURCES, bibliography, citations
+from fegear.show.report.figure import Figure
+from fegear.show.report.numbers import plain_number, pretty_unit, with_error
+
+ROOT = Path(__file__).parents[2]
+CASES = sorted((ROOT / "cases").glob("*.toml"))
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "told"),
+    [
+        (0.0391477505, 2.98e-5, ("0.039148", "0.000030")),
+        (1234.567, 0.9, ("1234.57", "0.90")),
+        (-1.4868472, 0.0011954, ("−1.4868", "0.0012")),
+        (3.388e-14, 0.0107, ("0.000", "0.011")),
+        (5.3165476e-6, 3.9e-9, ("5.3165·10⁻⁶", "0.0039·10⁻⁶")),
+        (2.5e8, 1.3e5, ("2.5000·10⁸", "0.0013·10⁸")),
+        (350.0, 40.0, ("350", "40")),
+        (1.0, 1e-14, ("1.0000000000", "1e-14")),
+    ],
+)
+def test_values_have_the_digits_that_their_errors_leave(value, error, told):
+    assert with_error(value, error) == told
+
+
+def test_numbers_and_units_are_written_for_people():
+    assert [plain_number(x) for x in (0.5477378, -2.0, 1e-7, float("nan"), float("inf"))] == [
+        "0.547738", "−2", "1·10⁻⁷", "none", "∞",
+    ]  # fmt: skip
+    assert [pretty_unit(u) for u in ("um.mm/N", "deg", "N/(mm.um)", "")] == ["µm·mm/N", "°", "N/(mm·µm)", ""]
+
+
+def test_every_stage_names_its_sources_and_every_work_is_used():
+    assert set(SOURCES) == {stage.name for stage in STAGES}
+    cited = set()
+    for path in CASES:
+        scene = read_scene(path)
+        results = SimpleNamespace(scene=scene)
+        for step in make_plan(scene, STAGES).steps:
+            cited |= {c.key for c in citations(results, step.task)}
+    assert cited <= set(bibliography())
+    assert set(bibliography()) - cited == set()
+
+
+def test_sources_follow_what_the_case_chose():
+    def keys(*overrides: str) -> set[str]:
+        results = SimpleNamespace(scene=read_scene(ROOT / "cases" / "calculix_pair.toml", overrides))
+        return {c.key for c in citations(results, Task("loaded-pair", "I"))}
+
+    assert {"gmsh", "hertz"} <= keys()
+    closed = keys('pair.I.compliance.source="cornell"', 'effects.hertz="none"')
+    assert "cornell" in closed
+    assert not {"gmsh", "hertz", "weber-banaschek"} & closed
+
+
+def test_what_the_formulas_name_as_their_source_is_in_the_bibliography():
+    known = " ".join(work.full for work in bibliography().values())
+    for path in sorted((ROOT / "fegear" / "formulas").glob("*.py")):
+        told = " ".join((ast.get_docstring(ast.parse(path.read_text("utf-8"))) or "").split())
+        for name in (
+            "Cornell",
+            "Heywood",
+            "Banaschek",
+            "Sainsot",
+            "Broghamer",
+            "Palmgren",
+            "Lewis",
+            "Pedersen",
+            "Tian",
+        ):
+            if name in told and "Source" in told:
+                assert name in known, path.name
+
+
+def test_titles_of_works_are_unlike_and_short_names_are_readable():
+    works = bibliography()
+    assert works["lin-townsend-oswald"].short == "Lin and others 1987"
+    assert works["iso-6336-3"].short == "ISO 6336-3:2006"
+    assert works["weber-banaschek"].short == "Weber and Banaschek 1953"
+    assert len({work.full for work in works.values()}) == len(works)
+
+
+def test_another_command_can_make_a_page(tmp_path):
+    table = Table(
+        "cost", (Column("seconds", np.array([0.1, 1.0]), "s"), Column("error", np.array([1e-2, 1e-4]))), "Cost"
+    )
+    figure = Figure("cost", "Error against time", "Each point is a setting.")
+    figure.panel("seconds [s]", "error", log_x=True, log_y=True).points(table, "seconds", "error", "finite elements")
+    page = Page("What it costs & why", "A note.", (
+        Section("Prices", (Plot(figure), DataTable(table), Facts({"knob <a>": [{"size": 1.0}, {"size": 0.5}]}))),
+        Section("Nothing", ()),
+        Section("Numbers", (Values((Value("c", 2.0, "mm", 0.3e-3 * 2.0),), tolerance=1e-4),)),
+    ), (table,))  # fmt: skip
+    write_page(tmp_path / "cost.html", page)
+    text = (tmp_path / "cost.html").read_text("utf-8")
+    assert "What it costs &amp; why" in text
+    assert "knob &lt;a&gt;" in text
+    assert ">Nothing<" not in text
+    assert "over the tolerance" in text
+    (told,) = json.loads(text.split("id='figures'>")[1].split("</script>")[0])
+    assert told["traces"][0]["x"] == {"$": "column", "table": "cost", "column": 0}
+    assert "id='plotly'" in text
+
+
+def test_a_page_without_plots_carries_no_library(tmp_path):
+    write_page(tmp_path / "small.html", Page("T", "n", (Section("S", (Facts({"a": 1}),)),)))
+    assert (tmp_path / "small.html").stat().st_size < 60_000
