@@ -185,6 +185,41 @@ def sweep(
 
 
 @app.command()
+def effects(
+    case: CaseFile,
+    overrides: Overrides = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_effects.")] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option("--effect", metavar="NAME", help="An effect to look at; default all that the results can feel."),
+    ] = None,
+) -> None:
+    """Run a case with each effect switched, one at a time: what it changes, what it costs, one picture for each."""
+    from fegear.scene.effect_study import effect_study
+    from fegear.show.effects import write_effects
+    from fegear.show.folder import check_target, whole_or_nothing
+    from fegear.terminal import watcher
+
+    start = time.perf_counter()
+    try:
+        target = out or Path("results") / f"{case.stem}_effects"
+        check_target(target)
+        with watcher(sys.stderr) as watching:
+            watching.begin("Each effect switched", 1, 1)
+            scene, switched, fixed = effect_study(
+                case, overrides or (), only or (), lambda _effect, fraction: watching.advance(fraction)
+            )
+            watching.end(time.perf_counter() - start)
+        with whole_or_nothing(target) as scratch:
+            told = write_effects(scene, switched, fixed, scratch)
+    except KeyboardInterrupt:
+        _leave(_INTERRUPTED, 130)
+    for line in told:
+        typer.echo(line)
+    typer.echo(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
+
+
+@app.command()
 def export(
     case: CaseFile,
     overrides: Overrides = None,

@@ -23,6 +23,7 @@ import numpy as np
 
 from fegear.contact.spline import Spline, spline
 from fegear.geometry.involute import polar_angle
+from fegear.tally import tallied
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -129,6 +130,7 @@ class CornerContact:
         u_t, u_f = self._rolled(lengths)
         return spline(0.5 * (u_t + u_f), lengths)
 
+    @tallied("corner searches")
     def locate(self, beyond: ArrayLike) -> tuple[Array, Array, Array]:
         """Gap and place of contact at distances beyond the end of the path.
 

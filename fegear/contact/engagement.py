@@ -11,6 +11,7 @@ import numpy as np
 from fegear.contact.load_sharing import SharedLoad, share_load
 from fegear.contact.meshing import Contacts, Meshing
 from fegear.geometry.relief import UNMODIFIED, Relief
+from fegear.tally import note
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -147,6 +148,7 @@ class Engagement:
         total = np.zeros(contacts.number.size)
         for errors in (self.driver_spacing, self.driven_spacing):
             if errors.size:
+                note("spacing errors")
                 total += errors[np.mod(cycle - contacts.number, errors.size)]
         return total[:, None]
 

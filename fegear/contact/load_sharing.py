@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import ConvergenceError, InputError, RangeError
+from fegear.tally import note, tallied
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -65,6 +66,7 @@ class SharedLoad:
         return np.count_nonzero(self.loads > 0.0, axis=0)
 
 
+@tallied("load sharing")
 def share_load(
     compliance: ArrayLike,
     separation: ArrayLike,
@@ -142,7 +144,7 @@ def share_load(
     problem = _Problem(
         coupling=np.ascontiguousarray(np.repeat(coupling, cases, axis=2)) if coupling.any() else None,
         diagonal=flat(diagonal),
-        half_slope=flat(0.5 * kappa),
+        half_slope=flat(0.5 * kappa) if kappa.any() else None,
         gap=flat(np.where(reach, e - nearest, 0.0) / total),
         reach=flat(reach.astype(float)) > 0.5,
         tilt=None if tilt is None else flat(np.asarray(tilt, dtype=float)[:, :, None] * np.sqrt(at / total)),
@@ -159,7 +161,7 @@ class _Problem:
 
     coupling: Array | None
     diagonal: Array
-    half_slope: Array
+    half_slope: Array | None
     gap: Array
     reach: Mask
     tilt: Array | None
@@ -170,7 +172,7 @@ class _Problem:
         return _Problem(
             None if self.coupling is None else self.coupling[:, :, index],
             self.diagonal[:, index],
-            self.half_slope[:, index],
+            None if self.half_slope is None else self.half_slope[:, index],
             self.gap[:, index],
             self.reach[:, index],
             None if self.tilt is None else self.tilt[:, index],
@@ -178,6 +180,7 @@ class _Problem:
         )
 
 
+@tallied("corner contacts")
 def edge_law(t: ArrayLike) -> tuple[Array, Array]:
     """What the corner of a tip adds to the approach of a line contact, per kappa W.
 
@@ -238,7 +241,7 @@ def _solve(problem: _Problem) -> tuple[Array, Array, int]:
         settled = (stays | enters) == active
         # Newton squares the relative error: a last step of 1e-8 leaves nothing but round-off.
         close = (np.abs(new - v) <= 1e-8 * np.abs(new) + 1e-17).all(axis=0, where=active)
-        straight = (problem.half_slope.max(axis=0) == 0.0) & (problem.power is None)
+        straight = problem.half_slope is None and problem.power is None
         done = settled.all(axis=0) & (close | straight)
         if done.any():
             shares[:, index[done]], approach[index[done]] = np.where(stays, new, 0.0)[:, done], z[done]
@@ -258,9 +261,13 @@ def _newton_step(problem: _Problem, active: Mask, v: Array) -> tuple[Array, Arra
     concave, so from below the iteration stays below and converges monotonically.
     """
     w = np.maximum(v, _SMALLEST_SHARE)
-    slope = problem.diagonal - problem.half_slope * (1.0 + np.log(w))
-    constant = problem.gap + problem.half_slope * w
-    if problem.tilt is not None:
+    slope, constant = problem.diagonal, problem.gap
+    if problem.half_slope is not None or problem.power is not None:
+        note("nonlinear steps")
+    if problem.half_slope is not None:
+        slope = slope - problem.half_slope * (1.0 + np.log(w))
+        constant = constant + problem.half_slope * w
+    if problem.tilt is not None and problem.half_slope is not None:
         t = problem.tilt / np.sqrt(w)
         psi, t_slope = edge_law(t)
         slope = slope + problem.half_slope * (2.0 * psi - t_slope)

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.contact.load_sharing import edge_law
 from fegear.errors import InputError
+from fegear.tally import tallied
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -122,6 +123,7 @@ class PairCompliance:
         """Driver's or driven's."""
         return self.driver if member == "driver" else self.driven
 
+    @tallied("Hertz widths")
     def half_width(self, load: Array, relative_radius: Array) -> Array:
         """Hertzian half-width b = sqrt(4 w R / (pi E*)) [m] under loads [N]."""
         w = np.asarray(load) / self.face_width
@@ -145,7 +147,6 @@ class PairCompliance:
             if not here.any():
                 c[j, j] = 1.0
                 continue
-            b = self.half_width(np.asarray(at_load), at.relative_radius[j, here])
             own = np.zeros(int(here.sum()))
             for source, radius in ((self.driver, at.radius_driver), (self.driven, at.radius_driven)):
                 r = radius[j, here]
@@ -153,6 +154,7 @@ class PairCompliance:
                 if self.hertz != "load-dependent" and source.power > 0.0:
                     own += source.power * (at_load / face) ** -0.1
                 if self.hertz != "none" and source.log_slope > 0.0:
+                    b = self.half_width(np.asarray(at_load), at.relative_radius[j, here])
                     own += source.log_slope * np.log(source.reference_half_width(r) / b)
             c[j, j, here] = own / face
             c[j, j, ~here] = 1.0
@@ -166,6 +168,7 @@ class PairCompliance:
         q = self.driver.power + self.driven.power if self.hertz == "load-dependent" else 0.0
         return PairMatrices(c, slope, reference, tilt, q * face**-0.9)
 
+    @tallied("neighbours")
     def _couple(self, c: Array, at: Contacts) -> None:
         """Add what a load on pair j' does to pair j < j', and its transpose (Maxwell).
 

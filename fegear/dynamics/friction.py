@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.dynamics.periodic import Periodic
 from fegear.errors import InputError, RangeError
+from fegear.tally import tallied
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -69,6 +70,7 @@ def benedict_kelley(line_load: ArrayLike, viscosity: float, sliding: ArrayLike, 
     return found
 
 
+@tallied("friction fits")
 def with_friction(
     excitation: MeshExcitation,
     mesh: Mesh,

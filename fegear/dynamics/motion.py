@@ -16,6 +16,7 @@ import numpy as np
 from fegear.dynamics import kernel
 from fegear.dynamics.packing import Packed, pack
 from fegear.errors import ConvergenceError, InputError
+from fegear.tally import note, tallied
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -51,6 +52,7 @@ class Passage:
     contact: NDArray[np.int8]
 
 
+@tallied("passages")
 def propagate(
     packed: Packed,
     x: Array,
@@ -115,6 +117,8 @@ def propagate(
             f"Motion at {packed.model.speed:.6g} rad/s stopped after {steps} steps: too many {what} in {duration:.6g} "
             "units of time. Give the gear pair damping, a lower stiffness of the back flanks, or a looser tolerance."
         )
+    note("changes of contact", int(changes))
+    note("springs in time", sum(packed.varies(s) for s in range(packed.springs)))
     tangent = np.vstack([X[:, 1:], V[:, 1:]]) if tangents else np.zeros((0, 0))
     of_mesh = np.array([tooth[packed.mesh_of == m].max() for m in range(packed.damping.size)])
     unit = packed.force_unit

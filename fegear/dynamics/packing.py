@@ -69,6 +69,11 @@ class Packed:
         """Number of one-sided springs."""
         return int(self.mesh_of.size)
 
+    def varies(self, spring: int) -> bool:
+        """Whether the stiffness of a spring varies in time."""
+        stiffness = self.poly[self.first[spring] : self.first[spring + 1], 0]
+        return bool(np.any(stiffness[:, 1:]) or np.ptp(stiffness[:, 0]) > 0.0)
+
 
 def _on_breaks(part: Periodic, cuts: Array, pitches: int, degree: int) -> Array:
     """Coefficients of a periodic function on finer break points over a longer period, shape (pieces, degree + 1)."""

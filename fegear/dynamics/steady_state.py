@@ -16,6 +16,7 @@ import numpy as np
 from fegear.dynamics.motion import Passage, Trajectory, propagate, starting_state
 from fegear.dynamics.packing import Packed, pack
 from fegear.errors import ConvergenceError, RangeError
+from fegear.tally import tallied
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -113,6 +114,7 @@ class SteadyState:
         return Trajectory(packed, passage)
 
 
+@tallied("steady motions")
 def steady_state(
     model: MotionModel,
     *,

@@ -12,6 +12,7 @@ from fegear.fem.elasticity import assemble
 from fegear.fem.ring import close_ring
 from fegear.fem.root_stress import FilletStrain, extreme, fillet_strain
 from fegear.fem.trace import LoadedFlank, loaded_flank
+from fegear.tally import tallied
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -164,6 +165,7 @@ class Influence:
         return extreme(self.fillet_stress(k, side, radius_q, patch), self.fillets[side].arc, sign)
 
 
+@tallied("tooth shapes")
 def solve_influence(
     tooth: Tooth,
     mesh: SectorMesh,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal, Protocol
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.tally import note
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -172,6 +173,7 @@ class CombinedRelief:
 
     def removal(self, roll: ArrayLike) -> Array:
         """Add the parts."""
+        note("reliefs", len(self.parts))
         total = np.zeros(np.shape(roll))
         for part in self.parts:
             total = total + part.removal(roll)

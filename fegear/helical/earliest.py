@@ -15,6 +15,7 @@ import numpy as np
 
 from fegear.helical.bracket import falling_bracket, falling_root
 from fegear.helical.reach import Bound, Reach, corner_on_face, reach
+from fegear.tally import tallied
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -108,6 +109,7 @@ def _end_shift(p: Placement, z: Array, w: Complex, dw: Complex, bound: Codes) ->
     return np.where(face, by_face, np.where(radius, by_radius, 0.0))
 
 
+@tallied("tooth contacts")
 def earliest_contact(p: Placement, flank: RackFlank, phi_1: Array) -> Earliest:
     """Earliest contact of one tooth pair.
 

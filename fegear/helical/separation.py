@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.geometry.involute import polar_angle
+from fegear.tally import note
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -71,6 +72,7 @@ class Placement:
     @classmethod
     def of(cls, pair: HelicalPair) -> Placement:
         """Collect the numbers of a pair."""
+        note("misaligned flanks", int(not pair.errors.aligned or pair.errors.centre_distance != 0.0))
         a, b, h = pair.cut_pinion, pair.gear, pair.axial_offset
         return cls(
             distance=pair.centre_distance,

@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.errors import InputError
 from fegear.scene.loaded_pair import MEMBERS, gear_name, relieved, spaced, wants_delta
+from fegear.tally import tallying
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -148,7 +149,8 @@ def pair_changes(
 
 def pair_remarks(scene: Scene, pair: LoadedPair) -> tuple[str, ...]:
     """Effects of load sharing that are left out and would change the wanted answers by more than the tolerance."""
-    found, wrong = pair_changes(scene, pair)
+    with tallying():  # what the estimate runs is no part of the scene's own work
+        found, wrong = pair_changes(scene, pair)
     told = list(wrong)
     for effect, parts in found.items():
         sizes = [_size(change, pair.nominal) for change in parts if change.share > tolerance_of(scene, change.answer)]
@@ -159,6 +161,11 @@ def pair_remarks(scene: Scene, pair: LoadedPair) -> tuple[str, ...]:
 
 def design_remarks(scene: Scene, name: str, designed: Engagement, load: float) -> tuple[str, ...]:
     """The same for a designed relief: what an effect that is off does to the relief, and to what it leaves."""
+    with tallying():
+        return _design_remarks(scene, name, designed, load)
+
+
+def _design_remarks(scene: Scene, name: str, designed: Engagement, load: float) -> tuple[str, ...]:
     from fegear.contact.left_out import changes
     from fegear.design import MinimumExcitationRelief
 

@@ -10,6 +10,7 @@ import numpy as np
 from fegear.errors import FegearError
 from fegear.scene.left_out import percent, remark
 from fegear.scene.motion import motion_model
+from fegear.tally import tallying
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -115,7 +116,8 @@ def motion_remarks(scene: Scene, data: GearTrain, states: Sequence[SteadyState])
         if scene.case.effects.is_on(effect) or not states:
             continue
         try:
-            found = changes(scene, data, states)
+            with tallying():  # what the estimate runs is no part of the scene's own work
+                found = changes(scene, data, states)
         except FegearError as error:
             told.append(f"{effect} is off, and what it would change could not be estimated: {error}")
             continue

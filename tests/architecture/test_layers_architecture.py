@@ -23,6 +23,7 @@ LAYERS = {
     "errors": 0,
     "plain": 0.5,
     "units": 0.5,
+    "tally": 0.5,
     "store": 0.6,
     "geometry": 1,
     "formulas": 2,

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SweepData:
-    """Steady motions over speeds, in increasing order of speed; none where the linearised train was asked for."""
+    """Steady motions over speeds, in increasing order of speed."""
 
     train: GearTrain
     speeds: Array
@@ -64,8 +64,6 @@ def _run_sweep(scene: Scene, _subject: str, done: Done, progress: Progress) -> O
 
     data, part = gear_train(done), scene.case.dynamics
     speeds = part.speed_values / data.speed_ratio
-    if not in_time(scene):
-        return Outcome(SweepData(data, speeds, ()))
     order = speeds[::-1] if part.direction == "down" else speeds
     start: str | tuple[Array, Array] = "rest" if part.direction == "rest" else "static"
     states: list[SteadyState] = []
@@ -107,16 +105,17 @@ def _linear_chart(scene: Scene, data: GearTrain, i: int, speeds: Array, progress
 def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     from fegear.dynamics.charts import SpeedChart
 
-    sweep = cast("SweepData", done[Task("motion")].data)
-    data, part = sweep.train, scene.case.dynamics
+    data, part = gear_train(done), scene.case.dynamics
+    states = cast("SweepData", done[Task("motion")].data).states if in_time(scene) else ()
+    speeds = part.speed_values / data.speed_ratio
     i = data.train.mesh_index(name)
     if data.forces[i] <= 1e-9 * float(np.max(np.abs(data.forces))):
         remark = f"Mesh {name} carries no mean force, so it has no dynamic factor."
         return Outcome(None, (), (), {}, (remark,))
-    if sweep.states:
-        states, mean = sweep.states, float(data.forces[i])
+    if states:
+        mean = float(data.forces[i])
         chart = SpeedChart(
-            sweep.speeds,
+            speeds,
             np.array([s.tooth_force[i] for s in states]) / mean,
             np.array([s.largest[i] for s in states]) / mean,
             np.array([s.apart[i] for s in states]),
@@ -125,7 +124,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
             tuple(s.kind for s in states),
         )
     else:
-        chart = _linear_chart(scene, data, i, sweep.speeds, progress)
+        chart = _linear_chart(scene, data, i, speeds, progress)
     chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
     table = Table(
         f"dynamic_factor_{name}",
@@ -145,14 +144,14 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
         f"Dynamic factor of mesh {name} over speed",
     )
     worst, where = chart.worst
-    error = part.tolerance * worst if sweep.states else None
+    error = part.tolerance * worst if states else None
     values = (
         Value(f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {part.direction}"),
         Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {data.speed_of}"),
         Value(f"{name}.largest_contact_loss", float(chart.apart.max()), "", None, "share of the time"),
     )
-    remarks = [] if sweep.states else [*pull_remarks(data, i, sweep.speeds, part.harmonics)]
-    if sweep.states and not scene.case.effects.parametric:
+    remarks = [] if states else [*pull_remarks(data, i, speeds, part.harmonics)]
+    if states and not scene.case.effects.parametric:
         remarks.append(
             f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
             "dynamic factor is that of the mesh force."
@@ -186,7 +185,7 @@ DYNAMIC_FACTOR = Stage(
     results=("dynamic-factor",),
     subjects=meshes,
     run=_run,
-    needs=lambda _scene, _name: (Task("motion"),),
+    needs=lambda scene, name: (*needs_train(scene, name), *((Task("motion"),) if in_time(scene) else ())),
     check=_check,
     effects=("contact_loss", "friction", "parametric"),
 )

@@ -1,0 +1,66 @@
+"""Make what docs/effects.md shows: one picture for each effect, and the tables of stages and kernels.
+
+Run as ``python docs/effect_pictures.py``; the pictures go to docs/images/effects, the tables between their marks in
+docs/effects.md.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+
+from fegear.scene.effect_facts import kernel_table, stage_table
+from fegear.scene.effect_study import effect_study
+from fegear.scene.load import read_scene
+from fegear.show.effects import sentence, write_effects
+
+DOCS = Path(__file__).parent
+CASES = DOCS.parent / "cases"
+SPACING = ", ".join(["'5 um'", *["'0 um'"] * 27])
+RESULTS = 'results=["transmission-error"]'
+SPEEDS = "dynamics.speeds={ start = '2000 rpm', stop = '16000 rpm', count = 57 }"
+FACTOR = ('results=["dynamic-factor"]', SPEEDS)
+#: Case, options and effects of each picture: cases that feel them.
+STUDIES = (
+    ("pinion_and_wheel", (), ("neighbour_coupling", "hertz", "corner_contact")),
+    ("lin_tip_relief", (RESULTS, "pair.I.loads=['8890 N']"), ("relief",)),
+    (
+        "lin_tip_relief",
+        (RESULTS, "pair.I.loads=['8890 N']", f"gear.a.spacing_errors={{ values = [{SPACING}] }}",
+         "gear.a.relief={ tip = { amount = '20 um', normalised_length = 1.0 } }"),
+        ("spacing_errors",),
+    ),
+    ("lin_dynamic_factor", FACTOR, ("contact_loss", "parametric", "friction")),
+    ("litvin_shaft_angle", (), ("misalignment",)),
+)  # fmt: skip
+
+
+def replaced(text: str, mark: str, new: str) -> str:
+    """Text with what stands between the two marks exchanged."""
+    start, end = f"<!-- {mark} -->", f"<!-- end of {mark} -->"
+    before, rest = text.split(start)
+    return f"{before}{start}\n{new}\n{end}{rest.split(end)[1]}"
+
+
+def main() -> None:
+    """Run the studies and write."""
+    images = DOCS / "images" / "effects"
+    images.mkdir(parents=True, exist_ok=True)
+    for name, overrides, effects in STUDIES:
+        scene, switched, fixed = effect_study(CASES / f"{name}.toml", overrides, effects)
+        if fixed:
+            raise SystemExit(f"{name}: {fixed}")
+        with tempfile.TemporaryDirectory() as scratch:
+            write_effects(scene, switched, fixed, Path(scratch))
+            for found in switched:
+                shutil.copy(Path(scratch) / "plots" / f"effect_{found.effect}.png", images / f"{found.effect}.png")
+                print(sentence(found))
+    page = DOCS / "effects.md"
+    text = page.read_text("utf-8")
+    text = replaced(text, "stages", stage_table(read_scene(path) for path in sorted(CASES.glob("*.toml"))))
+    page.write_text(replaced(text, "kernels", kernel_table()), "utf-8")
+
+
+if __name__ == "__main__":
+    main()

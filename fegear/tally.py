@@ -1,0 +1,83 @@
+"""How often the costly kernels run, counted while somebody asks: what an effect costs, told without a clock."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+from collections import Counter
+from contextvars import ContextVar
+from types import MappingProxyType
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+#: The kernels that count, and what one call of each does.
+KERNELS = MappingProxyType(
+    {
+        "tooth shapes": "one gear shape solved by finite elements",
+        "neighbours": "compliances of neighbouring teeth at many positions",
+        "load sharing": "the contact problem at many positions and loads",
+        "Hertz widths": "half-widths of contacts at many positions",
+        "nonlinear steps": "one Newton step of load sharing with contacts that stiffen with their load",
+        "corner searches": "place and gap of tip corners off the path",
+        "corner contacts": "contact law at a tip corner",
+        "reliefs": "removal of a modified flank at many positions",
+        "spacing errors": "errors of the teeth in one base pitch",
+        "steady motions": "the steady motion at one speed",
+        "passages": "motion integrated over a stretch of time",
+        "changes of contact": "a tooth pair or gear pair parts or meets in a motion",
+        "springs in time": "a spring whose stiffness varies, in one integrated passage",
+        "friction fits": "friction torques of one gear pair at one speed",
+        "tooth contacts": "earliest contact of helical flanks at many angles",
+        "misaligned flanks": "a flank placed off its nominal axis",
+    }
+)
+
+_counts: ContextVar[Counter[str] | None] = ContextVar("counts", default=None)
+
+
+def note(kernel: str, count: int = 1) -> None:
+    """Count calls of a kernel, if anybody asks."""
+    counts = _counts.get()
+    if counts is not None and count:
+        counts[kernel] += count
+
+
+def tallied(kernel: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Decorate a function whose every call counts.
+
+    Parameters
+    ----------
+    kernel : str
+        One of `KERNELS`.
+    """
+    if kernel not in KERNELS:
+        raise KeyError(kernel)
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        @functools.wraps(function)
+        def counted(*args: P.args, **kwargs: P.kwargs) -> R:
+            note(kernel)
+            return function(*args, **kwargs)
+
+        return counted
+
+    return decorate
+
+
+@contextlib.contextmanager
+def tallying() -> Iterator[Counter[str]]:
+    """Count the kernels that run inside, in this process.
+
+    An inner count keeps its own: what runs in it does not count outside.
+    """
+    counts: Counter[str] = Counter()
+    token = _counts.set(counts)
+    try:
+        yield counts
+    finally:
+        _counts.reset(token)

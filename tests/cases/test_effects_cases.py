@@ -1,0 +1,157 @@
+"""An effect that is off runs none of its kernels, by count; and the page of effects says what the code does."""
+
+from __future__ import annotations
+
+import csv
+import functools
+import importlib.util
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from fegear.cli import app
+from fegear.errors import InputError
+from fegear.scene.case.effects import EffectsPart
+from fegear.scene.effect_facts import FACTS, kernel_table, stage_table
+from fegear.scene.effect_study import Switched, effect_study
+from fegear.scene.load import read_scene
+from fegear.scene.stages import STAGES
+from fegear.tally import KERNELS, note, tallied, tallying
+
+ROOT = Path(__file__).parents[2]
+CASES = ROOT / "cases"
+STATIC = ("accuracy.tolerance=1e-2", "pair.I.loads=['350 N']", 'results=["transmission-error"]')
+TE = ('results=["transmission-error"]', "pair.I.loads=['8890 N']")
+SPACING = "gear.a.spacing_errors={ values = [" + ", ".join(["'3 um'", *["'0 um'"] * 27]) + "] }"
+RELIEF = "gear.a.relief={ tip = { amount = '20 um', normalised_length = 1.0 } }"
+MOTION = ('results=["dynamic-factor"]', "dynamics.speeds=['6000 rpm', '12000 rpm']")
+#: Scenes in which nothing but the effect calls for its kernels.
+SCENES = {
+    "neighbour_coupling": ("calculix_pair", STATIC),
+    "hertz": ("calculix_pair", (*STATIC, "effects.corner_contact=false")),
+    "corner_contact": ("calculix_pair", STATIC),
+    "relief": ("lin_tip_relief", TE),
+    "spacing_errors": ("lin_tip_relief", (*TE, SPACING, RELIEF)),
+    "contact_loss": ("lin_dynamic_factor", MOTION),
+    "parametric": ("lin_dynamic_factor", (*MOTION, "effects.hertz=none")),
+    "friction": ("lin_dynamic_factor", MOTION),
+    "misalignment": ("litvin_shaft_angle", ("tooth_contact.positions=24",)),
+}
+
+
+@functools.cache
+def study(effect: str) -> Switched:
+    name, overrides = SCENES[effect]
+    _, (found,), fixed = effect_study(CASES / f"{name}.toml", overrides, (effect,))
+    assert not fixed
+    return found
+
+
+@pytest.mark.parametrize("effect", SCENES)
+def test_what_is_off_runs_none_of_its_kernels(effect):
+    found = study(effect)
+    for kernel in FACTS[effect].kernels:
+        assert found.with_it.kernels.get(kernel, 0) > 0, kernel
+        assert found.without.kernels.get(kernel, 0) == 0, kernel
+
+
+@pytest.mark.parametrize("effect", SCENES)
+def test_switching_an_effect_off_calls_no_other_effect_s_kernels(effect):
+    """Kernels that belong to other effects run with them, on or off alike: none appears that was not there."""
+    found = study(effect)
+    others = {k for other, fact in FACTS.items() if other != effect for k in fact.kernels}
+    for kernel in others:
+        if found.with_it.kernels.get(kernel, 0) == 0:
+            assert found.without.kernels.get(kernel, 0) == 0, kernel
+
+
+def test_every_effect_changes_an_answer_and_every_kernel_counts_somewhere():
+    seen = set()
+    for effect in SCENES:
+        found = study(effect)
+        assert any(abs(b.value - a.value) > 1e-9 * abs(a.value) for a, b in found.values()), effect
+        seen |= set(found.with_it.kernels) | set(found.without.kernels)
+    assert seen == set(KERNELS)
+
+
+def test_the_linearised_train_moves_nothing_in_time():
+    name, overrides = SCENES["contact_loss"]
+    _, (found,), _ = effect_study(CASES / f"{name}.toml", (*overrides, "effects.parametric=false"), ("contact_loss",))
+    assert found.with_it.kernels["steady motions"] == 2
+    assert found.without.kernels.get("steady motions", 0) == 0
+    assert found.without.kernels.get("passages", 0) == 0
+
+
+def test_without_coupling_no_neighbours_of_neighbours_are_solved():
+    from fegear.scene.tooth_influence import needed_reach
+
+    with_it = read_scene(CASES / "calculix_pair.toml")
+    without = read_scene(CASES / "calculix_pair.toml", ("effects.neighbour_coupling=false",))
+    assert needed_reach(with_it, "a") == 3
+    assert needed_reach(without, "a") == 1
+
+
+def test_the_command_writes_a_table_a_picture_and_a_summary(tmp_path):
+    case, options = str(CASES / "lin_tip_relief.toml"), ("--set", TE[0], "--set", TE[1])
+    out = tmp_path / "found"
+    done = CliRunner().invoke(app, ["effects", case, *options, "--effect", "relief", "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    assert "relief changes I.te_" in done.output
+    assert (out / "plots" / "effect_relief.png").read_bytes().startswith(b"\x89PNG")
+    rows = list(csv.DictReader((out / "tables" / "effects.csv").read_text("utf-8").splitlines()))
+    peak = next(row for row in rows if row["result"] == "I.te_peak_to_peak")
+    assert float(peak["without"]) + float(peak["change"]) == pytest.approx(float(peak["with"]))
+    assert (peak["in_the_case"], peak["unit"]) == ("on", "um")
+    assert "reliefs 0 -> " in peak["kernels"]
+    told = json.loads((out / "summary.json").read_text("utf-8"))
+    assert told["effects"]["relief"]["processor_seconds"]["with"] > 0.0
+    assert set(told["files"]) == {"plots/effect_relief.png", "tables/effects.csv", "summary.json"}
+
+
+def test_an_effect_that_the_results_cannot_feel_is_refused():
+    with pytest.raises(InputError, match="no effect that the wanted results can feel"):
+        effect_study(CASES / "lin_tip_relief.toml", TE, ("friction",))
+
+
+def test_an_effect_that_cannot_be_switched_says_why():
+    _, switched, fixed = effect_study(CASES / "lin_tip_relief.toml", TE, ("neighbour_coupling",))
+    assert switched == []
+    assert "is not known to the compliances" in fixed[0].reason
+
+
+def test_counting_ends_with_its_block_and_inner_counts_keep_their_own():
+    work = tallied("load sharing")(lambda: None)
+    work()
+    with tallying() as outer:
+        work()
+        with tallying() as inner:
+            work()
+            note("reliefs", 3)
+        note("reliefs", 0)
+    work()
+    assert outer == {"load sharing": 1}
+    assert inner == {"load sharing": 1, "reliefs": 3}
+    with pytest.raises(KeyError):
+        tallied("no such kernel")
+
+
+def test_the_page_of_effects_says_what_the_code_does():
+    page = (ROOT / "docs" / "effects.md").read_text("utf-8")
+    assert stage_table(read_scene(path) for path in sorted(CASES.glob("*.toml"))) in page
+    assert kernel_table() in page
+    assert set(FACTS) == set(EffectsPart.model_fields)
+    for effect in SCENES:
+        assert f"images/effects/{effect}.png" in page
+        assert (ROOT / "docs" / "images" / "effects" / f"{effect}.png").is_file()
+    assert {effect for stage in STAGES for effect in stage.effects} == set(SCENES)
+
+
+def test_the_page_can_be_made_again():
+    spec = importlib.util.spec_from_file_location("effect_pictures", ROOT / "docs" / "effect_pictures.py")
+    made = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(made)
+    assert {effect for _, _, effects in made.STUDIES for effect in effects} == set(SCENES)
+    page = (ROOT / "docs" / "effects.md").read_text("utf-8")
+    assert made.replaced(page, "kernels", kernel_table()) == page
