@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -151,6 +152,11 @@ class Engagement:
                 note("spacing errors")
                 total += errors[np.mod(cycle - contacts.number, errors.size)]
         return total[:, None]
+
+    @property
+    def cycles(self) -> int:
+        """Base pitches after which the spacing errors repeat, 1 without any."""
+        return math.lcm(*(errors.size for errors in (self.driver_spacing, self.driven_spacing) if errors.size))
 
     def separation(self, contacts: Contacts, cycle: int = 0) -> Array:
         """e_j, shape (n, P) [m]; infinite where a pair is out of reach."""

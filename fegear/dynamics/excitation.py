@@ -256,6 +256,6 @@ class MeshExcitation:
 
 
 def effective_error(error: Periodic, harmonics: int = 12) -> float:
-    """Effective error A_1 + sqrt(sum A_i^2) [m] of the first 12 harmonics (0-peak) (TM-89901)."""
-    amplitudes = 2.0 * np.abs(error.fourier(np.arange(1, harmonics + 1)))
+    """Effective error A_1 + sqrt(sum A_i^2) [m] of the first 12 mesh harmonics (0-peak) (TM-89901)."""
+    amplitudes = 2.0 * np.abs(error.fourier(error.pitches * np.arange(1, harmonics + 1)))
     return float(amplitudes[0] + math.sqrt(float(np.sum(amplitudes**2))))

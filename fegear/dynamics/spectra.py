@@ -31,8 +31,12 @@ class MeshForceSpectrum:
     ----------
     speeds : ndarray, shape (speeds,)
         Speeds of the first body [rad/s].
+    orders : ndarray, shape (harmonics,)
+        n = 1, 2, ...; with spacing errors fractions as well, the rotational harmonics.
+    present : ndarray of bool, shape (meshes, harmonics)
+        Whether the static transmission error of mesh j has that harmonic.
     frequencies : ndarray, shape (meshes, harmonics, speeds)
-        n times the mesh frequency of the mesh that excites [Hz], n = 1, 2, ...
+        n times the mesh frequency of the mesh that excites [Hz].
     coefficients : ndarray, shape (meshes, meshes, harmonics, speeds)
         Complex Fourier coefficient [N] of the force in mesh i that the static transmission error of mesh j excites;
         its amplitude (0-peak) is twice the modulus.
@@ -41,6 +45,8 @@ class MeshForceSpectrum:
     """
 
     speeds: Array
+    orders: Array
+    present: NDArray[np.bool_]
     frequencies: Array
     coefficients: ComplexArray
     static: Array
@@ -62,6 +68,8 @@ def mesh_force_spectrum(
     speeds: ArrayLike,
     harmonics: int = 64,
     static: ArrayLike | None = None,
+    *,
+    rotational: bool = False,
 ) -> MeshForceSpectrum:
     """Forces in every mesh from the static transmission error of every mesh, at every speed.
 
@@ -70,29 +78,37 @@ def mesh_force_spectrum(
     train : Train
         Meshes with their mean stiffness.
     errors : sequence of Periodic, one per mesh
-        Static transmission error [m] under the mean load over the base pitch, its mean without meaning here.
+        Static transmission error [m] under the mean load over the base pitch, or as many as its spacing errors take to
+        repeat; its mean has no meaning here.
     speeds : array_like
         Speeds of the first body [rad/s].
     harmonics : int
-        Number of harmonics of each error (of its own period, if that is longer than the base pitch).
+        Harmonics of the mesh frequency.
     static : array_like, optional
         Mean mesh forces [N]; by default those of the train's torques.
+    rotational : bool
+        Whether to add the harmonics between those of the mesh frequency, which spacing errors cause.
     """
     from fegear.dynamics.matrices import static_forces
 
     if len(errors) != len(train.meshes):
         raise InputError("errors", len(errors), f"must be one function for each of the {len(train.meshes)} gear pairs")
     speed = np.atleast_1d(np.array(speeds, dtype=float))
-    count, n = len(train.meshes), np.arange(1, harmonics + 1)
+    count = len(train.meshes)
+    step = math.lcm(*(error.pitches for error in errors)) if rotational else 1
+    n = np.arange(1, harmonics * step + 1)
     mesh = train.mesh_frequencies(speed)
-    frequencies = np.empty((count, harmonics, speed.size))
-    coefficients = np.empty((count, count, harmonics, speed.size), dtype=complex)
+    present = np.array([n * error.pitches % step == 0 for error in errors])
+    frequencies = np.empty((count, n.size, speed.size))
+    coefficients = np.zeros((count, count, n.size, speed.size), dtype=complex)
     stiffness = np.array([m.stiffness for m in train.meshes])[:, None, None]
     for j, error in enumerate(errors):
-        frequencies[j] = n[:, None] * mesh[j][None, :] / error.pitches
-        q = dynamic_increments(train, 2.0 * math.pi * frequencies[j])
-        coefficients[:, j] = stiffness * q[:, j] * error.fourier(n)[:, None]
+        frequencies[j] = n[:, None] * mesh[j][None, :] / step
+        own = present[j]
+        q = dynamic_increments(train, 2.0 * math.pi * frequencies[j, own])
+        coefficients[:, j, own] = stiffness * q[:, j] * error.fourier(n[own] * error.pitches // step)[:, None]
     mean = static_forces(train) if static is None else np.array(static, dtype=float)
-    for array in (speed, frequencies, coefficients, mean):
+    orders = n / step
+    for array in (speed, orders, present, frequencies, coefficients, mean):
         array.flags.writeable = False
-    return MeshForceSpectrum(speed, frequencies, coefficients, mean)
+    return MeshForceSpectrum(speed, orders, present, frequencies, coefficients, mean)

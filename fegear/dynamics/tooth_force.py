@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
+#: Harmonics summed at once.
+_BLOCK = 256
+
+
 @dataclass(frozen=True)
 class ToothForce:
     """Force on one tooth pair of a mesh through its engagement.
@@ -35,7 +39,7 @@ class ToothForce:
     x : ndarray, shape (n,)
         Position on the line of action [m].
     time : ndarray, shape (n,)
-        Time [s], zero when the tooth pair (or the one that lies `behind` it) is at the pitch point.
+        Time [s], zero when the mesh is at phase zero: when tooth pair number 0 is at the pitch point.
     static : ndarray, shape (n,)
         Static force [N] (3.30).
     own : ndarray, shape (n,)
@@ -69,8 +73,8 @@ def dynamic_error(
     s = np.asarray(phase, dtype=float) / errors[j].pitches
     n, terms = _terms(train, errors, i, j, speed, harmonics)
     total = np.zeros(s.shape)
-    for start in range(0, n.size, 256):
-        part = slice(start, start + 256)
+    for start in range(0, n.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
         total += 2.0 * np.real(np.exp(2j * math.pi * s[..., None] * n[part]) @ terms[part])
     return total
 
@@ -79,7 +83,7 @@ def _terms(
     train: Train, errors: Sequence[Periodic], i: int, j: int, speed: float, harmonics: int
 ) -> tuple[NDArray[np.integer], NDArray[np.complexfloating]]:
     """Harmonic numbers and complex coefficients of `dynamic_error`."""
-    n = np.arange(1, harmonics + 1)
+    n = np.arange(1, harmonics * errors[j].pitches + 1)
     omega = 2.0 * math.pi * n * float(train.mesh_frequencies(speed)[j]) / errors[j].pitches
     transfer = dynamic_increments(train, omega)[i, j]
     return n, (1.0 + transfer if i == j else transfer) * errors[j].fourier(n)
@@ -95,7 +99,7 @@ def tooth_force(
     modification: ArrayLike,
     base_pitch: float,
     *,
-    behind: int = 0,
+    number: int = 0,
     harmonics: int = 256,
     other_phases: int = 64,
 ) -> ToothForce:
@@ -114,21 +118,21 @@ def tooth_force(
         of both teeth [m], positive for material removed.
     base_pitch : float
         Base pitch of this mesh [m].
-    behind : int
-        Base pitches by which the tooth pair whose time counts lies behind the one at `x`.
+    number : int
+        Which tooth pair: number j is at the pitch point j base pitches after number 0.
     harmonics : int
-        Harmonics summed.
+        Harmonics of the mesh frequency that are summed, with the rotational ones below where teeth are uneven.
     other_phases : int
         Relative phases of the other meshes tried for `cross_peak`.
     """
     place, k, m = (np.array(v, dtype=float) for v in (x, stiffness, modification))
     if not place.shape == k.shape == m.shape or place.ndim != 1:
         raise InputError("tooth_force", (place.shape, k.shape, m.shape), "x, stiffness and modification must match")
-    phase = place / base_pitch
+    phase = place / base_pitch + number
     frequency = train.mesh_frequencies(speed)
     if not frequency[mesh] > 0.0:
         raise InputError("speed", speed, "must not be zero: time stands still")
-    time = (phase - behind) / float(frequency[mesh])
+    time = phase / float(frequency[mesh])
     exact = errors[mesh](phase)
     static = k * (exact - m)
     smooth = errors[mesh].mean + dynamic_error(train, errors, mesh, mesh, speed, phase, harmonics)
@@ -140,9 +144,12 @@ def tooth_force(
             continue
         n, terms = _terms(train, errors, mesh, j, speed, harmonics)
         other = time * (float(frequency[j]) / errors[j].pitches)
-        shift = np.exp(2j * math.pi * np.outer(n, np.arange(other_phases) / other_phases))
-        waves = np.exp(2j * math.pi * np.outer(other, n))
-        all_phases = k[:, None] * 2.0 * np.real(waves @ (terms[:, None] * shift))
+        all_phases = np.zeros((place.size, other_phases))
+        for start in range(0, n.size, _BLOCK):
+            part = slice(start, start + _BLOCK)
+            shift = np.exp(2j * math.pi * np.outer(n[part], np.arange(other_phases) / other_phases))
+            waves = np.exp(2j * math.pi * np.outer(other, n[part]))
+            all_phases += k[:, None] * 2.0 * np.real(waves @ (terms[part, None] * shift))
         cross[j], peak[j] = all_phases[:, 0], np.max(np.abs(all_phases))
     for array in (place, time, static, own, cross, peak):
         array.flags.writeable = False

@@ -37,8 +37,8 @@ def mesh_excitation(engagement: Engagement, load: float) -> MeshExcitation:
     """One-sided springs of a gear pair.
 
     Tooth pairs that stand alone are springs over the whole path; their contact deflection is linear about the full load
-    on one pair, as in NASA TM-89901. Coupled tooth pairs are linearised about the mean load that they share. Spacing
-    errors are left out: all teeth are equal.
+    on one pair, as in NASA TM-89901. Coupled tooth pairs are linearised about the mean load that they share. With
+    spacing errors every tooth pair that meets has its own separation (and share), until the same teeth meet again.
 
     Parameters
     ----------
@@ -46,7 +46,24 @@ def mesh_excitation(engagement: Engagement, load: float) -> MeshExcitation:
     load : float
         Mean mesh force [N].
     """
-    return _separate(engagement, load) if stands_alone(engagement) else _shared(engagement, load)
+    if not stands_alone(engagement):
+        return _shared(engagement, load)
+    return _uneven(_separate(engagement, load), engagement)
+
+
+def _uneven(even: MeshExcitation, engagement: Engagement) -> MeshExcitation:
+    """Add the spacing errors of the teeth to their separations: slot j is on teeth p - j in base pitch p."""
+    cycles = engagement.cycles
+    if cycles == 1:
+        return even
+
+    def error(tooth: int) -> float:
+        spacings = (engagement.driver_spacing, engagement.driven_spacing)
+        return sum(float(errors[tooth % errors.size]) for errors in spacings if errors.size)
+
+    slots = enumerate(even.separation, even.first_slot)
+    uneven = (Periodic.joined([m.plus(error(p - j)) for p in range(cycles)]) for j, m in slots)
+    return replace(even, separation=tuple(uneven))
 
 
 def unmodified(excitation: MeshExcitation, width_ratio: float) -> MeshExcitation:
@@ -85,30 +102,48 @@ def _separate(engagement: Engagement, load: float) -> MeshExcitation:
 
 
 def _shared(engagement: Engagement, load: float) -> MeshExcitation:
-    """Springs about the mean load, from load sharing with coupled teeth and corners."""
+    """Springs about the mean load, from load sharing with coupled teeth and corners, base pitch by base pitch."""
+    # Corners bear before the start and after the end of the path: a slot more on either side.
+    pair, extra = engagement.pair, 1 if engagement.corner_contact else 0
+    first = math.floor(pair.x_start / pair.base_pitch) - extra
+    last = math.ceil(pair.x_end / pair.base_pitch) - 1 + extra
+    grids: dict[bytes, RollGrid] = {}
+    pitches = [_one_pitch(engagement, load, p, range(first, last + 1), grids) for p in range(engagement.cycles)]
+    error, stiffness, *shares = (Periodic.joined(parts) for parts in zip(*pitches, strict=True))
+    return replace(MeshExcitation.at_mean_load(stiffness, error, load, tuple(shares)), first_slot=first)
+
+
+def _one_pitch(
+    engagement: Engagement, load: float, number: int, slots: range, grids: dict[bytes, RollGrid]
+) -> tuple[Periodic, ...]:
+    """Transmission error, local stiffness and shares of the slots over base pitch `number` from the pitch point.
+
+    `grids` keeps contacts and compliances, which are the same in every base pitch.
+    """
     from fegear.contact.transmission_error import contact_changes
 
-    pair, pitch = engagement.pair, engagement.pair.base_pitch
-    plain = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
-    changes = [*plain.breaks, *contact_changes(plain, load)]
+    pitch = engagement.pair.base_pitch
+    # load sharing counts its base pitches from the start of contact, so that this one lies in two of them
+    cycles = (number,) if engagement.cycles == 1 else (number, number + 1)
+    changes = [*engagement.breaks, *(x for cycle in cycles for x in contact_changes(engagement, load, cycle))]
     cuts = sorted({(b / pitch) % 1.0 for b in changes})
     known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
 
     def solved(s: Array) -> tuple[Array, Array, Array, Array]:
         key = s.tobytes()
         if key not in known:
-            state = plain.solve(plain.grid(s * pitch), [load])
+            x = s * pitch
+            # one call is about one piece between breaks, the start of contact among them
+            before = round(float(np.mean(engagement.meshing.reduced(x) - x)) / pitch)
+            if key not in grids:
+                grids[key] = engagement.grid(x)
+            state = engagement.solve(grids[key], [load], number - before)
             share = state.loads[:, :, 0] / load
             known[key] = (state.transmission_error[:, 0], state.local_stiffness[:, 0], share, state.pair_x)
         return known[key]
 
     def fit(function: Callable[[Array], Array]) -> Periodic:
         return Periodic.fit(function, cuts, tolerance=FIT_SHARED, shortest=SHORTEST)
-
-    # Corners bear before the start and after the end of the path: a slot more on either side.
-    extra = 1 if plain.corner_contact else 0
-    first = math.floor(pair.x_start / pitch) - extra
-    last = math.ceil(pair.x_end / pitch) - 1 + extra
 
     def share_of(j: int) -> Callable[[Array], Array]:
         def share(s: Array) -> Array:
@@ -119,13 +154,11 @@ def _shared(engagement: Engagement, load: float) -> MeshExcitation:
 
         return share
 
-    error, stiffness = fit(lambda s: solved(s)[0]), fit(lambda s: solved(s)[1])
-    shares = tuple(fit(share_of(j)) for j in range(first, last + 1))
-    return replace(MeshExcitation.at_mean_load(stiffness, error, load, shares), first_slot=first)
+    return fit(lambda s: solved(s)[0]), fit(lambda s: solved(s)[1]), *(fit(share_of(j)) for j in slots)
 
 
-def tooth_pair_at(excitation: MeshExcitation, x: Array, base_pitch: float) -> tuple[Array, Array]:
-    """Stiffness [N/m] and separation [m] of one tooth pair at its places x [m]."""
+def tooth_pair_at(excitation: MeshExcitation, x: Array, base_pitch: float, number: int = 0) -> tuple[Array, Array]:
+    """Stiffness [N/m] and separation [m] of a tooth pair at its places x [m]; number 0 is at the pitch point first."""
     s = np.asarray(x, dtype=float) / base_pitch
     slot = np.floor(s).astype(int)
     k, m = np.zeros(s.shape), np.zeros(s.shape)
@@ -133,6 +166,6 @@ def tooth_pair_at(excitation: MeshExcitation, x: Array, base_pitch: float) -> tu
         index = int(j) - excitation.first_slot
         if 0 <= index < len(excitation.stiffness):
             at = slot == j
-            k[at] = excitation.stiffness[index](s[at] - j)
-            m[at] = excitation.separation[index](s[at] - j)
+            k[at] = excitation.stiffness[index](s[at] + number)
+            m[at] = excitation.separation[index](s[at] + number)
     return k, m

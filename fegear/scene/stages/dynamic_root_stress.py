@@ -11,7 +11,7 @@ from fegear.errors import InputError
 from fegear.scene.loaded_pair import MEMBERS, gear_name
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage, Task
-from fegear.scene.stages.mesh_forces import force_at, needs_one_speed, own_meshes
+from fegear.scene.stages.mesh_forces import force_at, needs_one_speed, own_meshes, summed_harmonics
 from fegear.scene.stages.root_stress_history import table_names
 from fegear.scene.train import train_part
 
@@ -58,9 +58,10 @@ def _neighbours(scene: Scene, data: ToothForceData, source: FiniteElementComplia
     part = scene.case.dynamics
     for k in range(-source.reach, source.reach + 1):
         if k:
-            around[k] = force_at(
-                train, data.mesh, part.one_speed, force.x, max(part.harmonics, 256), pairs_ahead=k, other_phases=1
-            )
+            # k base pitches ahead at the same moment: it was at the pitch point that much earlier
+            ahead = force.x + k * train.pairs[data.mesh].base_pitch
+            harmonics = summed_harmonics(scene, train)
+            around[k] = force_at(train, data.mesh, part.one_speed, ahead, harmonics, data.number - k, other_phases=1)
     return around
 
 
@@ -110,7 +111,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
             Table(
                 f"root_stress_history_{name}_{labels[member].removeprefix(prefix)}",
                 (
-                    Column("t", force.time, "s", "zero at the pitch point"),
+                    Column("t", force.time, "s", "from the mesh's phase zero"),
                     Column("x", force.x, "mm", "place of the tooth's contact on the line of action"),
                     Column(
                         "stress", stress[member], "MPa", "largest root tension of the loaded tooth, all meshes' shares"

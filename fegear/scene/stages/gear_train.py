@@ -78,8 +78,10 @@ def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome
         excitations[name] = replace(found, phase=mesh.phase)
         if not stands_alone(loaded.engagement):
             remarks.append(f"Mesh {name}: coupled teeth and contacts off the path are linear about the mean load.")
-        if scene.case.effects.spacing_errors:
-            remarks.append(f"Mesh {name}: dynamics take all teeth as equal; spacing errors are left out.")
+        if mesh.like is None and loaded.engagement.cycles > 1:
+            remarks.append(
+                f"Mesh {name}: its excitation repeats after {loaded.engagement.cycles} base pitches (spacing errors)."
+            )
         progress((number + 1) / len(part.mesh))
     data = assemble(scene, excitations)
     values: list[Value] = []

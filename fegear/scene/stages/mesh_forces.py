@@ -28,6 +28,10 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+#: Lines that tooth forces are summed from, at least.
+_LINES = 256
+#: Places over the path at which the static force of every tooth pair is looked at.
+_LOOKED_AT = 101
 #: How near to the ends of the path the last positions are, in base pitches.
 _INSIDE = 1e-9
 
@@ -49,6 +53,7 @@ class ToothForceData:
     train: GearTrain
     mesh: int
     force: ToothForce
+    number: int = 0
 
 
 def meshes(scene: Scene) -> tuple[str, ...]:
@@ -81,29 +86,19 @@ def _run_spectrum(scene: Scene, name: str, done: Done, _progress: Progress) -> O
 
     data, part = gear_train(done), scene.case.dynamics
     i = data.train.mesh_index(name)
-    found = mesh_force_spectrum(data.train, data.errors, [part.one_speed / data.speed_ratio], part.harmonics)
-    n = np.arange(1, part.harmonics + 1)
-    count = len(data.names)
+    found = mesh_force_spectrum(
+        data.train, data.errors, [part.one_speed / data.speed_ratio], part.harmonics, rotational=True
+    )
     amplitude = found.amplitudes[i, :, :, 0]
     table = Table(
         f"mesh_force_spectrum_{name}",
-        (
-            Column("n", np.tile(n, count), "", "harmonic of the mesh frequency of from_pair"),
-            Column(
-                "from_pair",
-                np.repeat(np.array(data.names, dtype=str), n.size),
-                "",
-                "whose transmission error excites it",
-            ),
-            Column("frequency", found.frequencies[:, :, 0].ravel(), "Hz", "n times the mesh frequency"),
-            Column("force", amplitude.ravel(), "N", "0-peak"),
-            Column("power", found.power_lines[i, :, :, 0].ravel(), "N^2", "one-sided power of the line"),
-        ),
+        (*_lines(found, data), Column("force", amplitude[found.present], "N", "0-peak"),
+         Column("power", found.power_lines[i, :, :, 0][found.present], "N^2", "one-sided power of the line")),
         f"Spectrum of the force in mesh {name}",
-    )
+    )  # fmt: skip
     values = tuple(
         Value(f"{name}.largest_line_from_{other}", float(amplitude[j].max()), "N", None,
-              f"0-peak, harmonic {int(amplitude[j].argmax()) + 1}")
+              f"0-peak, harmonic {found.orders[int(amplitude[j].argmax())]:.6g}")
         for j, other in enumerate(data.names)
     )  # fmt: skip
     speeds = part.speed_values / data.speed_ratio
@@ -117,36 +112,67 @@ def _run_spectrum(scene: Scene, name: str, done: Done, _progress: Progress) -> O
     return Outcome(SpectrumData(data, i, found, waterfall), tuple(tables), values, settings, remarks)
 
 
+def _lines(found: MeshForceSpectrum, data: GearTrain) -> tuple[Column, ...]:
+    """Number, excitation and frequency of the lines at the first speed; fractions are rotational harmonics."""
+    from_pair, line = np.nonzero(found.present)
+    order = found.orders[line]
+    whole = order.astype(int) if np.all(found.orders % 1.0 == 0.0) else order
+    return (
+        Column("n", whole, "", "harmonic of the mesh frequency of from_pair"),
+        Column("from_pair", np.array(data.names, dtype=str)[from_pair], "", "whose transmission error excites it"),
+        Column("frequency", found.frequencies[from_pair, line, 0], "Hz", "n times the mesh frequency"),
+    )
+
+
 def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrain) -> Table:
-    count, harmonics, speeds = found.frequencies.shape
-    shape = (count, harmonics, speeds)
+    speeds = found.speeds.size
     columns = (
-        Column("speed", np.broadcast_to(found.speeds * data.speed_ratio, shape).ravel(), "rpm", f"of {data.speed_of}"),
-        Column("n", np.broadcast_to(np.arange(1, harmonics + 1)[:, None], shape).ravel(), "", "harmonic"),
-        Column(
-            "from_pair", np.repeat(np.array(data.names, dtype=str), harmonics * speeds), "", "whose transmission error"
-        ),
-        Column("frequency", found.frequencies.ravel(), "Hz", "n times the mesh frequency"),
-        Column("force", found.amplitudes[i].ravel(), "N", "0-peak"),
+        Column("speed", np.tile(found.speeds * data.speed_ratio, found.present.sum()), "rpm", f"of {data.speed_of}"),
+        *(Column(c.name, np.repeat(c.values, speeds), c.unit, c.meaning) for c in _lines(found, data)[:2]),
+        Column("frequency", found.frequencies[found.present].ravel(), "Hz", "n times the mesh frequency"),
+        Column("force", found.amplitudes[i][found.present].ravel(), "N", "0-peak"),
     )
     return Table(f"mesh_force_waterfall_{name}", columns, f"Spectrum of the force in mesh {name} over speed")
 
 
-def positions(data: GearTrain, i: int, count: int) -> Array:
+def summed_harmonics(scene: Scene, data: GearTrain) -> int:
+    """Mesh harmonics of a tooth force: 256 lines at least, the rotational ones among them."""
+    longest = max(error.pitches for error in data.errors)
+    return max(scene.case.dynamics.harmonics, -(-_LINES // longest))
+
+
+def heaviest_pair(data: GearTrain, i: int) -> int:
+    """Number of the tooth pair that carries the largest static force; 0 where all teeth are alike."""
+    from fegear.scene.mesh_excitation import tooth_pair_at
+
+    error, pair = data.errors[i], data.pairs[i]
+    if error.pitches == 1:
+        return 0
+    x = np.linspace(pair.x_start, pair.x_end, _LOOKED_AT)
+    largest = []
+    for number in range(error.pitches):
+        k, m = tooth_pair_at(data.excitations[i], x, pair.base_pitch, number)
+        largest.append(float(np.max(k * (error(x / pair.base_pitch + number) - m))))
+    return int(np.argmax(largest))
+
+
+def positions(data: GearTrain, i: int, count: int, number: int = 0) -> Array:
     """Places of one tooth pair: evenly over its path, and on either side of every jump [m]."""
     pair, found = data.pairs[i], data.excitations[i]
     pitch = pair.base_pitch
     low, high = pair.x_start + _INSIDE * pitch, pair.x_end - _INSIDE * pitch
-    cuts = np.unique(np.concatenate([data.errors[i].breaks, *(k.breaks for k in found.stiffness)]))
-    beside = [(b + j + side * 1e-7) * pitch for b in cuts for j in range(-4, 4) for side in (-1.0, 1.0)]
-    jumps = _jumps(data, i, np.array([x for x in beside if low < x < high]))
+    functions = (data.errors[i], *found.stiffness)
+    cuts = np.concatenate([(f.breaks + j) * f.pitches - number % f.pitches for f in functions for j in range(-4, 5)])
+    near = np.unique(cuts[(cuts * pitch > low) & (cuts * pitch < high)])
+    beside = np.sort(np.concatenate([near - 1e-7, near + 1e-7])) * pitch
+    jumps = _jumps(data, i, beside[(beside > low) & (beside < high)], number)
     return np.unique(np.concatenate([np.linspace(low, high, count), jumps]))
 
 
-def _jumps(data: GearTrain, i: int, x: Array) -> Array:
+def _jumps(data: GearTrain, i: int, x: Array, number: int) -> Array:
     """Places beside true corners of the transmission error; ends of fitted pieces are none."""
     pitch = data.pairs[i].base_pitch
-    slope = data.errors[i].slope(x / pitch)
+    slope = data.errors[i].slope(x / pitch + number)
     near = np.abs(np.diff(x)) < 3e-7 * pitch
     kink = near & (np.abs(np.diff(slope)) > 1e-3 * np.max(np.abs(slope), initial=1e-30))
     keep = np.zeros(x.size, dtype=bool)
@@ -155,24 +181,23 @@ def _jumps(data: GearTrain, i: int, x: Array) -> Array:
     return x[keep]
 
 
-def force_history(data: GearTrain, i: int, speed: float, count: int, harmonics: int) -> ToothForce:
+def force_history(data: GearTrain, i: int, speed: float, count: int, harmonics: int, number: int = 0) -> ToothForce:
     """Force on one tooth pair of mesh `i` at a speed of the reference body [rad/s]."""
-    return force_at(data, i, speed, positions(data, i, count), harmonics)
+    return force_at(data, i, speed, positions(data, i, count, number), harmonics, number)
 
 
 def force_at(
-    data: GearTrain, i: int, speed: float, x: Array, harmonics: int, pairs_ahead: int = 0, other_phases: int = 64
+    data: GearTrain, i: int, speed: float, x: Array, harmonics: int, number: int = 0, other_phases: int = 64
 ) -> ToothForce:
-    """Force on the tooth pair that is so many base pitches ahead of the one at x [m]; zero off the path of contact."""
+    """Force on tooth pair `number` at places x [m]; zero off the path of contact."""
     from fegear.dynamics.tooth_force import tooth_force
     from fegear.scene.mesh_excitation import tooth_pair_at
 
     pitch = data.pairs[i].base_pitch
-    there = x + pairs_ahead * pitch
-    k, m = tooth_pair_at(data.excitations[i], there, pitch)
+    k, m = tooth_pair_at(data.excitations[i], x, pitch, number)
     found = tooth_force(
-        data.train, data.errors, i, speed / data.speed_ratio, there, k, m, pitch,
-        behind=pairs_ahead, harmonics=harmonics, other_phases=other_phases,
+        data.train, data.errors, i, speed / data.speed_ratio, x, k, m, pitch,
+        number=number, harmonics=harmonics, other_phases=other_phases,
     )  # fmt: skip
     # a tooth pair that its modification holds apart is not pulled
     static = np.maximum(found.static, 0.0)
@@ -183,10 +208,10 @@ def mesh_force_range(data: GearTrain, i: int, speed: float, harmonics: int) -> t
     """Smallest and largest force of mesh `i` at a speed of the first body [rad/s], others at their worst phase."""
     from fegear.dynamics.spectra import mesh_force_spectrum
 
-    found = mesh_force_spectrum(data.train, data.errors, [speed], harmonics)
-    phase = np.linspace(0.0, 1.0, 16 * harmonics, endpoint=False)
-    waves = np.exp(2j * np.pi * np.outer(phase, np.arange(1, harmonics + 1)))
-    parts = [2.0 * np.real(waves @ found.coefficients[i, j, :, 0]) for j in range(len(data.names))]
+    found = mesh_force_spectrum(data.train, data.errors, [speed], harmonics, rotational=True)
+    size = 16 * found.orders.size
+    spectra = [np.concatenate([[0.0], found.coefficients[i, j, :, 0]]) for j in range(len(data.names))]
+    parts = [size * np.fft.irfft(np.pad(row, (0, size // 2 + 1 - row.size)), size) for row in spectra]
     mean = float(data.forces[i])
     return mean + sum(float(p.min()) for p in parts), mean + sum(float(p.max()) for p in parts)
 
@@ -213,12 +238,13 @@ def pull_remarks(data: GearTrain, i: int, speeds: Sequence[float] | Array, harmo
 def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
     data, part = gear_train(done), scene.case.dynamics
     i = data.train.mesh_index(name)
-    force = force_history(data, i, part.one_speed, part.positions, max(part.harmonics, 256))
+    looked_at = heaviest_pair(data, i)
+    force = force_history(data, i, part.one_speed, part.positions, summed_harmonics(scene, data), looked_at)
     cross = force.cross.sum(axis=0)
     table = Table(
         f"tooth_force_{name}",
         (
-            Column("t", force.time, "s", "zero at the pitch point"),
+            Column("t", force.time, "s", "from the mesh's phase zero"),
             Column("x", force.x, "mm", "place of the tooth pair on the line of action"),
             Column("force", force.total, "N", "on one tooth pair, without the other meshes' share"),
             Column("force_with_others", force.total + cross, "N", "with the other meshes' share, at the case's phases"),
@@ -244,8 +270,14 @@ def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outc
         ),
     ]  # fmt: skip
     remarks = pull_remarks(data, i, [part.one_speed / data.speed_ratio], part.harmonics)
-    settings: dict[str, object] = {"harmonics": max(part.harmonics, 256), "speed": part.one_speed}
-    return Outcome(ToothForceData(data, i, force), (table,), tuple(values), settings, remarks)
+    if data.errors[i].pitches > 1:
+        told = (
+            f"Mesh {name}: teeth stand unevenly; of the {data.errors[i].pitches} tooth pairs that meet, the force is "
+            f"that on number {looked_at}, which carries most at rest (number 0 is at the pitch point at phase zero)."
+        )
+        remarks = (*remarks, told)
+    settings: dict[str, object] = {"harmonics": summed_harmonics(scene, data), "speed": part.one_speed}
+    return Outcome(ToothForceData(data, i, force, looked_at), (table,), tuple(values), settings, remarks)
 
 
 MESH_FORCE_SPECTRUM = Stage(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -168,11 +167,6 @@ def te_values(prefix: str, te: TransmissionError, shifts: Shifts | None) -> tupl
     )
 
 
-def _cycles(pair: LoadedPair) -> int:
-    sizes = [errors.size for errors in (pair.engagement.driver_spacing, pair.engagement.driven_spacing) if errors.size]
-    return math.lcm(*sizes) if sizes else 1
-
-
 def _run(_scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     from fegear.contact import revolution, transmission_error
     from fegear.contact.transmission_error import pair_stiffness
@@ -220,7 +214,7 @@ def _run(_scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     )
     remarks, rotational = [], None
     if e.driver_spacing.size or e.driven_spacing.size:
-        cycles = _cycles(pair)
+        cycles = e.cycles
         if cycles > _MOST_CYCLES:
             remarks.append(
                 f"Pair {name}: the teeth meet again only after {cycles} base pitches; rotational harmonics of spacing "
