@@ -7,7 +7,7 @@
 - ``sh`` is run by the shell and ``python`` in one namespace for the whole page; a block that starts with
   ``# needs PROGRAM`` is passed over where that program is not installed;
 - ``text`` is what the block before it prints. Numbers may differ in the last printed digit or by 0.4 %, error estimates
-  (after ``+-``) by a factor of three; ``...`` stands for anything in a line, and alone for any lines.
+  (after ``+-``) by a factor of five; ``...`` stands for anything in a line, and alone for any lines.
 
 Commands end with code 0 unless the page shows the refusal (a line that starts with ``fegear: ``).
 """
@@ -30,7 +30,7 @@ _FENCE = re.compile(r"^```([\w-]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 _FILE = re.compile(r"# ([\w.-]+\.(?:toml|csv|py))(, continued)?$")
 _NEEDS = re.compile(r"# needs ([\w-]+)$")
 _NUMBER = r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?"
-_RELATIVE, _ESTIMATE = 4e-3, 3.0
+_RELATIVE, _ESTIMATE = 4e-3, 5.0
 
 
 class DifferentError(AssertionError):
