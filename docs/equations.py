@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
-from importlib.resources import files as resources
+from importlib.metadata import distribution
+from pathlib import Path
 
 from latex2mathml.converter import convert
 from markdown.extensions import Extension
@@ -22,7 +23,7 @@ from mkdocs.structure.files import File
 _AFTER_FENCES = 22
 #: After `code` (190), before backslash escapes (180).
 _AFTER_CODE = 185
-_FONT = resources("ziamath") / "fonts" / "STIXTwoMath-Regular.ttf"
+_FONT = Path(str(distribution("ziamath").locate_file("ziamath/fonts/STIXTwoMath-Regular.ttf")))
 _DISPLAY = re.compile(r"^\$\$\n(.*?)\n\$\$$", re.DOTALL | re.MULTILINE)
 _INLINE = r"(?<![\\$\w])\$(?![\s$])([^$\n]+?)(?<![\s\\])\$(?![\w$])"
 #: The sign for a prime is raised as it is; raised again it is too small to see.
