@@ -50,16 +50,12 @@ class MotionModel:
             )
         if not (math.isfinite(self.speed) and self.speed > 0.0):
             raise RangeError("speed", self.speed, "must be positive", "at standstill the static answer holds")
-        for index, (mesh, excitation) in enumerate(zip(self.train.meshes, self.excitations, strict=True)):
+        for index, mesh in enumerate(self.train.meshes):
             if self.static[index] < -1e-9 * float(np.max(np.abs(self.static))):
                 raise InputError(
                     f"mesh.{mesh.name}", f"{self.static[index]:.6g} N", "is a mean force that parts the teeth",
                     "turn the torques round, or the signs of both base radii",
                 )  # fmt: skip
-            if math.isfinite(mesh.backlash) and any(k.pitches != 1 for k in excitation.stiffness):
-                raise InputError(
-                    f"mesh.{mesh.name}.backlash", mesh.backlash, "needs stiffness periodic in one base pitch"
-                )
 
     def at_speed(self, speed: float) -> MotionModel:
         """The same train at another speed [rad/s]."""

@@ -36,6 +36,8 @@ SETTLING, SEARCH = 12, 160
 MEASURED = 200
 #: Growth of tangents per period beyond which a non-periodic motion counts as chaotic.
 CHAOTIC_GROWTH = 0.01
+#: Motion so many times the static deflection of a mesh grows for ever: no gear train holds that.
+UNBOUNDED = 1e5
 #: How far a multiplier may exceed one before the motion counts as unstable.
 UNSTABLE = 1e-6
 
@@ -138,7 +140,8 @@ def steady_state(
     Raises
     ------
     RangeError
-        If the tolerance is out of range, or a train without damping is at resonance.
+        If the tolerance is out of range, a train without damping is at resonance, or the motion grows without bound
+        (parametric instability of teeth that touch on either flank).
     """
     if not 1e-13 < tolerance <= 1e-2:
         raise RangeError("tolerance", tolerance, "must lie between 1e-13 and 1e-2")
@@ -243,6 +246,13 @@ def _search(packed: Packed, x: Array, v: Array, step: float) -> SteadyState:
         passage = propagate(packed, x, v, packed.period, tolerance=step, peaks=False)
         x, v = passage.x, passage.v
         past.append(np.concatenate([x, v])[use])
+        if np.max(np.abs(past[-1])) > UNBOUNDED:
+            raise RangeError(
+                "speed",
+                f"{packed.model.speed:.9g} rad/s",
+                "lets the motion grow without bound: the varying mesh stiffness feeds it more than damping takes",
+                "give the meshes damping or leave this speed out",
+            )
         if period < 20 or period % 20 != 0:
             continue
         for multiple in range(1, LONGEST_MULTIPLE + 1):

@@ -11,13 +11,14 @@ from fegear.contact.engagement import Engagement
 from fegear.contact.pair_compliance import PairCompliance
 from fegear.contact.transmission_error import revolution
 from fegear.dynamics.excitation import MeshExcitation
+from fegear.dynamics.modes import modes
 from fegear.dynamics.motion_model import MotionModel
 from fegear.dynamics.periodic import Periodic
 from fegear.dynamics.spectra import mesh_force_spectrum
 from fegear.dynamics.steady_state import steady_state
 from fegear.dynamics.tooth_force import dynamic_error
 from fegear.dynamics.train import Body, Damper, Mesh, Torque, Train
-from fegear.errors import InputError
+from fegear.errors import InputError, RangeError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.scene.mesh_excitation import mesh_excitation, tooth_pair_at
 
@@ -84,14 +85,30 @@ def train(zeta=0.1):
     )
 
 
-def test_joined_copies_change_nothing():
+@pytest.mark.parametrize("backlash", [math.inf, 2e-6])
+def test_joined_copies_change_nothing(backlash):
     even = mesh_excitation(replace(uneven(), driver_spacing=np.empty(0)), LOAD)
-    thrice = replace(even, separation=tuple(Periodic.joined([m] * 3) for m in even.separation))
-    speed = 700.0
-    one, three = (steady_state(MotionModel(train(), (e,), speed), tolerance=1e-8) for e in (even, thrice))
+    parts = (even.stiffness, even.separation)
+    stiffness, separation = (tuple(Periodic.joined([f] * 3) for f in part) for part in parts)
+    thrice = replace(even, stiffness=stiffness, separation=separation)
+    rig = train(zeta=0.02)
+    rig = replace(rig, meshes=(replace(rig.meshes[0], backlash=backlash),))
+    speed = 1.1 * 2.0 * math.pi * modes(rig).frequencies[-1] / 28
+    one, three = (steady_state(MotionModel(rig, (e,), speed), tolerance=1e-8) for e in (even, thrice))
+    assert (one.behind[0] > 0.0) == (backlash < 1.0)  # a resonance that hammers both flanks where it can
     assert three.model.period == pytest.approx(3.0 * one.model.period, rel=1e-14)
     assert three.largest == pytest.approx(one.largest, rel=1e-6)
     assert three.smallest == pytest.approx(one.smallest, rel=1e-6)
+
+
+def test_motion_that_grows_for_ever_is_refused():
+    """Teeth that touch on either flank with hardly any play are a spring that the mesh frequency pumps."""
+    even = mesh_excitation(replace(uneven(), driver_spacing=np.empty(0)), LOAD)
+    rig = train(zeta=0.006)
+    rig = replace(rig, meshes=(replace(rig.meshes[0], backlash=2e-6),))
+    speed = 1.2 * 2.0 * math.pi * modes(rig).frequencies[-1] / 28
+    with pytest.raises(RangeError, match="without bound"):
+        steady_state(MotionModel(rig, (even,), speed), tolerance=1e-6)
 
 
 def test_linear_motion_has_the_spectrum_of_the_linear_train():
