@@ -133,6 +133,7 @@ def sweep(
     workers: Annotated[
         int | None, typer.Option("--workers", min=1, help="Processes on this machine; default one for each core.")
     ] = None,
+    no_plots: NoPlots = False,
     no_cache: Annotated[
         bool,
         typer.Option("--no-cache", help="Compute all anew and keep nothing: a killed sweep then starts from nothing."),
@@ -168,7 +169,7 @@ def sweep(
             )
             watching.end(results.seconds)
         with whole_or_nothing(target) as scratch:
-            remarks = write_sweep(results, scratch)
+            remarks = write_sweep(results, scratch, plots=not no_plots)
     except KeyboardInterrupt:
         _leave("interrupted; started again, the sweep goes on where it was.", 130)
     for remark in remarks:

@@ -9,7 +9,7 @@ import re
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -40,6 +40,23 @@ class Point:
     values: tuple[Value, ...]
     tables: tuple[Table, ...]
     remarks: tuple[str, ...]
+
+
+class FailedAlike(NamedTuple):
+    """Points that failed for the same reason but for its numbers.
+
+    Attributes
+    ----------
+    kind : str
+    reason : str
+        Of the first of them.
+    members : tuple of int
+        Their places in the sweep's points.
+    """
+
+    kind: str
+    reason: str
+    members: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -77,18 +94,23 @@ class SweepResults:
         where = np.unravel_index(index, [len(axis) for axis in self.axes])
         return ", ".join(axis.told(int(i)) for axis, i in zip(self.axes, where, strict=True))
 
+    def failed(self) -> list[FailedAlike]:
+        """Failures that differ in their numbers only, together; the largest group first."""
+        groups: dict[tuple[str, str], list[tuple[int, Failure]]] = {}
+        for i, failure in self.failures:
+            groups.setdefault((failure.kind, _NUMBER.sub("#", failure.reason)), []).append((i, failure))
+        return [
+            FailedAlike(kind, found[0][1].reason, tuple(i for i, _ in found))
+            for (kind, _), found in sorted(groups.items(), key=lambda group: -len(group[1]))
+        ]
+
     def grouped_failures(self) -> list[str]:
         """One sentence for each kind of failure: how many points, where the first is, and what it says."""
-        groups: dict[tuple[str, str], list[int]] = {}
-        for i, failure in self.failures:
-            groups.setdefault((failure.kind, _NUMBER.sub("#", failure.reason)), []).append(i)
-        lines = []
-        for (kind, _), members in sorted(groups.items(), key=lambda group: -len(group[1])):
-            first = self.points[members[0]]
-            reason = first.reason if isinstance(first, Failure) else ""
-            count = f"{len(members)} of {len(self.points)} points"
-            lines.append(f"{count} failed ({kind}), the first at {self.place(members[0])}: {reason}")
-        return lines
+        return [
+            f"{len(group.members)} of {len(self.points)} points failed ({group.kind}), the first at "
+            f"{self.place(group.members[0])}: {group.reason}"
+            for group in self.failed()
+        ]
 
     def remarks(self) -> list[str]:
         """Return what the points remark, alike ones as one sentence."""

@@ -1,4 +1,4 @@
-"""What a sweep leaves behind: ``tables/sweep.csv`` with one row for each point, ``sweep.nc`` and ``summary.json``."""
+"""What a sweep leaves: ``tables/sweep.csv`` with a row for each point, ``sweep.nc``, report, pictures, summary."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 import fegear
 from fegear.scene.outcome import Column, Table
 from fegear.show.folder import SUMMARY, files_in
+from fegear.show.report.swept import axis_head, varying, write_sweep_report
 from fegear.show.summary import write_json
 from fegear.show.sweep_dataset import failures, swept_values, write_sweep_dataset
 from fegear.show.tables import write_table
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fegear.scene.sweep import SweepResults
+    from fegear.show.sweep_dataset import Swept
+
+#: Of more values than this the report alone has pictures.
+_MOST_PICTURES = 12
 
 
 def sweep_table(results: SweepResults) -> Table:
@@ -27,24 +32,40 @@ def sweep_table(results: SweepResults) -> Table:
         told = np.array(axis.values if axis.numbers is None else axis.numbers)
         if axis.numbers is not None and all(isinstance(value, int) for value in axis.values):
             told = told.astype(int)
-        columns.append(Column(f"{axis.key} [{axis.unit}]" if axis.unit else axis.key, told[index]))
-    for name, unit, _, number, error in swept_values(results):
-        head = f" [{unit}]" if unit else ""
-        columns.append(Column(name + head, number))
-        if error is not None and error.any():
-            columns.append(Column(f"{name}_error{head}", error))
+        columns.append(Column(axis_head(axis), told[index]))
+    for one in swept_values(results):
+        columns.append(Column(one.head, one.number))
+        if one.error is not None and np.nan_to_num(one.error).any():
+            columns.append(Column(one.error_head, one.error))
     columns.append(Column("failure", failures(results)))
     return Table("sweep", tuple(columns), results.title)
 
 
-def write_sweep(results: SweepResults, folder: Path) -> list[str]:
-    """Write dataset, table and summary.
+def _draw(results: SweepResults, swept: list[Swept], folder: Path) -> list[str]:
+    """Draw the values that vary over one or two axes; returns a remark where that is too many."""
+    axes = tuple(axis for axis in results.axes if len(axis) > 1)
+    moving = varying(swept)
+    if not 1 <= len(axes) <= 2 or not moving:
+        return []
+    from fegear.show.pictures.sweep import draw_value
+
+    folder.mkdir()
+    for one in moving[:_MOST_PICTURES]:
+        draw_value(one, axes, folder)
+    left = len(moving) - _MOST_PICTURES
+    return [f"Pictures are drawn of the first {_MOST_PICTURES} values; the report shows all."] if left > 0 else []
+
+
+def write_sweep(results: SweepResults, folder: Path, *, plots: bool = True) -> list[str]:
+    """Write dataset, table, pictures, report and summary.
 
     Parameters
     ----------
     results : SweepResults
     folder : Path
         An empty folder.
+    plots : bool
+        Whether to draw; without, matplotlib is not imported.
 
     Returns
     -------
@@ -52,9 +73,12 @@ def write_sweep(results: SweepResults, folder: Path) -> list[str]:
         Sentences that the user should read: grouped failures, and what the points remark.
     """
     (folder / "tables").mkdir()
-    write_table(folder / "tables", sweep_table(results))
+    table, swept = sweep_table(results), list(swept_values(results))
+    write_table(folder / "tables", table)
     write_sweep_dataset(folder / "sweep.nc", results)
-    remarks = [*results.grouped_failures(), *results.remarks()]
+    drawn = _draw(results, swept, folder / "plots") if plots else []
+    remarks = [*results.grouped_failures(), *results.remarks(), *drawn]
+    write_sweep_report(folder / "report.html", results, table, swept, results.remarks())
     solved, read, spared = results.shapes
     told = {
         "title": results.title,

@@ -7,7 +7,7 @@ rows (dimension ``<table>.row``). Where a point failed, numbers are NaN and the 
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -40,17 +40,44 @@ def _shared(meanings: Iterable[str]) -> str:
     return ", ".join(clause for clause in first.split(", ") if all(clause in other.split(", ") for other in others))
 
 
-def swept_values(
-    results: SweepResults,
-) -> Iterator[tuple[str, str, str, NDArray[np.float64], NDArray[np.float64] | None]]:
-    """Name, unit, meaning, values in that unit and their errors (None if no point has one); NaN where not computed."""
+class Swept(NamedTuple):
+    """One value of a run over all points of a sweep.
+
+    Attributes
+    ----------
+    name, unit, meaning : str
+    number : ndarray, shape (points,)
+        In that unit; NaN where the point has no such value.
+    error : ndarray, shape (points,), or None
+        Estimated errors; None if no point has one.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    number: NDArray[np.float64]
+    error: NDArray[np.float64] | None
+
+    @property
+    def head(self) -> str:
+        """Head of its column in the table of the sweep."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    @property
+    def error_head(self) -> str:
+        """Head of the column of its errors."""
+        return f"{self.name}_error [{self.unit}]" if self.unit else f"{self.name}_error"
+
+
+def swept_values(results: SweepResults) -> Iterator[Swept]:
+    """Every single value of the runs, over all points."""
     found = [(i, v) for i, point in enumerate(results.points) if isinstance(point, Point) for v in point.values]
     for name, unit in dict.fromkeys((v.name, v.unit) for _, v in found):
         number, error = np.full(len(results.points), np.nan), np.full(len(results.points), np.nan)
         same = [(i, v) for i, v in found if (v.name, v.unit) == (name, unit)]
         for i, v in same:
             number[i], error[i] = v.shown, np.nan if v.shown_error is None else v.shown_error
-        yield name, unit, _shared(v.meaning for _, v in same), number, None if np.isnan(error).all() else error
+        yield Swept(name, unit, _shared(v.meaning for _, v in same), number, None if np.isnan(error).all() else error)
 
 
 def _found_tables(results: SweepResults) -> dict[str, dict[int, Table]]:

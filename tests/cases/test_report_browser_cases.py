@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import csv
 import importlib.util
 import io
+import math
 import sys
 import zipfile
 from pathlib import Path
 
 import pytest
 
+from fegear.scene.axis import read_axis
 from fegear.scene.load import read_scene
 from fegear.scene.plan import make_plan
 from fegear.scene.run import Silence, run_plan
 from fegear.scene.stages import STAGES
+from fegear.scene.sweep import sweep_case
+from fegear.show.sweep import write_sweep
 from fegear.show.write import write_results
 
 _spec = importlib.util.spec_from_file_location("chromium", Path(__file__).with_name("chromium.py"))
@@ -181,3 +186,39 @@ def test_the_menu_of_a_harris_map_changes_its_curves(page, relief):
     assert set(page.run(shown)) == {"te_designed"}
     flat = page.run(f"{plot(key)}.data.filter(t => t.visible === true).map(t => Math.max(...t.y) - Math.min(...t.y))")
     assert min(flat) < 1e-6  # at the design load the designed relief leaves nothing
+
+
+# ---- sweeps ------------------------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    """A sweep whose largest profile shifts are pointed teeth."""
+    folder = tmp_path_factory.mktemp("sweep")
+    axes = [read_axis("gear.a.profile_shift=0:2:5"), read_axis("gear.a.teeth=20:26:3")]
+    results = sweep_case(CASES / "lin_table1.toml", axes, ['results=["geometry"]'], workers=1)
+    assert 0 < len(results.failures) < 15
+    write_sweep(results, folder, plots=False)
+    return results, folder
+
+
+def test_a_sweep_is_shown_as_map_curves_and_lines_through_all_its_values(browser, swept):
+    results, folder = swept
+    browser.size(1300, 900)
+    browser.complaints.clear()
+    browser.open(folder / "report.html")
+    assert browser.complaints == []
+    rows = list(csv.DictReader((folder / "tables" / "sweep.csv").open(encoding="utf-8")))
+    ratio = [float(row["I.contact_ratio"]) for row in rows]
+    expected = [[None if math.isnan(v) else v for v in ratio[k::3]] for k in range(3)]
+    assert browser.run(f"{plot('sweep_map')}.data.find(t => t.visible === true).z.map(row => [...row])") == expected
+    shown = f"{plot('sweep_curves')}.data.filter(t => t.visible === true)"
+    assert browser.run(f"{shown}.map(t => [...t.y])") == expected
+    browser.click(f"{plot('sweep_curves')}.querySelector('.updatemenu-header')")
+    browser.until(f"{plot('sweep_curves')}.querySelectorAll('.updatemenu-dropdown-button').length > 1")
+    browser.run("new Promise(done => setTimeout(done, 300))")
+    browser.click(f"{plot('sweep_curves')}.querySelectorAll('.updatemenu-dropdown-button')[1]")
+    browser.until(f"{plot('sweep_curves')}.querySelector('.ytitle').textContent.includes('centre_distance [mm]')")
+    lines = f"{plot('sweep_coordinates')}.data.filter(t => t.visible === true).flatMap(t => [...t.x])"
+    assert browser.run(f"{lines}.filter(x => x === null).length") == len(results.points) - len(results.failures)
+    assert browser.run("document.querySelector('#failures').textContent").count("pointed") >= 1
+    browser.size(360, 800)
+    browser.until("document.documentElement.scrollWidth === document.documentElement.clientWidth")

@@ -43,6 +43,7 @@ GRID = (
     "--set", 'results=["stiffness"]',
     "--over", "gear.a.profile_shift=-0.1:0.7:5",
     "--over", "stiffness.contact_half_width=0.02:0.215:40:mm",
+    "--no-plots",
 )  # fmt: skip
 
 
@@ -110,10 +111,10 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
         "--over",
         "gear.a.profile_shift=0,0.3",
     )
-    done = fegear(case, *axes, "--out", out, cwd=tmp_path, cache=tmp_path / "cache")
+    done = fegear(case, *axes, "--no-plots", "--out", out, cwd=tmp_path, cache=tmp_path / "cache")
     assert done.returncode == 0, done.stderr
     assert sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()) == [
-        "summary.json", "sweep.nc", "tables/sweep.csv",
+        "report.html", "summary.json", "sweep.nc", "tables/sweep.csv",
     ]  # fmt: skip
     with xarray.open_dataset(out / "sweep.nc") as data:
         assert dict(data.sizes)["gear.a.teeth"] == 3
@@ -148,6 +149,10 @@ def test_failures_are_values_with_a_reason_and_told_in_groups(case, tmp_path):
     counts = [int(note.split()[1]) for note in notes]
     assert sum(counts) == failed.sum()
     assert f"{9 - failed.sum()} of 9 points have results." in done.stdout
+    page = (tmp_path / "results" / "two_sweep" / "report.html").read_text(encoding="utf-8")
+    told = page.split("<section id='failures'")[1].split("</section>")[0]
+    assert [int(row.split("<td>")[1].split("</td>")[0]) for row in told.split("<tr>")[2:]] == counts
+    assert (tmp_path / "results" / "two_sweep" / "plots" / "sweep_I.contact_ratio.png").is_file()
     nothing = fegear(case, "--over", "gear.a.profile_shift=5:6:2", cwd=tmp_path, cache=tmp_path / "cache")
     assert nothing.returncode == 1
     assert "0 of 2 points have results." in nothing.stdout
@@ -199,7 +204,7 @@ def test_a_killed_sweep_of_200_points_goes_on_and_equals_an_uninterrupted_one_bi
     told = json.loads((tmp_path / "resumed" / "summary.json").read_text())["timings"]
     assert 30 <= told["points_kept_from_earlier"] < 200
     assert told["shapes_solved"] < 10
-    for name in ("sweep.nc", "tables/sweep.csv"):
+    for name in ("sweep.nc", "tables/sweep.csv", "report.html"):
         assert (tmp_path / "resumed" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "resumed", "two", "two.toml", "whole"]
 
@@ -221,7 +226,7 @@ def test_executors_are_bit_equal(case, tmp_path):
     assert cluster.stdout is not None
     try:
         address = cluster.stdout.readline().strip()
-        axis = ("--set", 'results=["stiffness"]', "--over", "gear.a.profile_shift=0:2:5", "--no-cache")
+        axis = ("--set", 'results=["stiffness"]', "--over", "gear.a.profile_shift=0:2:5", "--no-cache", "--no-plots")
         for name, more in (("cores", ()), ("one", ("--workers", 1)), ("cluster", ("--scheduler", address))):
             done = fegear(case, *axis, *more, "--out", name, cwd=tmp_path, cache=tmp_path / "cache")
             assert done.returncode == 0, done.stderr

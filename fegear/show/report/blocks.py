@@ -12,7 +12,7 @@ from fegear.show.report.numbers import plain_number, pretty_unit, with_error
 from fegear.show.tables import cell
 
 if TYPE_CHECKING:
-    from fegear.scene.outcome import Table, Value
+    from fegear.scene.outcome import Column, Table, Value
     from fegear.show.pictures.style import Picture
     from fegear.show.report.figure import Figure
     from fegear.show.report.page import Block
@@ -49,7 +49,18 @@ def readable(value: object) -> str:
 
 
 def _words(key: object) -> str:
-    return text(str(key).replace("_", " "))
+    """A name as words; names with dots are keys and stay as they are written."""
+    told = str(key)
+    return text(told if "." in told else told.replace("_", " "))
+
+
+def _head(column: Column) -> str:
+    """Name and unit of a column; some tables have the unit in the name."""
+    name, _, unit = (
+        column.name.removesuffix("]").partition(" [") if column.name.endswith("]") else (column.name, "", "")
+    )
+    unit = pretty_unit(column.unit or unit)
+    return _words(name) + (f" <span class='unit'>{text(unit)}</span>" if unit else "")
 
 
 def _pairs(found: Mapping[str, object]) -> str:
@@ -245,9 +256,7 @@ class DataTable:
         count = len(table.columns[0].values)
         shown = [column.shown[:_ROWS] for column in table.columns]
         head = "".join(
-            f"<th scope='col' title='{text(c.meaning)}'><button type='button' class='sort'>{_words(c.name)}"
-            + (f" <span class='unit'>{text(pretty_unit(c.unit))}</span>" if c.unit else "")
-            + "</button></th>"
+            f"<th scope='col' title='{text(c.meaning)}'><button type='button' class='sort'>{_head(c)}</button></th>"
             for c in table.columns
         )
         rows = "".join(

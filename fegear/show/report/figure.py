@@ -14,6 +14,7 @@ once. The vocabulary of such references is small:
 ``{"$": "by"}``          largest or smallest value for each value of a key
 ``{"$": "unique"}``      different values in order
 ``{"$": "grid"}``        values over two keys, one row for each value of the first
+``{"$": "coordinates"}`` lines through uprights, one for each row, with gaps between
 ======================== ==================================================================================
 
 Colours are names of the house's palette (``@blue``), so that the script can choose the shade for light and dark pages.
@@ -21,6 +22,7 @@ Colours are names of the house's palette (``@blue``), so that the script can cho
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -62,13 +64,21 @@ def column(table: Table, name: str, where: Mapping[str, object] | None = None) -
     table : Table
     name : str
     where : mapping, optional
-        Column names and the cell that a row must have there, as the CSV file writes it; or ``("min", number)``.
+        Column names and the cell that a row must have there, as the CSV file writes it; or ``("min", number)``,
+        ``("max", number)``, ``("between", lowest, first that is too large)``.
     """
     names = [c.name for c in table.columns]
     told: Reference = {"$": "column", "table": table.name, "column": names.index(name)}
     if where:
-        told["where"] = [[names.index(key), list(v) if isinstance(v, tuple) else str(v)] for key, v in where.items()]
+        # JSON has no infinity, and the script takes null for none.
+        told["where"] = [
+            [names.index(key), [_finite(x) for x in v] if isinstance(v, tuple) else str(v)] for key, v in where.items()
+        ]
     return told
+
+
+def _finite(item: object) -> object:
+    return None if isinstance(item, float) and not math.isfinite(item) else item
 
 
 def size(real: Reference, imaginary: Reference) -> Reference:
@@ -96,8 +106,7 @@ class Figure:
     title: str
     caption: str = ""
     panels: list[Panel] = field(default_factory=list)
-    menu: list[tuple[str, list[int]]] = field(default_factory=list)
-    menu_title: str = ""
+    menu: list[tuple[str, list[int], str]] = field(default_factory=list)
     shared: bool = True
 
     def panel(self, x: str, y: str, **options: Any) -> Panel:
@@ -111,10 +120,13 @@ class Figure:
         """All traces, in the order of the panels."""
         return [trace for panel in self.panels for trace in panel.traces]
 
-    def choose(self, label: str, traces: Sequence[dict[str, Any]]) -> None:
-        """Make some traces an entry of the figure's menu; the first entry is shown at first."""
+    def choose(self, label: str, traces: Sequence[dict[str, Any]], ordinate: str = "") -> None:
+        """Make some traces an entry of the figure's menu, with the ordinate's title where each has its own.
+
+        The first entry is shown at first. Call it when all traces are there.
+        """
         every = [id(trace) for trace in self.traces]
-        self.menu.append((label, [every.index(id(trace)) for trace in traces]))
+        self.menu.append((label, [every.index(id(trace)) for trace in traces], ordinate))
 
     def spec(self) -> dict[str, Any]:
         """Return what the page's script draws."""
@@ -148,6 +160,8 @@ class Panel:
         Above the panel.
     limits : (float, float), optional
         Of the ordinate, where some curves would stretch it too far.
+    bare : bool
+        Without an ordinate: only uprights at the abscissa's names.
     """
 
     figure: Figure
@@ -161,6 +175,7 @@ class Panel:
     categories: bool = False
     title: str = ""
     limits: tuple[float, float] | None = None
+    bare: bool = False
     marks: list[tuple[str, object, str]] = field(default_factory=list)
     traces: list[dict[str, Any]] = field(default_factory=list)
 
@@ -169,7 +184,7 @@ class Panel:
         return {
             "x": self.x, "y": self.y, "logX": self.log_x, "logY": self.log_y, "zero": self.zero,
             "height": self.height, "categories": self.categories, "title": self.title, "marks": self.marks,
-            "limits": self.limits,
+            "limits": self.limits, "bare": self.bare,
         }  # fmt: skip
 
     def mark(self, axis: str, at: float | Reference, label: str = "") -> None:
@@ -209,7 +224,7 @@ class Panel:
         })  # fmt: skip
         unit = self.y[self.y.rfind("[") + 1 : -1] if self.y.endswith("]") else ""
         hover = f"%{{y:.6~g}} ± %{{customdata:.1~e}} {unit}".rstrip()
-        return self.add(name, at, values, line=style, customdata=spread, hovertemplate=hover, **look)
+        return self.add(name, at, values, **{"line": style, "customdata": spread, "hovertemplate": hover} | look)
 
     def points(
         self, table: Table, x: str, y: str, name: str, number: int = 0, where: Mapping[str, object] | None = None,

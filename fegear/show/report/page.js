@@ -145,7 +145,9 @@
       let rows = await table(`tables/${of.table}.csv`);
       for (const [index, wanted] of of.where || []) {
         const test = !Array.isArray(wanted) ? (cell) => cell === wanted
-          : wanted[0] === "min" ? (cell) => Number(cell) >= wanted[1] : (cell) => Number(cell) <= wanted[1];
+          : wanted[0] === "min" ? (cell) => Number(cell) >= wanted[1]
+          : wanted[0] === "max" ? (cell) => Number(cell) <= wanted[1]
+          : (cell) => cell !== "nan" && (wanted[1] === null || Number(cell) >= wanted[1]) && (wanted[2] === null || Number(cell) < wanted[2]);
         rows = rows.filter((row) => test(row[index]));
       }
       const cells = rows.map((row) => row[of.column]);
@@ -173,6 +175,17 @@
       const grid = up.map(() => across.map(() => null));
       values.forEach((value, i) => { grid[up.indexOf(rows[i])][across.indexOf(columns[i])] = value; });
       return grid;
+    }
+    if (of.$ === "coordinates") {
+      const uprights = await Promise.all(of.of.map(async (one) => ({ ...one, values: await resolve(one.values) })));
+      return (uprights[0].values).flatMap((_, row) => [...uprights.map((one) => {
+        const value = one.values[row];
+        if (of.part === "x") return one.label;
+        if (of.part === "text") return value === null ? "none" : shown(String(value));
+        if (value === null) return null;
+        if (one.names) return one.names.length < 2 ? 0.5 : one.names.indexOf(String(value)) / (one.names.length - 1);
+        return one.high > one.low ? (value - one.low) / (one.high - one.low) : 0.5;
+      }), null]);
     }
     throw new Error(`unknown reference ${of.$}`);
   }
@@ -204,7 +217,8 @@
       const trace = { ...(await filled(rest)), xaxis: `x${axis(panel)}`, yaxis: `y${axis(panel)}` };
       if (trace.mode === null || trace.mode === undefined) delete trace.mode;
       if (band) {
-        const [x, y, spread] = await Promise.all(band.map(resolve));
+        const all = await Promise.all(band.map(resolve));
+        const [x, y, spread] = all.map((column) => column.filter((_, i) => all.every((one) => one[i] !== null)));
         trace.x = [...x, ...[...x].reverse()];
         trace.y = [...y.map((v, i) => v + spread[i]), ...y.map((v, i) => v - spread[i]).reverse()];
       }
@@ -234,7 +248,9 @@
     const count = spec.panels.length, narrow = width < 560;
     const weights = spec.panels.map((panel) => panel.height);
     const total = weights.reduce((sum, weight) => sum + weight, 0);
-    const names = new Set(spec.traces.filter((trace) => trace.showlegend).map((trace) => trace.name));
+    const first = new Set(spec.menu.length ? spec.menu[0][1] : []), movable = new Set(spec.menu.flatMap(([, list]) => list));
+    const named = spec.traces.filter((trace, i) => trace.showlegend && (!movable.has(i) || first.has(i)));
+    const names = new Set(named.map((trace) => trace.name));
     const lines = Math.ceil(names.size / (narrow ? 1 : 4));
     const bottom = narrow ? 72 : 56;
     const top = 34 + (spec.menu.length ? 46 : 0) + (names.size > 1 ? 21 * lines - 10 : 0);
@@ -264,7 +280,9 @@
       const level = panel.logY || panel.zero ? {} : calm(data, i + 1);
       made[`yaxis${name}`] = { ...grid, ...level, anchor: `x${name}`, title: { text: panel.y, standoff: 8, font: { size: 13 } }, domain: [lower, upper],
         type: panel.logY ? "log" : "-", exponentformat: "power", ...(panel.zero ? { rangemode: "tozero" } : {}),
-        ...(panel.limits ? { range: panel.limits } : {}) };
+        ...(panel.limits ? { range: panel.limits } : {}),
+        ...(panel.bare ? { visible: false, range: [-0.12, 1.12], fixedrange: true } : {}) };
+      if (panel.bare) Object.assign(made[`xaxis${name}`], { gridcolor: "@grey", showline: false, tickangle: narrow ? -60 : -20, fixedrange: true });
       if (panel.title) made.annotations.push({ text: `<b>${panel.title}</b>`, xref: "paper", yref: "paper", x: 0, xanchor: "left",
         y: upper, yanchor: "bottom", yshift: 2, showarrow: false });
       for (const [along, at, label] of panel.marks) {
@@ -281,9 +299,10 @@
     }
     if (spec.menu.length) made.updatemenus = [{ x: 0, xanchor: "left", y: 1 + (top - 8) / (height - top - bottom), yanchor: "top", direction: "down",
       bgcolor: "@paper", bordercolor: "@grid", font: { color: "@ink" }, showactive: true, pad: { t: 0 },
-      buttons: spec.menu.map(([label, members]) => {
-        const chosen = new Set(members), movable = new Set(spec.menu.flatMap(([, list]) => list));
-        return { label, method: "restyle", args: [{ visible: spec.traces.map((_, k) => (movable.has(k) ? chosen.has(k) : true)) }] };
+      buttons: spec.menu.map(([label, members, ordinate]) => {
+        const chosen = new Set(members);
+        const visible = spec.traces.map((_, k) => (movable.has(k) ? chosen.has(k) : true));
+        return { label, method: "update", args: [{ visible }, ordinate ? { "yaxis.title.text": ordinate, "yaxis.autorange": true } : {}] };
       }) }];
     return painted(made, mode);
   }
