@@ -8,16 +8,12 @@ import os
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
 import fegear
 from fegear.errors import FegearError
-
-if TYPE_CHECKING:
-    from fegear.scene.load import Scene
-    from fegear.scene.plan import Plan
 
 #: Finished points of sweeps may take this many bytes on disk.
 _POINTS_LIMIT = 1 << 29
@@ -110,10 +106,11 @@ def plan(case: CaseFile, overrides: Overrides = None) -> None:
     """Tell what a case would compute and why, with which settings, in about how long, and what it would not."""
     from fegear.scene.load import read_scene
     from fegear.scene.plan import make_plan
+    from fegear.scene.plan_text import plan_lines
     from fegear.scene.stages import STAGES
 
     scene = read_scene(case, overrides or ())
-    typer.echo("\n".join(_plan_lines(scene, make_plan(scene, STAGES))))
+    typer.echo("\n".join(plan_lines(scene, make_plan(scene, STAGES))))
 
 
 @app.command()
@@ -244,31 +241,6 @@ def export(
         _leave(_INTERRUPTED, 130)
     for name in written:
         typer.echo(f"Wrote {target / name}")
-
-
-def _plan_lines(scene: Scene, planned: Plan) -> list[str]:
-    lines, total, unknown = ["Will compute:"], 0.0, 0
-    for number, step in enumerate(planned.steps, start=1):
-        effects = f"; effects: {', '.join(step.effects)}" if step.effects else ""
-        lines.append(f"  {number}. {step.task}: {'; '.join(step.reasons)}{effects}")
-        told = step.stage.forecast(scene, step.task.subject)
-        if told.settings:
-            lines.append("     settings: " + ", ".join(f"{key} = {_short(v)}" for key, v in told.settings.items()))
-        if told.seconds is not None:
-            lines.append(f"     about {told.seconds:.2g} s")
-        total, unknown = total + (told.seconds or 0.0), unknown + (told.seconds is None)
-    if planned.skipped:
-        lines.append("Will not compute:")
-        lines += [f"  - {name}: {reason}" for name, reason in planned.skipped]
-    without = f", without {unknown} of the {len(planned.steps)} tasks, which foretell nothing" if unknown else ""
-    lines.append(f"Predicted: about {total:.2g} s of one core, measured on a usual machine{without}.")
-    if planned.idle_effects:
-        lines.append("Effects that are on but that nothing planned uses: " + ", ".join(planned.idle_effects))
-    return lines
-
-
-def _short(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def main() -> None:

@@ -35,11 +35,14 @@ class Plan:
     skipped : tuple of (stage name, reason)
     idle_effects : tuple of str
         Effects that are on but that no step uses.
+    remarks : tuple of str
+        The same in words, with the results that would use them.
     """
 
     steps: tuple[Step, ...]
     skipped: tuple[tuple[str, str], ...]
     idle_effects: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
 
 
 def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
@@ -100,7 +103,14 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
     running = {step.stage.name for step in steps}
     skipped = tuple((stage.name, _why_not(stage)) for stage in stages if stage.name not in running)
     used = {effect for step in steps for effect in step.effects}
-    return Plan(steps, skipped, tuple(effect for effect in on if effect not in used))
+    idle = tuple(effect for effect in on if effect not in used)
+    return Plan(steps, skipped, idle, tuple(_idle(effect, stages) for effect in idle))
+
+
+def _idle(effect: str, stages: Sequence[Stage]) -> str:
+    results = dict.fromkeys(f'"{result}"' for stage in stages if effect in stage.effects for result in stage.results)
+    who = f"ask for {' or '.join(results)}, or leave the effect out" if results else "no result knows it: leave it out"
+    return f"effects.{effect} is on, but nothing that is wanted uses it; {who}."
 
 
 def _require_effects(scene: Scene, stage: Stage) -> None:

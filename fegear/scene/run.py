@@ -85,7 +85,8 @@ class Results:
     @property
     def remarks(self) -> tuple[str, ...]:
         """All remarks, each once."""
-        said = [remark for outcome in self.outcomes.values() for remark in outcome.remarks]
+        said = [*self.plan.remarks]
+        said += [remark for outcome in self.outcomes.values() for remark in outcome.remarks]
         return tuple(dict.fromkeys(said))
 
     @property

@@ -60,10 +60,13 @@ class Forecast(NamedTuple):
         Settings that it will use, plain numbers and texts.
     seconds : float or None
         What it will take, alone on one core of a usual machine; None where nobody knows.
+    shapes : mapping
+        Seconds of the gear shapes that it solves besides, unless an earlier task has solved them, by shape.
     """
 
     settings: Mapping[str, object] = MappingProxyType({})
     seconds: float | None = None
+    shapes: Mapping[object, float] = MappingProxyType({})
 
 
 def _nothing(_scene: Scene, _subject: str) -> tuple[Task, ...]:

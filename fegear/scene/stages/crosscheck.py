@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.scene import forecasts
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.settings import mesh_settings
 from fegear.scene.stage import Stage, Task
@@ -277,4 +278,5 @@ CROSSCHECK = Stage(
     subjects=lambda scene: (_WHOLE,) if scene.gears else (),
     run=_run,
     needs=lambda scene, _subject: tuple(Task("stiffness", name) for name in _gears(scene)),
+    forecast=forecasts.crosscheck,
 )

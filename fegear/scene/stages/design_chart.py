@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.errors import FegearError, InputError
+from fegear.scene import forecasts
 from fegear.scene.motion import excitations_at
 from fegear.scene.outcome import Column, Outcome, Table, Value
-from fegear.scene.stage import Stage, Task
+from fegear.scene.stage import Need, Stage, Task
 from fegear.scene.stages.dynamic_factor import check_motion
 from fegear.scene.stages.gear_train import assemble, gear_train, the_train
 from fegear.scene.stages.loaded_pair import loaded_pair
@@ -134,13 +135,7 @@ def _check(scene: Scene, subject: str) -> None:
     needs_speeds(scene, subject)
     check_motion(scene)
     pair = train_part(scene).pair_of(_mesh(scene))
-    effects = scene.case.effects
-    if not (effects.contact_loss and effects.parametric):
-        raise InputError(
-            "effects.contact_loss", str(effects.contact_loss).lower(), "and parametric are needed for design-chart",
-            "set both to true",
-        )  # fmt: skip
-    if effects.friction:
+    if scene.case.effects.friction:
         raise InputError("effects.friction", "true", "is not known to design-chart", "leave it out")
     ratio = scene.pairs[pair].contact_ratio
     if not 1.0 <= ratio < 2.0:
@@ -226,4 +221,9 @@ DESIGN_CHART = Stage(
     needs=_needs,
     check=_check,
     effects=("contact_loss", "parametric"),
+    requires=(
+        Need("contact_loss", "reliefs are chosen for the forces at which teeth part"),
+        Need("parametric", "relief acts on single tooth pairs, and without it all are one spring"),
+    ),
+    forecast=forecasts.design_chart,
 )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene import forecasts
 from fegear.scene.left_out_motion import motion_remarks
 from fegear.scene.motion import in_time, motion_model
 from fegear.scene.outcome import Column, Outcome, Table, Value
@@ -77,6 +78,8 @@ def _run_sweep(scene: Scene, _subject: str, done: Done, progress: Progress) -> O
         progress((number + 1) / order.size)
     found = tuple(states[::-1] if part.direction == "down" else states)
     remarks = [*motion_remarks(scene, data, found)]
+    if "friction" in part.model_fields_set and not scene.case.effects.friction:
+        remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
     odd = [state for state in found if state.kind != "periodic"]
     if odd:
         told = ", ".join(f"{state.model.speed * data.speed_ratio * 30.0 / np.pi:.6g} rpm {state.kind}" for state in odd)
@@ -126,6 +129,8 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     else:
         chart = _linear_chart(scene, data, i, speeds, progress)
     chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
+    parting = scene.case.effects.contact_loss and bool(states)
+    zero = "" if parting else "; zero, for nothing parts without effects.contact_loss"
     table = Table(
         f"dynamic_factor_{name}",
         (
@@ -133,8 +138,8 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
             Column(
                 "dynamic_factor", chart.dynamic_factor, "", "largest force on one tooth pair over the mean mesh force"
             ),
-            Column("contact_loss_fraction", chart.apart, "", "share of the time without contact"),
-            Column("backside_fraction", chart.behind, "", "share of the time on the back flanks"),
+            Column("contact_loss_fraction", chart.apart, "", f"share of the time without contact{zero}"),
+            Column("backside_fraction", chart.behind, "", f"share of the time on the back flanks{zero}"),
             Column(
                 "periods", chart.periods, "", "periods of excitation after which the motion repeats; 0 if it does not"
             ),
@@ -145,18 +150,20 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     )
     worst, where = chart.worst
     error = part.tolerance * worst if states else None
-    values = (
+    values = [
         Value(f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {part.direction}"),
         Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {data.speed_of}"),
-        Value(f"{name}.largest_contact_loss", float(chart.apart.max()), "", None, "share of the time"),
-    )
+    ]
+    if parting:
+        lost = float(chart.apart.max())
+        values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "share of the time"))
     remarks = [] if states else [*pull_remarks(data, i, speeds, part.harmonics)]
     if states and not scene.case.effects.parametric:
         remarks.append(
             f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
             "dynamic factor is that of the mesh force."
         )
-    return Outcome(DynamicFactorData(chart, data.speed_of), (table,), values, {}, tuple(remarks))
+    return Outcome(DynamicFactorData(chart, data.speed_of), (table,), tuple(values), {}, tuple(remarks))
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -177,6 +184,7 @@ MOTION = Stage(
     needs=needs_train,
     check=check_motion,
     effects=("contact_loss", "friction", "parametric"),
+    forecast=forecasts.motion,
 )
 
 DYNAMIC_FACTOR = Stage(
@@ -188,4 +196,5 @@ DYNAMIC_FACTOR = Stage(
     needs=lambda scene, name: (*needs_train(scene, name), *((Task("motion"),) if in_time(scene) else ())),
     check=_check,
     effects=("contact_loss", "friction", "parametric"),
+    forecast=forecasts.dynamic_factor,
 )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene import forecasts
 from fegear.scene.loaded_pair import MEMBERS, gear_name
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage, Task
@@ -141,4 +142,5 @@ DYNAMIC_ROOT_STRESS = Stage(
     needs=lambda _scene, name: (Task("tooth-force", name),),
     check=_check,
     effects=("neighbour_coupling",),
+    forecast=forecasts.dynamic_root_stress,
 )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.dynamics.matrices import static_forces
+from fegear.scene import forecasts
 from fegear.scene.loaded_pair import check_relief
 from fegear.scene.outcome import Outcome, Value
 from fegear.scene.stage import Stage, Task
@@ -106,4 +107,5 @@ GEAR_TRAIN = Stage(
     needs=_needs,
     check=_check,
     effects=EFFECTS,
+    forecast=forecasts.gear_train,
 )

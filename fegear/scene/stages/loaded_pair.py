@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from fegear.scene import forecasts
 from fegear.scene.left_out import pair_remarks
 from fegear.scene.loaded_pair import LoadedPair, build_loaded_pair, check_pair, effect_remarks
 from fegear.scene.outcome import Outcome
@@ -74,4 +75,5 @@ LOADED_PAIR = Stage(
     run=_run,
     check=check_pair,
     effects=EFFECTS,
+    forecast=forecasts.loaded_pair,
 )

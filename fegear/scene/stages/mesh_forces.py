@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene import forecasts
 from fegear.scene.left_out import percent
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage
@@ -288,6 +289,7 @@ MESH_FORCE_SPECTRUM = Stage(
     run=_run_spectrum,
     needs=needs_train,
     check=needs_one_speed,
+    forecast=forecasts.mesh_force_spectrum,
 )
 
 TOOTH_FORCE = Stage(
@@ -298,4 +300,5 @@ TOOTH_FORCE = Stage(
     run=_run_force,
     needs=needs_train,
     check=needs_one_speed,
+    forecast=forecasts.tooth_force,
 )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene import forecasts
 from fegear.scene.case.design import DesignPart
 from fegear.scene.left_out import design_remarks
 from fegear.scene.loaded_pair import LoadedPair, gear_name
@@ -275,4 +276,5 @@ RELIEF = Stage(
     run=_run,
     needs=needs_pair,
     effects=DESIGN_EFFECTS,
+    forecast=forecasts.relief,
 )

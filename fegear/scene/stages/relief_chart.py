@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.scene import forecasts
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage, Task
 from fegear.scene.stages.loaded_pair import loaded_pair, needs_pair
@@ -171,6 +172,7 @@ RELIEF_CHART = Stage(
     run=_run_chart,
     needs=needs_pair,
     effects=DESIGN_EFFECTS,
+    forecast=forecasts.relief_chart,
 )
 
 
@@ -182,4 +184,5 @@ ROBUSTNESS = Stage(
     run=_run_robustness,
     needs=lambda scene, name: (*needs_pair(scene, name), Task("relief", name)),
     effects=DESIGN_EFFECTS,
+    forecast=forecasts.robustness,
 )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene import forecasts
 from fegear.scene.loaded_pair import MEMBERS, LoadedPair, check_relief, gear_name
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage
@@ -182,4 +183,5 @@ ROOT_STRESS_HISTORY = Stage(
     needs=needs_pair,
     check=_check,
     effects=EFFECTS,
+    forecast=forecasts.root_stress_history,
 )

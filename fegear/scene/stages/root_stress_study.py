@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene import forecasts
 from fegear.scene.names import nearest
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.settings import mesh_settings
@@ -150,4 +151,5 @@ ROOT_STRESS_STUDY = Stage(
     subjects=lambda scene: ("",) if scene.gears else (),
     run=_run,
     check=_check,
+    forecast=forecasts.root_stress_study,
 )

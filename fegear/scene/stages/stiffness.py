@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.errors import InputError, RangeError
+from fegear.scene import forecasts
 from fegear.scene.outcome import Column, Outcome, Table, Value
-from fegear.scene.settings import mesh_settings, seconds_of_gear
+from fegear.scene.settings import mesh_settings
 from fegear.scene.stage import Forecast, Stage, Task
 from fegear.scene.tooth_influence import gear_influence
 
@@ -32,6 +33,8 @@ LARGEST_HALF_WIDTH = 0.5
 STRESS_SHARE = 5.0
 #: Reading off one position of a solved gear [s].
 _SECONDS_PER_POSITION = 3e-4
+#: The error estimates of a table [s].
+_SECONDS_OF_TABLE = 0.05
 #: How many times the finite-element part reports that it goes on.
 _STEPS = 3
 
@@ -214,7 +217,9 @@ def _forecast(scene: Scene, name: str) -> Forecast:
     if scene.case.gear[name].tooth_mesh is not None:
         return Forecast({"mesh": scene.case.gear[name].tooth_mesh, "order": settings.order})
     positions = len(scene.case.stiffness.radii or ()) or scene.case.stiffness.positions
-    return Forecast(asdict(settings), seconds_of_gear(settings) + _SECONDS_PER_POSITION * positions)
+    return Forecast(
+        asdict(settings), _SECONDS_OF_TABLE + _SECONDS_PER_POSITION * positions, forecasts.shapes(scene, [name])
+    )
 
 
 STIFFNESS = Stage(

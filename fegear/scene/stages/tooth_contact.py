@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene import forecasts
 from fegear.scene.case.part import at
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage
@@ -37,6 +38,16 @@ def _check(scene: Scene, name: str) -> None:
         raise InputError(
             f"pair.{name}.misalignment", "(a table)", "is given, but the effect is off",
             "write misalignment = true under [effects], or leave the table out",
+        )  # fmt: skip
+    _check_data(scene)
+
+
+def _check_data(scene: Scene) -> None:
+    if scene.case.effects.misalignment and all(part.misalignment is None for part in scene.case.pair.values()):
+        name = next(iter(scene.helical_pairs), "NAME")
+        raise InputError(
+            "effects.misalignment", "true", "finds no pair with a misalignment in this case",
+            f'give pair.{name}.misalignment = {{ shaft_angle = "3 arcmin" }}, or leave the effect out',
         )  # fmt: skip
 
 
@@ -185,4 +196,5 @@ TOOTH_CONTACT = Stage(
     run=_run,
     check=_check,
     effects=("misalignment",),
+    forecast=forecasts.tooth_contact,
 )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.scene import forecasts
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage
 from fegear.scene.stages.gear_train import gear_train, needs_train, the_train
@@ -122,6 +123,7 @@ NATURAL_MODES = Stage(
     subjects=the_train,
     run=_run_modes,
     needs=needs_train,
+    forecast=lambda _scene, _subject: forecasts.constant(0.005),
 )
 
 DYNAMIC_INCREMENTS = Stage(
@@ -131,4 +133,5 @@ DYNAMIC_INCREMENTS = Stage(
     subjects=the_train,
     run=_run_increments,
     needs=needs_train,
+    forecast=forecasts.dynamic_increments,
 )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.scene import forecasts
 from fegear.scene.case.part import at
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage
@@ -148,4 +149,5 @@ TRANSMISSIBILITY = Stage(
     results=("transmissibility",),
     subjects=lambda scene: tuple(scene.case.transmissibility),
     run=_run,
+    forecast=forecasts.transmissibility,
 )

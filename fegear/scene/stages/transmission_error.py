@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.scene import forecasts
 from fegear.scene.loaded_pair import LoadedPair, check_relief
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.stage import Stage
@@ -281,4 +282,5 @@ TRANSMISSION_ERROR = Stage(
     needs=needs_pair,
     check=check_relief,
     effects=EFFECTS,
+    forecast=forecasts.transmission_error,
 )

@@ -1,0 +1,108 @@
+"""What a plan foretells: every stage has a say, a shape counts once, and the seconds are about right (long run)."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fegear.errors import InputError
+from fegear.scene.load import read_scene
+from fegear.scene.plan import make_plan
+from fegear.scene.plan_text import forecast_seconds, plan_lines
+from fegear.scene.stage import Stage, Task
+from fegear.scene.stages import STAGES
+
+ROOT = Path(__file__).parents[2]
+CASES = ROOT / "cases"
+
+
+def planned(name: str, *overrides: str):
+    scene = read_scene(CASES / f"{name}.toml", overrides)
+    return scene, make_plan(scene, STAGES)
+
+
+def test_every_task_of_every_case_is_foretold():
+    silent = Stage("x", "x", (), lambda _scene: (), lambda *_: None).forecast
+    assert not [stage.name for stage in STAGES if stage.forecast is silent]
+    for path in sorted(CASES.glob("*.toml")):
+        scene, plan = planned(path.stem)
+        seconds = forecast_seconds(scene, plan)
+        assert all(found is not None and found > 0.0 for found in seconds), path.stem
+        assert not plan.remarks, path.stem
+
+
+def test_a_shape_is_solved_once_and_counts_once():
+    scene, plan = planned("pinion_and_wheel", 'results=["stiffness", "load-sharing"]')
+    by_task = dict(zip([step.task for step in plan.steps], forecast_seconds(scene, plan), strict=True))
+    assert by_task[Task("loaded-pair", "I")] < 0.5 * by_task[Task("stiffness", "pinion")]
+    alone = planned("pinion_and_wheel", 'results=["load-sharing"]')
+    assert forecast_seconds(*alone)[0] > 2.0 * by_task[Task("loaded-pair", "I")]
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "less"),
+    [
+        ("calculix_pair", "effects.corner_contact=true", "effects.corner_contact=false"),
+        ("calculix_pair", "effects.neighbour_coupling=true", "effects.neighbour_coupling=false"),
+        ("calculix_pair", "accuracy.tolerance=1e-4", "accuracy.tolerance=1e-2"),
+        ("lin_dynamic_factor", "effects.contact_loss=true", "effects.contact_loss=false"),
+        ("lin_dynamic_factor", "effects.friction=true", "effects.friction=false"),
+        ("litvin_lead", "tooth_contact.positions=4000", "tooth_contact.positions=400"),
+        ("lin_design_chart", "dynamics.chart={ amounts = [0.5, 1.0], lengths = [0.5, 0.8, 1.0] }",
+         "dynamics.chart={ amounts = [0.5], lengths = [0.5] }"),
+    ],
+)  # fmt: skip
+def test_what_costs_more_is_foretold_to_cost_more(name, more, less):
+    total = [sum(found or 0.0 for found in forecast_seconds(*planned(name, option))) for option in (more, less)]
+    assert total[0] > 1.1 * total[1]
+
+
+def test_the_plan_says_where_nobody_knows():
+    mesh = next((ROOT / "meshes").glob("*.msh"))
+    lines = plan_lines(*planned("lin_table1", f"gear.a.tooth_mesh='{mesh}'"))
+    assert any("without stiffness of a, of which nobody knows" in line for line in lines)
+    assert any("nobody knows how long" in line for line in lines)
+
+
+def test_effects_that_nothing_uses_are_told_by_plan_and_run():
+    scene, plan = planned("lin_tip_relief", "effects.friction=true", "effects.off_line_of_action=true")
+    assert plan.idle_effects == ("friction", "off_line_of_action")
+    lines = [line for line in plan_lines(scene, plan) if line.startswith("Note: ")]
+    assert 'ask for "dynamic-factor", or leave the effect out' in lines[0]
+    assert "no result knows it" in lines[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides", "key", "remedy"),
+    [
+        ("lin_design_chart", ("effects.contact_loss=false",), "effects.contact_loss", "write contact_loss = true"),
+        ("lin_design_chart", ("effects.parametric=false",), "effects.parametric", "write parametric = true"),
+        ("lin_dynamic_factor", ("train.mesh.I.backlash='60 um'", "effects.contact_loss=false"),
+         "train.mesh.I.backlash", "switch the effect on"),
+        ("lin_dynamic_factor", ("effects.friction=true", "effects.parametric=false"), "effects.friction",
+         "set effects.parametric = true"),
+        ("litvin_lead", ("effects.misalignment=false",), "pair.I.misalignment", "write misalignment = true"),
+    ],
+)  # fmt: skip
+def test_results_without_an_effect_that_they_need_are_refused_with_the_remedy(name, overrides, key, remedy):
+    with pytest.raises(InputError) as caught:
+        planned(name, *overrides)
+    assert caught.value.key == key
+    assert remedy in str(caught.value)
+
+
+@pytest.mark.long
+def test_seconds_are_within_a_factor_of_three():
+    """Every task of every case but the design chart, which takes minutes; on a machine of the usual kind."""
+    script = ROOT / "benchmarks" / "forecasts.py"
+    done = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, check=True, env=dict(os.environ)
+    )
+    rows = [line.split() for line in done.stdout.splitlines()[1:]]
+    off = [row for row in rows if not 1.0 / 3.0 < float(row[-1]) < 3.0]
+    assert not [row for row in off if row[1] == "all"]
+    assert len(off) <= 0.05 * len(rows), off
