@@ -258,6 +258,16 @@ def test_the_study_ends_with_one_picture(tmp_path):
         app([
             "run", str(CASES / "root_stress_validation.toml"), "--out", str(tmp_path / "o"),
             "--set", "study={gear='base', teeth=[20, 28], load_position=[0.5, 1.0]}",
+            "--set", "gear.base.module='2 mm'",
         ])  # fmt: skip
     assert [path.name for path in (tmp_path / "o" / "plots").iterdir()] == ["root_stress_study.png"]
     assert [path.name for path in (tmp_path / "o" / "tables").iterdir()] == ["root_stress_study.csv"]
+    # The formula's pure number over the module of 2 mm is the stress per line load.
+    with (tmp_path / "o" / "tables" / "root_stress_study.csv").open(encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if (row["formula"], row["teeth"]) == ("iso-6336-3", "20")]
+    tooth = read_scene(CASES / "root_stress_validation.toml").gears["base"].tooth
+    formula = ROOT_STRESS_SOURCES["iso-6336-3"].formula
+    for row in rows:
+        pure = formula(Tooth(20, tooth.rack, tooth.profile_shift), float(row["load_radius [mm]"]) / 2.0).stress
+        assert float(row["stress [MPa.mm/N]"]) == pytest.approx(pure / 2.0, rel=1e-9)
+        assert 0.5 < float(row["stress [MPa.mm/N]"]) / float(row["stress_fe [MPa.mm/N]"]) < 1.5

@@ -41,7 +41,7 @@ def test_every_picture_shows_something(case, names, tmp_path):
     results = run_plan(scene, make_plan(scene, STAGES))
     pictures, missing = draw_all(results, tmp_path / "plots", lambda _fraction: None)
     assert not missing
-    found = {picture.path.stem: picture for picture in pictures}
+    found = {picture.path.stem: picture for _, picture in pictures}
     for name in names:
         picture = found[f"{name}_I"]
         assert picture.title

@@ -48,7 +48,7 @@ def _check(scene: Scene, _subject: str) -> None:
             )
 
 
-def _table(found: list[VariantStress], names: tuple[str, ...]) -> Table:
+def _table(found: list[VariantStress], names: tuple[str, ...], module: float) -> Table:
     from fegear.contact.root_stress_study import verdict
 
     rows = []
@@ -67,8 +67,8 @@ def _table(found: list[VariantStress], names: tuple[str, ...]) -> Table:
                         position,
                         one.radius[i],
                         name,
-                        stress,
-                        one.fe[i],
+                        stress / module,
+                        one.fe[i] / module,
                         ratio,
                         answers.tangent_angle[i] if answers else np.nan,
                         one.fe_angle[i],
@@ -84,8 +84,8 @@ def _table(found: list[VariantStress], names: tuple[str, ...]) -> Table:
         ("load_position", "", "share of the roll angle between start (0) and end (1) of the involute"),
         ("load_radius", "mm", "radius of the load"),
         ("formula", "", "name of the formula"),
-        ("stress", "", "by the formula: root stress x module / line load"),
-        ("stress_fe", "", "by finite elements"),
+        ("stress", "MPa.mm/N", "by the formula: root stress over line load"),
+        ("stress_fe", "MPa.mm/N", "by finite elements"),
         ("ratio_to_fe", "", "formula over finite elements"),
         ("place_angle", "deg", "fillet tangent to tooth centre line where the formula puts the stress"),
         ("place_angle_fe", "deg", "the same by finite elements"),
@@ -130,7 +130,7 @@ def _run(scene: Scene, _subject: str, _done: Done, progress: Progress) -> Outcom
     )
     found = root_stress_study(gears, study.load_position, settings, progress)
     names = tuple(ROOT_STRESS_SOURCES)
-    table = _table(found, names)
+    table = _table(found, names, base.module)
     told = (
         "Study of root stress: one tooth of the whole ring under one load normal to its flank, no friction; FE is the "
         "largest tangential stress of the fillet below the load, radial compression included; ratio of bore to root "

@@ -19,6 +19,7 @@ from fegear.show.pictures.style import (
     Picture,
     figure,
     in_house_style,
+    legend_above,
     save,
 )
 
@@ -157,7 +158,7 @@ def draw_tooth_force(data: ToothForceData, path: Path) -> Picture:
     top.axhline(float(data.train.forces[data.mesh]), color=BLACK, lw=0.8)
     top.set_ylim(bottom=min(0.0, 1.05 * float((force.total + others).min())))
     top.set_ylabel("tooth force [N]")
-    top.legend(fontsize=9, loc="lower center", ncols=3 if several else 2)
+    legend_above(top, 3 if several else 2)
     bottom.plot(x, force.own, color=BLUE, label=f"from mesh {name}")
     for j, other in enumerate(data.train.names):
         if j != data.mesh:
@@ -206,7 +207,8 @@ def draw_dynamic_factor(data: DynamicFactorData, path: Path, name: str) -> Pictu
     odd = chart.periods == 0
     if odd.any():
         top.plot(speed[odd], chart.dynamic_factor[odd], "o", mfc="none", color=RED, label="motion that does not repeat")
-    top.set_ylim(bottom=min(1.0, 0.97 * float(chart.mesh_force_factor.min())))
+    lowest = float(min(np.nanmin(chart.mesh_force_factor), np.nanmin(chart.dynamic_factor)))
+    top.set_ylim(bottom=min(1.0, 0.97 * lowest))
     top.set_ylabel("largest over mean force")
     top.legend(fontsize=9)
     if lost:
@@ -262,7 +264,8 @@ def draw_modes(table: Table, path: Path) -> Picture:
         share = np.asarray(column.values, dtype=float)[1:]
         axes.bar(place, share, 0.6, below, color=_COLOURS[m % 7], label=f"mesh {column.name.removeprefix('energy_')}")
         below = below + share
-    axes.bar(place, 1.0 - below, 0.6, below, color="0.8", label="shafts")
+    if (1.0 - below).max() > 1e-6:
+        axes.bar(place, 1.0 - below, 0.6, below, color="0.8", label="shafts")
     axes.set_xticks(place, [f"{k + 1}\n{f:.5g} Hz" for k, f in enumerate(frequency)])
     axes.set_ylim(0.0, 1.0)
     axes.set_xlabel("mode and its natural frequency")

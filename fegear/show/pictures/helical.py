@@ -19,6 +19,7 @@ from fegear.show.pictures.style import (
     Picture,
     figure,
     in_house_style,
+    legend_above,
     save,
 )
 
@@ -72,7 +73,7 @@ def draw_transmission_error(contact: ToothContact, path: Path, name: str) -> Pic
     axes.set_ylim(low - room, high + 0.5 * room)
     axes.set_xlabel("pinion angle $\\phi_1$ [deg]")
     axes.set_ylabel("transmission error $\\Delta\\phi_2$ [arcsec]")
-    axes.legend(fontsize=8, ncols=3, loc="lower center")
+    legend_above(axes, 5)
     caption = (
         f"Pair {name}: turn of the gear ahead of N1/N2 times the pinion's, over two cycles. The pair that touches "
         f"first leads. Peak to peak {contact.peak_to_peak * _ARCSEC:.4g} arcsec."
@@ -146,6 +147,9 @@ def draw_bearing(contact: ToothContact, bearing: Bearing, path: Path, name: str,
     top.set_ylim(bottom=0.0)
     top.legend(fontsize=9)
     bottom.plot(phi[order], bearing.ellipse.pressure[order] * 1e-6, ".", color=RED)
+    middle = 1e-6 * float(bearing.ellipse.pressure.mean())
+    if np.ptp(bearing.ellipse.pressure) < 1e-3 * float(bearing.ellipse.pressure.mean()):
+        bottom.set_ylim(0.95 * middle, 1.05 * middle)  # as good as constant: its last digits say nothing
     bottom.set_ylabel("largest pressure [MPa]")
     bottom.set_xlabel("pinion angle $\\phi_1$ [deg]")
     caption = f"Pair {name}: contact ellipses where the flanks touch on their surfaces, one pair carrying {load:.4g} N."

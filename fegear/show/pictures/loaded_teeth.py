@@ -39,7 +39,9 @@ def load_colours(count: int) -> list[tuple[float, float, float, float]]:
     """One colour for each load, from light to dark, told apart in grey too."""
     from matplotlib import colormaps
 
-    return [colormaps["viridis_r"](0.15 + 0.8 * i / max(count - 1, 1)) for i in range(count)]
+    if count == 1:
+        return [colormaps["viridis_r"](0.7)]
+    return [colormaps["viridis_r"](0.15 + 0.8 * i / (count - 1)) for i in range(count)]
 
 
 def load_label(load: float, nominal: float) -> str:

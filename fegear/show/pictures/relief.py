@@ -126,6 +126,8 @@ def draw_harris(data: ReliefData, path: Path, name: str) -> Picture:
 @in_house_style
 def draw_chart(data: ReliefChartData, path: Path, name: str) -> Picture | None:
     """Draw A_e over amount and length for several loads with the optimum line; None without enough candidates."""
+    from matplotlib.ticker import MaxNLocator
+
     chart = data.chart
     if chart.amounts.size < 2 or chart.lengths.size < 3:
         return None
@@ -136,7 +138,7 @@ def draw_chart(data: ReliefChartData, path: Path, name: str) -> Picture | None:
         rows, columns, size=(4.6 * columns + 1.2, 3.4 * rows + 0.6), sharex=True, sharey=True, squeeze=False
     )
     values = chart.effective_error[:, :, picked] * 1e6
-    levels = np.linspace(values.min(), values.max(), 15)
+    levels = MaxNLocator(14).tick_values(float(values.min()), float(values.max()))
     optimum = chart.optimum_lengths()
     shown = None
     for axes, i in zip(panels.ravel(), picked, strict=False):

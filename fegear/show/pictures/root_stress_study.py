@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 #: Ratios beyond 1 -+ this have the full colour.
 _FULL = 0.4
-_INCH_A_ROW = 0.19
+_INCH_A_ROW = 0.24
 _COLUMNS = 3
 
 
@@ -34,7 +34,7 @@ def draw_root_stress_study(table: Table, path: Path) -> Picture:
     columns = min(_COLUMNS, len(names))
     rows = -(-len(names) // columns)
     made, every = figure(
-        rows, columns, size=(10.0, rows * (1.2 + _INCH_A_ROW * len(gears))), sharey=True, sharex=True, squeeze=False
+        rows, columns, size=(12.0, rows * (1.2 + _INCH_A_ROW * len(gears))), sharey=True, sharex=True, squeeze=False
     )
     image = None
     for i, axes in enumerate(every.flat):
@@ -47,17 +47,17 @@ def draw_root_stress_study(table: Table, path: Path) -> Picture:
         axes.grid(visible=False)
         axes.set_title(names[i])
         axes.set_xticks(range(len(positions)), [f"{p:g}" for p in positions])
-        axes.set_yticks(range(len(gears)), [f"{z:.0f} | {x:+.2g} | {r:.2g}" for z, x, r in gears], fontsize=7)
+        axes.set_yticks(range(len(gears)), [f"{z:.0f} | {x:+.2g} | {r:.2g}" for z, x, r in gears], fontsize=9)
         for (row, column), value in np.ndenumerate(ratio[:, i]):
             text = f"{value:.2f}" if np.isfinite(value) else "×"
             strong = np.isfinite(value) and value < 1 - 0.75 * _FULL
-            axes.text(column, row, text, ha="center", va="center", fontsize=6.5, color="white" if strong else "black")
+            axes.text(column, row, text, ha="center", va="center", fontsize=8.5, color="white" if strong else "black")
         for edge in np.flatnonzero(np.diff([z for z, _, _ in gears])):
             axes.axhline(edge + 0.5, color="black", lw=0.8)
         if i + columns >= len(names):
             axes.set_xlabel("load: share of roll angle, start 0, end 1")
         if i % columns == 0:
-            axes.set_ylabel("teeth | profile shift | rack tip radius in modules", fontsize=9)
+            axes.set_ylabel("teeth | profile shift | rack tip radius in modules")
     if image is not None:
         bar = made.colorbar(image, ax=every, location="top", fraction=0.006, pad=0.004, aspect=60, extend="both")
         bar.set_label("root stress, formula / finite elements (× on grey: the formula breaks down)")

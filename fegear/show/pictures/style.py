@@ -33,6 +33,8 @@ DPI = 150
 _SETTINGS = {
     "font.size": 10.0,
     "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
     "grid.color": "0.88",
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -63,6 +65,11 @@ def in_house_style(draw: Callable[P, R]) -> Callable[P, R]:
             return draw(*arguments, **options)
 
     return drawn
+
+
+def legend_above(axes: Any, columns: int) -> None:
+    """Put the legend above the axes, where no curve is."""
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=9, borderaxespad=0.2)
 
 
 def figure(

@@ -49,14 +49,17 @@ def _values(results: Results) -> tuple[Block, ...]:
     told = [(task, outcome.values) for task, outcome in results.outcomes.items() if outcome.values]
     told.sort(key=lambda item: (bool(wanted) and item[0] not in wanted, not any(value.error for value in item[1])))
     blocks: list[Block] = []
-    shown = 0
+    shown, tolerance = 0, results.scene.case.accuracy.tolerance
     for task, values in told:
-        table = Values(values, results.scene.case.accuracy.tolerance)
         if shown and shown + len(values) > _MOST_OPEN:
-            blocks.append(Folded(f"{_title(results, task)} ({len(values)} values)", (table,)))
+            folded = Values(values, tolerance)
+            blocks.append(Folded(f"{_title(results, task)} ({len(values)} values)", (folded,)))
             continue
         shown += len(values)
-        blocks += [Heading(_title(results, task)), table]
+        blocks += [Heading(_title(results, task)), Values(values[:_MOST_OPEN], tolerance)]
+        if len(values) > _MOST_OPEN:
+            rest = values[_MOST_OPEN:]
+            blocks.append(Folded(f"{len(rest)} more of them", (Values(rest, tolerance),)))
     return tuple(blocks)
 
 
