@@ -6,6 +6,7 @@ the gallery to some cases (names separated by commas).
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import re
@@ -27,6 +28,8 @@ ROOT = Path(__file__).resolve().parents[1]
 MADE = ROOT / "results" / "gallery"
 #: Rows of a table's beginning that a page shows.
 _ROWS = 8
+#: Characters of a case's comment after which no further sentence of it is on the gallery's first page.
+_ABOUT = 200
 #: Pages outside docs/ that belong to the site, and where links to them are found.
 _OUTSIDE = {"index.md": ROOT / "README.md", "meshes.md": ROOT / "meshes" / "README.md"}
 
@@ -82,19 +85,31 @@ def _table(path: Path) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
+def _comment(path: Path) -> str:
+    """What a case file says of itself before its first key."""
+    lines = itertools.takewhile(lambda line: line.startswith("#"), path.read_text("utf-8").splitlines())
+    return " ".join(line.lstrip("# ") for line in lines)
+
+
+def _card(path: Path) -> str:
+    """A case on the gallery's first page: its title, what it is about, and its first picture, smaller."""
+    summary = json.loads((MADE / path.stem / "summary.json").read_text("utf-8"))
+    pictures = [name for name in summary["files"] if name.endswith(".png")]
+    sentences = re.split(r"(?<=[a-z)\d][.:]) (?=[A-Z])", _comment(path))
+    reach = itertools.accumulate(len(sentence) for sentence in sentences)
+    about = " ".join(sentence for sentence, end in zip(sentences, reach, strict=True) if end - len(sentence) < _ABOUT)
+    shown = f"[![{_title(path)}]({path.stem}/{pictures[0]})]({path.stem}.md)" if pictures else ""
+    return f"## [{_title(path)}]({path.stem}.md)\n\n{shown}\n\n{about}"
+
+
 def page(path: Path) -> str:
     """Text of a case's page."""
     out, text = MADE / path.stem, path.read_text("utf-8")
     summary = json.loads((out / "summary.json").read_text("utf-8"))
-    comment = []
-    for line in text.splitlines():
-        if not line.startswith("#"):
-            break
-        comment.append(line.lstrip("# "))
     pictures = [name for name in summary["files"] if name.endswith(".png")]
     parts = [
         f"# {_title(path)}",
-        " ".join(comment),
+        _comment(path),
         f"```sh\nfegear run cases/{path.name}\n```",
         (
             f"Computed in {summary['timings']['total']:.2f} s. [The whole report]({path.stem}/report.html), "
@@ -158,13 +173,13 @@ def on_files(files, config):
         files.append(File.generated(config, name, content=source.read_text("utf-8")))
     index = ["# Gallery", "", "Each page is one file of `cases/` and what `fegear run` makes of it.", ""]
     for path in cases():
-        index.append(f"- [{_title(path)}]({path.stem}.md)")
+        index.append(_card(path))
         files.append(File.generated(config, f"gallery/{path.stem}.md", content=page(path)))
         for made in sorted((MADE / path.stem).rglob("*")):
             relative = made.relative_to(MADE).as_posix()
             if made.is_file() and made.suffix in (".png", ".csv", ".html", ".nc"):
                 files.append(File.generated(config, f"gallery/{relative}", abs_src_path=str(made)))
-    files.append(File.generated(config, "gallery/index.md", content="\n".join(index) + "\n"))
+    files.append(File.generated(config, "gallery/index.md", content="\n\n".join(index) + "\n"))
     return files
 
 
