@@ -21,6 +21,7 @@ from fegear.geometry.relief import (
 )
 from fegear.scene.case.part import at
 from fegear.scene.csv_columns import read_columns
+from fegear.scene.taken import bore_remarks, width_remarks
 from fegear.scene.tooth_influence import gear_influence
 
 if TYPE_CHECKING:
@@ -118,7 +119,7 @@ def check_relief(scene: Scene, name: str) -> None:
 
 
 def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
-    """Data of the pair that its effects leave out, and corners that cannot touch, in words."""
+    """Data of the pair that its effects leave out, values taken for what is not given, corners that cannot touch."""
     remarks, effects = [], scene.case.effects
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
         part = scene.case.gear[gear]
@@ -126,6 +127,9 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
             remarks.append(f"Gear {gear} has a relief, but effects.relief is off: its flanks are taken as involutes.")
         if part.spacing_errors is not None and not effects.spacing_errors:
             remarks.append(f"Gear {gear} has spacing_errors, but the effect is off: its teeth are taken as even.")
+        remarks += width_remarks(scene, gear)
+        if scene.case.pair[name].compliance.source == "fe":
+            remarks += bore_remarks(scene, gear)
     pair = scene.pairs[name]
     if effects.corner_contact:
         from fegear.geometry import interference

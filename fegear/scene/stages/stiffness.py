@@ -12,6 +12,7 @@ from fegear.scene import forecasts
 from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.settings import mesh_settings
 from fegear.scene.stage import Forecast, Stage, Task
+from fegear.scene.taken import bore_remarks
 from fegear.scene.tooth_influence import gear_influence
 
 if TYPE_CHECKING:
@@ -186,12 +187,7 @@ def _remarks(scene: Scene, name: str, t: StiffnessTable) -> tuple[str, ...]:
             f"Gear {name}: no contact_half_width or load was given, so c_self is for a half-width of "
             f"{USUAL_HALF_WIDTH} modules."
         )
-    if scene.case.gear[name].bore_radius is None:
-        bore = scene.gears[name].bore_radius * 1e3
-        remarks.append(
-            f"Gear {name}: no bore_radius was given; the body is held at half the root radius, {bore:.6g} mm."
-        )
-    return tuple(remarks)
+    return (*remarks, *bore_remarks(scene, name))
 
 
 def _run_stiffness(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:

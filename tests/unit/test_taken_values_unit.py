@@ -1,0 +1,38 @@
+"""A run tells what it takes for keys that the case leaves out and the answer depends on."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+
+from fegear.scene.load import build_scene
+from fegear.scene.loaded_pair import effect_remarks
+
+CASE = {
+    "results": ["transmission-error"],
+    "gear": {"a": {"teeth": 28, "module": "3 mm", "bore_radius": "15 mm", "face_width": "10 mm"}},
+    "pair": {"I": {"driver": "a", "driven": "a", "load": "1000 N"}},
+}
+
+
+def said(case: dict, tmp_path) -> tuple[str, ...]:
+    return effect_remarks(build_scene(case, "case", tmp_path), "I")
+
+
+@pytest.mark.parametrize(
+    ("key", "told"), [("face_width", "the load is carried on 1 mm"), ("bore_radius", "half the root radius, 19.125 mm")]
+)
+def test_a_missing_length_is_told_once_with_the_value_taken(key, told, tmp_path):
+    assert said(CASE, tmp_path) == ()
+    case = copy.deepcopy(CASE)
+    del case["gear"]["a"][key]
+    (remark,) = said(case, tmp_path)
+    assert told in remark
+
+
+def test_a_body_that_the_source_does_not_know_is_not_talked_about(tmp_path):
+    case = copy.deepcopy(CASE)
+    del case["gear"]["a"]["bore_radius"]
+    case["pair"]["I"]["compliance"] = {"source": "weber-banaschek"}
+    assert said(case, tmp_path) == ()
