@@ -19,6 +19,7 @@ import io
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import traceback
@@ -197,11 +198,22 @@ def prepare(folder: Path) -> dict[str, str]:
 
 
 def execute(page: Path, folder: Path) -> str:
-    """Run a page in a folder of its own, in a process of its own; what went wrong, or nothing."""
+    """Run a page in a folder of its own, in a process of its own; what went wrong, or nothing.
+
+    What the page's commands left running in the background, a cluster for example, ends with it.
+    """
     environment = prepare(folder)
     command = [sys.executable, str(Path(__file__)), str(page)]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    return done.stderr or f"ends with {done.returncode}" if done.returncode else ""
+    pipe = subprocess.PIPE
+    running = subprocess.Popen(
+        command, cwd=folder, env=environment, stdout=pipe, stderr=pipe, text=True, start_new_session=True
+    )
+    try:
+        _, told = running.communicate()
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGTERM)
+    return told or f"ends with {running.returncode}" if running.returncode else ""
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -129,6 +130,20 @@ def test_a_refusal_counts_only_where_the_page_shows_it(tmp_path):
     assert "ends with 2" in snippets.execute(page, tmp_path / "alone")
     page.write_text(f"{command}\n```text\nfegear: ...\n```\n")
     assert snippets.execute(page, tmp_path / "shown") == ""
+
+
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="looks for processes in /proc")
+def test_what_a_failing_page_leaves_running_ends_with_it(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("```sh\nsleep 600 > log 2>&1 &\necho $! > pid\nfalse\n```\n")
+    assert "ends with 1" in snippets.execute(page, tmp_path / "run")
+    left = Path("/proc") / (tmp_path / "run" / "pid").read_text().strip() / "cmdline"
+    for _ in range(100):
+        if not left.exists() or not left.read_bytes():  # gone, or ended and not yet waited for
+            break
+        time.sleep(0.05)
+    else:
+        pytest.fail("the background process still runs")
 
 
 @pytest.mark.parametrize(
