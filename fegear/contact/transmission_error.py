@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -201,9 +202,12 @@ def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int,
         m.compliance, finite[:, :, None] + errors[:, None, :], np.full(cycles, load),
         m.log_slope, m.reference_load, m.tilt, m.power,
     )  # fmt: skip
-    x = points.x[None, :] + pair.base_pitch * np.arange(cycles)[:, None]
-    whole = Panels(x.ravel(), np.tile(points.weights, cycles), cycles * pair.base_pitch, points.breaks)
-    return fourier_series(whole, shared.transmission_error.T.ravel(), harmonics)
+    # The points of every base pitch lie alike, so that the sum over the base pitches is a fast Fourier transform: a
+    # kernel of all points times all harmonics would take gigabytes for hunting tooth numbers.
+    over_pitches = np.fft.fft(shared.transmission_error, axis=1)
+    n, period = np.arange(harmonics + 1), cycles * pair.base_pitch
+    within = np.exp(-2j * math.pi / period * np.multiply.outer(n, points.x)) * points.weights / period
+    return FourierSeries((within * over_pitches[:, n % cycles].T).sum(axis=1), period)
 
 
 @dataclass(frozen=True, slots=True)

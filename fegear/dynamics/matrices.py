@@ -78,21 +78,29 @@ def stiffness_matrix(train: Train, *, meshes: bool = True) -> Array:
     return _assemble(train, [e.stiffness if meshes or e.mesh < 0 else 0.0 for e in elements(train)])
 
 
-def static_angles(train: Train) -> Array:
-    """Rotation angles under the constant torques [rad], with the mean mesh stiffness; kinetic mean angle zero."""
-    root = np.sqrt(train.inertia)
-    rigid = train.ratios * root
-    rigid = rigid / np.linalg.norm(rigid)
-    reduced = stiffness_matrix(train) / np.outer(root, root)
-    # the rigid-body motion gets a stiffness of its own, of the size of the others, and takes no torque
-    bordered = reduced + np.outer(rigid, rigid) * np.trace(reduced)
-    load = train.torque / root
-    angles: Array = np.linalg.solve(bordered, load - rigid * (rigid @ load)) / root
-    return angles
-
-
 def static_forces(train: Train) -> Array:
-    """Mean force of each gear pair under the constant torques [N], positive when it presses the teeth together."""
-    stiffness = np.array([mesh.stiffness for mesh in train.meshes])
-    forces: Array = stiffness * (train.approach @ static_angles(train))
+    """Mean force of each gear pair under the constant torques [N], positive when it presses the teeth together.
+
+    Divided by the speed ratios, every spring joins two nodes: what it carries follows from equilibrium alone wherever
+    the train is a tree. Forces and angles are therefore unknowns beside each other; angles alone would leave the force
+    of a gear pair beside a stiff shaft as a small difference (half its digits lost at 1e16 N m/rad).
+    """
+    springs = [e for e in elements(train) if e.stiffness > 0.0]
+    count, ratio = len(springs), train.ratios
+    matrix = np.zeros((count + train.size, count + train.size))
+    turns = np.array([spring.radius_a * ratio[spring.a] for spring in springs])
+    compliance = np.array([1.0 / (e.stiffness * turn**2) for e, turn in zip(springs, turns, strict=True)])
+    for k, spring in enumerate(springs):
+        matrix[k, k] = compliance[k] / compliance.max()
+        for node, sign in ((spring.a, 1.0), (spring.b, -1.0)):
+            matrix[k, count + node] = -sign
+            matrix[count + node, k] = sign
+    # The first body stands still; its equilibrium follows from that of the others once the torques are balanced.
+    share = train.inertia * ratio**2
+    load = train.torque * ratio
+    load -= share / share.sum() * load.sum()
+    matrix[count, :] = 0.0
+    matrix[count, count], load[0] = 1.0, 0.0
+    through = np.linalg.solve(matrix, np.concatenate([np.zeros(count), load]))
+    forces: Array = (through[:count] / turns)[: len(train.meshes)]
     return forces

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Model = HelicalPairModel | ReducedPairModel
 
+#: Relative round-off beyond which fewer than half of the digits are left.
+HALF_THE_DIGITS = 1e-8
+
 
 @dataclass(frozen=True, eq=False)
 class ModeTable:
@@ -41,6 +44,10 @@ class ModeTable:
     normal_force, bending_moment : ndarray
         abs(Delta_eta + kappa Delta_theta) and abs(kappa Delta_eta + mu Delta_theta): what the mesh transmits in the
         mode, for unit-norm shapes.
+    frequency_doubt, shape_doubt : ndarray
+        Relative round-off of each frequency and shape as the eigenvalue problem leaves it: a soft mode beside stiff
+        ones loses digits of its frequency, a mode near another's frequency those of its shape (where they coincide
+        the shapes, and the indices that follow from them, are one choice of many).
     """
 
     ratio: Array
@@ -51,6 +58,42 @@ class ModeTable:
     coupling: Array
     normal_force: Array
     bending_moment: Array
+    frequency_doubt: Array
+    shape_doubt: Array
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader should know of digits lost: where fewer than half of them are left."""
+        told = []
+        soft = np.flatnonzero((self.frequency > 0.0) & (self.frequency_doubt > HALF_THE_DIGITS)) + 1
+        near = np.flatnonzero((self.frequency > 0.0) & (self.shape_doubt > HALF_THE_DIGITS)) + 1
+        if soft.size:
+            told.append(
+                f"modes {_listed(soft)} are so soft beside the stiffest that round-off leaves their frequencies "
+                f"{float(self.frequency_doubt[soft - 1].max()):.0e} of doubt"
+            )
+        if near.size:
+            told.append(
+                f"modes {_listed(near)} share a frequency with another to within round-off: their shapes and indices "
+                "are one choice of many, and only sums over such modes mean something"
+            )
+        return tuple(told)
+
+
+def _listed(numbers: NDArray[np.int64]) -> str:
+    return ", ".join(str(n) for n in numbers)
+
+
+def _doubts(frequency: Array) -> tuple[Array, Array]:
+    """Relative round-off of natural frequencies and of their shapes (Wilkinson; Davis and Kahan)."""
+    squared = frequency**2
+    noise = np.finfo(float).eps * frequency.size * max(float(squared.max()), np.finfo(float).tiny)
+    apart = np.abs(squared[:, None] - squared[None, :])
+    apart[np.arange(squared.size), np.arange(squared.size)] = np.inf
+    with np.errstate(divide="ignore"):
+        of_frequency = np.where(squared > 0.0, 0.5 * noise / np.where(squared > 0.0, squared, 1.0), 0.0)
+        of_shape = np.minimum(noise / apart.min(axis=1), 1.0)
+    return of_frequency, np.where(squared > 0.0, of_shape, 0.0)
 
 
 def relative_motion(model: Model, shapes: Array) -> Array:
@@ -76,6 +119,7 @@ def mode_table(model: Model) -> ModeTable:
     eta, theta = (np.where(frequency > 0.0, v, 0.0) for v in (eta, theta))
     small = 1e-13
     eta, theta = (np.where(np.abs(v) < small, 0.0, v) for v in (eta, theta))
+    frequency_doubt, shape_doubt = _doubts(frequency)
     energy = 0.5 * eta**2 + 0.5 * mu * theta**2
     mixed = np.abs(kappa * eta * theta)
     coupling = np.divide(mixed, energy, out=np.zeros_like(mixed), where=energy > 0.0)
@@ -88,6 +132,8 @@ def mode_table(model: Model) -> ModeTable:
         coupling=coupling,
         normal_force=np.abs(eta + kappa * theta),
         bending_moment=np.abs(kappa * eta + mu * theta),
+        frequency_doubt=frequency_doubt,
+        shape_doubt=shape_doubt,
     )
 
 

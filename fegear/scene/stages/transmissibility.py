@@ -140,7 +140,9 @@ def _run(scene: Scene, name: str, _done: Done, _progress: Progress) -> Outcome:
     )
     data = TransmissibilityData(mesh, modes, ranking, response)
     tables = (_mode_table(name, modes, ranking), _response_table(name, response))
-    return Outcome(data, tables, values, {"damping_ratio": part.damping_ratio, "frequencies": part.frequencies})
+    settings = {"damping_ratio": part.damping_ratio, "frequencies": part.frequencies}
+    remarks = tuple(f"Pair {name}: {remark}." for remark in modes.remarks)
+    return Outcome(data, tables, values, settings, remarks)
 
 
 TRANSMISSIBILITY = Stage(

@@ -26,7 +26,7 @@ HARMONICS = 64
 #: Roll positions of the table over the base pitch; those on either side of every jump come in addition.
 _POSITIONS = 200
 #: Largest number of base pitches over which rotational harmonics of spacing errors are computed.
-_MOST_CYCLES = 2000
+_MOST_CYCLES = 10_000
 
 
 @dataclass(frozen=True)
@@ -218,8 +218,9 @@ def _run(_scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
         cycles = e.cycles
         if cycles > _MOST_CYCLES:
             remarks.append(
-                f"Pair {name}: the teeth meet again only after {cycles} base pitches; rotational harmonics of spacing "
-                f"errors are computed up to {_MOST_CYCLES}."
+                f"Pair {name}: the teeth meet again only after {cycles} base pitches, more than the {_MOST_CYCLES} "
+                "over which rotational harmonics of spacing errors are computed, so these are left out. Give the "
+                "errors of one gear alone to see its harmonics."
             )
         else:
             rotational = revolution(e, pair.nominal, cycles, 3 * cycles)
