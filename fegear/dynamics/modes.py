@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.matrices import damping_matrix, elements, stiffness_matrix
+from fegear.dynamics.matrices import damping_matrix, elements
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
@@ -71,15 +71,21 @@ def modes(train: Train) -> Modes:
 
 
 def damped_eigenvalues(train: Train) -> ComplexArray:
-    """Eigenvalues [rad/s] of the damped train with mean mesh stiffness, sorted by modulus, shape (2 size,)."""
-    size = train.size
-    root = np.sqrt(train.inertia)
-    scale = np.outer(root, root)
-    state = np.zeros((2 * size, 2 * size))
-    state[:size, size:] = np.eye(size)
-    state[size:, :size] = -stiffness_matrix(train) / scale
-    state[size:, size:] = -damping_matrix(train) / scale
-    values = np.linalg.eigvals(state)
+    """Eigenvalues [rad/s] of the damped train with mean mesh stiffness, sorted by modulus, shape (2 size,).
+
+    In modal coordinates, with the free turning taken out beforehand: as a double zero it would come back as a pair of
+    the size of the square root of round-off, one of them growing.
+    """
+    found, size = modes(train), train.size
+    damping = found.shapes.T @ damping_matrix(train) @ found.shapes
+    if all(part.geared or part.damping == 0.0 for part in elements(train)):
+        damping[0, :] = damping[:, 0] = 0.0
+    flexible = size - 1
+    state = np.zeros((flexible + size, flexible + size))
+    state[:flexible, size:] = np.eye(flexible)
+    state[flexible:, flexible:] = -damping
+    state[size:, :flexible] = -np.diag((2.0 * math.pi * found.frequencies[1:]) ** 2)
+    values = np.append(np.linalg.eigvals(state), 0.0)
     return np.asarray(values[np.argsort(np.abs(values), kind="stable")], dtype=complex)
 
 

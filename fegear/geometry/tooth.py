@@ -111,7 +111,7 @@ class Tooth:
             raise GeometryError(
                 "tip_radius",
                 f"{self.tip_radius:.6g}",
-                f"must exceed the base radius {self.base_radius:.6g} (in modules)",
+                f"must exceed the base radius of {self.base_radius:.6g} modules",
                 "raise the tip diameter",
             )
         pointed = self.base_radius * math.hypot(1.0, float(roll_of_polar_angle(self.base_half_angle)))
@@ -120,7 +120,7 @@ class Tooth:
                 "tip_radius",
                 f"{self.tip_radius:.6g}",
                 f"is beyond the point where the flanks meet, {pointed:.6g} modules: the tooth is pointed",
-                f"choose a tip diameter below {2 * pointed:.6g} modules or a smaller profile shift",
+                f"choose a tip diameter below {2 * pointed * (1.0 - 1e-6):.6g} modules or a smaller profile shift",
             )
         if self.tip_radius <= self.form_radius:
             raise GeometryError(
@@ -129,11 +129,7 @@ class Tooth:
                 f"leaves no involute: it starts at {self.form_radius:.6g} modules",
                 "raise the tip diameter or the profile shift",
             )
-        key = "tip_rounding" if self.tip_rounding > 0.0 else "tip_chamfer"
-        if self.involute_tip_radius <= self.form_radius:
-            raise GeometryError(key, getattr(self, key), "takes away the whole involute", "choose a smaller one")
-        if self.tip_half_angle <= 0.0:
-            raise GeometryError(key, getattr(self, key), "is wider than the tip allows", "choose a smaller one")
+        self._check_tip_edge()
         neck = float(self.fillet.points(np.linspace(self.fillet.start, self.fillet.end, 257))[0].min())
         if neck < _THINNEST_NECK:
             raise GeometryError(
@@ -143,6 +139,46 @@ class Tooth:
                 + ("it is cut off" if neck <= 0.0 else f"a neck of {2.0 * neck:.2g} modules is left"),
                 "raise the profile shift or the number of teeth",
             )
+
+    def _check_tip_edge(self) -> None:
+        key = "tip_rounding" if self.tip_rounding > 0.0 else "tip_chamfer"
+        size = self.tip_rounding + self.tip_chamfer
+        if size == 0.0 or self._edge_fits(key, size):
+            return
+        end = self._involute_end(key, size)
+        rule = "takes away the whole involute" if not end > self.form_radius else "is wider than the tip allows"
+        low, high = 0.0, size
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self._edge_fits(key, middle) else (low, middle)
+        fits = math.floor(low * 1e4) * 1e-4
+        raise GeometryError(key, f"{size:.6g}", rule, f"choose at most {fits:.4f} modules")
+
+    def _edge_fits(self, key: str, size: float) -> bool:
+        """Whether a rounding or chamfer of this size leaves some involute and some tip land."""
+        end = self._involute_end(key, size)
+        return end > self.form_radius and self._land_half_angle(key, size, end) > 0.0
+
+    def _involute_end(self, key: str, size: float) -> float:
+        """Radius at which a rounding or chamfer of this size ends the involute; NaN where it ends on none."""
+        if key == "tip_chamfer" or size == 0.0:
+            return self.tip_radius - size
+        inner = self.tip_radius - size
+        if inner <= self.base_radius:
+            return math.nan
+        # The rounding's centre lies on the parallel involute (same base circle, roll length less the rounding).
+        length = size + math.sqrt((inner - self.base_radius) * (inner + self.base_radius))
+        return math.hypot(self.base_radius, length)
+
+    def _land_half_angle(self, key: str, size: float, end: float) -> float:
+        """Half the angle of the tip land that an edge of this size leaves [rad]."""
+        if key == "tip_chamfer":
+            return float(self.half_thickness_angle(end)) - size / self.tip_radius
+        roll = float(self.roll(end))
+        phi = self.base_half_angle - roll
+        flank = Involute(self.base_radius, self.base_half_angle, 0.0, roll)
+        x, y = flank.points(roll) - size * np.array([math.cos(phi), -math.sin(phi)])
+        return math.atan2(x, y)
 
     # ---- circles and angles -------------------------------------------------------------------------------------
     @property
@@ -259,26 +295,14 @@ class Tooth:
     @cached_property
     def involute_tip_radius(self) -> float:
         """Radius at which the involute ends: the tip circle, or where its rounding or chamfer starts [modules]."""
-        if self.tip_rounding > 0.0:
-            inner = self.tip_radius - self.tip_rounding
-            if inner <= self.base_radius:
-                raise GeometryError("tip_rounding", self.tip_rounding, "reaches below the base circle")
-            # The rounding's centre lies on the parallel involute (same base circle, roll length less the rounding).
-            length = self.tip_rounding + math.sqrt((inner - self.base_radius) * (inner + self.base_radius))
-            return math.hypot(self.base_radius, length)
-        return self.tip_radius - self.tip_chamfer
+        key = "tip_rounding" if self.tip_rounding > 0.0 else "tip_chamfer"
+        return self._involute_end(key, self.tip_rounding + self.tip_chamfer)
 
     @cached_property
     def tip_half_angle(self) -> float:
         """Half the angle of the tip land that is left [rad]."""
-        if self.tip_rounding > 0.0:
-            t = float(self.roll(self.involute_tip_radius))
-            phi = self.base_half_angle - t
-            x, y = self.involute.points(t) - self.tip_rounding * np.array([math.cos(phi), -math.sin(phi)])
-            return math.atan2(x, y)
-        if self.tip_chamfer > 0.0:
-            return float(self.half_thickness_angle(self.involute_tip_radius)) - self.tip_chamfer / self.tip_radius
-        return float(self.half_thickness_angle(self.tip_radius))
+        key = "tip_rounding" if self.tip_rounding > 0.0 else "tip_chamfer"
+        return self._land_half_angle(key, self.tip_rounding + self.tip_chamfer, self.involute_tip_radius)
 
     # ---- curves ----------------------------------------------------------------------------------------------------
     @cached_property

@@ -211,7 +211,9 @@ def _keys_at(loc: Sequence[str]) -> list[str]:
     while steps:
         step = steps.pop(0)
         annotations = [model.model_fields[step].annotation for model in models if step in model.model_fields]
-        if steps and any(get_origin(annotation) is dict for annotation in annotations):
+        if any(get_origin(annotation) is dict for annotation in annotations):
+            if not steps:
+                return []
             steps.pop(0)  # the name that the user gave
         models = [model for annotation in annotations for model in part_models(annotation)] or models
     return sorted({name for model in models for name in model.model_fields})
@@ -253,9 +255,9 @@ def set_key(document: dict[str, Any], path: str, value: object, option: str = "-
     table = document
     for depth, step in enumerate(steps[:-1]):
         if step not in table:
-            if steps[depth - 1 : depth] in (["gear"], ["pair"]):
+            known = _keys_at(steps[:depth]) if depth else sorted(Case.model_fields)
+            if not known:  # a misspelt name would otherwise begin a gear, a body or a shaft of its own
                 raise InputError(option, f'"{path}"', f'"{step}" is not in this case', nearest(step, table))
-            known = _keys_at(steps[:depth])
             if step not in known:
                 raise InputError(option, f'"{path}"', f'"{step}" is an unknown key', nearest(step, known))
             table[step] = {}

@@ -55,6 +55,9 @@ def whole_or_nothing(target: Path, key: str = "--out") -> Iterator[Path]:
     """
     target = target.absolute()
     made: list[Path] = []
+    below = next((folder for folder in target.parents if folder.exists()), target)
+    if not below.is_dir():
+        raise InputError(key, f'"{target}"', f'lies below "{below}", which is a file', "choose another folder")
     try:
         made = _made_parents(target.parent)
         if target.exists() and not target.is_dir():

@@ -95,7 +95,7 @@ def test_torque_becomes_a_load_along_the_line_of_action():
         ("gear.a.pressure_angle=60 deg", "gear.a.pressure_angle", "between 5 and 45"),
         ("gear.a.profile_shift=2.5", "gear.a.profile_shift", "pointed"),
         ("gear.a.tip_diameter=40 mm", "gear.a.tip_diameter = 40 mm", "pointed"),
-        ("gear.a.tip_radius_rounding=3 mm", "gear.a.tip_radius_rounding = 3 mm", "below the base"),
+        ("gear.a.tip_radius_rounding=3 mm", "gear.a.tip_radius_rounding = 3 mm", "choose at most 0.5793 mm"),
         ("gear.a.plane=stres", "gear.a.plane", "'strain', 'stress' or 'auto'"),
         ("gear.b.plane=auto", "gear.b.face_width", "missing"),
         ("gear.a.profile_shift=nan", "gear.a.profile_shift", "finite"),

@@ -66,7 +66,6 @@ def test_a_store_that_cannot_be_written_to_is_told(tmp_path):
 @pytest.fixture(scope="module")
 def scheduler():
     """A Dask scheduler with one worker on this machine."""
-    pytest.importorskip("distributed")
     program = (
         "from dask.distributed import LocalCluster\n"
         "import sys\n"
@@ -94,7 +93,6 @@ def test_a_cluster_gives_the_same(scheduler, tmp_path):
 
 
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
-    pytest.importorskip("distributed")
     monkeypatch.setattr("fegear.scene.cluster._PATIENCE", 0.5)
     with pytest.raises(InputError, match=re.escape("--scheduler = tcp://127.0.0.1:9: does not answer")):
         map_points(math.sqrt, [1.0], scheduler="tcp://127.0.0.1:9")

@@ -101,7 +101,8 @@ def test_axes_that_mean_nothing_are_refused(text):
 
 
 def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
-    xarray = pytest.importorskip("xarray")
+    import xarray
+
     out = tmp_path / "out"
     axes = (
         "--over",
@@ -136,7 +137,8 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
 
 
 def test_failures_are_values_with_a_reason_and_told_in_groups(case, tmp_path):
-    xarray = pytest.importorskip("xarray")
+    import xarray
+
     done = fegear(case, "--over", "gear.a.profile_shift=0:2:9", cwd=tmp_path, cache=tmp_path / "cache")
     assert done.returncode == 0, done.stderr
     notes = [line for line in done.stdout.splitlines() if "failed" in line]
@@ -210,7 +212,6 @@ def test_a_killed_sweep_of_200_points_goes_on_and_equals_an_uninterrupted_one_bi
 
 
 def test_executors_are_bit_equal(case, tmp_path):
-    pytest.importorskip("distributed")
     program = (
         "from dask.distributed import LocalCluster\n"
         "import sys\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 from pydantic import Field, model_validator
@@ -180,12 +181,18 @@ class GearPart(Part):
 
     def _in_words_of_the_case(self, error: InputError) -> InputError:
         """Tell lengths that the tooth takes in modules as the case gave them."""
+
+        def in_mm(text: str) -> str:
+            return re.sub(
+                r"(\d[\d.e+-]*) modules", lambda found: f"{float(found[1]) * self.module_length * 1e3:.6g} mm", text
+            )
+
         if error.key in ("tip_rounding", "tip_chamfer"):
             length = self.tip_radius_rounding if error.key == "tip_rounding" else self.tip_chamfer
-            return InputError(error.key, f"{length * 1e3:.6g} mm", error.rule, error.remedy)
+            return InputError(error.key, f"{length * 1e3:.6g} mm", in_mm(error.rule), in_mm(error.remedy))
         if error.key != "tip_radius":
             return error
-        rule = f"the tip radius of {error.value} modules {error.rule}"
+        rule, remedy = in_mm(f"the tip radius of {error.value} modules {error.rule}"), in_mm(error.remedy)
         if self.tip_diameter is None:
-            return InputError("profile_shift", self.profile_shift, rule, error.remedy)
-        return InputError("tip_diameter", f"{self.tip_diameter * 1e3:.6g} mm", rule, error.remedy)
+            return InputError("profile_shift", self.profile_shift, rule, remedy)
+        return InputError("tip_diameter", f"{self.tip_diameter * 1e3:.6g} mm", rule, remedy)
