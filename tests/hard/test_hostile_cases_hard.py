@@ -1,0 +1,185 @@
+"""Case files that mean harm or were mistyped: a clear refusal or finite numbers, never a traceback or a NaN."""
+
+import copy
+import math
+import os
+import signal
+import subprocess
+import sys
+import tomllib
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fegear.errors import FegearError, InputError
+from fegear.scene.load import apply_override, build_scene, read_scene
+from fegear.scene.plan import make_plan
+from fegear.scene.run import run_plan
+from fegear.scene.stages import STAGES
+
+CASES = Path(__file__).parents[2] / "cases"
+PAIR = tomllib.loads(
+    """
+results = ["geometry", "load-sharing", "transmission-error"]
+[gear.a]
+teeth = 20
+module = "3 mm"
+profile_shift = 0.2
+face_width = "20 mm"
+[gear.b]
+teeth = 33
+module = "3 mm"
+face_width = "20 mm"
+tip_radius_rounding = "0.1 mm"
+relief = { tip = { amount = "12 um", normalised_length = 0.9 } }
+[pair.I]
+driver = "a"
+driven = "b"
+load = "1615 N"
+compliance = { source = "weber-banaschek" }
+[effects]
+hertz = "load-dependent"
+relief = true
+"""
+)
+
+
+def leaves(table, path=()):
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from leaves(value, (*path, key))
+        elif key not in ("results", "title"):
+            yield (*path, key), value
+
+
+PLACES = list(leaves(PAIR))
+
+
+@st.composite
+def wrong(draw, value):
+    """The value scaled by anything, of another kind, or of another dimension."""
+    factor = draw(st.sampled_from([0.0, -1.0, 1e-12, 1e-6, 1e-3, 0.1, 0.5, 0.9, 1.1, 2.0, 10.0, 1e3, 1e6, 1e12, 1e200]))
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, int):
+        return draw(st.one_of(st.integers(-3, 2000), st.sampled_from([10**9, 10**18, 10**400])))
+    if isinstance(value, float):
+        return draw(st.sampled_from([value * factor, math.nan, math.inf, 1e-300]))
+    number, _, unit = value.partition(" ")
+    if not unit:
+        return draw(st.sampled_from([value, "", "nonsense"]))
+    return draw(st.sampled_from([f"{float(number) * factor!r} {unit}", f"{number} parsec", number, f"nan {unit}"]))
+
+
+@given(st.data())
+def test_any_case_gives_finite_numbers_or_one_sentence(data):
+    document = copy.deepcopy(PAIR)
+    for _ in range(data.draw(st.integers(1, 3))):
+        path, value = data.draw(st.sampled_from(PLACES))
+        table = document
+        for step in path[:-1]:
+            table = table[step]
+        table[path[-1]] = data.draw(wrong(value))
+    document["effects"]["corner_contact"] = data.draw(st.booleans())
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            scene = build_scene(document, "case", Path())
+            results = run_plan(scene, make_plan(scene, STAGES))
+        except FegearError as refused:
+            text = str(refused)
+            assert 20 < len(text) < 700
+            assert "Traceback" not in text
+            return
+    for table in results.tables:
+        for column in table.columns:
+            values = np.asarray(column.values)
+            if values.dtype.kind == "f":
+                assert np.isfinite(values).all(), (table.name, column.name)
+    for value in results.values:
+        assert not isinstance(value.value, float) or math.isfinite(value.value), value.name
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (["gear.a.bore_radius=1e-9 mm"], "too near the centre"),
+        (["gear.a.bore_radius=26.849 mm"], "too near the root circle"),
+        (["gear.a.material.poisson_ratio=0.49999"], "at most 0.4999"),
+        (["gear.a.material.poisson_ratio=0.7"], "inside"),
+        (["gear.a.module=1e200 mm"], "beyond any machine"),
+        (["gear.a.profile_shift=1e200"], "beyond any machine"),
+        (["gear.a.teeth=5", "gear.a.profile_shift=-0.75"], "undercut"),
+        (["gear.a.tip_radius_rounding=2 mm"], "choose at most"),
+        (["gear.a.tip_chamfer=3 mm"], "choose at most"),
+        (["gear.a.tip_diameter=90 mm"], "choose a tip diameter below 69.93"),
+    ],
+)
+def test_refusals_name_key_and_remedy_in_the_units_of_the_case(overrides, words):
+    document = copy.deepcopy(PAIR) | {"results": ["stiffness"]}
+    document["stiffness"] = {"gear": "a", "positions": 3}
+    for override in overrides:
+        apply_override(document, override)
+
+    def run():
+        scene = build_scene(document, "case", Path())
+        return run_plan(scene, make_plan(scene, STAGES))
+
+    with pytest.raises(FegearError, match=words) as refused:
+        run()
+    assert str(refused.value).startswith("gear.a.")
+    assert "modules" not in str(refused.value) or "neck" in str(refused.value)
+
+
+def test_a_new_body_s_torque_may_be_set_and_a_misspelt_table_is_named():
+    case = CASES / "two_stage_gearbox.toml"
+    scene = read_scene(case, ["train.torque.pinion_2=-5 N*m"])
+    assert scene.case.train.torque["pinion_2"] == -5.0
+    for path, words in (
+        ("train.shaft.inptu.stiffness=1 N*m/rad", 'the nearest known name is "input"'),
+        ("gear.pinion.teeth=3", "is not in this case"),
+        ("train.torques.motor=1 N*m", 'the nearest known name is "torque"'),
+    ):
+        with pytest.raises(InputError, match=words):
+            read_scene(case, [path])
+
+
+def test_an_output_folder_below_a_file_is_told_as_such(tmp_path):
+    from fegear.show.folder import whole_or_nothing
+
+    file = tmp_path / "notes.txt"
+    file.write_text("mine")
+    with (
+        pytest.raises(InputError, match=r'lies below ".*notes\.txt", which is a file'),
+        whole_or_nothing(file / "a" / "b"),
+    ):
+        pass
+    assert file.read_text() == "mine"
+
+
+def test_an_interrupt_while_the_program_is_still_loading_is_told_in_one_line(tmp_path):
+    """Held where the command line would be imported, as on a slow disk."""
+    program = (
+        "import signal, sys, time\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "class Slow:\n"
+        "    def find_spec(self, name, *rest):\n"
+        "        if name == 'fegear.cli':\n"
+        "            print('loading', flush=True); time.sleep(60)\n"
+        "sys.meta_path.insert(0, Slow())\n"
+        "from fegear.__main__ import main\n"
+        "main()\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "loading\n"
+    os.kill(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert errors == "fegear: interrupted; results of earlier runs are as they were.\n"
