@@ -148,7 +148,7 @@ def test_a_terminal_gets_a_bar(case, tmp_path):
     command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(case)]
     done = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=slave, check=True, timeout=60)
     os.close(slave)
-    text = os.read(master, 65536).decode()
+    text = os.read(master, 65536).decode(errors="ignore")  # a slow machine redraws past the end of what is read
     os.close(master)
     assert "Geometry" in text
     assert "━" in text
