@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fegear.errors import InputError
 from fegear.scene.case.effects import EffectsPart
-from fegear.scene.load import build_scene, read_document
+from fegear.scene.load import build_scene, case_text, read_document
 from fegear.scene.names import nearest
 from fegear.scene.plan import make_plan
 from fegear.scene.run import run_plan
@@ -140,7 +140,7 @@ def effect_study(
         Effects whose switched case is refused.
     """
     document = read_document(path, overrides)
-    scene = build_scene(document, path.stem, path.parent)
+    scene = replace(build_scene(document, path.stem, path.parent), text=case_text(path, overrides))
     felt = felt_effects(scene)
     for effect in only:
         if effect not in felt:

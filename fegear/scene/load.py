@@ -91,8 +91,12 @@ def read_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """
     path = Path(path)
     scene = build_scene(read_document(path, overrides), path.stem, path.parent)
-    changes = "".join(f"# --set {override}\n" for override in overrides)
-    return replace(scene, text=changes + path.read_text(encoding="utf-8"))
+    return replace(scene, text=case_text(path, overrides))
+
+
+def case_text(path: Path, overrides: Sequence[str] = ()) -> str:
+    """Return a case file as it is written, with the ``--set`` options as comments in front."""
+    return "".join(f"# --set {override}\n" for override in overrides) + path.read_text(encoding="utf-8")
 
 
 def read_document(path: Path, overrides: Sequence[str] = ()) -> dict[str, Any]:

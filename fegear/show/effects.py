@@ -1,4 +1,4 @@
-"""What ``fegear effects`` leaves behind: ``tables/effects.csv``, one picture for each effect, ``summary.json``."""
+"""What ``fegear effects`` leaves behind: ``tables/effects.csv``, a picture of each effect, report, summary."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import fegear
 from fegear.scene.effect_study import CURVES
 from fegear.scene.outcome import Column, Table
 from fegear.show.folder import SUMMARY, files_in
+from fegear.show.report.effects import write_effects_report
 from fegear.show.summary import write_json
 from fegear.show.tables import write_table
 
@@ -98,7 +99,7 @@ def kernel_changes(found: Switched) -> str:
 
 
 def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fixed], folder: Path) -> list[str]:
-    """Write table, pictures and summary.
+    """Write table, pictures, report and summary.
 
     Parameters
     ----------
@@ -119,10 +120,13 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
     (folder / "plots").mkdir()
     table = effects_table(switched)
     write_table(folder / "tables", table)
+    curves = {found.effect: telling_curve(found) for found in switched}
     for found in switched:
         title = scene.case.title or scene.name
-        draw_effect(found, telling_curve(found), folder / "plots" / f"effect_{found.effect}.png", title)
-    told = [sentence(found) for found in switched]
+        draw_effect(found, curves[found.effect], folder / "plots" / f"effect_{found.effect}.png", title)
+    sentences = {found.effect: sentence(found) for found in switched}
+    write_effects_report(folder / "report.html", scene, switched, fixed, table, curves, sentences)
+    told = list(sentences.values())
     told += [f"{one.effect} cannot be switched in this case: {one.reason}" for one in fixed]
     write_json(
         folder / SUMMARY,

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import functools
 import importlib.util
+import io
 import json
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -107,7 +110,15 @@ def test_the_command_writes_a_table_a_picture_and_a_summary(tmp_path):
     assert "reliefs 0 -> " in peak["kernels"]
     told = json.loads((out / "summary.json").read_text("utf-8"))
     assert told["effects"]["relief"]["processor_seconds"]["with"] > 0.0
-    assert set(told["files"]) == {"plots/effect_relief.png", "tables/effects.csv", "summary.json"}
+    assert set(told["files"]) == {
+        "plots/effect_relief.png", "report.html", "tables/effects.csv", "summary.json",
+    }  # fmt: skip
+    page = (out / "report.html").read_text("utf-8")
+    assert "relief (on in the case)" in page
+    assert "id='plot-effect_relief'" in page
+    packed = zipfile.ZipFile(io.BytesIO(base64.b64decode(page.split("data:application/zip;base64,")[1].split("'")[0])))
+    assert packed.read("tables/effects.csv") == (out / "tables" / "effects.csv").read_bytes()
+    assert {"tables/relief_without.csv", "tables/relief_with.csv", "lin_tip_relief.toml"} <= set(packed.namelist())
 
 
 def test_an_effect_that_the_results_cannot_feel_is_refused():
