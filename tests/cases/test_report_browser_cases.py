@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import importlib.util
 import io
@@ -186,6 +187,21 @@ def test_the_menu_of_a_harris_map_changes_its_curves(page, relief):
     assert set(page.run(shown)) == {"te_designed"}
     flat = page.run(f"{plot(key)}.data.filter(t => t.visible === true).map(t => Math.max(...t.y) - Math.min(...t.y))")
     assert min(flat) < 1e-6  # at the design load the designed relief leaves nothing
+
+
+def test_paper_shows_what_is_folded_and_is_white(page):
+    page.media(prefers_color_scheme="dark")
+    folded = "document.querySelectorAll('details:not([open])').length"
+    before = page.run(folded)
+    assert before >= 3
+    assert base64.b64decode(page("Page.printToPDF")["data"]).startswith(b"%PDF")
+    page.run("dispatchEvent(new Event('beforeprint'))")
+    assert page.run(folded) == 0
+    page.run("dispatchEvent(new Event('afterprint'))")
+    assert page.run(folded) == before
+    page("Emulation.setEmulatedMedia", media="print")
+    page.until("getComputedStyle(document.body).backgroundColor === 'rgb(255, 255, 255)'")
+    page("Emulation.setEmulatedMedia", media="")
 
 
 # ---- sweeps ------------------------------------------------------------------------------------------------------

@@ -107,6 +107,14 @@
     }));
   });
 
+  // ---- paper: nobody can click on it, so what is folded opens ------------------------------------------------------
+  let opened = [];
+  addEventListener("beforeprint", () => {
+    opened = [...document.querySelectorAll("details:not([open])")];
+    opened.forEach((fold) => { fold.open = true; });
+  });
+  addEventListener("afterprint", () => opened.forEach((fold) => { fold.open = false; }));
+
   // ---- figures -----------------------------------------------------------------------------------------------------
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const printing = matchMedia("print");
