@@ -168,7 +168,7 @@ def dynamic_root_stress(scene: Scene, name: str) -> Forecast:
         return Forecast()
     pair = scene.case.train.pair_of(name)
     solved = shapes(scene, _gears(scene, pair))
-    return Forecast({}, 0.5 if scene.case.effects.neighbour_coupling else 0.02, solved)
+    return Forecast({}, 0.12 if scene.case.effects.neighbour_coupling else 0.04, solved)
 
 
 def _periods(scene: Scene) -> int:

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.contact import pair_history
 from fegear.scene.left_out import pair_changes, pair_remarks
-from fegear.scene.load import read_scene
+from fegear.scene.load import build_scene, read_scene
 from fegear.scene.plan import make_plan
 from fegear.scene.run import run_plan
 from fegear.scene.stage import Task
@@ -69,6 +70,17 @@ def true_change(before, after, answer: str, load: float) -> float:
     shared = np.interp(x, xb, yb) - np.interp(x, xa, ya)
     off = np.interp(x, xb, yb)[~inside] if answer == "load on a tooth pair" else np.zeros(0)
     return float(np.abs(np.concatenate([shared[inside], off])).max())
+
+
+def true_load_change(before, after, load: float) -> float:
+    """Between two runs' engagements, a tooth pair followed over twenty thousand positions."""
+    histories = []
+    for results in (before, after):
+        engagement = results.outcomes[Task("loaded-pair", "I")].data.engagement
+        histories.append(pair_history(engagement, [load], 20_000))
+    x = np.unique(np.concatenate([h.x for h in histories]))
+    a, b = (np.interp(x, h.x, h.load[:, 0], left=0.0, right=0.0) for h in histories)
+    return float(np.abs(b - a).max())
 
 
 def effects(**chosen: str) -> tuple[str, ...]:
@@ -163,3 +175,47 @@ def test_uneven_teeth_that_are_left_out_are_told_with_their_size():
     remark = next(r for r in results.remarks if r.startswith("Pair I: spacing_errors is off"))
     # the pair alone on the path takes the whole error; both gears are the same part
     assert "by +8 um" in remark
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(12))
+def test_sizes_of_random_pairs_and_loads(seed):
+    """Teeth, shifts, face, bore and load at random: every size told is within a factor of two of the run's."""
+    dice = np.random.default_rng(seed)
+    gears = {
+        name: {
+            "teeth": int(dice.integers(17, 70)),
+            "module": "3 mm",
+            "profile_shift": float(dice.uniform(-0.1, 0.4)),
+            "bore_radius": "12 mm",
+            "face_width": "10 mm",
+        }
+        for name in ("a", "b")
+    }
+    load = float(10.0 ** dice.uniform(1.5, 4.0))
+    pair = {"I": {"driver": "a", "driven": "b", "load": f"{load} N", "loads": [f"{0.5 * load} N"]}}
+    accuracy = {"tolerance": 1e-2}
+    results = ["transmission-error", "load-sharing"]
+
+    def scene(**chosen):
+        parts = {"results": results, "gear": gears, "pair": pair, "effects": chosen, "accuracy": accuracy}
+        return build_scene(parts, "case", Path())
+
+    def made(**chosen):
+        built = scene(**chosen)
+        return run_plan(built, make_plan(built, STAGES))
+
+    whole = {"neighbour_coupling": True, "hertz": "load-dependent", "corner_contact": True}
+    after = made(**whole)
+    for effect in whole:
+        before = made(**{name: value for name, value in whole.items() if name != effect})
+        found, _ = pair_changes(before.scene, before.outcomes[Task("loaded-pair", "I")].data, [load])
+        for change in found[effect]:
+            if change.answer == "load on a tooth pair":
+                true = true_load_change(before, after, load)
+            else:
+                true = true_change(before, after, change.answer, load)
+            if true < 1e-3 * change.scale:
+                assert change.share < 2e-3
+            else:
+                assert 0.5 * true < abs(change.size) < 2.0 * true, (effect, change, true)
