@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from fegear.errors import MissingLibraryError
 from fegear.scene.axis import read_axis
 from fegear.scene.load import read_scene
 from fegear.scene.plan import make_plan
@@ -202,6 +203,20 @@ def test_paper_shows_what_is_folded_and_is_white(page):
     page("Emulation.setEmulatedMedia", media="print")
     page.until("getComputedStyle(document.body).backgroundColor === 'rgb(255, 255, 255)'")
     page("Emulation.setEmulatedMedia", media="")
+
+
+def test_without_plotly_the_page_says_what_to_install_and_keeps_everything_else(browser, gear, tmp_path, monkeypatch):
+    def missing() -> str:
+        raise MissingLibraryError("plotly.js is missing; run: pip install plotly")
+
+    monkeypatch.setattr("fegear.show.report.page.compressed_plotly", missing)
+    made(tmp_path, "lin_table1", "stiffness.positions=5", "accuracy.tolerance=0.5")
+    browser.complaints.clear()
+    browser.open(tmp_path / "report.html")
+    assert browser.complaints == []
+    assert "run: pip install plotly" in browser.run(f"{plot('compliance_a')}.textContent")
+    block = "document.querySelector('.data[data-file=\"tables/stiffness_a.csv\"]')"
+    assert browser.run(f"{block}.querySelectorAll('tbody tr').length") == 5
 
 
 # ---- sweeps ------------------------------------------------------------------------------------------------------

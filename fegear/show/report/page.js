@@ -343,6 +343,7 @@
   async function start() {
     const specs = JSON.parse($("figures").textContent);
     if (!specs.length) return;
+    if ($("plotly-missing")) throw new Error($("plotly-missing").textContent);
     const script = document.createElement("script");
     script.textContent = new TextDecoder().decode(await unpack(bytes($("plotly").textContent), "gzip"));
     document.head.append(script);
@@ -357,10 +358,11 @@
     () => { document.documentElement.dataset.ready = "yes"; },
     (problem) => {
       document.documentElement.dataset.ready = "no";
-      document.querySelectorAll(".plot:empty").forEach((place) => {
-        place.textContent = "This browser cannot draw the plots (it is too old); the same pictures are in the folder plots/.";
+      const why = $("plotly-missing") ? problem.message : `This browser cannot draw the plots (${problem.message}).`;
+      document.querySelectorAll(".plot").forEach((place) => {
+        if (!place.querySelector(".main-svg")) place.textContent = `${why} The same pictures are in the folder plots/.`;
       });
-      throw problem;
+      if (!$("plotly-missing")) throw problem;
     },
   );
 })();

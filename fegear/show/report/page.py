@@ -14,6 +14,7 @@ from importlib import resources
 from typing import TYPE_CHECKING, Protocol
 
 import fegear
+from fegear.errors import MissingLibraryError
 from fegear.show.report.library import compressed_plotly
 from fegear.show.tables import table_text
 
@@ -101,6 +102,14 @@ def _embedded(identity: str, kind: str, content: str) -> str:
     return f"<script type='{kind}' id='{identity}'>{content}</script>\n"
 
 
+def _library() -> str:
+    """plotly.js, or why there is none: a run's results are not lost for want of their plots."""
+    try:
+        return _embedded("plotly", "text/plain", compressed_plotly())
+    except MissingLibraryError as error:
+        return _embedded("plotly-missing", "text/plain", html.escape(f"{error}.", quote=False))
+
+
 def page_text(page: Page) -> str:
     """Make the page.
 
@@ -130,7 +139,7 @@ def page_text(page: Page) -> str:
     specs = json.dumps([figure.spec() for figure in figures], ensure_ascii=False, separators=(",", ":"))
     scripts = _embedded("figures", "application/json", specs.replace("</", "<\\/"))
     if figures:
-        scripts += _embedded("plotly", "text/plain", compressed_plotly())
+        scripts += _library()
     return (
         f"<!DOCTYPE html>\n<html lang='en'>\n<head><meta charset='utf-8'><title>{title}</title>\n"
         "<meta name='viewport' content='width=device-width, initial-scale=1'>\n"
