@@ -27,6 +27,10 @@ if TYPE_CHECKING:
 
 #: Nodes per smooth piece; 32 leave 1e-12 of every integral even under sharp fillets (tests hold it to that).
 NODES = 32
+#: Logarithm of rho (see `_nodes_for_waist`) from which on they do.
+_LOG_RHO = 0.45
+#: At most so many times as many nodes, and how many points of the fillet are looked at for its waist.
+_MOST_TIMES, _LOOKED_AT = 32, 65
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,9 +85,27 @@ def _cut(curve: Curve, u: Array, du: Array) -> Sections:
     return Sections(y, x, du * curve.speed(u) * curve.normals(u)[0])
 
 
+def _nodes_for_waist(tooth: Tooth, root_parameter: float, nodes: int) -> int:
+    """So many nodes, or more where undercut leaves a waist so thin that 1/x^3 has its pole near the fillet.
+
+    n Gauss nodes leave about rho^(-2 n), where the pole lies on the ellipse of half axes' sum rho about the interval:
+    i d off it below a waist inside, delta beyond it where the tooth is thinnest at an end.
+    """
+    u = np.linspace(root_parameter, tooth.fillet.end, _LOOKED_AT)
+    x, step, half = tooth.fillet.points(u)[0], abs(u[1] - u[0]), 0.5 * abs(u[-1] - u[0])
+    i = int(np.argmin(x))
+    if 0 < i < _LOOKED_AT - 1:
+        curvature = (x[i - 1] - 2.0 * x[i] + x[i + 1]) / step**2
+        log_rho = np.arcsinh(np.sqrt(2.0 * x[i] / max(curvature, 1e-300)) / half)
+    else:
+        slope = abs(x[i] - x[i - 1 if i else 1]) / step
+        log_rho = np.arccosh(1.0 + x[i] / max(slope, 1e-300) / half)
+    return nodes * min(max(math.ceil(_LOG_RHO / log_rho), 1), _MOST_TIMES)
+
+
 def _fillet(tooth: Tooth, root_parameter: float, nodes: int) -> Sections:
-    """Sections from the fillet's point `root_parameter` up to the involute, shape (1, nodes)."""
-    g, w = _gauss(nodes)
+    """Sections from the fillet's point `root_parameter` up to the involute, shape (1, `nodes` or more)."""
+    g, w = _gauss(_nodes_for_waist(tooth, root_parameter, nodes))
     half = 0.5 * abs(root_parameter - tooth.fillet.end)
     mid = 0.5 * (root_parameter + tooth.fillet.end)
     return _cut(tooth.fillet, (mid + half * g)[None], (half * w)[None])
@@ -114,10 +136,10 @@ def sections(tooth: Tooth, load: LoadLine, root_parameter: float, nodes: int = N
     root_parameter : float
         Parameter of `Tooth.fillet` at which the beam is built in [rad].
     nodes : int
-        Gauss nodes on the fillet, and as many on the involute.
+        Gauss nodes on the fillet (more below a thin waist), and as many on the involute.
     """
     low, high = _fillet(tooth, root_parameter, nodes), _involute(tooth, load, nodes)
-    shape = (load.roll.size, nodes)
+    shape = (load.roll.size, low.height.shape[1])
     return Sections(
         *(
             np.concatenate([np.broadcast_to(getattr(low, name), shape), getattr(high, name)], axis=1)
