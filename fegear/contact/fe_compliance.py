@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 #: Interpolation points over the flank: splines for the loaded tooth, Chebyshev polynomials for its smooth neighbours.
 _OWN_POINTS = 97
 _NEIGHBOUR_POINTS = 14
+#: Half-width that c_0 is told for [modules], and that a contact keeps whose width does not follow its load.
+_NOMINAL_HALF_WIDTH = 0.08
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class FiniteElementCompliance:
     ----------
     influence : GearInfluence
     own_spline : Spline
-        c_0 at the patch's half-width [m^2/N] over the roll length [m].
+        c_0 at the reference half-width [m^2/N] over the roll length [m].
     lowest, highest : float
         Roll lengths of the ends of the flank [m].
     """
@@ -86,12 +88,12 @@ class FiniteElementCompliance:
         return np.clip(length, self.lowest, self.highest)
 
     def own(self, radius: ArrayLike) -> Array:
-        """c_0 at the half-width of the finite-element patch [m^2/N]."""
+        """c_0 at the reference half-width [m^2/N]."""
         return np.asarray(self.own_spline(self._roll_length(radius)))
 
     def reference_half_width(self, radius: ArrayLike) -> Array:
-        """The patch's half-width [m]."""
-        return np.full(np.shape(radius), self.influence.patch_half_width)
+        """The half-width that `own` is for [m]; others follow by their logarithm."""
+        return np.full(np.shape(radius), _NOMINAL_HALF_WIDTH * self.influence.gear.module)
 
     def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """c_k(p, q), zero beyond the reach."""
@@ -127,5 +129,7 @@ def finite_element_compliance(influence: GearInfluence) -> FiniteElementComplian
     s = np.linspace(0.0, 1.0, _OWN_POINTS // 2)
     lengths = np.concatenate([low + (high - corner - low) * (s * s * (3.0 - 2.0 * s))[:-1], high - corner * (1.0 - s)])
     radii = np.clip(np.hypot(rb, lengths), bottom, top)
-    own = influence.self_compliance(radii, influence.patch_half_width)
+    # Taken at a usual width, where what goes with the width itself is right, and told for the nominal one.
+    usual, nominal = influence.reference_half_width, _NOMINAL_HALF_WIDTH * gear.module
+    own = influence.self_compliance(radii, usual) - influence.log_slope * math.log(nominal / usual)
     return FiniteElementCompliance(influence, spline(lengths, own), low, high)

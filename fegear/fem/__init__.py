@@ -1,7 +1,17 @@
 """Finite elements for gear teeth: influence functions of the whole ring at the price of one tooth."""
 
-from fegear.fem.gear import GearInfluence, solve_gear
-from fegear.fem.settings import MeshSettings
+from fegear.fem.gear import GearInfluence, Round, level_for, solve_gear, solve_to_tolerance
+from fegear.fem.settings import MeshSettings, settings_at
 from fegear.fem.table import StiffnessTable, stiffness_table
 
-__all__ = ["GearInfluence", "MeshSettings", "StiffnessTable", "solve_gear", "stiffness_table"]
+__all__ = [
+    "GearInfluence",
+    "MeshSettings",
+    "Round",
+    "StiffnessTable",
+    "level_for",
+    "settings_at",
+    "solve_gear",
+    "solve_to_tolerance",
+    "stiffness_table",
+]

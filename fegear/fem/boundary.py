@@ -37,6 +37,8 @@ _FEWEST_FILLET_EDGES = 4
 #: the radius, that nothing is left of the digits of a tooth's own strain; a thinner rim [modules] takes elements
 #: without number.
 _SMALLEST_BORE, _THINNEST_RIM = 1e-4, 5e-3
+#: The shortest edges on a sharp fillet, as a share of the usual ones.
+_SHARPEST = 0.1
 
 
 @dataclass(frozen=True)
@@ -51,11 +53,14 @@ class Chain:
         [modules], in counterclockwise order round the sector.
     middles : ndarray, shape (2, n)
         [modules].
+    tangents : ndarray, shape (2, n + 1)
+        Unit tangents of the exact curve at the vertices.
     """
 
     name: str
     vertices: Array
     middles: Array
+    tangents: Array
 
 
 def graded(length: float, size: Law, *, fewest: int = 1, at: Array | None = None) -> Array:
@@ -85,12 +90,14 @@ def _on_curve(name: str, curve: Curve, size: Law) -> Chain:
     halves = np.sort(np.concatenate([nodes, 0.5 * (nodes[1:] + nodes[:-1])]))
     points = curve.points(np.interp(halves, length, parameter))
     points[:, 0], points[:, -1] = curve.points(curve.start), curve.points(curve.end)
-    return Chain(name, points[:, ::2], points[:, 1::2])
+    normals = curve.normals(np.interp(nodes, length, parameter))
+    return Chain(name, points[:, ::2], points[:, 1::2], np.stack([-normals[1], normals[0]]))
 
 
 def _mirrored(chain: Chain, name: str) -> Chain:
     flip = np.array([[-1.0], [1.0]])
-    return Chain(name, (flip * chain.vertices)[:, ::-1], (flip * chain.middles)[:, ::-1])
+    vertices, middles = (flip * chain.vertices)[:, ::-1], (flip * chain.middles)[:, ::-1]
+    return Chain(name, vertices, middles, (-flip * chain.tangents)[:, ::-1])
 
 
 def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> list[Chain]:
@@ -130,8 +137,8 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     if not land:
         front[0] = _from_the_side(front[0], tooth)
     back_tip = [_mirrored(chain, "tip") for chain in reversed(front) if chain.name.startswith("tip")]
-    back_flank = _mirrored(_on_curve("flank", tooth.involute, _back_size(settings)), "back_flank")
-    fillet = _on_curve("fillet", tooth.fillet, lambda s: np.full_like(s, settings.root_edge_length))
+    back_flank = _mirrored(_on_curve("flank", tooth.involute, _back_size(tooth, settings)), "back_flank")
+    fillet = _on_curve("fillet", tooth.fillet, _fillet_size(tooth, settings))
     back_fillet = _mirrored(fillet if land else _from_the_side(fillet, tooth), "back_fillet")
     top = (land + front)[0].vertices
     first = float(np.hypot(*(top[:, 1] - top[:, 0])))
@@ -144,7 +151,12 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
 
     side_b = _side(top[:, 0], bore_radius, body_size)
     turn = _rotation(pitch_angle)
-    side_a = Chain("side_a", (turn @ side_b.vertices)[:, ::-1], (turn @ side_b.middles)[:, ::-1])
+    side_a = Chain(
+        "side_a",
+        (turn @ side_b.vertices)[:, ::-1],
+        (turn @ side_b.middles)[:, ::-1],
+        (-turn @ side_b.tangents)[:, ::-1],
+    )
     bore_edges = max(1, round(pitch_angle * bore_radius / float(body_size(np.array(outer - bore_radius)))))
     bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
     back_land = [_mirrored(chain, "root_land") for chain in land]
@@ -188,7 +200,7 @@ def _from_the_side(fillet: Chain, tooth: Tooth) -> Chain:
     vertices = fillet.vertices.copy()
     half = math.pi / tooth.teeth
     vertices[:, 0] = tooth.root_radius * math.sin(half), tooth.root_radius * math.cos(half)
-    return Chain(fillet.name, vertices, fillet.middles)
+    return Chain(fillet.name, vertices, fillet.middles, fillet.tangents)
 
 
 def _boundary(piece: str, tooth: Tooth) -> str:
@@ -205,27 +217,41 @@ def _length(curve: Curve) -> float:
 def _land_size(tooth: Tooth, settings: MeshSettings) -> Law:
     """Edges on the root land grow away from the fillet."""
     length = tooth.root_radius * tooth.root_land_half_angle
-    return lambda s: settings.root_edge_length + settings.growth * (length - s)
+    first = float(_fillet_size(tooth, settings)(np.zeros(1))[0])
+    return lambda s: first + settings.growth * (length - s)
 
 
-def _back_size(settings: MeshSettings) -> Law:
+def _fillet_size(tooth: Tooth, settings: MeshSettings) -> Law:
+    """Edges on a fillet follow its curvature: their shape is quadratic, and what that misses is a notch."""
+    parameter, length = arc_length(tooth.fillet)
+    radius = 1.0 / np.maximum(np.abs(tooth.fillet.curvatures(parameter)), 1e-9)
+    finest = _SHARPEST * settings.root_edge_length
+    sizes = np.clip(settings.root_fraction * radius, finest, settings.root_edge_length)
+    # No faster than edges may grow, from the sharpest place on.
+    steps = settings.growth * np.abs(length[:, None] - length)
+    sizes = (sizes + steps).min(axis=1)
+    return lambda s: np.interp(s, length, sizes)
+
+
+def _back_size(tooth: Tooth, settings: MeshSettings) -> Law:
     """Edges on the unloaded flank grow away from its fillet."""
-    return lambda s: np.minimum(settings.root_edge_length + settings.growth * s, settings.back_edge_length)
+    last = float(_fillet_size(tooth, settings)(np.array([_length(tooth.fillet)]))[0])
+    return lambda s: np.minimum(last + settings.growth * s, settings.back_edge_length)
 
 
 def _front_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
     """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""
-    grow, root, corner = settings.growth, settings.root_edge_length, settings.tip_edge_length
+    grow, root, corner = settings.growth, _fillet_size(tooth, settings), settings.tip_edge_length
     fillet, flank = _length(tooth.fillet), _length(tooth.involute)
     edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
-    joint = min(settings.junction_edge_length, root)
+    joint = min(settings.junction_edge_length, float(root(np.array([fillet]))[0]))
 
     def flank_size(s: Array) -> Array:
-        by_ends = np.minimum(joint + grow * s, corner + settings.tip_growth * (flank - s))
+        by_ends = np.minimum(joint + settings.tip_growth * s, corner + settings.tip_growth * (flank - s))
         return np.minimum(settings.flank_edge_length, by_ends)
 
     return {
-        "fillet": lambda s: np.minimum(root, joint + grow * (fillet - s)),
+        "fillet": lambda s: np.minimum(root(s), joint + grow * (fillet - s)),
         "flank": flank_size,
         "tip_edge": lambda s: np.minimum(corner + grow * s, 0.5 * settings.flank_edge_length),
         "tip_land": lambda s: np.minimum(corner + grow * (s + edge), settings.back_edge_length),
@@ -247,7 +273,8 @@ def _side(top: Array, bore_radius: float, size: Law) -> Chain:
     radii = outer - graded(outer - bore_radius, size, at=at)[::-1]
     direction = top / outer
     middles = np.multiply.outer(direction, 0.5 * (radii[1:] + radii[:-1]))
-    return Chain("side_b", np.multiply.outer(direction, radii), middles)
+    tangents = np.repeat(direction[:, None], radii.size, axis=1)
+    return Chain("side_b", np.multiply.outer(direction, radii), middles, tangents)
 
 
 def _bore(right: Array, bore_radius: float, edges: int, pitch_angle: float) -> Chain:
@@ -256,4 +283,5 @@ def _bore(right: Array, bore_radius: float, edges: int, pitch_angle: float) -> C
     points = bore_radius * np.stack([np.sin(angle), np.cos(angle)])
     points[:, -1] = right
     points[:, 0] = _rotation(pitch_angle) @ right
-    return Chain("bore", points[:, ::2], points[:, 1::2])
+    tangents = np.stack([np.cos(angle), -np.sin(angle)])[:, ::2]
+    return Chain("bore", points[:, ::2], points[:, 1::2], tangents)

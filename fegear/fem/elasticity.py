@@ -124,7 +124,8 @@ def _element_stiffness(mesh: SectorMesh, lam: float, mu: float, order: int) -> A
     products = np.empty((mesh.triangles.shape[1], 2, 2, triangle(order).nodes.shape[1] ** 2))
     straight = _is_straight(places)
     products[straight] = _products_straight(places[:, :3, straight], order)
-    products[~straight] = _products_curved(places[:, :, ~straight], order)
+    bends = _element_bends(mesh) if order > 2 else np.zeros((2, 3, 2, straight.size))
+    products[~straight] = _products_curved(places[:, :, ~straight], bends[..., ~straight], order)
     n = triangle(order).nodes.shape[1]
     d = products.reshape(-1, 2, 2, n, n)
     stiffness = np.empty((d.shape[0], n, 2, n, 2))
@@ -155,11 +156,35 @@ def _products_straight(corners: Array, order: int) -> Array:
     return np.asarray(metric.reshape(count * 4, 4) @ reference.reshape(4, n * n)).reshape(count, 2, 2, n * n)
 
 
-def _products_curved(places: Array, order: int) -> Array:
+def _element_bends(mesh: SectorMesh) -> Array:
+    """What cubic edges add to each element's quadratic ones, shape (2, 3 sides, 2 ends, M).
+
+    Side i from corner i to i + 1 moves by l0 l1 (l0 c0 + l1 c1) with the corners' areal coordinates l; the quadratic
+    edge through the middle node, l0 l1 4 d, is taken off.
+    """
+    count = mesh.triangles.shape[1]
+    found = np.zeros((2, 3, 2, count))
+    side_of_middle = np.full(mesh.points.shape[1], -1, dtype=np.int64)
+    side_of_middle[mesh.triangles[3:].reshape(-1)] = np.arange(3 * count)  # a boundary edge has one element
+    for name, bends in mesh.bends.items():
+        first, second, middle = mesh.edges[name]
+        side, element = np.divmod(side_of_middle[middle], count)
+        off = mesh.points[:, middle] - 0.5 * (mesh.points[:, first] + mesh.points[:, second])
+        along = mesh.triangles[side, element] == first
+        # Against the element's own direction the ends change places.
+        ends = np.where(along, bends, bends[:, ::-1])
+        found[:, side, :, element] = (ends - 4.0 * off[:, None]).transpose(2, 0, 1)
+    return found
+
+
+def _products_curved(places: Array, bends: Array, order: int) -> Array:
     """The same on elements with curved edges, by quadrature of degree 2 order + 1."""
     u, v, weight = quadrature(order + 1)
     geometry = triangle(2).slopes(u, v)
     a, b = (np.einsum("cim,qi->cmq", places, along) for along in geometry)
+    if bends.any():
+        more_a, more_b = (np.einsum("csem,seq->cmq", bends, along) for along in _bend_slopes(u, v))
+        a, b = a + more_a, b + more_b
     determinant = a[0] * b[1] - a[1] * b[0]
     inverse = np.array([[b[1], -b[0]], [-a[1], a[0]]]) / determinant  # (uv, xy, M, q)
     slope = triangle(order).slopes(u, v)
@@ -168,3 +193,16 @@ def _products_curved(places: Array, order: int) -> Array:
     count, n = determinant.shape[0], slope.shape[2]
     flat = np.matmul(gradient.transpose(0, 1, 3, 2)[:, :, None], weighted[:, None])
     return np.asarray(flat).reshape(count, 2, 2, n * n)
+
+
+def _bend_slopes(u: Array, v: Array) -> tuple[Array, Array]:
+    """Derivatives of l0 l1 l0 and l0 l1 l1 of each side along u and v, shape (3 sides, 2 ends, points) each."""
+    areal = np.array([1.0 - u - v, u, v])
+    by_u, by_v = np.array([-1.0, 1.0, 0.0]), np.array([-1.0, 0.0, 1.0])
+    slopes: tuple[list[list[Array]], list[list[Array]]] = ([], [])
+    for i in range(3):
+        j = (i + 1) % 3
+        p, q = areal[i], areal[j]
+        for result, d in zip(slopes, (by_u, by_v), strict=True):
+            result.append([2 * p * q * d[i] + p * p * d[j], q * q * d[i] + 2 * p * q * d[j]])
+    return np.array(slopes[0]), np.array(slopes[1])

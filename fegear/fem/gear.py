@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import functools
+import math
 import time
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.fem.boundary import check_bore
-from fegear.fem.influence import Influence, Side, solve_influence
+from fegear.fem.influence import REFERENCE_HALF_WIDTH, SIDES, Influence, Side, solve_influence
 from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings
+from fegear.fem.settings import COARSEST_LEVEL, FINEST_LEVEL, LEVEL_RATIO, MeshSettings, settings_at
 from fegear.fem.shape_cache import kept_or_solved
+from fegear.geometry.gear import Gear, Material
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -21,24 +24,47 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.fem.mesh import SectorMesh
-    from fegear.geometry.gear import Gear, Plane
+    from fegear.geometry.gear import Plane
     from fegear.geometry.tooth import Tooth
 
     Array = NDArray[np.float64]
     Progress = Callable[[str], None]
 
-#: The second mesh of the error estimate is this much coarser everywhere.
-_COARSER = 1.6
-#: Share of the difference between two meshes that is taken as left in the finer one. Second-order elements would leave
-#: 1 / (1.6^4 - 1) = 0.18 in energy and 0.5 in stress, but meshes that gmsh draws anew scatter about that.
-_MESH_SHARE = 0.5
-_SCATTER_SHARE = 1.0
-#: In plane strain beyond this Poisson's ratio elements begin to lock: the order of convergence falls, more is left.
-_LOCKING_RATIO, _LOCKING_SHARE = 0.45, 1.2
-#: The second patch is this much wider. The patch's own error grows about linearly with its width, so a difference
-#: over half a width more stands for about itself.
-_WIDER = 1.5
-_PATCH_SHARE = 1.2
+#: Part of the difference from the coarser solution of the error estimate that is taken for the error of the finer one:
+#: of c_0, of neighbours, of stresses. Smooth errors of order four leave a third; gmsh draws every mesh anew, positions
+#: differ, and a neighbour's deflection, a small error anyway, differs least regularly.
+_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 3.0, 1.0
+_HIGHEST_ORDER = 4
+#: Edges half as long for a tenth of the error; and how often at most a solution is refined.
+_LEVELS_PER_DECADE, _MOST_ROUNDS = 2.0, 4
+#: Positions over the flank at which usual and largest errors are looked for.
+_SAMPLES = 17
+
+
+@dataclass(frozen=True)
+class Round:
+    """One solution on the way to a tolerance.
+
+    Attributes
+    ----------
+    settings : MeshSettings
+    unknowns : int
+        Of one sector.
+    errors : mapping of str to float
+        Largest estimated relative error over the flank of c_self, c_neighbour (over c_self), root_tension and
+        root_compression.
+    seconds : float
+    """
+
+    settings: MeshSettings
+    unknowns: int
+    errors: Mapping[str, float]
+    seconds: float
+
+    @property
+    def error(self) -> float:
+        """The largest of them."""
+        return max(self.errors.values())
 
 
 @functools.lru_cache(maxsize=32)
@@ -72,18 +98,21 @@ class GearInfluence:
         The solution that every number comes from.
     coarse : Influence
         A cheaper (or, on a user's own mesh, a higher-order) one whose difference tells the error of `fine`.
-    share : float
-        Part of that difference taken as the error of `fine`.
     settings : MeshSettings
+    coarse_patch : float
+        Half-width of the wider pressure of `coarse` [modules].
     seconds : mapping of str to float
+    rounds : tuple of Round
+        What was solved on the way to a tolerance, the last of them kept; empty where settings were given.
     """
 
     gear: Gear
     fine: Influence
     coarse: Influence | None
-    share: float
     settings: MeshSettings
+    coarse_patch: float
     seconds: Mapping[str, float]
+    rounds: tuple[Round, ...] = ()
 
     @property
     def reach(self) -> int:
@@ -101,9 +130,9 @@ class GearInfluence:
         return self.fine.flank.highest_radius * self.gear.module
 
     @property
-    def patch_half_width(self) -> float:
-        """Half-width of the pressure that loaded the mesh [m]."""
-        return self.settings.patch_half_width * self.gear.module
+    def reference_half_width(self) -> float:
+        """A contact's usual half-width, 0.02 modules [m]."""
+        return REFERENCE_HALF_WIDTH * self.gear.module
 
     @property
     def log_slope(self) -> float:
@@ -150,41 +179,64 @@ class GearInfluence:
         return value / m, arc * m
 
     def self_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
-        """Estimated error of `self_compliance` [m^2/N]: what a second mesh and a wider patch change."""
+        """Estimated error of `self_compliance` [m^2/N]: what a coarser mesh with wider pressures changes."""
         r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
-        a = self.settings.patch_half_width
-        c = self.fine.self_compliance(r, a, b)
-        error = _PATCH_SHARE * np.abs(self.fine.self_compliance(r, _WIDER * a, b) - c)
-        if self.coarse is not None:
-            error = error + self.share * np.abs(self.coarse.self_compliance(r, a, b) - c)
-        return error / self.gear.material.young_modulus
+
+        def difference(at: Array, width: Array) -> Array:
+            fine = self.fine.self_compliance(at, self.settings.patch_half_width, width)
+            return np.abs(fine - self._other.self_compliance(at, self.coarse_patch, width))
+
+        usual = _root_mean_square(difference(self._samples, np.asarray(REFERENCE_HALF_WIDTH)))
+        return _SHARE * self._estimate(difference(r, b), usual) / self.gear.material.young_modulus
 
     def neighbour_error(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """Estimated error of `neighbour` [m^2/N], shape (P, Q)."""
-        if self.coarse is None:
-            return np.full((np.size(radius_p), np.size(radius_q)), np.nan)
-        a = self.settings.patch_half_width
 
         def difference(p: Array, q: Array) -> Array:
-            return np.abs(self.fine.neighbour(k, p, q, a) - self._other.neighbour(k, p, q, a))
+            fine = self.fine.neighbour(k, p, q, self.settings.patch_half_width)
+            return np.abs(fine - self._other.neighbour(k, p, q, self.coarse_patch))
 
         usual = _root_mean_square(difference(self._samples, self._samples))
         own = difference(self._modules(radius_p), self._modules(radius_q))
-        return _SCATTER_SHARE * np.maximum(own, usual) / self.gear.material.young_modulus
+        return _NEIGHBOUR_SHARE * self._estimate(own, usual) / self.gear.material.young_modulus
 
     def root_stress_error(self, k: int, side: Side, radius: ArrayLike) -> Array:
         """Estimated error of `largest_root_stress` [1/m], shape (P,)."""
-        if self.coarse is None:
-            return np.full(np.size(radius), np.nan)
-        a = self.settings.patch_half_width
 
         def both(r: Array) -> tuple[Array, Array]:
-            fine, other = (i.largest_root_stress(k, side, r, a)[0] for i in (self.fine, self._other))
-            return fine, np.abs(fine - other)
+            fine = self.fine.largest_root_stress(k, side, r, self.settings.patch_half_width)[0]
+            return fine, np.abs(fine - self._other.largest_root_stress(k, side, r, self.coarse_patch)[0])
 
         value, difference = both(self._modules(radius))
         usual = _root_mean_square(np.divide(*both(self._samples)[::-1]))
-        return _SCATTER_SHARE * np.maximum(difference, usual * np.abs(value)) / self.gear.module
+        return _STRESS_SHARE * self._estimate(difference, usual * np.abs(value)) / self.gear.module
+
+    def largest_errors(self) -> dict[str, float]:
+        """Largest estimated relative error over the flank of each quantity.
+
+        Returns
+        -------
+        dict of str to float
+            c_self (of a contact 0.02 modules wide to either side), c_neighbour (over c_self), root_tension and
+            root_compression.
+        """
+        r = self._samples * self.gear.module
+        b = REFERENCE_HALF_WIDTH * self.gear.module
+        own = self.self_compliance(r, b)
+        errors = {"c_self": self.self_error(r, b) / own}
+        if self.reach:
+            errors["c_neighbour"] = np.diagonal(self.neighbour_error(1, r, r)) / own
+        for side in SIDES:
+            errors[f"root_{side}"] = self.root_stress_error(0, side, r) / np.abs(
+                self.largest_root_stress(0, side, r)[0]
+            )
+        return {key: float(np.max(values)) for key, values in errors.items()}
+
+    def _estimate(self, difference: Array, usual: ArrayLike) -> Array:
+        """A difference may vanish by chance at one position; what it usually is over the flank does not."""
+        if self.coarse is None:
+            return np.full(np.shape(difference), np.nan)
+        return np.maximum(difference, usual)
 
     @property
     def _other(self) -> Influence:
@@ -192,13 +244,16 @@ class GearInfluence:
 
     @property
     def _samples(self) -> Array:
-        """Radii over the flank at which the usual difference of two meshes is taken [modules]."""
-        low, high = self.fine.flank.lowest_radius, self.fine.flank.highest_radius
-        return np.linspace(low + 0.05 * (high - low), high, 12)
+        """Radii over the flank, evenly in roll angle, at which usual and largest errors are looked for [modules]."""
+        flank, tooth = self.fine.flank, self.gear.tooth
+        low = max(flank.lowest_radius, tooth.form_radius)
+        high = min(flank.highest_radius, tooth.involute_tip_radius)
+        first, last = tooth.roll(np.array([max(low, tooth.base_radius), high])).tolist()
+        rolls = np.linspace(first, last, _SAMPLES)
+        return np.clip(tooth.radius_of_roll(rolls), low, high)
 
 
 def _root_mean_square(values: Array) -> float:
-    """One position's difference may vanish by chance; the mean over the flank does not."""
     return float(np.sqrt(np.mean(values**2)))
 
 
@@ -208,6 +263,7 @@ def solve_gear(
     *,
     reach: int = 1,
     estimate_error: bool = True,
+    coarser: MeshSettings | None = None,
     mesh: SectorMesh | None = None,
     progress: Progress | None = None,
 ) -> GearInfluence:
@@ -221,6 +277,8 @@ def solve_gear(
         K: neighbours -K..K.
     estimate_error : bool
         Whether to spend about half as much again on a second solution.
+    coarser : MeshSettings, optional
+        Settings of that one, by default edges longer by the square root of two.
     mesh : SectorMesh, optional
         A user's own sector mesh (in modules) instead of the generated one; its error is estimated with elements one
         order higher.
@@ -239,31 +297,85 @@ def solve_gear(
     started = time.perf_counter()
     settings = settings or MeshSettings()
     say = progress or (lambda _stage: None)
-    material = gear.material
-    shape = (gear.tooth, gear.bore_radius / gear.module, material.poisson_ratio, gear.plane_assumption)
+    shape = _shape(gear)
     coarse: Influence | None = None
+    coarser = coarser or settings.refined(LEVEL_RATIO)
     if mesh is not None:
         say("influence functions on the given mesh")
         _, _, nu, plane = shape
-        orders = (settings.order, min(settings.order + 1, 4) if settings.order < 4 else 3)
+        order, closest = settings.order, settings.corner_distance
 
         def solve(order: int) -> Influence:
-            closest = settings.corner_distance
             return kept_or_solved(
                 gear.tooth,
                 (mesh, nu, plane, order, reach, closest),
                 lambda: solve_influence(gear.tooth, mesh, nu, plane, order=order, reach=reach, corner_distance=closest),
             )
 
-        found = [solve(p) for p in (orders if estimate_error else orders[:1])]
-        fine, coarse, share = found[0], found[-1] if estimate_error else None, 1.0
+        fine = solve(order)
+        if estimate_error:
+            coarse = solve(order + 1 if order < _HIGHEST_ORDER else order - 1)
     else:
         check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
         say("influence functions")
-        locking = gear.plane_assumption == "strain" and material.poisson_ratio > _LOCKING_RATIO
-        fine, share = influence_of_shape(*shape, settings, reach), _LOCKING_SHARE if locking else _MESH_SHARE
+        fine = influence_of_shape(*shape, settings, reach)
         if estimate_error:
             say("influence functions on a coarser mesh, for the error")
-            coarse = influence_of_shape(*shape, settings.scaled(_COARSER), reach)
+            coarse = influence_of_shape(*shape, coarser, reach)
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
-    return GearInfluence(gear, fine, coarse, share, replace(settings), seconds)
+    return GearInfluence(gear, fine, coarse, replace(settings), coarser.patch_half_width, seconds)
+
+
+def solve_to_tolerance(
+    gear: Gear, tolerance: float, *, reach: int = 1, progress: Progress | None = None
+) -> GearInfluence:
+    """Solve a gear as cheaply as a relative tolerance allows.
+
+    The first settings are those that usually meet the tolerance (`level_for`). While the error estimate misses it,
+    edges are shortened by the square root of two: the solution before serves as the coarser one of the next estimate.
+
+    Parameters
+    ----------
+    gear : Gear
+    tolerance : float
+        For the largest error over the flank of c_0, of c_1 (over c_0), of root tension and of root compression.
+    reach : int
+        K: neighbours -K..K.
+    progress : callable, optional
+
+    Returns
+    -------
+    GearInfluence
+        Its `rounds` tell what was tried; the last one may miss the tolerance at the finest level or after the last
+        round.
+    """
+    level, rounds = level_for(tolerance), []
+    while True:
+        started = time.perf_counter()
+        settings, coarser = settings_at(level), settings_at(level - 1)
+        known = solve_gear(gear, settings, reach=reach, coarser=coarser, progress=progress)
+        errors = _errors_of_shape(*_shape(gear), settings, coarser, reach)
+        rounds.append(Round(settings, known.fine.unknowns, errors, time.perf_counter() - started))
+        if rounds[-1].error <= tolerance or level >= FINEST_LEVEL or len(rounds) == _MOST_ROUNDS:
+            seconds = {**known.seconds, "total": sum(one.seconds for one in rounds)}
+            return replace(known, rounds=tuple(rounds), seconds=seconds)
+        level += 1
+
+
+@functools.lru_cache(maxsize=256)
+def _errors_of_shape(
+    tooth: Tooth, bore_radius: float, nu: float, plane: Plane, settings: MeshSettings, coarser: MeshSettings, reach: int
+) -> Mapping[str, float]:
+    """`GearInfluence.largest_errors`, which neither size nor steel change: a sweep over loads asks again and again."""
+    gear = Gear(tooth, 1.0, bore_radius, material=Material(1.0, nu), plane=plane)
+    return MappingProxyType(solve_gear(gear, settings, reach=reach, coarser=coarser).largest_errors())
+
+
+def _shape(gear: Gear) -> tuple[Tooth, float, float, Plane]:
+    return gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption
+
+
+def level_for(tolerance: float) -> int:
+    """Level of `settings_at` that usually meets a relative tolerance: 0 for 1e-3, two levels a decade."""
+    level = math.ceil(-_LEVELS_PER_DECADE * math.log10(tolerance / 1e-3) - 1e-9)
+    return min(max(level, COARSEST_LEVEL), FINEST_LEVEL)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Index = NDArray[np.int64]
 
+#: Where fegear's own meshes come from.
+GENERATED = "generated"
 #: Boundaries of a sector, counterclockwise from the bore. A full fillet leaves no root_land, a sharp or chamfered tip
 #: no tip_rounding (which is the loaded side's only).
 BOUNDARIES = (
@@ -40,14 +42,19 @@ class SectorMesh:
         Number of sectors in the ring.
     origin : str
         Where the mesh came from, for the report.
+    bends : mapping of str to ndarray, shape (2, 2, n)
+        How the exact boundary leaves the chord of each edge at its first and second vertex (x and y of both), if
+        known: dx/dxi at its ends is the chord + bends[:, 0] and the chord - bends[:, 1]. Elements of order 3 and 4
+        follow these cubic edges, which have no kinks; the quadratic ones through the middle nodes have.
     """
 
     points: Array
     triangles: Index
     edges: Mapping[str, Index]
     teeth: int
-    origin: str = "generated"
+    origin: str = GENERATED
     seconds: float = field(default=0.0, compare=False)
+    bends: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Freeze the arrays and refuse inverted elements."""

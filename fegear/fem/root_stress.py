@@ -16,7 +16,7 @@ import numpy as np
 from fegear.fem.trace import lagrange_slope, quadratic_edge
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from fegear.fem.elasticity import SectorElasticity
     from fegear.fem.mesh import SectorMesh
@@ -38,6 +38,8 @@ class FilletStrain:
         Distance from the gear's centre [modules], clockwise angle from the tooth's centre line [rad], arc length from
         the root land [modules], angle between the fillet's tangent and the tooth's centre line [rad] (30 deg at the
         point that ISO 6336-3 looks at).
+    length : float
+        Of the whole fillet [modules].
     """
 
     dofs: Index
@@ -46,6 +48,7 @@ class FilletStrain:
     angle: Array
     arc: Array
     tangent_angle: Array
+    length: float
 
 
 def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> FilletStrain:
@@ -70,10 +73,18 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
     edges = np.where(upward, edges, edges[[1, 0, 2]])[:, order]
     dofs = np.where(upward, dofs, dofs[:, ::-1])[:, :, order]
     position, tangent = quadratic_edge(mesh.points[:, edges], xi)  # (2, n, q)
+    if p > 2 and name in mesh.bends:
+        bends = np.where(upward, mesh.bends[name], mesh.bends[name][:, ::-1])[:, :, order]
+        first, second, middle = (mesh.points[:, nodes] for nodes in edges)
+        bends = bends - 4.0 * (middle - 0.5 * (first + second))[:, None]
+        shape = np.array([(1 - xi) ** 2 * xi, (1 - xi) * xi**2])
+        slope = np.array([(1 - xi) * (1 - 3 * xi), xi * (2 - 3 * xi)])
+        position = position + np.einsum("cen,eq->cnq", bends, shape)
+        tangent = tangent + np.einsum("cen,eq->cnq", bends, slope)
     speed = np.hypot(*tangent)
-    slope = lagrange_slope(p, xi)  # (p + 1, q)
+    slopes = lagrange_slope(p, xi)  # (p + 1, q)
     n, q = speed.shape
-    values = np.einsum("cnq,iq,nq->nqci", tangent, slope, 1.0 / speed**2)  # t . du/ds
+    values = np.einsum("cnq,iq,nq->nqci", tangent, slopes, 1.0 / speed**2)  # t . du/ds
     unknowns, where = np.unique(dofs, return_inverse=True)
     where = where.reshape(dofs.shape)
     strain = np.zeros((n, q, unknowns.size))
@@ -91,18 +102,19 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
         angle=np.arctan2(*flat),
         arc=arc.reshape(-1),
         tangent_angle=lean,
+        length=float(length.sum()),
     )
 
 
-#: Degree of the polynomial that smooths the stress along a fillet. The trochoid is analytic, so the stress away from
-#: the contact is too, and the fit averages out the scatter of single edges: with 40 points on a fillet it lowers the
-#: error of the largest stress from 0.7 to 0.1 %.
-_DEGREE = 8
-#: Where the fit leaves more than this share of the largest stress, the contact is too near for a smooth curve.
-_MISFIT = 0.02
+#: The stress round its largest value is smoothed by a polynomial through this many points of this degree: the trochoid
+#: is analytic, so the stress away from the contact is too, and the fit averages out the scatter of single edges.
+_FITS = ((20, 6), (12, 4))
+#: Where a fit leaves more than this share of the largest stress, the contact is too near for a smooth curve.
+_MISFIT = 0.01
+_GRID = np.linspace(-1.0, 1.0, 201)
 
 
-def extreme(values: Array, arc: Array, sign: float) -> tuple[Array, Array]:
+def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Array, Array]:
     """Largest (sign +1) or smallest (-1) value along a fillet and its arc length.
 
     Parameters
@@ -110,25 +122,52 @@ def extreme(values: Array, arc: Array, sign: float) -> tuple[Array, Array]:
     values : ndarray, shape (points, P)
     arc : ndarray, shape (points,)
     sign : {1, -1}
+    end : array_like
+        Arc length at which the search ends.
 
     Returns
     -------
     value, place : ndarray, shape (P,)
-        From a least-squares polynomial along the fillet, or straight from the points where the load stands so near
-        that no smooth curve follows them.
+        From a least-squares polynomial round the largest of the points, or straight from that point where the load
+        stands so near that no smooth curve follows them.
     """
-    chebyshev = np.polynomial.chebyshev
-    length = arc[0] + arc[-1]
-    degree = max(1, min(_DEGREE, arc.size // 3))
-    weight = np.sqrt(np.gradient(arc))[:, None]
-    basis = chebyshev.chebvander(2.0 * arc / length - 1.0, degree)
-    coefficients = np.linalg.lstsq(basis * weight, values * weight, rcond=None)[0]
-    grid = np.linspace(2.0 * arc[0] / length - 1.0, 2.0 * arc[-1] / length - 1.0, 641)
-    smooth = sign * (chebyshev.chebvander(grid, degree) @ coefficients)
-    best = np.argmax(smooth, axis=0)
     columns = np.arange(values.shape[1])
-    raw = np.argmax(sign * values, axis=0)
+    ends = np.broadcast_to(np.asarray(end, dtype=float), columns.shape)
+    counts = np.maximum(np.searchsorted(arc, ends, side="right"), 1)
+    beyond = np.arange(arc.size)[:, None] >= counts
+    top = np.argmax(np.where(beyond, -np.inf, sign * values), axis=0)
+    value, place = values[top, columns].copy(), arc[top].copy()
+    left = np.ones(columns.size, dtype=bool)
+    for points, degree in _FITS:
+        for at, count in np.unique(np.stack([top, counts])[:, left], axis=1).T:
+            chosen = np.flatnonzero(left & (top == at) & (counts == count))
+            first = int(np.clip(at - points // 2, 0, max(count - points, 0)))
+            window = slice(first, min(first + points, int(count)))
+            low = 0.0 if first == 0 else float(arc[first])
+            high = ends[chosen] if window.stop == count else np.full(chosen.size, arc[window.stop - 1])
+            found, where, misfit = _smoothed(sign * values[window, chosen], arc[window], degree, low, high)
+            good = misfit <= _MISFIT * np.abs(values[:count, chosen]).max(axis=0)
+            value[chosen[good]], place[chosen[good]] = sign * found[good], where[good]
+            left[chosen[good]] = False
+    return value, place
+
+
+def _smoothed(values: Array, arc: Array, degree: int, low: float, high: Array) -> tuple[Array, Array, Array]:
+    """Largest value between two arc lengths of a polynomial through points, its place and the largest misfit."""
+    chebyshev = np.polynomial.chebyshev
+    middle, half = 0.5 * (arc[0] + arc[-1]), max(0.5 * (arc[-1] - arc[0]), 1e-300)
+    basis = chebyshev.chebvander((arc - middle) / half, max(0, min(degree, arc.size // 2)))
+    coefficients = np.linalg.lstsq(basis, values, rcond=None)[0]
+    columns = np.arange(values.shape[1])
+    places = 0.5 * (low + high) + 0.5 * (high - low) * _GRID[:, None]
+    curve = np.einsum("gpi,ip->gp", chebyshev.chebvander((places - middle) / half, basis.shape[1] - 1), coefficients)
+    best = np.argmax(curve, axis=0)
+    # A parabola through the best of the grid and its neighbours takes the grid's step out.
+    inner = np.clip(best, 1, _GRID.size - 2)
+    before, here, after = (curve[inner + step, columns] for step in (-1, 0, 1))
+    bend = before - 2.0 * here + after
+    shift = np.divide(0.5 * (before - after), bend, out=np.zeros_like(bend), where=bend < 0.0)
+    shift = np.where(best == inner, np.clip(shift, -1.0, 1.0), best - inner)
+    peak = here + 0.5 * shift * (after - before) + 0.5 * shift**2 * bend
     misfit = np.abs(basis @ coefficients - values).max(axis=0)
-    follow = misfit <= _MISFIT * np.abs(values).max(axis=0)
-    value = np.where(follow, smooth[best, columns], sign * values[raw, columns])
-    return sign * value, np.where(follow, 0.5 * length * (grid[best] + 1.0), arc[raw])
+    return peak, places[inner, columns] + shift * 0.5 * (high - low) * (_GRID[1] - _GRID[0]), misfit

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.errors import FegearError, InputError, MissingLibraryError
-from fegear.fem.boundary import sector_boundary
-from fegear.fem.mesh import SectorMesh, with_middle_nodes
+from fegear.fem.boundary import Chain, sector_boundary
+from fegear.fem.mesh import GENERATED, SectorMesh, with_middle_nodes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -90,17 +90,29 @@ def _mesh(tooth: Tooth, bore_radius: float, settings: MeshSettings, started: flo
     total = int(starts[-1])
     runs: dict[str, list[NDArray[np.int64]]] = {}
     middles: dict[str, list[NDArray[np.float64]]] = {}
+    bends: dict[str, list[NDArray[np.float64]]] = {}
     for chain, start in zip(chains, starts, strict=False):
         n = chain.vertices.shape[1]
         runs.setdefault(chain.name, []).append(np.arange(start, start + n) % total)
         middles.setdefault(chain.name, []).append(chain.middles)
+        bends.setdefault(chain.name, []).append(_bends(chain))
     edges: dict[str, NDArray[np.int64]] = {}
     flat = {f"{name}:{i}": run for name, parts in runs.items() for i, run in enumerate(parts)}
     flat_middles = {f"{name}:{i}": m for name, parts in middles.items() for i, m in enumerate(parts)}
     points, six, numbered = with_middle_nodes(vertices, triangles, flat, flat_middles)
     for name, parts in runs.items():
         edges[name] = np.hstack([numbered[f"{name}:{i}"] for i in range(len(parts))])
-    return SectorMesh(points, six, edges, tooth.teeth, "generated", time.perf_counter() - started)
+    joined = {name: np.concatenate(parts, axis=2) for name, parts in bends.items()}
+    return SectorMesh(points, six, edges, tooth.teeth, GENERATED, time.perf_counter() - started, joined)
+
+
+def _bends(chain: Chain) -> NDArray[np.float64]:
+    """How the exact curve leaves each edge's chord at its ends, shape (2, 2, n): see `SectorMesh`."""
+    chord = np.diff(chain.vertices)
+    # Twice the way over the middle node, less what the chord is shorter: the arc's length to fourth order.
+    halves = np.hypot(*(chain.middles - chain.vertices[:, :-1])) + np.hypot(*(chain.vertices[:, 1:] - chain.middles))
+    length = (4.0 * halves - np.hypot(*chord)) / 3.0
+    return np.stack([length * chain.tangents[:, :-1] - chord, chord - length * chain.tangents[:, 1:]], axis=1)
 
 
 def _ignore_closed_pipes() -> None:

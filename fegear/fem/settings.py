@@ -16,6 +16,8 @@ class MeshSettings:
     ----------
     root_edge_length : float
         Edges along both fillets.
+    root_fraction : float
+        Longest edge along a fillet as a fraction of its radius of curvature there.
     flank_edge_length : float
         Edges along the loaded flank.
     tip_edge_length, junction_edge_length : float
@@ -23,7 +25,7 @@ class MeshSettings:
     back_edge_length : float
         Longest edge along the other flank and the tip.
     growth, tip_growth, side_growth : float
-        How fast edges grow with distance from fillet, tip corner and outline.
+        How fast edges grow with distance from the fillet, from the ends of the loaded flank, and from the outline.
     body_fraction : float
         Longest edge in the body as a fraction of the sector's width there.
     rim_fraction : float
@@ -31,24 +33,25 @@ class MeshSettings:
     corner_distance : float
         Contacts nearer than this to a corner of the flank are modelled at this distance.
     patch_half_width : float
-        Half-width of the semi-elliptic pressure that loads the mesh.
+        Half-width of the wider of the two semi-elliptic pressures that load the mesh.
     order : int
         Polynomial order of the displacement, 2 to 4.
     """
 
-    root_edge_length: float = 0.04
-    flank_edge_length: float = 0.035
+    root_edge_length: float = 0.055
+    root_fraction: float = 0.2
+    flank_edge_length: float = 0.055
     tip_edge_length: float = 0.008
     junction_edge_length: float = 0.008
     back_edge_length: float = 0.3
-    growth: float = 0.25
-    tip_growth: float = 0.15
-    side_growth: float = 0.35
-    body_fraction: float = 2.0
-    rim_fraction: float = 0.3
+    growth: float = 0.28
+    tip_growth: float = 0.2
+    side_growth: float = 0.4
+    body_fraction: float = 1.4
+    rim_fraction: float = 0.45
     corner_distance: float = 0.02
-    patch_half_width: float = 0.08
-    order: int = 2
+    patch_half_width: float = 0.13
+    order: int = 4
 
     def __post_init__(self) -> None:
         """Refuse settings that make no mesh."""
@@ -64,6 +67,7 @@ class MeshSettings:
         return replace(
             self,
             root_edge_length=self.root_edge_length * factor,
+            root_fraction=self.root_fraction * factor,
             flank_edge_length=self.flank_edge_length * factor,
             tip_edge_length=self.tip_edge_length * factor,
             junction_edge_length=self.junction_edge_length * factor,
@@ -74,3 +78,22 @@ class MeshSettings:
             body_fraction=self.body_fraction * factor,
             rim_fraction=self.rim_fraction * factor,
         )
+
+    def refined(self, factor: float) -> MeshSettings:
+        """Return a finer (factor < 1) or coarser set for another accuracy: edges times `factor`, patch its root.
+
+        A pressure on a mesh has two errors: how well the mesh resolves it, and its own width's. So that both fall, the
+        patch narrows, but less than the edges do.
+        """
+        return replace(self.scaled(factor), patch_half_width=min(self.patch_half_width * math.sqrt(factor), 0.5))
+
+
+#: Edge lengths of neighbouring levels differ by this factor.
+LEVEL_RATIO = math.sqrt(2.0)
+#: Levels that can be asked for: edge lengths 2.8 to 0.25 times the default.
+COARSEST_LEVEL, FINEST_LEVEL = -3, 4
+
+
+def settings_at(level: int) -> MeshSettings:
+    """Settings of a level: 0 the default, every further one with edges shorter by the square root of two."""
+    return MeshSettings().refined(LEVEL_RATIO**-level)

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from fegear.scene.load import Scene
     from fegear.scene.loaded_pair import LoadedPair
 
-#: A stress converges one order more slowly than a deflection: its tolerance is this many times the case's.
-STRESS_SHARE = 5.0
 _UNITS = {"transmission error": ("um", 1e6), "load on a tooth pair": ("N", 1.0), "root tension": ("MPa", 1e-6)}
 _SCALES = {"transmission error": "its mean", "load on a tooth pair": "the load", "root tension": "its largest value"}
 
@@ -62,12 +60,6 @@ def remedy(scene: Scene, effect: str) -> str:
     if effect in ("corner_contact", "neighbour_coupling") and effects.friction:
         return f"{line}, without friction, which needs tooth pairs that stand alone."
     return f"{line}."
-
-
-def tolerance_of(scene: Scene, answer: Answer) -> float:
-    """Share of an answer that the case lets go."""
-    tolerance = scene.case.accuracy.tolerance
-    return STRESS_SHARE * tolerance if answer == "root tension" else tolerance
 
 
 def wanted_answers(scene: Scene) -> tuple[Answer, ...]:
@@ -153,7 +145,7 @@ def pair_remarks(scene: Scene, pair: LoadedPair) -> tuple[str, ...]:
         found, wrong = pair_changes(scene, pair)
     told = list(wrong)
     for effect, parts in found.items():
-        sizes = [_size(change, pair.nominal) for change in parts if change.share > tolerance_of(scene, change.answer)]
+        sizes = [_size(change, pair.nominal) for change in parts if change.share > scene.case.accuracy.tolerance]
         if sizes:
             told.append(remark(f"Pair {pair.name}", scene, effect, sizes))
     return tuple(told)

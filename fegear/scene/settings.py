@@ -3,54 +3,55 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fegear.fem.settings import MeshSettings
     from fegear.scene.case.accuracy import AccuracyPart
 
-#: Tolerance that the default settings are made for.
-DEFAULT_TOLERANCE = 1e-3
-#: Seconds of one gear with the default settings and its error estimate, on one core of a server, and how they grow with
-#: 1 / edge length: 0.22, 0.7, 6.3 and 30 s were measured for edges of 1.6, 1, 0.5 and 0.3 times the default, much the
-#: same from 12 to 100 teeth.
-_SECONDS, _GROWTH = 0.7, 3.15
-#: Root stress, the slowest of the results, converges with about the square of the edge length.
-_ORDER = 2.0
-_COARSEST, _FINEST = 1.6, 0.3
+#: Processor seconds of one gear with the default settings and its error estimate, and how they grow with 1 / edge
+#: length and with the order: one core of a server, 12 to 200 teeth, edges of 2.8 to 0.35 times the default.
+_SECONDS, _GROWTH, _ORDER_GROWTH = 0.40, 2.0, 2.2
 
 
-def mesh_settings(accuracy: AccuracyPart) -> MeshSettings:
-    """Settings for a tolerance, with explicitly given ones taking their place.
+def settings_for(tolerance: float) -> MeshSettings:
+    """Return the settings with which a solution for a relative tolerance starts.
+
+    They are the cheapest of the levels of `fegear.fem.settings_at` whose true errors (c_0, c_1 over c_0, largest root
+    tension and compression, over the whole flank) usually meet the tolerance; docs/numerics.md has the measurements.
 
     Parameters
     ----------
-    accuracy : AccuracyPart
+    tolerance : float
 
     Returns
     -------
     MeshSettings
-        The default ones scaled by (tolerance / 1e-3)^(1/2), within the range in which the scaling has been tried.
     """
+    from fegear.fem import level_for, settings_at
+
+    return settings_at(level_for(tolerance))
+
+
+def given_settings(accuracy: AccuracyPart) -> dict[str, Any]:
+    """Settings that the case gives itself; with any of them nothing is refined."""
     from fegear.fem.settings import MeshSettings
 
-    factor = (accuracy.tolerance / DEFAULT_TOLERANCE) ** (1.0 / _ORDER)
-    factor = min(max(factor, _FINEST), _COARSEST)
-    settings = MeshSettings().scaled(factor)
-    # The pressure that loads the mesh leaves an error of its own, about in proportion to its width.
-    settings = replace(settings, patch_half_width=settings.patch_half_width * min(factor, 1.0))
-    given = {
-        field.name: getattr(accuracy, field.name)
-        for field in fields(MeshSettings)
-        if getattr(accuracy, field.name) is not None
-    }
-    return replace(settings, **given)
+    found = {field.name: getattr(accuracy, field.name) for field in fields(MeshSettings)}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def mesh_settings(accuracy: AccuracyPart) -> MeshSettings:
+    """Settings for a tolerance, with explicitly given ones taking their place."""
+    given = given_settings(accuracy)
+    settings = settings_for(accuracy.tolerance)
+    return replace(settings, **given) if given else settings
 
 
 def seconds_of_gear(settings: MeshSettings) -> float:
-    """About how long the influence functions of one gear take, with their error estimate, from nothing [s]."""
+    """About how many seconds the influence functions of one gear take, with their error estimate, from nothing."""
     from fegear.fem.settings import MeshSettings
 
     usual = MeshSettings()
     finer = usual.root_edge_length / settings.root_edge_length * usual.flank_edge_length / settings.flank_edge_length
-    return float(_SECONDS * (finer**0.5 * settings.order / usual.order) ** _GROWTH)
+    return float(_SECONDS * finer ** (0.5 * _GROWTH) * (settings.order / usual.order) ** _ORDER_GROWTH)

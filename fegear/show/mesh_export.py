@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 _MM = 1e3
+#: Six-node triangles are of this order, and want edges so much shorter than those of fourth order.
+_FIELD_ORDER, _SIX_NODE_EDGES = 2, 0.7
 
 
 def loaded_gear(
@@ -37,11 +40,15 @@ def loaded_gear(
     ----------
     gear : Gear
     settings : MeshSettings
+        The field is solved on six-node triangles, which other programs read; edges meant for a higher order are
+        shortened.
     mesh : SectorMesh, optional
         A user's own sector mesh.
     radius : float, optional
         Load radius [m]; by default the pitch radius, or the flank's end nearest to it.
     """
+    if settings.order > _FIELD_ORDER:
+        settings = replace(settings.scaled(_SIX_NODE_EDGES), order=_FIELD_ORDER)
     shape = mesh or mesh_sector(gear.tooth, gear.bore_radius / gear.module, settings)
     place = min(max(gear.pitch_radius if radius is None else radius, gear.form_radius), gear.involute_tip_radius)
     room = min(place - gear.form_radius, gear.involute_tip_radius - place) / gear.module

@@ -10,7 +10,7 @@ import pytest
 from fegear.errors import FegearError
 from fegear.fem.condensation import condense
 from fegear.fem.elasticity import assemble
-from fegear.fem.influence import solve_influence
+from fegear.fem.influence import curvature_slope, log_slope, solve_influence
 from fegear.fem.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.ring import close_ring, coupling_by_doubling, coupling_by_harmonics
 from fegear.fem.sector import mesh_sector
@@ -70,7 +70,7 @@ def rim_motion(teeth, radial, around, order, direction, nu=0.3):
 @functools.cache
 def four_square(order, factor, poisson=0.3, plane="strain"):
     tooth = Tooth(28, BasicRack(1.0, 1.25, 0.25))
-    mesh = mesh_sector(tooth, 0.5 * tooth.root_radius, MeshSettings().scaled(factor))
+    mesh = mesh_sector(tooth, 0.5 * tooth.root_radius, MeshSettings().scaled(0.7 * factor))
     return solve_influence(tooth, mesh, poisson, plane, order=order, margin=0.3)
 
 
@@ -95,7 +95,7 @@ def test_observed_order_of_convergence_in_energy(order, factors, slope):
 
 @pytest.mark.parametrize(
     ("order", "factors", "slope"),
-    [(2, (4.0, 2.8, 2.0, 1.4, 1.0), 2.0), (3, (5.6, 4.0, 2.8, 2.0), 3.0), (4, (5.6, 4.0, 2.8), 3.0)],
+    [(2, (4.0, 2.8, 2.0, 1.4, 1.0), 2.0), (3, (5.6, 4.0, 2.8, 2.0, 1.4), 2.7), (4, (4.0, 2.8, 2.0, 1.4), 3.0)],
 )
 def test_observed_order_of_convergence_of_the_root_stress(order, factors, slope):
     # p for a derivative; the surface's own strain at Gauss points does a little better on the average over positions.
@@ -103,7 +103,7 @@ def test_observed_order_of_convergence_of_the_root_stress(order, factors, slope)
         known, radii = four_square(p, factor), np.linspace(13.5, 14.9, 15)
         return np.concatenate([known.largest_root_stress(0, s, radii, 0.1)[0] for s in ("tension", "compression")])
 
-    reference = stress(4, 1.4)
+    reference = stress(4, 0.8)
     errors = [np.sqrt(np.mean((stress(order, f) / reference - 1.0) ** 2)) for f in factors]
     assert np.polyfit(np.log(factors), np.log(errors), 1)[0] > slope
     assert errors[-1] < 2e-3
@@ -118,22 +118,44 @@ def test_plane_strain_is_plane_stress_with_changed_constants():
 
 
 def test_deflection_at_the_centre_and_weighted_with_the_pressure_tell_the_same_story():
-    known = four_square(2, 0.7)
-    radii = np.linspace(13.4, 14.9, 9)
-    assert np.allclose(known.self_compliance(radii, 0.1), known.centre_compliance(radii, 0.1), rtol=1e-3)
+    # The centre of a wide patch itself, against mean deflections of wider and narrower ones and closed forms.
+    known = four_square(4, 0.7)
+    radii = np.linspace(13.4, 14.7, 9)
+    assert np.allclose(known.self_compliance(radii, 0.12, 0.08), known.centre_compliance(radii, 0.08), rtol=1e-4)
 
 
 def test_self_compliance_does_not_depend_on_the_patch_from_root_to_tip():
-    known = four_square(2, 0.7)
+    known = four_square(4, 0.7)
     radii = np.sqrt(np.linspace(known.flank.lowest_radius**2, known.flank.highest_radius**2, 25))
     narrow, wide = (known.self_compliance(radii, a, 0.02) for a in (0.06, 0.12))
-    assert np.abs(wide / narrow - 1.0).max() < 1e-3
+    assert np.abs(wide / narrow - 1.0).max() < 1e-4
 
 
 def test_narrower_true_contacts_add_the_half_plane_s_logarithm():
     known = four_square(2, 1.0)
-    by_formula = known.self_compliance([14.0], 0.1, 0.05) - known.self_compliance([14.0], 0.1, 0.1)
-    assert by_formula == pytest.approx(2 * (1 - 0.09) / math.pi * math.log(2.0), rel=1e-12)
+    by_formula = known.self_compliance([14.0], 0.1, 0.5e-4) - known.self_compliance([14.0], 0.1, 1e-4)
+    assert by_formula == pytest.approx(2 * (1 - 0.09) / math.pi * math.log(2.0), rel=1e-4)
+
+
+@pytest.mark.parametrize(("nu", "plane"), [(0.3, "strain"), (0.0, "strain"), (0.45, "strain"), (0.3, "stress")])
+def test_deflection_on_a_curved_surface_departs_from_the_half_plane_s_in_closed_form(nu, plane):
+    # The exact disc: pressure cos(n phi) moves its rim by m_n cos(n phi), m_n = (1/(n-1) + k/(n+1)) (1+nu)/2. Under a
+    # semi-elliptic pressure of half-width a its coefficients are 2 J_1(n a) / (n a) / pi, and so is the mean's weight.
+    from scipy.special import j1
+
+    k = 3 - 4 * nu if plane == "strain" else (3 - nu) / (1 + nu)
+    n = np.arange(2.0, 8e5)
+
+    def mean(a):
+        coefficient = 2.0 * j1(n * a) / (n * a)
+        return float(np.sum(coefficient**2 * (1 / (n - 1) + k / (n + 1))) * 0.5 * (1 + nu) / math.pi)
+
+    narrow, wide = 0.002, 0.004
+    logarithm = log_slope(nu, plane) * math.log(wide / narrow)
+    linear = curvature_slope(nu, plane) * 256 / (45 * math.pi**2) * (wide - narrow)
+    left = mean(narrow) - mean(wide) - logarithm + linear
+    # What is left goes with the square of the width and its logarithm.
+    assert abs(left) < 1.5 * (wide**2 - narrow**2)
 
 
 def test_moments_and_forces_of_every_patch_are_exact():

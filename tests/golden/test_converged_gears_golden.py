@@ -1,4 +1,4 @@
-"""Default settings against converged solutions (third order, meshes twice as dense): see make_converged_gears.py."""
+"""Default settings against converged solutions of nine common gears: see make_converged_gears.py."""
 
 import functools
 import json
@@ -19,15 +19,11 @@ def compared(index):
     g = GEARS[index]
     tooth = Tooth(g["teeth"], RACKS[g["rack"]], g["profile_shift"])
     gear = Gear(tooth, 1.0, g["bore"] * tooth.root_radius, material=Material(1.0, 0.3))
-    table = stiffness_table(gear, g["radii"], 0.02)
+    table = stiffness_table(gear, np.clip(g["radii"], gear.form_radius, gear.involute_tip_radius), 0.02)
     relative = {}
-    for name, column in (
-        ("c_self", "c_self"),
-        ("root_tension", "root_tension"),
-        ("root_compression", "root_compression"),
-    ):
+    for name in ("c_self", "root_tension", "root_compression"):
         reference = np.array(g[name])
-        relative[name] = np.abs(getattr(table, name) / reference - 1.0), np.abs(table.errors[column] / reference)
+        relative[name] = np.abs(getattr(table, name) / reference - 1.0), np.abs(table.errors[name] / reference)
     scale = np.array(g["c_self"])
     relative["c_next"] = np.abs(table.c_next - g["c_next"]) / scale, table.errors["c_neighbour"] / scale
     return relative
@@ -37,13 +33,12 @@ def compared(index):
     "index", range(len(GEARS)), ids=lambda i: "z{teeth}x{profile_shift}r{rack}b{bore}".format(**GEARS[i])
 )
 def test_default_settings_are_within_their_promise(index):
+    # From the very start of the involute to the tip.
     found = compared(index)
-    assert found["root_tension"][0].max() < 5e-3
-    assert found["root_compression"][0].max() < 5e-3
+    assert found["root_tension"][0].max() < 1e-3
+    assert found["root_compression"][0].max() < 1e-3
     assert found["c_next"][0].max() < 1e-4
-    # The first position is the very start of the involute, where the patch is 0.02 module beside a fillet.
-    assert found["c_self"][0][1:].max() < 1e-3
-    assert found["c_self"][0][0] < 2e-3
+    assert found["c_self"][0].max() < 5e-4
 
 
 def test_error_estimates_cover_most_positions_without_crying_wolf():

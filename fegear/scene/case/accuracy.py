@@ -24,6 +24,7 @@ class AccuracyPart(Part):
     tolerance: Annotated[Number, AfterValidator(_tolerance)] = 1e-3
     order: Annotated[int, Field(ge=2, le=4)] | None = None
     root_edge_length: EdgeLength | None = None
+    root_fraction: Annotated[Number, Field(gt=0.0, le=2.0)] | None = None
     flank_edge_length: EdgeLength | None = None
     tip_edge_length: EdgeLength | None = None
     junction_edge_length: EdgeLength | None = None

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.scene import forecasts
 from fegear.scene.left_out import pair_remarks
-from fegear.scene.loaded_pair import LoadedPair, build_loaded_pair, check_pair, effect_remarks
+from fegear.scene.loaded_pair import MEMBERS, LoadedPair, build_loaded_pair, check_pair, effect_remarks, gear_name
 from fegear.scene.outcome import Outcome
 from fegear.scene.stage import Stage, Task
+from fegear.scene.tooth_influence import solution_remarks, solution_told
 
 if TYPE_CHECKING:
     from fegear.contact import Engagement, Loaded
@@ -53,6 +54,8 @@ def solve_again(other: Engagement, grid: RollGrid, loaded: Loaded) -> Loaded:
 
 
 def _run(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
+    from fegear.contact.fe_compliance import FiniteElementCompliance
+
     steps = iter(range(_STEPS))
     pair = build_loaded_pair(scene, name, lambda _title: progress(next(steps, _STEPS) / _STEPS))
     settings: dict[str, object] = {
@@ -64,7 +67,17 @@ def _run(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
         "nominal_load": pair.nominal,
         "loads": list(pair.loads),
     }
-    return Outcome(pair, (), (), settings, (*effect_remarks(scene, name), *pair_remarks(scene, pair)))
+    remarks: list[str] = []
+    for gear, source in zip(
+        (gear_name(scene, name, member) for member in MEMBERS),
+        (pair.engagement.compliance.driver, pair.engagement.compliance.driven),
+        strict=True,
+    ):
+        if isinstance(source, FiniteElementCompliance):
+            settings[f"gear_{gear}"] = solution_told(source.influence)
+            remarks += solution_remarks(scene, gear, source.influence)
+    remarks += [*effect_remarks(scene, name), *pair_remarks(scene, pair)]
+    return Outcome(pair, (), (), settings, tuple(dict.fromkeys(remarks)))
 
 
 LOADED_PAIR = Stage(

@@ -13,7 +13,7 @@ from fegear.scene.outcome import Column, Outcome, Table, Value
 from fegear.scene.settings import mesh_settings
 from fegear.scene.stage import Forecast, Stage, Task
 from fegear.scene.taken import bore_remarks
-from fegear.scene.tooth_influence import gear_influence
+from fegear.scene.tooth_influence import gear_influence, solution_remarks, solution_told
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 USUAL_HALF_WIDTH = 0.02
 #: Wider contacts than this [modules] are refused where a case gives them: the flank is too short to hold them.
 LARGEST_HALF_WIDTH = 0.5
-#: A stress converges one order more slowly than a compliance: its tolerance is this many times the case's.
-STRESS_SHARE = 5.0
 #: Reading off one position of a solved gear [s].
 _SECONDS_PER_POSITION = 3e-4
 #: The error estimates of a table [s].
@@ -163,15 +161,13 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
 
 
 def _remarks(scene: Scene, name: str, t: StiffnessTable) -> tuple[str, ...]:
-    compliance = scene.case.accuracy.tolerance
-    stress = STRESS_SHARE * compliance
-    remarks = []
+    tolerance, remarks = scene.case.accuracy.tolerance, []
     # The neighbour's deflection is small beside the loaded tooth's, to which it is added: that is its scale.
-    for label, value, error, tolerance in (
-        ("c_self", t.c_self, t.errors["c_self"], compliance),
-        ("c_next over c_self", t.c_self, t.errors["c_neighbour"], compliance),
-        ("root tension", t.root_tension, t.errors["root_tension"], stress),
-        ("root compression", t.root_compression, t.errors["root_compression"], stress),
+    for label, value, error in (
+        ("c_self", t.c_self, t.errors["c_self"]),
+        ("c_next over c_self", t.c_self, t.errors["c_neighbour"]),
+        ("root tension", t.root_tension, t.errors["root_tension"]),
+        ("root compression", t.root_compression, t.errors["root_compression"]),
     ):
         relative = np.abs(error / value)
         i = int(np.argmax(relative))
@@ -193,19 +189,13 @@ def _remarks(scene: Scene, name: str, t: StiffnessTable) -> tuple[str, ...]:
 def _run_stiffness(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
     from fegear.fem import stiffness_table
 
-    gear, settings = scene.gears[name], mesh_settings(scene.case.accuracy)
+    gear = scene.gears[name]
     steps = iter(range(_STEPS))
     radii = load_radii(scene, name)
     influence = gear_influence(scene, name, lambda _title: progress(next(steps, _STEPS) / _STEPS))
-    table = stiffness_table(gear, radii, contact_half_width(scene, name, radii), settings, influence=influence)
-    told = {
-        **asdict(settings),
-        "unknowns": influence.fine.unknowns,
-        "mesh": influence.fine.mesh.origin,
-        "plane": gear.plane_assumption,
-        "seconds": {key: round(seconds, 6) for key, seconds in influence.seconds.items()},
-    }
-    return Outcome(table, _tables(name, table), _values(name, gear, table), told, _remarks(scene, name, table))
+    table = stiffness_table(gear, radii, contact_half_width(scene, name, radii), influence=influence)
+    remarks = (*solution_remarks(scene, name, influence), *_remarks(scene, name, table))
+    return Outcome(table, _tables(name, table), _values(name, gear, table), solution_told(influence), remarks)
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:

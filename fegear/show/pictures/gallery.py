@@ -44,6 +44,7 @@ def _stiffness(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
 
 
 def _root_stress(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.fem.mesh import GENERATED
     from fegear.fem.mesh_files import write_mesh_file
     from fegear.show.mesh_export import loaded_gear, nodal_fields
     from fegear.show.pictures.deformed import draw_deformed
@@ -52,7 +53,8 @@ def _root_stress(results: Results, task: Task, folder: Path) -> Iterator[Picture
     outcome, name = results.outcomes[task], task.subject
     yield draw_fillet(outcome.tables[0], cast("float", outcome.data), folder / f"fillet_{name}.png", name)
     gear, data = results.scene.gears[name], cast("StiffnessTable", results.outcomes[Task("stiffness", name)].data)
-    whole, field = loaded_gear(gear, data.influence.settings, data.influence.fine.mesh)
+    mesh = data.influence.fine.mesh
+    whole, field = loaded_gear(gear, data.influence.settings, None if mesh.origin == GENERATED else mesh)
     line_load = results.scene.case.stiffness.load or _USUAL_LINE_LOAD
     fields = nodal_fields(gear, whole, field, line_load)
     vtu = folder.parent / "fields" / f"{name}.vtu"

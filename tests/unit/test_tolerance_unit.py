@@ -1,0 +1,84 @@
+"""A tolerance picks settings, is solved to, and tells what it paid; settings that are given are obeyed."""
+
+import pytest
+
+import fegear.fem.gear as fem_gear
+from fegear.fem import MeshSettings, settings_at, solve_to_tolerance
+from fegear.geometry import Gear, Tooth
+from fegear.scene.load import build_scene
+from fegear.scene.plan import make_plan
+from fegear.scene.run import run_plan
+from fegear.scene.settings import settings_for
+from fegear.scene.stages import STAGES
+from fegear.store import keeping_shapes
+
+
+def steel_gear():
+    return Gear(Tooth(23), 1e-3, 5e-3)
+
+
+def run(folder, **accuracy):
+    document = {
+        "results": ["stiffness"],
+        "gear": {"a": {"teeth": 23, "module": "1 mm", "bore_radius": "5 mm"}},
+        "stiffness": {"positions": 5, "contact_half_width": "0.02 mm"},
+        "accuracy": accuracy,
+    }
+    scene = build_scene(document, "tolerance", folder)
+    ((_, outcome),) = run_plan(scene, make_plan(scene, STAGES)).outcomes.items()
+    return outcome
+
+
+def test_finer_tolerances_start_with_finer_settings_of_one_ladder():
+    edges = [settings_for(10.0**-k).root_edge_length for k in (1, 2, 3, 4, 5, 6)]
+    assert edges[0] > edges[1] > edges[2] > edges[3] > edges[4] == edges[5]
+    assert settings_for(1e-3) == settings_at(0) == MeshSettings()
+    assert settings_for(1e-4).root_edge_length == pytest.approx(0.5 * MeshSettings().root_edge_length)
+    # a level is exactly the coarser neighbour that the error estimate of the next one asks for
+    assert settings_at(0).refined(2.0**0.5) == settings_at(-1)
+
+
+def test_a_missed_tolerance_is_refined_and_no_solution_is_wasted(monkeypatch, tmp_path):
+    monkeypatch.setattr(fem_gear, "level_for", lambda _tolerance: -3)
+    fem_gear.influence_of_shape.cache_clear()
+    with keeping_shapes(tmp_path) as keeper:
+        known = solve_to_tolerance(steel_gear(), 3e-3)
+    assert len(known.rounds) > 1
+    assert keeper.solved == len(known.rounds) + 1
+    assert [one.error <= 3e-3 for one in known.rounds] == [False] * (len(known.rounds) - 1) + [True]
+    assert known.rounds[-1].errors == pytest.approx(known.largest_errors(), rel=1e-6)
+    assert known.settings == settings_at(-3 + len(known.rounds) - 1)
+    assert known.coarse is fem_gear.influence_of_shape(
+        known.gear.tooth, 5.0, 0.3, "strain", settings_at(-3 + len(known.rounds) - 2), 1
+    )
+    sizes = [one.unknowns for one in known.rounds]
+    assert sizes == sorted(sizes)
+    assert known.seconds["total"] == pytest.approx(sum(one.seconds for one in known.rounds))
+
+
+def test_refinement_ends_at_the_finest_level_and_says_so(monkeypatch, tmp_path):
+    monkeypatch.setattr(fem_gear, "level_for", lambda _tolerance: -3)
+    monkeypatch.setattr(fem_gear, "FINEST_LEVEL", -2)
+    outcome = run(tmp_path, tolerance=1e-6)
+    assert len(outcome.settings["rounds"]) == 2
+    said = [remark for remark in outcome.remarks if "was refined once for the tolerance 1e-06" in remark]
+    assert len(said) == 1
+    assert "misses the tolerance" in said[0]
+    assert any("at radius" in remark and "c_self" in remark for remark in outcome.remarks)
+
+
+def test_what_a_tolerance_cost_is_told_round_by_round(tmp_path):
+    outcome = run(tmp_path, tolerance=0.1)
+    (only,) = outcome.settings["rounds"]
+    assert set(only) == {"root_edge_length", "unknowns", "estimated_error", "seconds"}
+    assert max(only["estimated_error"].values()) <= 0.1
+    assert only["root_edge_length"] == outcome.settings["root_edge_length"] == settings_for(0.1).root_edge_length
+    assert not any("refined" in remark for remark in outcome.remarks)
+
+
+def test_given_settings_are_obeyed_without_refinement(tmp_path):
+    outcome = run(tmp_path, tolerance=1e-5, order=2, root_edge_length=0.2, flank_edge_length=0.2)
+    assert "rounds" not in outcome.settings
+    assert (outcome.settings["order"], outcome.settings["root_edge_length"]) == (2, 0.2)
+    assert outcome.settings["growth"] == settings_for(1e-5).growth
+    assert any("root tension reaches" in remark for remark in outcome.remarks)
