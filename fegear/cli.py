@@ -1,4 +1,4 @@
-"""The command line: ``fegear run``, ``fegear plan``, ``fegear sweep``, ``fegear export``."""
+"""The command line: ``fegear run``, ``fegear plan``, ``fegear cost``, ``fegear sweep``, ``fegear export``."""
 
 from __future__ import annotations
 
@@ -111,6 +111,42 @@ def plan(case: CaseFile, overrides: Overrides = None) -> None:
 
     scene = read_scene(case, overrides or ())
     typer.echo("\n".join(plan_lines(scene, make_plan(scene, STAGES))))
+
+
+@app.command()
+def cost(
+    case: CaseFile,
+    overrides: Overrides = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>-cost.")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="A few rungs instead of all, for a first look.")] = False,
+    no_plots: NoPlots = False,
+) -> None:
+    """Show what accuracy costs in time: every closed form, sectors, whole gears from coarse to fine."""
+    from fegear.scene.cost import asked, forecast, ladder_of, study_cost
+    from fegear.scene.load import read_scene
+    from fegear.show.cost import cheapest_lines, write_cost
+    from fegear.show.folder import check_target, whole_or_nothing
+    from fegear.terminal import watcher
+
+    try:
+        priced = asked(read_scene(case, overrides or ()))
+        target = out or Path("results") / f"{case.stem}-cost"
+        check_target(target)
+        ladder = ladder_of(priced, quick=quick)
+        typer.echo(f"Prices {', '.join(q.name for q in priced.quantities)}: {len(ladder.rungs)} rungs.")
+        typer.echo(f"Predicted: about {forecast(priced, ladder):.2g} s of one core, measured on a usual machine.")
+        with watcher(sys.stderr) as watching:
+            results = study_cost(priced, quick=quick, watcher=watching)
+        with whole_or_nothing(target) as scratch:
+            write_cost(results, scratch, plots=not no_plots)
+    except KeyboardInterrupt:
+        _leave(_INTERRUPTED, 130)
+    typer.echo("\n".join(cheapest_lines(results)))
+    for remark in results.remarks:
+        typer.echo(f"Note: {remark}")
+    typer.echo(f"Wrote {target} in {results.seconds:.1f} s.")
+    if not results.complete:
+        _leave(f"interrupted; {results.finished} of {results.planned} rungs are in {target}.", 130)
 
 
 @app.command()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.compliance import Rigid
 from fegear.contact.spline import Spline, spline
 from fegear.errors import InputError
 from fegear.formulas.sources import source as formula_source
@@ -71,6 +72,30 @@ class ClosedFormCompliance:
     def describe(self) -> str:
         """Return source and limits."""
         return f"{self.formula.citation}; {self.formula.remark}"
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantCompliance(Rigid):
+    """One number for all positions and loads, contact included: what the stiffness c' of ISO 6336-1 amounts to.
+
+    Parameters
+    ----------
+    compliance : float
+        Of one tooth [m^2/N].
+    source : str
+        Where it comes from.
+    """
+
+    compliance: float = 0.0
+    source: str = "a constant"
+
+    def own(self, radius: ArrayLike) -> Array:
+        """The same everywhere [m^2/N]."""
+        return np.full(np.shape(radius), self.compliance)
+
+    def describe(self) -> str:
+        """Return source and limits."""
+        return f"{self.source}; the same at every position, no coupling to the neighbouring teeth"
 
 
 def closed_form_compliance(gear: Gear, name: str) -> ClosedFormCompliance:

@@ -141,6 +141,10 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path) -> Scen
         _known("stiffness.gear", case.stiffness.gear, gears, "gear")
     if case.stiffness.pair is not None:
         _known("stiffness.pair", case.stiffness.pair, pairs, "pair")
+    if case.cost.gear is not None:
+        _known("cost.gear", case.cost.gear, gears, "spur gear")
+    if case.cost.pair is not None:
+        _known("cost.pair", case.cost.pair, pairs, "spur pair")
     if case.design is not None and case.design.pair is not None:
         _known("design.pair", case.design.pair, pairs, "pair")
     return Scene(case, name, folder, gears, pairs, helical_gears, helical_pairs)

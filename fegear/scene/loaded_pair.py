@@ -342,8 +342,21 @@ def relieved(scene: Scene, name: str, engagement: Engagement) -> Engagement:
     return replace(engagement, driver_relief=built["driver"], driven_relief=built["driven"])
 
 
-def build_loaded_pair(scene: Scene, name: str, progress: Callable[[str], None] | None = None) -> LoadedPair:
+def build_loaded_pair(
+    scene: Scene,
+    name: str,
+    progress: Callable[[str], None] | None = None,
+    given: Callable[[str, Member], GearCompliance] | None = None,
+) -> LoadedPair:
     """Make the engagement of a pair with the scene's effects.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+    progress : callable, optional
+    given : callable, optional
+        ``given(pair, member)`` gives other compliances than those that the case names.
 
     Raises
     ------
@@ -354,7 +367,10 @@ def build_loaded_pair(scene: Scene, name: str, progress: Callable[[str], None] |
 
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     nominal = part.normal_load(pair) or math.nan
-    (driver, driven), shifted = _sources(scene, name, progress)
+    if given is None:
+        (driver, driven), shifted = _sources(scene, name, progress)
+    else:
+        driver, driven, shifted = given(name, "driver"), given(name, "driven"), []
     compliance = PairCompliance(pair, driver, driven, effects.neighbour_coupling, effects.hertz, nominal)
     engagement = Engagement(compliance, corner_contact=effects.corner_contact)
     if effects.spacing_errors:

@@ -18,7 +18,7 @@ DOCS = ROOT / "docs"
 
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
-    "choose-a-tolerance", "corner-contact-warning", "dynamic-factor", "export", "helical-misalignment",
+    "choose-a-tolerance", "corner-contact-warning", "cost", "dynamic-factor", "export", "helical-misalignment",
     "several-meshes", "sweep-on-a-cluster", "sweeps", "tutorial", "validate-root-stress-formula",
 }  # fmt: skip
 

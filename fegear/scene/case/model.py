@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from fegear.scene.case.accuracy import AccuracyPart
+from fegear.scene.case.cost import CostPart
 from fegear.scene.case.design import DesignPart
 from fegear.scene.case.dynamics import DynamicsPart
 from fegear.scene.case.effects import EffectsPart
@@ -36,3 +37,4 @@ class Case(Part):
     dynamics: DynamicsPart = Field(default_factory=DynamicsPart)
     effects: EffectsPart = Field(default_factory=EffectsPart)
     accuracy: AccuracyPart = Field(default_factory=AccuracyPart)
+    cost: CostPart = Field(default_factory=CostPart)

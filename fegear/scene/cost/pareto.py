@@ -1,0 +1,47 @@
+"""Which rungs nothing beats in both time and error, and the cheapest for a tolerance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+def pareto_front(seconds: ArrayLike, error: ArrayLike) -> NDArray[np.intp]:
+    """Indices of the rungs that no other rung beats, from cheap and poor to dear and good.
+
+    Parameters
+    ----------
+    seconds, error : array_like, shape (n,)
+        NaN where a rung has no answer; such rungs are never on the front.
+
+    Returns
+    -------
+    ndarray of int
+        Errors fall strictly along it, seconds rise strictly.
+    """
+    t, e = np.asarray(seconds, dtype=float), np.asarray(error, dtype=float)
+    front: list[int] = []
+    best = np.inf
+    for i in np.lexsort((e, t)):
+        if np.isfinite(t[i]) and e[i] < best:
+            front.append(int(i))
+            best = e[i]
+    return np.array(front, dtype=np.intp)
+
+
+def cheapest(tolerance: float, seconds: ArrayLike, error: ArrayLike) -> int | None:
+    """Index of the cheapest rung whose error is within a tolerance; None where none is.
+
+    Parameters
+    ----------
+    tolerance : float
+    seconds, error : array_like, shape (n,)
+        NaN where a rung has no answer.
+    """
+    t, e = np.asarray(seconds, dtype=float), np.asarray(error, dtype=float)
+    good = np.flatnonzero(np.isfinite(t) & (e <= tolerance))
+    return int(good[np.argmin(t[good])]) if good.size else None

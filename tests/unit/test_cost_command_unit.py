@@ -1,0 +1,255 @@
+"""``fegear cost`` as users meet it: what it prices, what it leaves behind, what it refuses, what Ctrl-C keeps."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import fegear.scene.cost.ladder as ladders
+from fegear.cli import app
+from fegear.errors import InputError
+from fegear.scene.cost import asked, forecast, ladder_of
+from fegear.scene.load import build_scene, read_scene
+
+CASE = """
+title = "A pair"
+results = ["stiffness", "root-stress", "transmission-error", "load-sharing"]
+[gear.a]
+teeth = 20
+module = "2 mm"
+face_width = "20 mm"
+[pair.I]
+driver = "a"
+driven = "a"
+load = "4000 N"
+[stiffness]
+positions = 7
+load = "200 N/mm"
+[effects]
+neighbour_coupling = true
+hertz = "load-dependent"
+"""
+NAMES = ["c_0", "c_1", "root-stress", "te-peak-to-peak", "tooth-force"]
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    path = tmp_path_factory.mktemp("cost") / "pair.toml"
+    path.write_text(CASE)
+    return path
+
+
+def rows(folder, name):
+    with (folder / "tables" / f"{name}.csv").open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture(scope="module")
+def short(case):
+    """The command on a ladder of a few coarse rungs."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ladders, "_QUICK_FACTORS", {2: (4.0, 2.8, 2.0)})
+        patch.setattr(ladders, "_QUICK_PATCHES", (2.0,))
+        patch.setattr(ladders, "_QUICKER", 3.0)
+        patch.setattr(ladders, "_TOLERANCES", (1e-1,))
+        out = case.parent / "o"
+        with pytest.raises(SystemExit) as left:
+            app(["cost", str(case), "--quick", "--out", str(out)])
+    assert left.value.code in (0, None)
+    return out
+
+
+def test_tables_hold_every_rung_with_error_and_seconds(short):
+    found = rows(short, "cost")
+    assert {row["quantity"] for row in found} == set(NAMES)
+    families = {row["family"] for row in found}
+    assert families == {"ring", "sector", "compliance-formula", "stress-formula", "tolerance"}
+    assert {row["teeth"] for row in found if row["family"] == "sector"} == {"3", "5", "9"}
+    for row in found:
+        assert float(row["seconds [s]"]) >= float(row["seconds_solving [s]"])
+        assert (float(row["seconds_solving [s]"]) > 0.0) == (row["family"] in ("ring", "sector", "tolerance"))
+        refused = row["rung"].startswith("potential-energy") and row["quantity"] != "c_1"
+        assert ("Sainsot" in row["reason"]) == refused  # his polynomials end at about 24 teeth
+        assert (row["answered"] == "0") == refused
+        if row["answered"] == "1":
+            assert float(row["error"]) >= float(row["floor"]) > 0.0
+    closed = [row for row in found if row["family"] == "compliance-formula" and row["quantity"] == "c_1"]
+    assert [float(row["error"]) for row in closed] == [1.0] * 4  # none of them knows the next tooth
+    # A sector cut out of the gear is too soft, the more so the fewer teeth; whole gears err by far less.
+    sector, ring = (
+        {
+            int(row["teeth"]): float(row["error"])
+            for row in found
+            if row["family"] == family and row["quantity"] == "c_0"
+        }
+        for family in ("sector", "ring")
+    )
+    assert sector[3] > sector[5] > sector[9] > 0.05
+    assert ring[0] < 0.05
+    # One pair carries all of the load somewhere: statics, whatever the settings.
+    force = [row for row in found if row["quantity"] == "tooth-force"]
+    assert {(row["error"], row["below_floor"]) for row in force if not row["reason"]} == {("1e-13", "1")}
+
+
+def test_front_and_cheapest_follow_from_the_table(short):
+    found = [row for row in rows(short, "cost") if row["family"] != "tolerance"]
+    cheapest = {(row["quantity"], float(row["tolerance"])): row for row in rows(short, "cost_cheapest")}
+    assert set(cheapest) == {(name, t) for name in [*NAMES, "all"] for t in (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)}
+    for (name, tolerance), row in cheapest.items():
+        if name == "all":
+            continue
+        good = [r for r in found if r["quantity"] == name and float(r["error"]) <= tolerance]
+        if row["rung"] == "not reached":
+            assert good == []
+            assert math.isnan(float(row["seconds [s]"]))
+        else:
+            best = min(good, key=lambda r: float(r["seconds [s]"]))
+            assert (row["rung"], row["seconds [s]"]) == (best["rung"], best["seconds [s]"])
+            assert best["on_front"] == "1"
+    at_once = cheapest["all", 1e-1]
+    assert at_once["rung"].startswith("whole gear")
+    assert float(at_once["seconds [s]"]) >= float(cheapest["c_1", 1e-1]["seconds [s]"])
+
+
+def test_what_is_cheapest_can_be_pasted_into_a_case(short, case):
+    import tomllib
+
+    from fegear.scene.settings import mesh_settings
+
+    for row in rows(short, "cost_cheapest"):
+        if row["case_line"].startswith("accuracy"):
+            document = tomllib.loads(CASE) | tomllib.loads(row["case_line"])
+            settings = mesh_settings(build_scene(document, "pasted", case.parent).case.accuracy)
+            assert f"order {settings.order}, " in row["rung"]
+            assert row["rung"].endswith(f"patch {settings.patch_half_width:.4g}")
+    assert any(row["case_line"].startswith("accuracy") for row in rows(short, "cost_cheapest"))
+
+
+def test_orders_tell_what_they_rest_on(short):
+    found = rows(short, "cost_orders")
+    knobs = {(row["quantity"], row["knob"]) for row in found}
+    even = "positions per base pitch, evenly spaced"
+    assert {("c_0", "edge length, order 2"), ("c_1", "patch half-width"), ("te-harmonics", even)} <= knobs
+    for row in found:
+        assert (row["order"] == "nan") == row["rests_on"].startswith("none")
+        assert int(row["rungs_used"]) <= int(row["rungs"])
+    # The mesh stiffness jumps: a trapezoidal rule converges with 1 / N, whatever N is.
+    (jumps,) = (row for row in found if row["quantity"] == "stiffness-harmonics" and row["knob"] == even)
+    assert float(jumps["order"]) == pytest.approx(1.0, abs=0.25)
+
+
+def test_summary_and_pictures(short):
+    summary = json.loads((short / "summary.json").read_text())
+    assert summary["rungs"]["planned"] == summary["rungs"]["finished"]
+    assert set(summary["results"]) == {"a.c_0", "a.c_1", "a.root-stress", "I.te-peak-to-peak", "I.tooth-force"}
+    assert summary["results"]["I.tooth-force"]["value"] == pytest.approx(4000.0)
+    assert all((short / name).is_file() for name in summary["files"])
+    assert {path.name for path in (short / "plots").iterdir()} == {
+        "cost.png", "cost_knobs.png", *(f"cost_{name}.png" for name in NAMES),
+    }  # fmt: skip
+
+
+def test_no_rung_is_paid_by_an_earlier_one(case, monkeypatch):
+    """Every finite-element rung is meshed and solved in its own time, past all caches."""
+    import fegear.scene.cost.measure as measure
+    from fegear.scene.cost.rung import Rung
+    from fegear.scene.cost.sources import FiniteElements
+    from fegear.store import keeping_shapes
+
+    solved = []
+    plain = measure.solve_influence
+    monkeypatch.setattr(measure, "solve_influence", lambda *a, **k: (solved.append(k), plain(*a, **k))[1])
+    priced = asked(read_scene(case, ['results=["stiffness"]']))
+    rung = Rung("ring", ladders.MeshSettings().scaled(5.6), 5.6)
+    with keeping_shapes(case.parent / "cache") as keeper:
+        for _ in range(2):
+            influences, seconds = measure.solve_gears(priced, rung)
+            assert seconds["a"].cpu > 0.0
+        assert (keeper.read, keeper.solved) == (0, 0)
+    assert len(solved) == 6  # three times each, for the median
+    assert np.isfinite(measure.finite_elements(priced, rung, influences).of_gear("c_0", priced)).all()
+    assert isinstance(measure.finite_elements(priced, rung, influences), FiniteElements)
+
+
+def test_only_what_the_case_asks_for_is_priced(case):
+    scene = read_scene(case, ['results=["stiffness"]'])
+    assert [q.name for q in asked(scene).quantities] == ["c_0", "c_1"]
+    assert asked(scene).pair == ""
+    assert asked(scene).gears == ("a",)
+    stress = asked(read_scene(case, ['cost.quantities=["root-stress"]']))
+    assert [rung.family for rung in ladder_of(stress).others][:1] == ["stress-formula"]
+    force = asked(read_scene(case, ['cost.quantities=["tooth-force"]']))
+    assert force.gear == ""
+    assert "static" in force.quantities[0].meaning
+    assert forecast(force, ladder_of(force, quick=True)) < forecast(force, ladder_of(force))
+
+
+def test_effects_that_only_the_prices_depend_on_are_not_idle(case):
+    from fegear.scene.plan import make_plan
+    from fegear.scene.stages import STAGES
+
+    wanted = 'results=["stiffness"]'
+    idle = make_plan(read_scene(case, [wanted]), STAGES).idle_effects
+    assert idle == ("neighbour_coupling", "hertz")
+    priced = read_scene(case, [wanted, 'cost.quantities=["te-peak-to-peak"]'])
+    assert make_plan(priced, STAGES).idle_effects == ()
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ('cost.quantities=["c0"]', "cost.quantities"),
+        ("cost.quantity=1", "unknown key"),
+        ("cost.gear=b", 'cost.gear = "b": is no spur gear of this case'),
+        ("cost.pair=J", 'cost.pair = "J": is no spur pair of this case'),
+        ('results=["geometry"]', "ask for nothing whose cost can be chosen"),
+        ("effects.hertz=none", "nothing converges"),
+        ('cost.quantities=["dynamic-factor"]', "needs a train"),
+        ("gear.a.tooth_mesh=own.msh", "fixes the mesh"),
+    ],
+)
+def test_what_cannot_be_priced_is_refused_with_the_remedy(case, override, words):
+    with pytest.raises(InputError, match=words):
+        asked(read_scene(case, [override]))
+
+
+def test_a_case_without_a_load_has_no_pair_to_price(tmp_path):
+    path = tmp_path / "bare.toml"
+    path.write_text(CASE.replace('load = "4000 N"\n', ""))
+    with pytest.raises(InputError, match=r"cost\.pair = \(not given\): must be a pair of spur gears that carries"):
+        asked(read_scene(path))
+
+
+def test_ctrl_c_leaves_what_is_finished(case, tmp_path):
+    slow = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "import fegear.scene.cost.ladder as l; l._QUICK_FACTORS = {2: (4.0, 2.8)}; l._QUICKER = 4.0\n"
+        "import fegear.scene.cost.measure as m, time\n"
+        "m._tolerance = lambda *a: (print('waiting', flush=True), time.sleep(60))\n"
+        "from fegear.cli import main; main()"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", slow, "cost", str(case), "--quick", "--no-plots", "--set", 'cost.quantities=["c_0"]'],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert process.stdout is not None
+    lines = iter(process.stdout.readline, "")
+    assert next(lines).startswith("Prices c_0: ")
+    assert next(lines).startswith("Predicted: about ")
+    assert next(lines) == "waiting\n"
+    os.kill(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "fegear: interrupted; " in errors
+    out = tmp_path / "results" / "pair-cost"
+    summary = json.loads((out / "summary.json").read_text())
+    assert 0 < summary["rungs"]["finished"] < summary["rungs"]["planned"]
+    assert {row["family"] for row in rows(out, "cost")} == {"ring", "sector", "compliance-formula"}
