@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from fegear.scene.cost import asked, study_cost
-from fegear.scene.cost.timing import timed
 from fegear.scene.load import read_scene
 
 CASE = Path(__file__).parents[2] / "cases" / "nasa_four_square.toml"
@@ -17,8 +16,8 @@ NAMES = ("c_0", "c_1", "root-stress", "te-peak-to-peak", "tooth-force")
 
 
 @pytest.fixture(scope="module")
-def study():
-    return timed(lambda: study_cost(asked(read_scene(CASE))), repeat=False)
+def results():
+    return study_cost(asked(read_scene(CASE)))
 
 
 def errors(results, quantity, family):
@@ -26,17 +25,14 @@ def errors(results, quantity, family):
 
 
 @pytest.mark.long
-def test_the_whole_ladder_is_climbed_in_minutes(study):
-    results, seconds = study
+def test_the_whole_ladder_is_climbed(results):
     assert results.complete
     assert tuple(q.name for q in results.quantities) == NAMES
-    assert seconds.cpu < 300.0
     assert all(math.isfinite(row.miss.largest) for row in results.rows), [r.reason for r in results.rows if r.reason]
 
 
 @pytest.mark.long
-def test_what_sectors_and_closed_forms_miss(study):
-    results, _ = study
+def test_what_sectors_and_closed_forms_miss(results):
     # At the pitch point 10.12, 5.587 and 4.206 beside 3.811 in plane strain; over the whole flank about as much.
     for quantity, least in (("c_0", (1.5, 0.4, 0.08)), ("c_1", (5.0, 1.5, 0.3))):
         found = errors(results, quantity, "sector")
@@ -46,15 +42,10 @@ def test_what_sectors_and_closed_forms_miss(study):
     assert all(0.05 < e < 1.0 for e in errors(results, "c_0", "compliance-formula").values())
     assert all(e == 1.0 for e in errors(results, "c_1", "compliance-formula").values())
     assert all(0.1 < e < 0.6 for e in errors(results, "root-stress", "stress-formula").values())
-    # A sector costs what the whole gear costs.
-    for name in NAMES[:3]:
-        times = {f: [r.solve.cpu for r in results.of(name) if r.rung.family == f] for f in ("sector", "ring")}
-        assert min(times["sector"]) > min(times["ring"])
 
 
 @pytest.mark.long
-def test_tolerances_are_reached_and_what_they_take(study):
-    results, _ = study
+def test_tolerances_are_reached_and_what_they_take(results):
     for quantity, finest in (("c_0", 1e-3), ("c_1", 1e-4), ("root-stress", 1e-3), ("te-peak-to-peak", 1e-3)):
         before = 0.0
         for tolerance in (1e-1, 1e-2, 1e-3, 1e-4):
@@ -72,8 +63,7 @@ def test_tolerances_are_reached_and_what_they_take(study):
 
 
 @pytest.mark.long
-def test_observed_orders(study):
-    results, _ = study
+def test_observed_orders(results):
     order = {(k.quantity, k.name): k.order.slope for k in results.knobs}
     # A compliance converges with twice the order of the elements less what corners take, a stress with about the order.
     assert 2.5 < order["c_0", "edge length, order 2"] < 4.5
