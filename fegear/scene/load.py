@@ -119,7 +119,10 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path) -> Scen
     try:
         case = Case.model_validate(document)
     except ValidationError as error:
-        raise _sentence(error.errors(include_url=False)[0]) from None
+        found = error.errors(include_url=False)
+        # A misspelt key comes first: what is said to be missing is often its right spelling.
+        unknown = [one for one in found if one["type"] == "extra_forbidden"]
+        raise _sentence((unknown or found)[0]) from None
     gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items() if not part.is_helical}
     helical_gears = {key: part.build_helical(f"gear.{key}") for key, part in case.gear.items() if part.is_helical}
     for key, pair in case.pair.items():

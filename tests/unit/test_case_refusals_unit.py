@@ -142,6 +142,13 @@ def test_what_is_required_is_named(missing):
     assert refusal.value.key == missing
 
 
+def test_a_misspelt_key_is_told_before_the_one_that_is_missing():
+    document = copy.deepcopy(CASE)
+    document["gear"]["a"]["teth"] = document["gear"]["a"].pop("teeth")
+    with pytest.raises(InputError, match=r'gear\.a\.teth = 28: is an unknown key.*nearest known name is "teeth"'):
+        build_scene(document, "case", Path())
+
+
 def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(InputError, match="does not exist"):
         read_scene(tmp_path / "none.toml")
