@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _THINNEST_NECK = 0.02
 #: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.
 _SLIGHT_UNDERCUT = 1e-4
+#: A rack tip as sharp as this [modules] needs as much room below the pitch line to leave a fillet.
+_SMALLEST_FILLET = 1e-6
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,13 @@ class Tooth:
             raise GeometryError("rack.dedendum", self.rack.dedendum, "cuts through the gear's centre")
         if self.root_land_half_angle > math.pi / self.teeth or self.root_land_half_angle < -1e-12:
             raise GeometryError("rack.tip_radius", self.rack.tip_radius, "leaves a negative root land")
+        if max(self.rack.tip_radius, abs(self.rack.tip_centre_depth - self.profile_shift)) < _SMALLEST_FILLET:
+            raise GeometryError(
+                "rack.tip_radius",
+                self.rack.tip_radius,
+                "is a sharp corner that rolls on the pitch line itself: it generates a notch, no fillet",
+                "give the rack a tip radius, or a profile shift unlike its dedendum",
+            )
         fillet = self._full_trochoid()
         if np.min(fillet.speed(np.linspace(fillet.start, fillet.end, 65))) < 0.0:
             raise GeometryError(

@@ -274,3 +274,11 @@ def test_loads_at_both_ends_of_the_flank_are_finite_and_off_it_refused(teeth):
     for radius in (ends[0] - 1e-3, ends[1] + 1e-3, math.nan):
         with pytest.raises(FegearError, match="off the involute flank"):
             stiffness_table(g, [radius], HALF_WIDTH, FAST)
+
+
+def test_a_sharp_rack_tip_on_the_pitch_line_is_refused_and_one_beside_it_holds():
+    """Dedendum equal to the shift, no tip radius: the corner rolls on the pitch line and generates a point."""
+    with pytest.raises(GeometryError, match="generates a notch"):
+        Tooth(15, BasicRack(1.0, 1.0, 0.0, math.radians(12.0)), 1.0, tip_radius=9.5)
+    beside = Tooth(15, BasicRack(1.0, 1.01, 0.0, math.radians(12.0)), 1.0, tip_radius=9.5)
+    assert np.all(np.isfinite(beside.fillet.points(np.linspace(beside.fillet.start, beside.fillet.end, 9))[0]))
