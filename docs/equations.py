@@ -59,7 +59,7 @@ class _Displayed(Preprocessor):
 
 
 class _Inline(InlineProcessor):
-    def handleMatch(self, m: re.Match[str], data: str):  # type: ignore[override]  # noqa: ARG002
+    def handleMatch(self, m: re.Match[str], data: str):  # type: ignore[override]  # noqa: ARG002  (markdown's interface)
         return self.md.htmlStash.store(mathml(m[1], display=False)), m.start(0), m.end(0)
 
 

@@ -270,8 +270,7 @@ def solve_influence(
     -------
     Influence
     """
-    # Loaded before it is limited: scipy brings a BLAS of its own.
-    import scipy.linalg  # noqa: F401
+    import scipy.linalg  # noqa: F401  (loaded before it is limited: scipy brings a BLAS of its own)
     from threadpoolctl import threadpool_limits
 
     # Many small dense matrices: on a busy machine a second BLAS thread makes them ten times slower, never faster.

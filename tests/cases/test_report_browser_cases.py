@@ -175,6 +175,7 @@ def test_no_width_makes_the_page_scroll_sideways(page, width):
     overflow = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
     page.until(f"{overflow} === 0")
     page.until("[...document.querySelectorAll('.plot')].every(p => p.scrollWidth <= p.clientWidth + 1)")
+    assert page.run(overflow) == 0
 
 
 def test_the_menu_of_a_harris_map_changes_its_curves(page, relief):

@@ -54,8 +54,7 @@ def timed(work: Callable[[], T], *, repeat: bool = True) -> tuple[T, Seconds]:
 @contextlib.contextmanager
 def one_thread() -> Iterator[None]:
     """Keep the libraries of linear algebra to one thread, so that processor seconds are those of one core."""
-    # Loaded before it is limited: scipy brings a BLAS of its own.
-    import scipy.linalg  # noqa: F401
+    import scipy.linalg  # noqa: F401  (loaded before it is limited: scipy brings a BLAS of its own)
     from threadpoolctl import threadpool_limits
 
     with threadpool_limits(limits=1, user_api="blas"):
