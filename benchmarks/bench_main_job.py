@@ -21,8 +21,8 @@ from fegear.fem.elasticity import assemble
 from fegear.fem.gear import influence_of_shape
 from fegear.fem.sector import mesh_sector
 from fegear.geometry import BasicRack, Gear, Tooth
-from fegear.show.mesh_export import write_meshes
-from fegear.show.whole_gear import whole_gear
+from fegear.output.mesh_export import write_meshes
+from fegear.output.whole_gear import whole_gear
 
 CASE = Path(__file__).parents[1] / "cases" / "lin_table1.toml"
 SETTINGS = MeshSettings()

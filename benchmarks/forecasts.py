@@ -13,10 +13,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from fegear.scene.load import read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.plan_text import forecast_seconds
-from fegear.scene.stages import STAGES
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.plan_text import forecast_seconds
+from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).resolve().parents[1] / "cases"
 #: Takes minutes on all cores, in processes whose seconds are not this one's.

@@ -10,10 +10,10 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from fegear.scene.effect_facts import kernel_table, stage_table
-from fegear.scene.effect_study import effect_study
-from fegear.scene.load import read_scene
-from fegear.show.effects import sentence, write_effects
+from fegear.case.reading import read_scene
+from fegear.output.effects import sentence, write_effects
+from fegear.studies.effect_facts import kernel_table, stage_table
+from fegear.studies.effect_study import effect_study
 
 DOCS = Path(__file__).parent
 CASES = DOCS.parent / "cases"

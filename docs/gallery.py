@@ -21,8 +21,8 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from pygments.formatters import HtmlFormatter
 
+from fegear.output.report.citations import bibliography
 from fegear.plain import code_version, content_key
-from fegear.show.report.citations import bibliography
 
 ROOT = Path(__file__).resolve().parents[1]
 MADE = ROOT / "results" / "gallery"

@@ -67,13 +67,13 @@ def run(
     ] = False,
 ) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
-    from fegear.scene.executor import computing_by
-    from fegear.scene.load import read_scene
-    from fegear.scene.plan import make_plan
-    from fegear.scene.run import run_plan
-    from fegear.scene.stages import STAGES
-    from fegear.show.folder import whole_or_nothing
-    from fegear.show.write import STEPS, write_results
+    from fegear.case.reading import read_scene
+    from fegear.engine.executor import computing_by
+    from fegear.engine.plan import make_plan
+    from fegear.engine.run import run_plan
+    from fegear.output.folder import whole_or_nothing
+    from fegear.output.write import STEPS, write_results
+    from fegear.results.catalogue import STAGES
     from fegear.store import keeping_shapes
     from fegear.terminal import watcher
 
@@ -104,10 +104,10 @@ def run(
 @app.command()
 def plan(case: CaseFile, overrides: Overrides = None) -> None:
     """Tell what a case would compute and why, with which settings, in about how long, and what it would not."""
-    from fegear.scene.load import read_scene
-    from fegear.scene.plan import make_plan
-    from fegear.scene.plan_text import plan_lines
-    from fegear.scene.stages import STAGES
+    from fegear.case.reading import read_scene
+    from fegear.engine.plan import make_plan
+    from fegear.engine.plan_text import plan_lines
+    from fegear.results.catalogue import STAGES
 
     scene = read_scene(case, overrides or ())
     typer.echo("\n".join(plan_lines(scene, make_plan(scene, STAGES))))
@@ -122,10 +122,10 @@ def cost(
     no_plots: NoPlots = False,
 ) -> None:
     """Show what accuracy costs in time: every closed form, sectors, whole gears from coarse to fine."""
-    from fegear.scene.cost import asked, forecast, ladder_of, study_cost
-    from fegear.scene.load import read_scene
-    from fegear.show.cost import cheapest_lines, write_cost
-    from fegear.show.folder import check_target, whole_or_nothing
+    from fegear.case.reading import read_scene
+    from fegear.output.cost import cheapest_lines, write_cost
+    from fegear.output.folder import check_target, whole_or_nothing
+    from fegear.studies.cost import asked, forecast, ladder_of, study_cost
     from fegear.terminal import watcher
 
     try:
@@ -173,11 +173,11 @@ def sweep(
     ] = False,
 ) -> None:
     """Run a case over a grid of values; killed and started again, it goes on where it was."""
-    from fegear.scene.axis import read_axis
-    from fegear.scene.sweep import sweep_case
-    from fegear.show.folder import check_target, whole_or_nothing
-    from fegear.show.sweep import write_sweep
+    from fegear.output.folder import check_target, whole_or_nothing
+    from fegear.output.sweep import write_sweep
     from fegear.store import Store, cache_folder, keeping_shapes
+    from fegear.studies.axis import read_axis
+    from fegear.studies.sweep import sweep_case
     from fegear.terminal import watcher
 
     try:
@@ -229,9 +229,9 @@ def effects(
     ] = None,
 ) -> None:
     """Run a case with each effect switched, one at a time: what it changes, what it costs, one picture for each."""
-    from fegear.scene.effect_study import effect_study
-    from fegear.show.effects import write_effects
-    from fegear.show.folder import check_target, whole_or_nothing
+    from fegear.output.effects import write_effects
+    from fegear.output.folder import check_target, whole_or_nothing
+    from fegear.studies.effect_study import effect_study
     from fegear.terminal import watcher
 
     start = time.perf_counter()
@@ -264,9 +264,9 @@ def export(
     out: Out = None,
 ) -> None:
     """Write drawings (DXF) and meshes of the whole gear (gmsh, VTU, Abaqus/CalculiX) for other programs."""
-    from fegear.scene.load import read_scene
-    from fegear.show.export import export_gears
-    from fegear.show.folder import whole_or_nothing
+    from fegear.case.reading import read_scene
+    from fegear.output.export import export_gears
+    from fegear.output.folder import whole_or_nothing
 
     try:
         scene = read_scene(case, overrides or ())

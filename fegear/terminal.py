@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
     from rich.progress import Progress, TaskID
 
-    from fegear.scene.run import Watcher
+    from fegear.engine.run import Watcher
 
 
 class PlainLines:

@@ -32,11 +32,15 @@ LAYERS = {
     "design": 4,
     "helical": 4,
     "dynamics": 5,
-    "scene": 6,
-    "show": 7,
-    "terminal": 7,
-    "cli": 8,
-    "__main__": 9,
+    "case": 6,
+    "models": 6.5,
+    "engine": 7,
+    "results": 8,
+    "studies": 9,
+    "output": 10,
+    "terminal": 10,
+    "cli": 11,
+    "__main__": 12,
 }
 
 #: Where each heavy library may be imported.
@@ -45,18 +49,18 @@ DOORS = {
     "skfem": [],  # the tests' independent check
     "meshio": ["fegear.fem.mesh_files"],
     "pint": ["fegear.units"],
-    "pydantic": ["fegear.scene.case.*", "fegear.scene.case", "fegear.scene.load"],
+    "pydantic": ["fegear.case", "fegear.case.*"],
     "typer": ["fegear.cli"],
     "rich": ["fegear.terminal"],
-    "dask": ["fegear.scene.cluster"],
-    "distributed": ["fegear.scene.cluster"],
+    "dask": ["fegear.engine.cluster"],
+    "distributed": ["fegear.engine.cluster"],
     "numba": ["fegear.dynamics.*", "fegear.contact.*"],
-    "pyvista": ["fegear.show.*"],
+    "pyvista": ["fegear.output.*"],
     "vtk": [],
-    "matplotlib": ["fegear.show.*"],
-    "plotly": ["fegear.show.*"],
-    "ezdxf": ["fegear.show.*"],
-    "xarray": ["fegear.show.*", "fegear.scene.sweep*"],
+    "matplotlib": ["fegear.output.*"],
+    "plotly": ["fegear.output.*"],
+    "ezdxf": ["fegear.output.*"],
+    "xarray": ["fegear.output.*"],
 }
 
 #: What `import fegear` may not load.
@@ -137,7 +141,7 @@ def test_there_are_no_import_cycles(imports):
 
 
 def test_results_know_no_pictures(imports):
-    faults = [str(one) for one in imports if _package(one.imported) == "show" and _package(one.importer) != "show"]
+    faults = [str(one) for one in imports if _package(one.imported) == "output" and _package(one.importer) != "output"]
     assert [fault for fault in faults if not fault.startswith("fegear.cli")] == []
 
 
@@ -147,8 +151,8 @@ def test_results_know_no_pictures(imports):
         ("fegear.geometry.tooth", "def f():\n    from fegear.fem import ring", "layer"),
         ("fegear.fem.ring", "import fegear.formulas.hertz", "layer"),
         (
-            "fegear.scene.plan",
-            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from fegear import show",
+            "fegear.engine.plan",
+            "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from fegear import output",
             "layer",
         ),
         ("fegear.fem.ring", "import gmsh", "door"),
@@ -158,7 +162,7 @@ def test_results_know_no_pictures(imports):
     ],
 )
 def test_the_walk_finds_what_it_must_find(importer, source, fault):
-    known = {"fegear.fem", "fegear.fem.ring", "fegear.formulas.hertz", "fegear.show", "fegear.cli"}
+    known = {"fegear.fem", "fegear.fem.ring", "fegear.formulas.hertz", "fegear.output", "fegear.cli"}
     found = source_tree.imports_of(importer, source, known, is_package=False)
     assert (layer_faults(found) if fault == "layer" else door_faults(found)) != []
 

@@ -10,20 +10,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.case.reading import read_scene
 from fegear.cli import app
 from fegear.contact.crosscheck import pair_compliance_answers, root_stress_answers
 from fegear.contact.root_stress_study import root_stress_study, variants, verdict
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
 from fegear.errors import InputError
 from fegear.fem.settings import MeshSettings
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import SOURCES
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
-from fegear.scene.load import read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.settings import mesh_settings
-from fegear.scene.stages import STAGES
+from fegear.models.settings import mesh_settings
+from fegear.results.catalogue import STAGES
 
 ROOT = Path(__file__).parents[2]
 CASES = ROOT / "cases"

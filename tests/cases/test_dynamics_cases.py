@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
 from fegear.errors import InputError
-from fegear.scene.load import read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.stages import STAGES
+from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
 POUND = 4.4482216152605
@@ -132,7 +132,7 @@ def test_without_a_speed_a_history_is_refused():
     case = (CASES / "four_square_dynamics.toml").read_text().replace('speed = "10000 rpm"\n', "")
     import tomllib
 
-    from fegear.scene.load import build_scene
+    from fegear.case.reading import build_scene
 
     scene = build_scene(tomllib.loads(case), "x", CASES)
     with pytest.raises(InputError, match=r"dynamics\.speed"):

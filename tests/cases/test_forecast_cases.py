@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.plan_text import forecast_seconds, plan_lines
+from fegear.engine.stage import Stage, Task
 from fegear.errors import InputError
-from fegear.scene.load import read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.plan_text import forecast_seconds, plan_lines
-from fegear.scene.stage import Stage, Task
-from fegear.scene.stages import STAGES
+from fegear.results.catalogue import STAGES
 
 ROOT = Path(__file__).parents[2]
 CASES = ROOT / "cases"

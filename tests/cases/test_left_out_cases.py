@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.case.reading import build_scene, read_scene
 from fegear.contact import pair_history
-from fegear.scene.left_out import pair_changes, pair_remarks
-from fegear.scene.load import build_scene, read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.stage import Task
-from fegear.scene.stages import STAGES
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.models.neglected_effects import pair_changes, pair_remarks
+from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
 COARSE = "accuracy.tolerance=1e-2"

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.scene.left_out_motion import contact_loss_changes, friction_changes
-from fegear.scene.load import read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.stage import Task
-from fegear.scene.stages import STAGES
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.models.neglected_in_motion import contact_loss_changes, friction_changes
+from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
 #: Speeds [rpm] from below resonance to above it, and loads [N]: the torque is the load times the base radius.

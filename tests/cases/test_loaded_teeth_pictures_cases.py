@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.scene.load import read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.stages import STAGES
-from fegear.show.pictures.gallery import draw_all
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.output.pictures.gallery import draw_all
+from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -88,8 +88,8 @@ def test_without_rights_the_scripts_name_the_apt_get_line(missing, tmp_path):
 
 
 def test_the_case_file_page_names_every_key():
-    from fegear.scene.case import Case
-    from fegear.scene.load import part_models
+    from fegear.case import Case
+    from fegear.case.reading import part_models
 
     page = (ROOT / "docs" / "case-files.md").read_text(encoding="utf-8")
     parts = [Case]
@@ -105,7 +105,7 @@ def test_the_case_file_page_names_every_key():
 def test_the_case_file_page_s_example_is_a_case(tmp_path):
     import tomllib
 
-    from fegear.scene.load import build_scene
+    from fegear.case.reading import build_scene
 
     page = (ROOT / "docs" / "case-files.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import pytest
 
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import Silence, run_plan
 from fegear.errors import MissingLibraryError
-from fegear.scene.axis import read_axis
-from fegear.scene.load import read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import Silence, run_plan
-from fegear.scene.stages import STAGES
-from fegear.scene.sweep import sweep_case
-from fegear.show.sweep import write_sweep
-from fegear.show.write import write_results
+from fegear.output.sweep import write_sweep
+from fegear.output.write import write_results
+from fegear.results.catalogue import STAGES
+from fegear.studies.axis import read_axis
+from fegear.studies.sweep import sweep_case
 
 _spec = importlib.util.spec_from_file_location("chromium", Path(__file__).with_name("chromium.py"))
 assert _spec is not None
@@ -213,7 +213,7 @@ def test_without_plotly_the_page_says_what_to_install_and_keeps_everything_else(
     def missing() -> str:
         raise MissingLibraryError("plotly.js is missing; run: pip install plotly")
 
-    monkeypatch.setattr("fegear.show.report.page.compressed_plotly", missing)
+    monkeypatch.setattr("fegear.output.report.page.compressed_plotly", missing)
     made(tmp_path, "lin_table1", "stiffness.positions=5", "accuracy.tolerance=0.5")
     browser.complaints.clear()
     browser.open(tmp_path / "report.html")

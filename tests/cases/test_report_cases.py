@@ -18,15 +18,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import Silence, run_plan
 from fegear.errors import MissingLibraryError
-from fegear.scene.load import read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import Silence, run_plan
-from fegear.scene.stages import STAGES
-from fegear.show.pictures import deformed, tooth
-from fegear.show.report import write_report
-from fegear.show.report.blocks import value_cells
-from fegear.show.write import write_results
+from fegear.output.pictures import deformed, tooth
+from fegear.output.report import write_report
+from fegear.output.report.blocks import value_cells
+from fegear.output.write import write_results
+from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -142,10 +142,10 @@ def test_the_page_of_the_same_results_is_the_same_bytes(made, tmp_path):
 
 def test_the_report_needs_neither_plotly_nor_matplotlib_in_python(tmp_path):
     probe = (
-        "import sys; from pathlib import Path; from fegear.scene.load import read_scene;"
-        "from fegear.scene.run import *;"
-        "from fegear.scene.plan import make_plan; from fegear.scene.stages import STAGES;"
-        "from fegear.show.write import write_results;"
+        "import sys; from pathlib import Path; from fegear.case.reading import read_scene;"
+        "from fegear.engine.run import *;"
+        "from fegear.engine.plan import make_plan; from fegear.results.catalogue import STAGES;"
+        "from fegear.output.write import write_results;"
         f"scene = read_scene({str(CASES / 'litvin_lead.toml')!r}, ['tooth_contact.positions=20']);"
         "results = run_plan(scene, make_plan(scene, STAGES));"
         f"write_results(results, Path({str(tmp_path)!r}), Silence(), plots=False);"

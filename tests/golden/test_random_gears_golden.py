@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
 from fegear.fem import settings_at, solve_gear
 from fegear.geometry import Gear, Material
-from fegear.scene.load import build_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.stages import STAGES
+from fegear.results.catalogue import STAGES
 
 HERE = Path(__file__).parent
 EVERY = json.loads((HERE / "random_gears.json").read_text())

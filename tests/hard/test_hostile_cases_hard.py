@@ -15,11 +15,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fegear.case.reading import apply_override, build_scene, read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
 from fegear.errors import FegearError, InputError
-from fegear.scene.load import apply_override, build_scene, read_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.stages import STAGES
+from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
 PAIR = tomllib.loads(
@@ -149,7 +149,7 @@ def test_a_new_body_s_torque_may_be_set_and_a_misspelt_table_is_named():
 
 
 def test_an_output_folder_below_a_file_is_told_as_such(tmp_path):
-    from fegear.show.folder import whole_or_nothing
+    from fegear.output.folder import whole_or_nothing
 
     file = tmp_path / "notes.txt"
     file.write_text("mine")

@@ -16,7 +16,7 @@ from fegear.fem.settings import MeshSettings
 from fegear.fem.trace import loaded_flank
 from fegear.fem.triangle import triangle
 from fegear.geometry import BasicRack, Tooth
-from fegear.show.whole_gear import whole_gear
+from fegear.output.whole_gear import whole_gear
 
 NU = 0.3
 RADII = np.array([13.4, 14.0, 14.9])

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from fegear.case.reading import apply_override, build_scene, read_scene
 from fegear.errors import GeometryError, InputError
-from fegear.scene.load import apply_override, build_scene, read_scene
 
 CASE = {
     "title": "One gear",

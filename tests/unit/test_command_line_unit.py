@@ -119,7 +119,7 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
     slow = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # background jobs ignore it
-        "import time, fegear.scene.stages.geometry as g\n"
+        "import time, fegear.results.geometry as g\n"
         "g.interference = lambda *a: (print('working', flush=True), time.sleep(60))\n"
         "from fegear.cli import main; main()"
     )

@@ -13,11 +13,11 @@ import sys
 import numpy as np
 import pytest
 
-import fegear.scene.cost.ladder as ladders
+import fegear.studies.cost.ladder as ladders
+from fegear.case.reading import build_scene, read_scene
 from fegear.cli import app
 from fegear.errors import InputError
-from fegear.scene.cost import asked, forecast, ladder_of
-from fegear.scene.load import build_scene, read_scene
+from fegear.studies.cost import asked, forecast, ladder_of
 
 CASE = """
 title = "A pair"
@@ -122,7 +122,7 @@ def test_front_and_cheapest_follow_from_the_table(short):
 def test_what_is_cheapest_can_be_pasted_into_a_case(short, case):
     import tomllib
 
-    from fegear.scene.settings import mesh_settings
+    from fegear.models.settings import mesh_settings
 
     for row in rows(short, "cost_cheapest"):
         if row["case_line"].startswith("accuracy"):
@@ -159,10 +159,10 @@ def test_summary_and_pictures(short):
 
 def test_no_rung_is_paid_by_an_earlier_one(case, monkeypatch):
     """Every finite-element rung is meshed and solved in its own time, past all caches."""
-    import fegear.scene.cost.measure as measure
-    from fegear.scene.cost.rung import Rung
-    from fegear.scene.cost.sources import FiniteElements
+    import fegear.studies.cost.measure as measure
     from fegear.store import keeping_shapes
+    from fegear.studies.cost.rung import Rung
+    from fegear.studies.cost.sources import FiniteElements
 
     solved = []
     plain = measure.solve_influence
@@ -193,8 +193,8 @@ def test_only_what_the_case_asks_for_is_priced(case):
 
 
 def test_effects_that_only_the_prices_depend_on_are_not_idle(case):
-    from fegear.scene.plan import make_plan
-    from fegear.scene.stages import STAGES
+    from fegear.engine.plan import make_plan
+    from fegear.results.catalogue import STAGES
 
     wanted = 'results=["stiffness"]'
     idle = make_plan(read_scene(case, [wanted]), STAGES).idle_effects
@@ -231,8 +231,8 @@ def test_a_case_without_a_load_has_no_pair_to_price(tmp_path):
 def test_ctrl_c_leaves_what_is_finished(case, tmp_path):
     slow = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "import fegear.scene.cost.ladder as l; l._QUICK_FACTORS = {2: (4.0, 2.8)}; l._QUICKER = 4.0\n"
-        "import fegear.scene.cost.measure as m, time\n"
+        "import fegear.studies.cost.ladder as l; l._QUICK_FACTORS = {2: (4.0, 2.8)}; l._QUICKER = 4.0\n"
+        "import fegear.studies.cost.measure as m, time\n"
         "m._tolerance = lambda *a: (print('waiting', flush=True), time.sleep(60))\n"
         "from fegear.cli import main; main()"
     )

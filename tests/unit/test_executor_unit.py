@@ -14,9 +14,9 @@ import time
 
 import pytest
 
+from fegear.engine.executor import computing_by, count_kept, map_points
+from fegear.engine.point_job import Failure
 from fegear.errors import InputError
-from fegear.scene.executor import computing_by, count_kept, map_points
-from fegear.scene.point_job import Failure
 from fegear.store import Store
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
@@ -93,14 +93,14 @@ def test_a_cluster_gives_the_same(scheduler, tmp_path):
 
 
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
-    monkeypatch.setattr("fegear.scene.cluster._PATIENCE", 0.5)
+    monkeypatch.setattr("fegear.engine.cluster._PATIENCE", 0.5)
     with pytest.raises(InputError, match=re.escape("--scheduler = tcp://127.0.0.1:9: does not answer")):
         map_points(math.sqrt, [1.0], scheduler="tcp://127.0.0.1:9")
 
 
 def test_no_worker_outlives_a_killed_parent(tmp_path):
     program = (
-        "from fegear.scene.executor import map_points\n"
+        "from fegear.engine.executor import map_points\n"
         "work = 'import pathlib, time; pathlib.Path({!r}).touch(); time.sleep(600)'\n"
         "if __name__ == '__main__':\n"
         "    map_points(exec, [work.format(name) for name in ('first', 'second')], workers=2)\n"

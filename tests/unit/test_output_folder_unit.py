@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fegear.case.reading import build_scene
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.plan import Plan
+from fegear.engine.run import Results, Silence
+from fegear.engine.stage import Task
 from fegear.errors import InputError
-from fegear.scene.load import build_scene
-from fegear.scene.outcome import Column, Outcome, Table, Value
-from fegear.scene.plan import Plan
-from fegear.scene.run import Results, Silence
-from fegear.scene.stage import Task
-from fegear.show.folder import whole_or_nothing
-from fegear.show.write import write_results
+from fegear.output.folder import whole_or_nothing
+from fegear.output.write import write_results
 
 
 def contents(folder: Path) -> dict[str, bytes]:

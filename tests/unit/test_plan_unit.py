@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.case.reading import build_scene
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Need, Stage, Task
 from fegear.errors import InputError
 from fegear.fem.settings import MeshSettings
-from fegear.scene.load import build_scene
-from fegear.scene.outcome import Column, Outcome, Table, Value
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.settings import seconds_of_gear
-from fegear.scene.stage import Need, Stage, Task
+from fegear.models.settings import seconds_of_gear
 
 GEARS = {"a": {"teeth": 28, "module": "1 mm"}, "b": {"teeth": 35, "module": "1 mm"}}
 

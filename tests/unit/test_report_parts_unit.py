@@ -10,16 +10,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.scene.load import read_scene
-from fegear.scene.outcome import Column, Table, Value
-from fegear.scene.plan import make_plan
-from fegear.scene.stage import Task
-from fegear.scene.stages import STAGES
-from fegear.show.report import Page, Section, write_page
-from fegear.show.report.blocks import DataTable, Facts, Plot, Values
-from fegear.show.report.citations import SOURCES, bibliography, citations
-from fegear.show.report.figure import Figure
-from fegear.show.report.numbers import plain_number, pretty_unit, with_error
+from fegear.case.reading import read_scene
+from fegear.engine.outcome import Column, Table, Value
+from fegear.engine.plan import make_plan
+from fegear.engine.stage import Task
+from fegear.output.report import Page, Section, write_page
+from fegear.output.report.blocks import DataTable, Facts, Plot, Values
+from fegear.output.report.citations import SOURCES, bibliography, citations
+from fegear.output.report.figure import Figure
+from fegear.output.report.numbers import plain_number, pretty_unit, with_error
+from fegear.results.catalogue import STAGES
 
 ROOT = Path(__file__).parents[2]
 CASES = sorted((ROOT / "cases").glob("*.toml"))

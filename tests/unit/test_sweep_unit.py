@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from fegear.errors import InputError
-from fegear.scene.axis import read_axis
-from fegear.scene.sweep import point_content, sweep_case
+from fegear.studies.axis import read_axis
+from fegear.studies.sweep import point_content, sweep_case
 
 CASE = """
 title = "A pinion and its mate"

@@ -6,8 +6,8 @@ import copy
 
 import pytest
 
-from fegear.scene.load import build_scene
-from fegear.scene.loaded_pair import effect_remarks
+from fegear.case.reading import build_scene
+from fegear.models.loaded_pair import effect_remarks
 
 CASE = {
     "results": ["transmission-error"],

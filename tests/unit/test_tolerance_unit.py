@@ -3,13 +3,13 @@
 import pytest
 
 import fegear.fem.gear as fem_gear
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
 from fegear.fem import MeshSettings, settings_at, solve_to_tolerance
 from fegear.geometry import Gear, Tooth
-from fegear.scene.load import build_scene
-from fegear.scene.plan import make_plan
-from fegear.scene.run import run_plan
-from fegear.scene.settings import settings_for
-from fegear.scene.stages import STAGES
+from fegear.models.settings import settings_for
+from fegear.results.catalogue import STAGES
 from fegear.store import keeping_shapes
 
 

@@ -1,0 +1,26 @@
+"""``[cost]``: what ``fegear cost`` prices; without it, what ``results`` asks for."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from fegear.case.part import Part
+
+QuantityName = Literal["c_0", "c_1", "root-stress", "te-peak-to-peak", "tooth-force", "dynamic-factor"]
+
+
+class CostPart(Part):
+    """Which quantities of which gear and pair."""
+
+    quantities: Annotated[list[QuantityName], Field(min_length=1)] | None = None
+    gear: str | None = None
+    pair: str | None = None
+
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """Stages whose effects the quantities named here depend on."""
+        names = set(self.quantities or ())
+        of_pair = ("loaded-pair",) if names & {"te-peak-to-peak", "tooth-force", "dynamic-factor"} else ()
+        return (*of_pair, "motion") if "dynamic-factor" in names else of_pair

@@ -1,0 +1,198 @@
+"""``[gear.NAME]``: one gear of a scene."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.case.part import (
+    Angle,
+    LengthOrZero,
+    Number,
+    Part,
+    PositiveDensity,
+    PositiveInverseLength,
+    PositiveLength,
+    PositivePressure,
+    at,
+    refuse,
+)
+from fegear.case.relief import ReliefPart, SpacingErrorsPart
+from fegear.errors import InputError
+from fegear.geometry import BasicRack, Gear, Material, Tooth
+
+if TYPE_CHECKING:
+    from fegear.geometry.helical_gear import HelicalGear
+
+#: Names of the geometry layer that a case file calls otherwise.
+_KEYS = {
+    "tip_rounding": "tip_radius_rounding",
+    "rack.pressure_angle": "pressure_angle",
+}
+
+
+class MaterialPart(Part):
+    """``material = { young_modulus, poisson_ratio, density }``."""
+
+    young_modulus: PositivePressure = 206.8e9
+    poisson_ratio: Number = 0.3
+    density: PositiveDensity = 7850.0
+
+    def build(self) -> Material:
+        """Make the material."""
+        return Material(self.young_modulus, self.poisson_ratio, self.density)
+
+
+class RackPart(Part):
+    """``rack = { addendum, dedendum, tip_radius }`` in modules, or the name of an ISO 53 profile."""
+
+    profile: str | None = None
+    addendum: Number | None = None
+    dedendum: Number | None = None
+    tip_radius: Number | Literal["full"] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _name_alone(cls, value: Any) -> Any:
+        return {"profile": value} if isinstance(value, str) else value
+
+    def build(self, pressure_angle: float) -> BasicRack:
+        """Make the rack; what is not given comes from the named profile, else from ISO 53 C."""
+        base = BasicRack.named(self.profile or "C", pressure_angle)
+        addendum = base.addendum if self.addendum is None else self.addendum
+        dedendum = base.dedendum if self.dedendum is None else self.dedendum
+        if self.tip_radius == "full":
+            return BasicRack.full_fillet(addendum, dedendum, pressure_angle)
+        tip_radius = base.tip_radius if self.tip_radius is None else float(self.tip_radius)
+        return BasicRack(addendum, dedendum, tip_radius, pressure_angle)
+
+
+class GearPart(Part):
+    """One gear: tooth, size, body and material."""
+
+    teeth: int
+    module: PositiveLength | None = None
+    diametral_pitch: PositiveInverseLength | None = None
+    pressure_angle: Angle = math.radians(20.0)
+    profile_shift: Number = 0.0
+    rack: RackPart = Field(default_factory=RackPart)
+    thickness_allowance: LengthOrZero = 0.0
+    tip_diameter: PositiveLength | None = None
+    tip_radius_rounding: LengthOrZero = 0.0
+    tip_chamfer: LengthOrZero = 0.0
+    bore_radius: PositiveLength | None = None
+    face_width: PositiveLength | None = None
+    plane: Literal["strain", "stress", "auto"] = "strain"
+    material: MaterialPart = Field(default_factory=MaterialPart)
+    tooth_mesh: str | None = None
+    relief: ReliefPart | None = None
+    spacing_errors: SpacingErrorsPart | None = None
+    helix_angle: Angle | None = None
+    hand: Literal["left", "right", "spur"] | None = None
+    normal_module: PositiveLength | None = None
+    normal_diametral_pitch: PositiveInverseLength | None = None
+
+    @property
+    def is_helical(self) -> bool:
+        """Whether the gear is described as a helical one (of helix angle zero as the limit)."""
+        return self.helix_angle is not None
+
+    @model_validator(mode="after")
+    def _one_size(self) -> Self:
+        if self.is_helical:
+            self._check_helical()
+            return self
+        for key in ("hand", "normal_module", "normal_diametral_pitch"):
+            if getattr(self, key) is not None:
+                raise refuse("has a meaning only with helix_angle", 'write helix_angle = "30 deg"', key=key)
+        if self.module is None and self.diametral_pitch is None:
+            raise refuse("is missing", 'write module = "3.175 mm" or diametral_pitch = "8 / inch"', key="module")
+        if self.module is not None and self.diametral_pitch is not None:
+            raise refuse("contradicts module", "give either module or diametral_pitch", key="diametral_pitch")
+        if self.plane == "auto" and self.face_width is None:
+            raise refuse(
+                'is missing, but plane = "auto" decides by it', 'write face_width = "6.35 mm"', key="face_width"
+            )
+        return self
+
+    def _check_helical(self) -> None:
+        """Refuse keys that the helical gear does not know."""
+        if (self.normal_module is None) == (self.normal_diametral_pitch is None):
+            remedy = 'write normal_module = "5 mm" or normal_diametral_pitch = "5 / inch"'
+            raise refuse("must be given once for a helical gear", remedy, key="normal_module")
+        known = {
+            "teeth", "pressure_angle", "tip_diameter", "face_width", "material", "helix_angle", "hand",
+            "normal_module", "normal_diametral_pitch",
+        }  # fmt: skip
+        for key in sorted(self.model_fields_set - known):
+            raise refuse("has no meaning for a gear with a helix_angle", f"leave out {key}", key=key)
+        for key in ("hand", "face_width"):
+            if getattr(self, key) is None:
+                raise refuse("is missing for a helical gear", f"give {key}", key=key)
+
+    def build_helical(self, prefix: str) -> HelicalGear:
+        """Make the helical gear."""
+        from fegear.geometry.helical_gear import HelicalGear
+
+        module = self.normal_module if self.normal_module is not None else 1.0 / (self.normal_diametral_pitch or 1.0)
+        try:
+            return HelicalGear(
+                self.teeth,
+                module,
+                self.pressure_angle,
+                self.helix_angle or 0.0,
+                self.face_width or math.nan,
+                self.hand or "spur",
+                tip_radius=math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter,
+            )
+        except InputError as error:
+            raise at(prefix, error, {"tip_radius": "tip_diameter", "normal_pressure_angle": "pressure_angle"}) from None
+
+    @property
+    def module_length(self) -> float:
+        """The module m [m]."""
+        return self.module if self.module is not None else 1.0 / (self.diametral_pitch or math.nan)
+
+    def build(self, prefix: str) -> Gear:
+        """Make the gear; errors of the geometry are told under the keys of the case file.
+
+        Without a bore radius the body is held fast at half the root radius; without a face width the gear is 1 mm
+        wide, which no plane result per unit width depends on.
+        """
+        m = self.module_length
+        try:
+            tooth = Tooth(
+                self.teeth,
+                self.rack.build(self.pressure_angle),
+                profile_shift=self.profile_shift,
+                thickness_allowance=self.thickness_allowance / m,
+                tip_radius=math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter / m,
+                tip_rounding=self.tip_radius_rounding / m,
+                tip_chamfer=self.tip_chamfer / m,
+            )
+            bore = 0.5 * tooth.root_radius * m if self.bore_radius is None else self.bore_radius
+            width = 1e-3 if self.face_width is None else self.face_width
+            return Gear(tooth, m, bore, width, self.material.build(), self.plane)
+        except InputError as error:
+            raise at(prefix, self._in_words_of_the_case(error), _KEYS) from None
+
+    def _in_words_of_the_case(self, error: InputError) -> InputError:
+        """Tell lengths that the tooth takes in modules as the case gave them."""
+
+        def in_mm(text: str) -> str:
+            return re.sub(
+                r"(\d[\d.e+-]*) modules", lambda found: f"{float(found[1]) * self.module_length * 1e3:.6g} mm", text
+            )
+
+        if error.key in ("tip_rounding", "tip_chamfer"):
+            length = self.tip_radius_rounding if error.key == "tip_rounding" else self.tip_chamfer
+            return InputError(error.key, f"{length * 1e3:.6g} mm", in_mm(error.rule), in_mm(error.remedy))
+        if error.key != "tip_radius":
+            return error
+        rule, remedy = in_mm(f"the tip radius of {error.value} modules {error.rule}"), in_mm(error.remedy)
+        if self.tip_diameter is None:
+            return InputError("profile_shift", self.profile_shift, rule, remedy)
+        return InputError("tip_diameter", f"{self.tip_diameter * 1e3:.6g} mm", rule, remedy)

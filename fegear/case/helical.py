@@ -1,0 +1,74 @@
+"""Helical keys of ``[gear.NAME]`` and ``[pair.NAME]``, and ``[tooth_contact]``."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
+
+from fegear.case.part import Angle, InverseLength, Length, LengthOrZero, Part, PositiveForce
+
+if TYPE_CHECKING:
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.helical.pair import HelicalPair, Misalignment
+
+
+class MisalignmentPart(Part):
+    """``misalignment = { shaft_angle, lead_angle, profile_angle, centre_distance }``: errors of a helical pair."""
+
+    shaft_angle: Angle = 0.0
+    lead_angle: Angle = 0.0
+    profile_angle: Angle = 0.0
+    centre_distance: Length = 0.0
+
+    def build(self) -> Misalignment:
+        """Make the errors."""
+        from fegear.helical.pair import Misalignment
+
+        return Misalignment(self.shaft_angle, self.lead_angle, self.profile_angle, self.centre_distance)
+
+
+class ModificationPart(Part):
+    """``modification = { parabola, crown }``: how the pinion's flank is localised.
+
+    ``parabola`` is the cutter's coefficient a_c; ``crown`` the material removed at each end of the face, along the
+    normal; ``absorb = true`` chooses the crown so that its parabolic error absorbs the pair's linear one.
+    """
+
+    parabola: InverseLength = 0.0
+    crown: LengthOrZero = 0.0
+    absorb: bool = False
+
+    def crown_coefficient(self, pinion: HelicalGear) -> float:
+        """Crown as a turn of the section per squared height [rad/m^2]."""
+        arm = pinion.base_radius * math.cos(pinion.base_helix_angle)
+        return self.crown / (arm * (0.5 * pinion.face_width) ** 2)
+
+
+class ToothContactPart(Part):
+    """``[tooth_contact]``: how finely the cycle is looked at, and the load for contact ellipses."""
+
+    positions: Annotated[int, Field(ge=2, le=100_000)] = 400
+    load: PositiveForce | None = None
+
+
+def build_pair(
+    pinion: HelicalGear,
+    gear: HelicalGear,
+    errors: MisalignmentPart | None,
+    change: ModificationPart | None,
+    axial_offset: float,
+) -> HelicalPair:
+    """Make a helical pair from its parts."""
+    from fegear.helical.pair import HelicalPair, Misalignment
+
+    change = change or ModificationPart()
+    return HelicalPair(
+        pinion,
+        gear,
+        Misalignment() if errors is None else errors.build(),
+        parabola=change.parabola,
+        crown=change.crown_coefficient(pinion),
+        axial_offset=axial_offset,
+    )

@@ -1,0 +1,114 @@
+"""``[pair.NAME]``: two gears of a scene in mesh."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.case.helical import MisalignmentPart, ModificationPart, build_pair
+from fegear.case.part import (
+    Length,
+    Part,
+    PositiveForce,
+    PositiveLength,
+    PositiveSpeed,
+    PositiveTorque,
+    at,
+    refuse,
+)
+from fegear.errors import InputError
+from fegear.geometry import GearPair
+
+if TYPE_CHECKING:
+    from fegear.geometry import Gear
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.helical.pair import HelicalPair
+
+
+class CompliancePart(Part):
+    """``compliance = { source = "fe" }``: where a pair's tooth compliances come from."""
+
+    source: Literal["fe", "cornell", "weber-banaschek", "potential-energy", "table"] = "fe"
+    file: str | None = None
+    of: Literal["tooth", "pair"] | None = None
+    fit: Literal["linear", "cubic"] | None = None
+
+    @model_validator(mode="after")
+    def _table_needs_file(self) -> Self:
+        if self.source == "table" and self.file is None:
+            raise refuse(
+                "is missing, but the compliance source is a table", 'name its file: file = "c.csv"', key="file"
+            )
+        if self.source != "table":
+            for key in ("file", "of", "fit"):
+                if getattr(self, key) is not None:
+                    raise refuse(
+                        f'has no meaning with source = "{self.source}"', 'remove it or set source = "table"', key=key
+                    )
+        return self
+
+
+class PairPart(Part):
+    """Two gears in mesh and the load between them."""
+
+    driver: str
+    driven: str
+    centre_distance: PositiveLength | None = None
+    load: PositiveForce | None = None
+    torque: PositiveTorque | None = None
+    loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = None
+    speed: PositiveSpeed | None = None
+    compliance: CompliancePart = Field(default_factory=CompliancePart)
+    misalignment: MisalignmentPart | None = None
+    modification: ModificationPart | None = None
+    axial_offset: Length = 0.0
+
+    @model_validator(mode="after")
+    def _one_load(self) -> Self:
+        if self.load is not None and self.torque is not None:
+            raise refuse(
+                "contradicts load", "give either the load along the line of action or the torque", key="torque"
+            )
+        return self
+
+    def build(self, gears: dict[str, Gear], prefix: str) -> GearPair:
+        """Make the pair from the scene's gears."""
+        distance = math.nan if self.centre_distance is None else self.centre_distance
+        try:
+            return GearPair(gears[self.driver], gears[self.driven], distance)
+        except InputError as error:
+            raise at(prefix, error, {"pair": ""}) from None
+
+    def build_helical(self, gears: dict[str, HelicalGear], prefix: str, *, misaligned: bool) -> HelicalPair:
+        """Make a helical pair; its errors count only where the scene calls for misalignment."""
+        if self.centre_distance is not None:
+            raise InputError(
+                f"{prefix}.centre_distance", f"{self.centre_distance * 1e3:.9g} mm",
+                "has no meaning for a helical pair",
+                "give misalignment = { centre_distance = ... }, the error against the design",
+            )  # fmt: skip
+        try:
+            return build_pair(
+                gears[self.driver],
+                gears[self.driven],
+                self.misalignment if misaligned else None,
+                self.modification,
+                self.axial_offset,
+            )
+        except InputError as error:
+            names = {key: f"misalignment.{key}" for key in ("shaft_angle", "lead_angle", "profile_angle")}
+            names |= {key: f"modification.{key}" for key in ("parabola", "crown")}
+            raise at(prefix, error, names) from None
+
+    def normal_load(self, pair: GearPair) -> float | None:
+        """Load along the line of action [N]: the load, the driver's torque, or the largest of loads; None without."""
+        if self.torque is not None:
+            return self.torque / pair.driver.base_radius
+        return max(self.loads) if self.load is None and self.loads else self.load
+
+    def all_loads(self, pair: GearPair) -> tuple[float, ...]:
+        """Every load of the case along the line of action [N], ascending, the nominal one among them."""
+        nominal = self.normal_load(pair)
+        return tuple(sorted({*(self.loads or ()), *(() if nominal is None else (nominal,))}))

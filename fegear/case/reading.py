@@ -1,0 +1,281 @@
+"""From a case file and ``--set`` options to a checked scene; every error is one sentence with key, value and remedy."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import UnionType
+from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from fegear.case import Case
+from fegear.case.names import nearest
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from pydantic_core import ErrorDetails
+
+    from fegear.geometry import Gear, GearPair
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.helical.pair import HelicalPair
+
+_KINDS = {
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "float_type": "must be a number",
+    "string_type": "must be a text in quotes",
+    "bool_type": "must be true or false",
+    "list_type": "must be a list in square brackets",
+    "dict_type": "must be a table",
+    "model_type": "must be a table of keys and values",
+    "finite_number": "must be finite",
+    "too_short": "must not be empty",
+}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A checked case with its gears and pairs built.
+
+    Attributes
+    ----------
+    case : Case
+        What the user wrote, in SI.
+    name : str
+        Name of the case, from its file.
+    folder : Path
+        Where relative file names in the case start.
+    gears : dict of str to Gear
+    pairs : dict of str to GearPair
+    helical_gears : dict of str to HelicalGear
+    helical_pairs : dict of str to HelicalPair
+    text : str
+        The case file as it was written, with the ``--set`` options as comments in front; empty for a case that was
+        never a file.
+    """
+
+    case: Case
+    name: str
+    folder: Path
+    gears: dict[str, Gear]
+    pairs: dict[str, GearPair]
+    helical_gears: dict[str, HelicalGear] = field(default_factory=dict)
+    helical_pairs: dict[str, HelicalPair] = field(default_factory=dict)
+    text: str = ""
+
+    def file(self, text: str, key: str) -> Path:
+        """Return the path of a file that the case names, or refuse if it is not there."""
+        path = self.folder / text
+        if not path.is_file():
+            raise InputError(key, f'"{text}"', "is no file", f"looked for it as {path}")
+        return path
+
+
+def read_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
+    """Read a case file, apply ``--set`` options, check everything.
+
+    Parameters
+    ----------
+    path : path of a TOML case file
+    overrides : sequence of "dotted.key=value"
+        Values are TOML; what is no TOML is taken as text.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or anything in it breaks a rule.
+    """
+    path = Path(path)
+    scene = build_scene(read_document(path, overrides), path.stem, path.parent)
+    return replace(scene, text=case_text(path, overrides))
+
+
+def case_text(path: Path, overrides: Sequence[str] = ()) -> str:
+    """Return a case file as it is written, with the ``--set`` options as comments in front."""
+    return "".join(f"# --set {override}\n" for override in overrides) + path.read_text(encoding="utf-8")
+
+
+def read_document(path: Path, overrides: Sequence[str] = ()) -> dict[str, Any]:
+    """Read a case file as plain tables and apply ``--set`` options, without checking more than that."""
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError("case", f'"{path}"', "does not exist", "check the path of the case file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError("case", f'"{path}"', f"cannot be read ({error})") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError("case", f'"{path}"', f"is no valid TOML: {error}", "quantities stand in quotes") from None
+    for override in overrides:
+        apply_override(document, override)
+    return document
+
+
+def build_scene(document: Mapping[str, object], name: str, folder: Path) -> Scene:
+    """Check a case given as a plain mapping and build its gears and pairs."""
+    try:
+        case = Case.model_validate(document)
+    except ValidationError as error:
+        found = error.errors(include_url=False)
+        # A misspelt key comes first: what is said to be missing is often its right spelling.
+        unknown = [one for one in found if one["type"] == "extra_forbidden"]
+        raise _sentence((unknown or found)[0]) from None
+    gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items() if not part.is_helical}
+    helical_gears = {key: part.build_helical(f"gear.{key}") for key, part in case.gear.items() if part.is_helical}
+    for key, pair in case.pair.items():
+        for role in ("driver", "driven"):
+            _known(f"pair.{key}.{role}", getattr(pair, role), case.gear, "gear")
+        if (pair.driver in gears) != (pair.driven in gears):
+            raise InputError(
+                f"pair.{key}.driven", f'"{pair.driven}"', "is helical where its mate is not, or the other way round",
+                'describe both with helix_angle (a spur gear with "0 deg" and hand = "spur")',
+            )  # fmt: skip
+    spur = {key: pair for key, pair in case.pair.items() if pair.driver in gears}
+    pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in spur.items()}
+    helical_pairs = {
+        key: pair.build_helical(helical_gears, f"pair.{key}", misaligned=case.effects.misalignment)
+        for key, pair in case.pair.items()
+        if key not in spur
+    }
+    if case.stiffness.gear is not None:
+        _known("stiffness.gear", case.stiffness.gear, gears, "gear")
+    if case.stiffness.pair is not None:
+        _known("stiffness.pair", case.stiffness.pair, pairs, "pair")
+    if case.cost.gear is not None:
+        _known("cost.gear", case.cost.gear, gears, "spur gear")
+    if case.cost.pair is not None:
+        _known("cost.pair", case.cost.pair, pairs, "spur pair")
+    if case.design is not None and case.design.pair is not None:
+        _known("design.pair", case.design.pair, pairs, "pair")
+    return Scene(case, name, folder, gears, pairs, helical_gears, helical_pairs)
+
+
+def _known(key: str, name: str, known: Iterable[str], kind: str) -> None:
+    if name not in known:
+        raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known))
+
+
+# ---- errors ------------------------------------------------------------------------------------------------------
+def _sentence(error: ErrorDetails) -> InputError:
+    """Turn one of pydantic's errors into fegear's."""
+    kind, context, value = error["type"], error.get("ctx", {}), error.get("input")
+    loc = [str(step) for step in error["loc"]]
+    if kind == "fegear" and context["key"]:
+        loc.append(context["key"])
+    key = _dotted(loc)
+    if kind == "fegear":
+        shown = context["shown"]
+        if shown is None:
+            shown = value.get(loc[-1], "(not given)") if isinstance(value, dict) and context["key"] else _show(value)
+        return InputError(key, shown, context["rule"], context["remedy"])
+    if kind == "extra_forbidden":
+        known = _keys_at(loc[:-1])
+        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known))
+    if kind == "missing":
+        return InputError(key, "(not given)", "is required")
+    if kind == "literal_error":
+        return InputError(key, _show(value), f"must be {context['expected']}")
+    rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
+    return InputError(key, _show(value), rule[0].lower() + rule[1:])
+
+
+def _dotted(loc: list[str]) -> str:
+    text = ""
+    for step in loc:
+        text += f"[{step}]" if step.isdigit() else f".{step}"
+    return text.removeprefix(".") or "case"
+
+
+def _show(value: object) -> str:
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (dict, list)) and len(str(value)) > 60:
+        return "(a table)" if isinstance(value, dict) else "(a list)"
+    return str(value)
+
+
+# ---- what keys exist ---------------------------------------------------------------------------------------------
+def part_models(annotation: object) -> list[type[BaseModel]]:
+    """Tables that an annotation allows: ``Part``, ``Part | None``, ``Annotated[Part, ...]``, ``dict[str, Part]``."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    if get_origin(annotation) is Annotated:
+        return part_models(get_args(annotation)[0])
+    if get_origin(annotation) is dict:
+        return part_models(get_args(annotation)[1])
+    if get_origin(annotation) is list:
+        return part_models(get_args(annotation)[0])
+    if get_origin(annotation) in (Union, UnionType):
+        return [model for argument in get_args(annotation) for model in part_models(argument)]
+    return []
+
+
+def _keys_at(loc: Sequence[str]) -> list[str]:
+    """Known keys of the table at `loc`; an empty list where the tables carry names of the user's choice."""
+    models: list[type[BaseModel]] = [Case]
+    steps = list(loc)
+    while steps:
+        step = steps.pop(0)
+        annotations = [model.model_fields[step].annotation for model in models if step in model.model_fields]
+        if any(get_origin(annotation) is dict for annotation in annotations):
+            if not steps:
+                return []
+            steps.pop(0)  # the name that the user gave
+        models = [model for annotation in annotations for model in part_models(annotation)] or models
+    return sorted({name for model in models for name in model.model_fields})
+
+
+def apply_override(document: dict[str, Any], override: str) -> None:
+    """Set one ``dotted.key=value`` in a case document, or refuse a path that does not exist.
+
+    Parameters
+    ----------
+    document : dict
+        Changed in place.
+    override : str
+    """
+    path, equals, text = override.partition("=")
+    steps = path.strip().split(".")
+    if not equals or not all(steps):
+        raise InputError("--set", f'"{override}"', "must read KEY=VALUE", "for example --set gear.a.teeth=30")
+    try:
+        value = tomllib.loads(f"value = {text.strip()}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text.strip()
+    set_key(document, path.strip(), value)
+
+
+def set_key(document: dict[str, Any], path: str, value: object, option: str = "--set") -> None:
+    """Set ``dotted.key`` in a case document, or refuse a path that does not exist.
+
+    Parameters
+    ----------
+    document : dict
+        Changed in place.
+    path : str
+    value : object
+    option : str
+        Name of the option for error messages.
+    """
+    steps = path.split(".")
+    table = document
+    for depth, step in enumerate(steps[:-1]):
+        if step not in table:
+            known = _keys_at(steps[:depth]) if depth else sorted(Case.model_fields)
+            if not known:  # a misspelt name would otherwise begin a gear, a body or a shaft of its own
+                raise InputError(option, f'"{path}"', f'"{step}" is not in this case', nearest(step, table))
+            if step not in known:
+                raise InputError(option, f'"{path}"', f'"{step}" is an unknown key', nearest(step, known))
+            table[step] = {}
+        if not isinstance(table[step], dict):
+            raise InputError(option, f'"{path}"', f'"{step}" is no table in this case, so nothing can be set in it')
+        table = table[step]
+    known = _keys_at(steps[:-1])
+    if known and steps[-1] not in known and steps[-1] not in table:
+        raise InputError(option, f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known))
+    table[steps[-1]] = value

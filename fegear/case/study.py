@@ -1,0 +1,23 @@
+"""``[study]``: gears and load positions over which root-stress formulas are held against finite elements."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from fegear.case.part import Number, Part
+
+Teeth = Annotated[list[Annotated[int, Field(ge=5, le=1000)]], Field(min_length=1)]
+Numbers = Annotated[list[Number], Field(min_length=1)]
+Shares = Annotated[list[Annotated[Number, Field(ge=0.0, le=1.0)]], Field(min_length=1)]
+
+
+class StudyPart(Part):
+    """Every combination of the lists is computed; what is left out keeps the gear's own value."""
+
+    gear: str | None = None
+    teeth: Teeth | None = None
+    profile_shift: Numbers | None = None
+    rack_tip_radius: Numbers | None = None
+    load_position: Shares = Field(default_factory=lambda: [0.1, 0.4, 0.7, 1.0])

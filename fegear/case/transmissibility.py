@@ -1,0 +1,155 @@
+"""``[transmissibility.NAME]``: a helical pair as rigid gears on bearings, and the frequencies to look at."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from fegear.case.part import (
+    Angle,
+    Number,
+    Part,
+    PositiveInertia,
+    PositiveLength,
+    PositiveMass,
+    PositiveStiffness,
+    StiffnessOrZero,
+    TorsionalStiffnessOrZero,
+    at,
+    refuse,
+)
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel, RigidGear
+    from fegear.dynamics.mesh_parameters import MeshParameters
+
+Row = Annotated[list[Number], Field(min_length=5, max_length=5)]
+Matrix = Annotated[list[Row], Field(min_length=5, max_length=5)]
+
+
+class MeshStiffnessPart(Part):
+    """``mesh = { stiffness, kappa, mu, base_helix_angle }``, or a load distribution over the face in a CSV file."""
+
+    stiffness: PositiveStiffness | None = None
+    kappa: Number = 0.0
+    mu: Number | None = None
+    base_helix_angle: Angle = 0.0
+    distribution: str | None = None
+    face_width: PositiveLength | None = None
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        if (self.stiffness is None) == (self.distribution is None):
+            raise refuse("must be given, or a distribution over the face instead", "give either", key="stiffness")
+        if self.distribution is not None and self.face_width is None:
+            raise refuse("is missing, but the distribution needs it", 'write face_width = "25 mm"', key="face_width")
+        return self
+
+    def build(self) -> MeshParameters:
+        """Make the parameters from the numbers (a distribution is read by the stage, which knows the folder)."""
+        from fegear.dynamics.mesh_parameters import MeshParameters, partial_face_mu
+
+        mu = partial_face_mu(self.kappa) if self.mu is None else self.mu
+        return MeshParameters(self.stiffness or math.nan, self.kappa, mu, self.base_helix_angle)
+
+
+class BearingPart(Part):
+    """Bearing stiffness of one gear: the diagonal by name, or the whole matrix in SI over (y, z, three angles)."""
+
+    y: StiffnessOrZero = 0.0
+    z: StiffnessOrZero = 0.0
+    theta_x: TorsionalStiffnessOrZero = 0.0
+    theta_y: TorsionalStiffnessOrZero = 0.0
+    matrix: Matrix | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        if self.matrix is not None and self.model_fields_set != {"matrix"}:
+            raise refuse("contradicts the single stiffnesses", "give either", key="matrix")
+        return self
+
+    def build(self) -> NDArray[np.float64]:
+        """Make the matrix [N/m, N/rad, N m/rad]."""
+        if self.matrix is not None:
+            return np.array(self.matrix)
+        return np.diag([self.y, self.z, self.theta_x, self.theta_y, 0.0])
+
+
+class RigidGearPart(Part):
+    """One gear: mass, inertia, size and bearing."""
+
+    mass: PositiveMass
+    inertia_x: PositiveInertia
+    inertia_y: PositiveInertia
+    inertia_z: PositiveInertia
+    base_radius: PositiveLength
+    half_face_width: PositiveLength
+    bearing: BearingPart = Field(default_factory=BearingPart)
+    damping: Matrix | None = None
+
+    def build(self) -> RigidGear:
+        """Make the gear."""
+        from fegear.dynamics.helical_pair import RigidGear
+
+        damping = np.zeros((5, 5)) if self.damping is None else np.array(self.damping)
+        inertia = (self.inertia_x, self.inertia_y, self.inertia_z)
+        return RigidGear(self.mass, inertia, self.base_radius, self.half_face_width, self.bearing.build(), damping)
+
+
+class UnityRatioPart(Part):
+    """The unity-ratio pair by its dimensionless numbers."""
+
+    mass: PositiveMass
+    aspect_ratio: Number
+    alpha_y: Number
+    alpha_z: Number
+    alpha_theta: Number
+
+
+class TransmissibilityPart(Part):
+    """One pair and the range of Lambda = frequency / sqrt(K_M/m_eq) to look at."""
+
+    mesh: MeshStiffnessPart
+    driver: RigidGearPart | None = None
+    driven: RigidGearPart | None = None
+    unity_ratio: UnityRatioPart | None = None
+    damping_ratio: Annotated[Number, Field(ge=0.0)] = 0.0
+    lambda_from: Annotated[Number, Field(ge=0.0)] = 0.01
+    lambda_to: Annotated[Number, Field(gt=0.0)] = 2.0
+    frequencies: Annotated[int, Field(ge=2, le=1_000_000)] = 400
+
+    @model_validator(mode="after")
+    def _one_model(self) -> Self:
+        general = self.driver is not None and self.driven is not None
+        if general == (self.unity_ratio is not None) or (self.driver is None) != (self.driven is None):
+            raise refuse("is not described", "give driver and driven, or unity_ratio", key="driver", value="(pair)")
+        if self.lambda_to <= self.lambda_from:
+            raise refuse("must be greater than lambda_from", key="lambda_to", value=self.lambda_to)
+        return self
+
+    def _both(self) -> tuple[RigidGearPart, RigidGearPart]:
+        if self.driver is None or self.driven is None:
+            raise InputError("driver", "(pair)", "is not described", "give driver and driven, or unity_ratio")
+        return self.driver, self.driven
+
+    def build(self, mesh: MeshParameters, prefix: str) -> HelicalPairModel | ReducedPairModel:
+        """Make the model."""
+        from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel
+
+        try:
+            if self.unity_ratio is not None:
+                u = self.unity_ratio
+                return ReducedPairModel.from_ratios(
+                    mesh, mass=u.mass, aspect_ratio=u.aspect_ratio, alpha_y=u.alpha_y, alpha_z=u.alpha_z,
+                    alpha_theta=u.alpha_theta, modal_damping=self.damping_ratio,
+                )  # fmt: skip
+            driver, driven = (gear.build() for gear in self._both())
+            return HelicalPairModel(driver, driven, mesh, modal_damping=self.damping_ratio)
+        except InputError as error:
+            raise at(prefix, error) from None

@@ -1,0 +1,135 @@
+"""The plan: which tasks the wanted results need, in order, why each runs and why the others do not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.case.names import nearest
+from fegear.engine.stage import Stage, Task
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.case.reading import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One task of the plan and the reasons for it."""
+
+    task: Task
+    stage: Stage
+    reasons: tuple[str, ...]
+    effects: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What will be computed, in order, and what not.
+
+    Attributes
+    ----------
+    steps : tuple of Step
+    skipped : tuple of (stage name, reason)
+    idle_effects : tuple of str
+        Effects that are on but that no step uses.
+    remarks : tuple of str
+        The same in words, with the results that would use them.
+    """
+
+    steps: tuple[Step, ...]
+    skipped: tuple[tuple[str, str], ...]
+    idle_effects: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
+
+
+def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
+    """Derive the tasks from the wanted results.
+
+    Parameters
+    ----------
+    scene : Scene
+    stages : sequence of Stage
+
+    Raises
+    ------
+    InputError
+        If a result is unknown, or the scene lacks what a stage needs: a part, or an effect.
+    """
+    by_name = {stage.name: stage for stage in stages}
+    by_result: dict[str, list[Stage]] = {}
+    for stage in stages:
+        for result in stage.results:
+            by_result.setdefault(result, []).append(stage)
+
+    reasons: dict[Task, list[str]] = {}
+    order: list[Task] = []
+
+    def require(task: Task, reason: str) -> None:
+        if task in reasons:
+            if reason not in reasons[task]:
+                reasons[task].append(reason)
+            return
+        stage = by_name[task.stage]
+        _require_effects(scene, stage)
+        stage.check(scene, task.subject)
+        reasons[task] = [reason]
+        for need in stage.needs(scene, task.subject):
+            require(need, f"{task} needs it")
+        order.append(task)
+
+    for result in scene.case.results:
+        if result not in by_result:
+            raise InputError("results", f'"{result}"', "is no result that fegear knows", nearest(result, by_result))
+        for stage in by_result[result]:
+            subjects = stage.subjects(scene)
+            if not subjects:
+                raise InputError(
+                    "results",
+                    f'"{result}"',
+                    "asks for something that this case does not describe",
+                    "add the gear, pair or train that it is about",
+                )
+            for subject in subjects:
+                require(Task(stage.name, subject), f'results asks for "{result}"')
+
+    on = scene.case.effects.on()
+    steps = tuple(
+        Step(task, by_name[task.stage], tuple(reasons[task]), tuple(e for e in by_name[task.stage].effects if e in on))
+        for task in order
+    )
+    running = {step.stage.name for step in steps}
+    skipped = tuple((stage.name, _why_not(stage)) for stage in stages if stage.name not in running)
+    used = {effect for step in steps for effect in step.effects}
+    # What `fegear cost` prices in this case is wanted too, if not by a run.
+    used |= {effect for name in scene.case.cost.stages if name in by_name for effect in by_name[name].effects}
+    idle = tuple(effect for effect in on if effect not in used)
+    return Plan(steps, skipped, idle, tuple(_idle(effect, stages) for effect in idle))
+
+
+def _idle(effect: str, stages: Sequence[Stage]) -> str:
+    results = dict.fromkeys(f'"{result}"' for stage in stages if effect in stage.effects for result in stage.results)
+    who = f"ask for {' or '.join(results)}, or leave the effect out" if results else "no result knows it: leave it out"
+    return f"effects.{effect} is on, but nothing that is wanted uses it; {who}."
+
+
+def _require_effects(scene: Scene, stage: Stage) -> None:
+    for need in stage.requires:
+        wanted = [result for result in scene.case.results if result in (need.results or stage.results)]
+        if (need.results and not wanted) or scene.case.effects.is_on(need.effect):
+            continue
+        who = f'"{wanted[0]}"' if wanted else f"stage {stage.name}"
+        raise InputError(
+            f"effects.{need.effect}",
+            "(off)",
+            f"is needed by {who}: {need.reason}",
+            f"write {need.effect} = {scene.case.effects.example(need.effect)} under [effects], or do not ask for {who}",
+        )
+
+
+def _why_not(stage: Stage) -> str:
+    if not stage.results:
+        return "no wanted result needs it"
+    return f'nothing asks for it (results does not name "{stage.results[0]}")'

@@ -1,0 +1,48 @@
+"""A plan in words, for ``fegear plan``: what runs and why, with which settings, for how long, and what does not run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.engine.plan import Plan
+
+
+def forecast_seconds(scene: Scene, plan: Plan) -> list[float | None]:
+    """Predicted seconds of each step [s], a gear shape counted where it is solved first; None where nobody knows."""
+    solved: set[object] = set()
+    found: list[float | None] = []
+    for step in plan.steps:
+        told = step.stage.forecast(scene, step.task.subject)
+        anew = sum(seconds for key, seconds in told.shapes.items() if key not in solved)
+        solved |= set(told.shapes)
+        found.append(None if told.seconds is None else told.seconds + anew)
+    return found
+
+
+def plan_lines(scene: Scene, plan: Plan) -> list[str]:
+    """Lines for the terminal."""
+    lines, seconds = ["Will compute:"], forecast_seconds(scene, plan)
+    for number, (step, predicted) in enumerate(zip(plan.steps, seconds, strict=True), start=1):
+        effects = f"; effects: {', '.join(step.effects)}" if step.effects else ""
+        lines.append(f"  {number}. {step.task}: {'; '.join(step.reasons)}{effects}")
+        told = step.stage.forecast(scene, step.task.subject)
+        if told.settings:
+            lines.append("     settings: " + ", ".join(f"{key} = {_short(v)}" for key, v in told.settings.items()))
+        lines.append("     nobody knows how long" if predicted is None else f"     about {predicted:.2g} s")
+    if plan.skipped:
+        lines.append("Will not compute:")
+        lines += [f"  - {name}: {reason}" for name, reason in plan.skipped]
+    unknown = [str(step.task) for step, predicted in zip(plan.steps, seconds, strict=True) if predicted is None]
+    without = f", without {', '.join(unknown)}, of which nobody knows" if unknown else ""
+    total = sum(predicted or 0.0 for predicted in seconds)
+    lines.append(
+        f"Predicted: about {total:.2g} s of one core, measured on a usual machine{without}; tables, pictures and "
+        "report come on top, some seconds."
+    )
+    return lines + [f"Note: {remark}" for remark in plan.remarks]
+
+
+def _short(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,96 @@
+"""Points on the cores of this machine: one process of one thread for each."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+from typing import TYPE_CHECKING
+
+from fegear.engine.point_job import Reply, failed
+from fegear.errors import FegearError
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterator, Mapping
+
+    from fegear.engine.point_job import Job
+
+    Todo = Mapping[int, object]
+
+#: Libraries of linear algebra that would start threads of their own.
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Set the environment that new processes inherit before they load numpy."""
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _settle() -> None:
+    """Begin a worker's life: Ctrl-C is the parent's business, and no worker outlives a parent that was killed."""
+    import signal
+    from multiprocessing import connection, parent_process
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = parent_process()
+
+    def follow() -> None:
+        if parent is not None:
+            connection.wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
+
+
+def on_cores(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
+    """Compute points in processes; yields the point's number with its reply. A point that kills its process fails."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    left = dict(todo)
+    while left:
+        count = min(workers, len(left))
+        try:
+            for i, reply in _pool(job, left, count):
+                del left[i]
+                yield i, reply
+        except BrokenProcessPool:
+            # A process died (memory, a crash in a library). The point that killed it is among those handed out first;
+            # alone in a process each shows whether it was the one.
+            for i in list(left)[: 2 * count + 1]:
+                try:
+                    ((_, reply),) = _pool(job, {i: left[i]}, 1)
+                except BrokenProcessPool:
+                    died = FegearError("the process died while it computed this point (out of memory?)")
+                    reply = Reply(failed(died), lasting=False)
+                del left[i]
+                yield i, reply
+
+
+def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from multiprocessing import get_context
+
+    with _one_thread_each():
+        # Spawned, not forked: a fork would share gmsh's, numba's and OpenBLAS's state with its parent.
+        pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_settle)
+        try:
+            futures = {pool.submit(job, point): i for i, point in todo.items()}
+            for future in as_completed(futures):
+                yield futures[future], future.result()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)

@@ -1,0 +1,121 @@
+"""A computing stage: what it provides, for which part of a scene, and what it needs first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.engine.outcome import Outcome
+
+
+class Task(NamedTuple):
+    """A stage applied to one gear, pair or train of the scene; the subject is empty where there is only one."""
+
+    stage: str
+    subject: str = ""
+
+    def __str__(self) -> str:
+        """``stage of subject``."""
+        return f"{self.stage} of {self.subject}" if self.subject else self.stage
+
+
+class Progress(Protocol):
+    """Where a running stage reports how far it is."""
+
+    def __call__(self, fraction: float) -> None:
+        """Report the fraction done, 0 to 1."""
+
+
+Done = Mapping[Task, "Outcome"]
+
+
+class Need(NamedTuple):
+    """An effect without which a stage has no meaning.
+
+    Attributes
+    ----------
+    effect : str
+        Its key under ``[effects]``.
+    reason : str
+        Clause that says why: "it is what the tooth force rises above the load by".
+    results : tuple of str
+        The wanted results that need it; empty if the stage itself does.
+    """
+
+    effect: str
+    reason: str
+    results: tuple[str, ...] = ()
+
+
+class Forecast(NamedTuple):
+    """What can be said of a task before it runs.
+
+    Attributes
+    ----------
+    settings : mapping
+        Settings that it will use, plain numbers and texts.
+    seconds : float or None
+        What it will take, alone on one core of a usual machine; None where nobody knows.
+    shapes : mapping
+        Seconds of the gear shapes that it solves besides, unless an earlier task has solved them, by shape.
+    """
+
+    settings: Mapping[str, object] = MappingProxyType({})
+    seconds: float | None = None
+    shapes: Mapping[object, float] = MappingProxyType({})
+
+
+def _nothing(_scene: Scene, _subject: str) -> tuple[Task, ...]:
+    return ()
+
+
+def _fine(_scene: Scene, _subject: str) -> None:
+    return None
+
+
+def _unknown(_scene: Scene, _subject: str) -> Forecast:
+    return Forecast()
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """One kind of computation.
+
+    Parameters
+    ----------
+    name : str
+        Unique; also the first half of its tasks' names.
+    title : str
+        What it does, for the plan and the progress bar.
+    results : tuple of str
+        Names by which ``results = [...]`` asks for it; empty for stages that only serve others.
+    subjects : callable
+        ``subjects(scene)`` -> names it will be done for when asked for by name.
+    run : callable
+        ``run(scene, subject, done, progress)`` -> `Outcome`; `done` holds the outcomes of the tasks it needs.
+    needs : callable
+        ``needs(scene, subject)`` -> tasks that must run first.
+    check : callable
+        ``check(scene, subject)`` raises `InputError` when the scene lacks something the stage cannot do without.
+    effects : tuple of str
+        Effects that change what it computes.
+    requires : tuple of Need
+        Effects that must be on; a scene that leaves them off is refused with the remedy.
+    forecast : callable
+        ``forecast(scene, subject)`` -> `Forecast`, for ``fegear plan``.
+    """
+
+    name: str
+    title: str
+    results: tuple[str, ...]
+    subjects: Callable[[Scene], tuple[str, ...]]
+    run: Callable[[Scene, str, Done, Progress], Outcome]
+    needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
+    check: Callable[[Scene, str], None] = _fine
+    effects: tuple[str, ...] = ()
+    requires: tuple[Need, ...] = ()
+    forecast: Callable[[Scene, str], Forecast] = _unknown

@@ -1,0 +1,107 @@
+"""The finite-element solution of a gear, once for every stage that needs it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from fegear.case.part import at
+from fegear.errors import RangeError
+from fegear.models.settings import given_settings, mesh_settings
+from fegear.models.tooth_mesh import own_sector_mesh
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.case.reading import Scene
+    from fegear.fem import GearInfluence
+
+
+def needed_reach(scene: Scene, name: str) -> int:
+    """How many neighbours on either side a gear's solution must know: as many as share the load in any of its pairs.
+
+    All stages ask for the same number, so that they find the same solution. Without neighbour coupling it is one, which
+    comes with the solution: the size of what is left out is told from it.
+    """
+    reach = 1
+    if not scene.case.effects.neighbour_coupling:
+        return reach
+    for key, part in scene.case.pair.items():
+        if key in scene.pairs and name in (part.driver, part.driven):
+            ratio = scene.pairs[key].contact_ratio
+            # A corner in contact before and after the path adds a pair at either end.
+            extra = 1 if scene.case.effects.corner_contact else 0
+            # A root's stress is followed from a base pitch before contact to one after it.
+            extra += 1 if "root-stress-history" in scene.case.results else 0
+            reach = max(reach, min(math.ceil(ratio * (1.0 - 1e-12)) - 1 + extra, scene.gears[name].teeth // 2 - 1))
+    return reach
+
+
+def gear_influence(scene: Scene, name: str, progress: Callable[[str], None] | None = None) -> GearInfluence:
+    """Solve a gear of the scene; equal shapes with equal settings are solved once in a process.
+
+    A tolerance is solved to, with finer settings while the error estimate misses it; settings that the case gives
+    itself, or its own tooth mesh, are taken as they are.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Name of the gear.
+    progress : callable, optional
+        Called with the name of each step as it starts.
+
+    Raises
+    ------
+    RangeError
+        If the gear's bore cannot be meshed, under its key in the case.
+    """
+    from fegear.fem import solve_gear, solve_to_tolerance
+
+    mesh, reach, accuracy = own_sector_mesh(scene, name), needed_reach(scene, name), scene.case.accuracy
+    try:
+        if mesh is None and not given_settings(accuracy):
+            return solve_to_tolerance(scene.gears[name], accuracy.tolerance, reach=reach, progress=progress)
+        return solve_gear(scene.gears[name], mesh_settings(accuracy), reach=reach, mesh=mesh, progress=progress)
+    except RangeError as error:
+        raise at(f"gear.{name}", error) from None
+
+
+def solution_told(influence: GearInfluence) -> dict[str, object]:
+    """Settings of a gear's solution and what they cost, for the summary."""
+    told: dict[str, object] = {
+        **asdict(influence.settings),
+        "unknowns": influence.fine.unknowns,
+        "mesh": influence.fine.mesh.origin,
+        "plane": influence.gear.plane_assumption,
+        "seconds": {key: round(seconds, 6) for key, seconds in influence.seconds.items()},
+    }
+    if influence.rounds:
+        told["rounds"] = [
+            {
+                "root_edge_length": one.settings.root_edge_length,
+                "unknowns": one.unknowns,
+                "estimated_error": {key: float(f"{error:.3g}") for key, error in one.errors.items()},
+                "seconds": round(one.seconds, 6),
+            }
+            for one in influence.rounds
+        ]
+    return told
+
+
+def solution_remarks(scene: Scene, name: str, influence: GearInfluence) -> tuple[str, ...]:
+    """Say where a tolerance took more than one solution, and where the last of them still misses it."""
+    rounds, tolerance = influence.rounds, scene.case.accuracy.tolerance
+    if not rounds or (len(rounds) == 1 and rounds[0].error <= tolerance):
+        return ()
+    steps = ", ".join(f"{one.error:.1e} with {one.unknowns} unknowns a tooth" for one in rounds)
+    last = rounds[-1]
+    if last.error <= tolerance:
+        end = "the last is kept."
+    else:
+        worst = max(last.errors, key=lambda key: last.errors[key])
+        end = f"the last is kept, though {worst} misses the tolerance: it was the finest or the last that is tried."
+    times = "once" if len(rounds) == 2 else f"{len(rounds) - 1} times"
+    how = f"was refined {times}" if len(rounds) > 1 else "was solved"
+    return (f"Gear {name} {how} for the tolerance {tolerance:.2g}; largest estimated errors: {steps}; {end}",)

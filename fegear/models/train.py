@@ -1,0 +1,185 @@
+"""From ``[train]`` to the graph of bodies, shafts and gear pairs, with the teeth of the scene's pairs in between."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from fegear.case.names import nearest
+from fegear.dynamics.matrices import static_forces
+from fegear.dynamics.train import (
+    Body,
+    Damper,
+    Mesh,
+    Shaft,
+    Torque,
+    Train,
+    disc_inertia,
+    mesh_damping,
+    shaft_damping,
+    shaft_stiffness,
+)
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fegear.case.reading import Scene
+    from fegear.case.train import BodyPart, ShaftPart, TrainPart
+    from fegear.dynamics.excitation import MeshExcitation
+    from fegear.dynamics.periodic import Periodic
+    from fegear.geometry import GearPair
+
+    Array = NDArray[np.float64]
+
+#: Mean mesh stiffness of trains of which only the ratios and the static forces matter [N/m].
+_ANY_STIFFNESS = 1e8
+#: How far a pair's load may be from the mean mesh force that the torques give.
+LOAD_AGREES = 2e-3
+
+
+@dataclass(frozen=True)
+class GearTrain:
+    """The train of a scene with what its gear pairs do to it.
+
+    Parameters
+    ----------
+    train : Train
+        With mean mesh stiffnesses.
+    pairs : tuple of GearPair
+        Geometry of each mesh.
+    excitations : tuple of MeshExcitation
+        One-sided springs of each mesh.
+    errors : tuple of Periodic
+        Static transmission error under the mean force of each mesh [m].
+    forces : ndarray, shape (meshes,)
+        Mean mesh forces [N].
+    speed_ratio : float
+        Speed of the body that speeds refer to over that of the first body.
+    speed_of : str
+        That body.
+    """
+
+    train: Train
+    pairs: tuple[GearPair, ...]
+    excitations: tuple[MeshExcitation, ...]
+    errors: tuple[Periodic, ...]
+    forces: Array
+    speed_ratio: float
+    speed_of: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the meshes."""
+        return tuple(mesh.name for mesh in self.train.meshes)
+
+
+def train_part(scene: Scene) -> TrainPart:
+    """The case's train, or a refusal."""
+    if scene.case.train is None:
+        raise InputError("train", "(not given)", "is needed for this result", "describe bodies, meshes and torques")
+    return scene.case.train
+
+
+def _known(key: str, name: str, known: Iterable[str], kind: str) -> None:
+    if name not in known:
+        raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known))
+
+
+def _references(scene: Scene, part: TrainPart) -> Iterator[tuple[str, str, str]]:
+    """Key, name and kind of everything that the train refers to."""
+    for name, body in part.body.items():
+        yield from ((f"train.body.{name}.gears", gear, "gear") for gear in body.gears or ())
+    for name, shaft in part.shaft.items():
+        yield from ((f"train.shaft.{name}.{end}", getattr(shaft, end), "body") for end in ("a", "b"))
+    for name, mesh in part.mesh.items():
+        yield from ((f"train.mesh.{name}.{role}", getattr(mesh, role), "body") for role in ("driver", "driven"))
+        yield f"train.mesh.{name}.pair", part.pair_of(name), "spur pair"
+        yield f"train.mesh.{name}.like.pair", part.loaded_pair_of(name), "spur pair"
+    for name, damper in part.damper.items():
+        yield from ((f"train.damper.{name}", end, "body") for end in (damper.a, damper.b) if end is not None)
+    yield from (("train.torque", torque, "body") for torque in part.torque)
+    dynamics = scene.case.dynamics
+    others = {"train.balance": part.balance, "dynamics.speed_of": dynamics.speed_of}
+    others["dynamics.loss_taken_by"] = dynamics.loss_taken_by
+    yield from ((key, name, "body") for key, name in others.items() if name is not None)
+
+
+def check_train(scene: Scene) -> None:
+    """Refuse names that nothing has and trains that cannot turn, before anything is computed."""
+    part = train_part(scene)
+    known: dict[str, Iterable[str]] = {"body": part.body, "gear": scene.gears, "spur pair": scene.pairs}
+    for key, name, kind in _references(scene, part):
+        _known(key, name, known[kind], kind)
+    forces = static_forces(build_train(scene))
+    for name, force in zip(part.mesh, forces, strict=True):
+        pair = part.loaded_pair_of(name)
+        stated = scene.case.pair[pair].normal_load(scene.pairs[pair])
+        if part.mesh[name].like is None and stated is not None and abs(stated - force) > LOAD_AGREES * abs(stated):
+            raise InputError(
+                f"pair.{pair}.load", f"{stated:.8g} N",
+                f"differs from the mean force of {force:.8g} N that train.torque puts on mesh {name}",
+                "make the load and the torques agree",
+            )  # fmt: skip
+
+
+def _body(scene: Scene, name: str, part: BodyPart) -> Body:
+    inertia = part.inertia or 0.0
+    for gear_name in part.gears or ():
+        gear = scene.gears[gear_name]
+        inertia += disc_inertia(gear.pitch_radius, gear.face_width, gear.material.density, gear.bore_radius)
+    return Body(name, inertia)
+
+
+def _shaft(name: str, part: ShaftPart, inertias: Mapping[str, float]) -> Shaft:
+    if part.rigid:
+        return Shaft(name, part.a, part.b, math.inf)
+    stiffness = part.stiffness
+    if stiffness is None:
+        stiffness = shaft_stiffness(
+            part.length or math.nan, part.diameter or math.nan, part.shear_modulus, part.bore_diameter
+        )
+    damping = part.damping or 0.0
+    if part.damping_ratio is not None:
+        damping = shaft_damping(part.damping_ratio, stiffness, inertias[part.a], inertias[part.b])
+    return Shaft(name, part.a, part.b, stiffness, damping)
+
+
+def build_train(scene: Scene, stiffness: Mapping[str, float] | None = None) -> Train:
+    """Make the train for mean mesh stiffnesses [N/m]; without them only ratios and static forces mean anything.
+
+    All angles count in one sense of rotation, so both base radii of a mesh have one sign; it is the one for which the
+    torques press the teeth together. Bodies joined by rigid shafts count together in damping ratios.
+    """
+    part = train_part(scene)
+    bodies = tuple(_body(scene, name, body) for name, body in part.body.items())
+    inertias = {body.name: body.inertia for body in bodies}
+    shafts = tuple(_shaft(name, shaft, inertias) for name, shaft in part.shaft.items())
+    meshes = []
+    for name, mesh in part.mesh.items():
+        pair = scene.pairs[part.pair_of(name)]
+        r1, r2 = pair.driver.base_radius, pair.driven.base_radius
+        k = mesh.stiffness or (stiffness or {}).get(name, _ANY_STIFFNESS)
+        damping = mesh.damping or 0.0
+        if mesh.damping_ratio is not None:
+            damping = mesh_damping(mesh.damping_ratio, k, r1, r2, inertias[mesh.driver], inertias[mesh.driven])
+        backlash = math.inf if mesh.backlash is None else mesh.backlash
+        teeth = pair.driver.teeth, pair.driven.teeth
+        meshes.append(Mesh(name, mesh.driver, mesh.driven, r1, r2, *teeth, k, damping, backlash))
+    dampers = tuple(Damper(damper.a, damper.b, damper.damping) for damper in part.damper.values())
+    free = Train(bodies, shafts, tuple(meshes), dampers)
+    torques = [Torque(body, value) for body, value in part.torque.items()]
+    if part.balance is not None:
+        ratio = {body: float(free.ratios[free.dof[body]]) for body in inertias}
+        rest = sum(ratio[torque.body] * torque.value for torque in torques)
+        torques.append(Torque(part.balance, -rest / ratio[part.balance]))
+    train = replace(free, torques=tuple(torques))
+    turned = tuple(
+        replace(mesh, radius_a=-mesh.radius_a, radius_b=-mesh.radius_b) if force < 0.0 else mesh
+        for mesh, force in zip(train.meshes, static_forces(train), strict=True)
+    )
+    return replace(train, meshes=turned)

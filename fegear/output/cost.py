@@ -1,0 +1,98 @@
+"""What a study of cost leaves behind: tables, pictures, a page and ``summary.json``."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import fegear
+from fegear.output.cost_page import cost_page
+from fegear.output.folder import SUMMARY, files_in
+from fegear.output.report import write_page
+from fegear.output.summary import write_json
+from fegear.output.tables import write_table
+from fegear.studies.cost.result import ALL, TOLERANCES
+from fegear.studies.cost.tables import tables
+from fegear.units import from_si
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fegear.studies.cost.result import CostResults
+
+
+def write_cost(results: CostResults, folder: Path, *, plots: bool = True) -> None:
+    """Write tables, pictures, page and summary.
+
+    Parameters
+    ----------
+    results : CostResults
+    folder : Path
+        An empty folder.
+    plots : bool
+        Whether to draw.
+    """
+    (folder / "tables").mkdir()
+    for table in tables(results):
+        write_table(folder / "tables", table)
+    if plots:
+        from fegear.output.pictures.cost import draw_cost
+
+        (folder / "plots").mkdir()
+        draw_cost(results, folder / "plots")
+    write_page(folder / "report.html", cost_page(results))
+    write_json(folder / SUMMARY, _summary(results, [*files_in(folder), SUMMARY]))
+
+
+def _summary(results: CostResults, files: list[str]) -> dict[str, object]:
+    scene = results.asked.scene
+    reference = {}
+    for quantity in results.quantities:
+        scale = from_si(quantity.unit) if quantity.unit else 1.0
+        value = results.reference_values[quantity.name] * scale
+        floor = results.floors[quantity.name]
+        reference[f"{quantity.subject}.{quantity.name}"] = {
+            "value": value, "unit": quantity.unit, "error": floor * abs(value), "meaning": quantity.meaning,
+        }  # fmt: skip
+    cheapest = {
+        q.name: {f"{tolerance:.0e}": _rung(results, q.name, tolerance) for tolerance in TOLERANCES}
+        for q in results.quantities
+    }
+    return {
+        "title": scene.case.title,
+        "case": scene.name,
+        "results": reference,
+        "cheapest": cheapest,
+        "settings": {"reference": results.reference.paste(""), "effects": list(scene.case.effects.on())},
+        "rungs": {"planned": results.planned, "finished": results.finished},
+        "timings": {"total": round(results.seconds, 6)},
+        "remarks": list(results.remarks),
+        "files": files,
+        "version": fegear.__version__,
+    }
+
+
+def _rung(results: CostResults, quantity: str, tolerance: float) -> dict[str, object] | None:
+    row = results.cheapest(quantity, tolerance)
+    if row is None:
+        return None
+    error = results.shown_error(row)
+    return {
+        "rung": row.rung.label,
+        "seconds": round(row.seconds.cpu, 6),
+        "error": error if math.isfinite(error) else None,
+        "case_line": row.rung.paste(results.asked.pair),
+    }
+
+
+def cheapest_lines(results: CostResults) -> list[str]:
+    """The cheapest settings in words, for the terminal."""
+    lines = []
+    for name in results.named:
+        floor = "" if name == ALL else f" (the reference knows it to {results.floors[name]:.0e})"
+        lines.append(f"{name}{floor}:")
+        for tolerance in TOLERANCES:
+            row = results.cheapest(name, tolerance)
+            told = f"{row.seconds.cpu:9.3g} s  {row.rung.label}" if row else "not reached"
+            lines.append(f"  {tolerance:.0e}  {told}")
+    return lines

@@ -1,0 +1,137 @@
+"""DXF drawings of tooth and gear in millimetres: closed polylines, and splines with true arcs."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.geometry.curves import Arc, Line
+from fegear.output.outline import gear_outline, tooth_outline, turned
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from fegear.geometry import Gear
+    from fegear.geometry.curves import Curve
+
+    Array = NDArray[np.float64]
+
+#: How far chords and splines may lie off the exact curve [modules].
+CHORD_TOLERANCE = 1e-4
+SPLINE_TOLERANCE = 1e-8
+_MM = 1e3
+
+
+def _drawing() -> tuple[Any, Any]:
+    import ezdxf
+    from ezdxf import units
+
+    document = ezdxf.new("R2010", units=units.MM)
+    for layer, colour in (("OUTLINE", 7), ("BORE", 5)):
+        document.layers.add(layer, color=colour)
+    return document, document.modelspace()
+
+
+def spline_of(curve: Curve, tolerance: float = SPLINE_TOLERANCE) -> tuple[Array, Array]:
+    """Knots and control points [modules] of the quintic B-spline through a curve, (M + 6,) and (M, 2).
+
+    Control points are doubled until the spline stays within `tolerance` of the curve between its nodes.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    count = 9
+    while True:
+        u = np.linspace(curve.start, curve.end, count)
+        sign = 1.0 if curve.end > curve.start else -1.0
+        spline = make_interp_spline(sign * u, curve.points(u).T, k=5)
+        between = 0.5 * (u[1:] + u[:-1])
+        if np.abs(spline(sign * between).T - curve.points(between)).max() <= tolerance or count > 4096:
+            return np.asarray(spline.t), np.asarray(spline.c)
+        count = 2 * count - 1
+
+
+def _add_polyline(space: Any, points: Array, layer: str) -> None:
+    space.add_lwpolyline([(x, y) for x, y in points.T], close=True, dxfattribs={"layer": layer})
+
+
+def _add_curve(space: Any, curve: Curve, scale: float, turn: float, *, mirrored: bool) -> None:
+    """Add one piece of the outline as the entity that holds it best, mirrored about +y and turned clockwise."""
+    side = np.array([[-1.0 if mirrored else 1.0], [1.0]])
+
+    def place(points: Array) -> Array:
+        return turned(points * side, turn) * scale
+
+    layer = {"layer": "OUTLINE"}
+    if isinstance(curve, Line):
+        a, b = place(curve.points(np.array([curve.start, curve.end]))).T
+        space.add_line(tuple(a), tuple(b), dxfattribs=layer)
+    elif isinstance(curve, Arc):
+        centre = place(np.array(curve.centre)[:, None])[:, 0]
+        low, high = sorted((curve.start, curve.end))
+        # The curve's angle runs clockwise from +y, DXF's counterclockwise from +x.
+        first, last = (math.pi / 2 + low, math.pi / 2 + high) if mirrored else (math.pi / 2 - high, math.pi / 2 - low)
+        start, end = math.degrees(first - turn), math.degrees(last - turn)
+        space.add_arc(tuple(centre), curve.radius * scale, start, end, dxfattribs=layer)
+    else:
+        knots, control = spline_of(curve)
+        spline = space.add_spline(degree=5, dxfattribs=layer)
+        spline.control_points = [(x, y, 0.0) for x, y in place(control.T).T]
+        spline.knots = knots.tolist()
+
+
+def write_dxf(gear: Gear, folder: Path, name: str) -> list[Path]:
+    """Write ``<name>_{tooth,gear}_{polyline,spline}.dxf``.
+
+    Parameters
+    ----------
+    gear : Gear
+    folder : Path
+    name : str
+        Name of the gear.
+
+    Returns
+    -------
+    list of Path
+        The tooth is drawn as its sector down to the bore, +y along its centre line; the gear with its bore circle.
+    """
+    bore, pitch, scale = gear.bore_radius * _MM, 2.0 * math.pi / gear.teeth, gear.module * _MM
+    sector = tooth_outline(gear.tooth, CHORD_TOLERANCE) * scale
+    ends = turned(np.array([[0.0], [bore]]), pitch / 2), turned(np.array([[0.0], [bore]]), -pitch / 2)
+    arc = np.linspace(pitch / 2, -pitch / 2, 33)
+    written = []
+
+    def save(document: Any, part: str) -> None:
+        written.append(folder / f"{name}_{part}.dxf")
+        document.saveas(written[-1])
+
+    document, space = _drawing()
+    _add_polyline(space, np.hstack([sector, bore * np.stack([np.sin(arc), np.cos(arc)])]), "OUTLINE")
+    save(document, "tooth_polyline")
+
+    document, space = _drawing()
+    _add_polyline(space, gear_outline(gear, CHORD_TOLERANCE) * _MM, "OUTLINE")
+    space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
+    save(document, "gear_polyline")
+
+    document, space = _drawing()
+    for curve in gear.tooth.outline.values():
+        for mirrored in (False, True):
+            _add_curve(space, curve, scale, 0.0, mirrored=mirrored)
+    for end, corner in zip(ends, (sector[:, -1], sector[:, 0]), strict=True):
+        space.add_line(tuple(end[:, 0]), tuple(corner), dxfattribs={"layer": "OUTLINE"})
+    low, high = 90.0 - math.degrees(pitch) / 2, 90.0 + math.degrees(pitch) / 2
+    space.add_arc((0.0, 0.0), bore, low, high, dxfattribs={"layer": "BORE"})
+    save(document, "tooth_spline")
+
+    document, space = _drawing()
+    for k in range(gear.teeth):
+        for curve in gear.tooth.outline.values():
+            for mirrored in (False, True):
+                _add_curve(space, curve, scale, k * pitch, mirrored=mirrored)
+    space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
+    save(document, "gear_spline")
+    return written

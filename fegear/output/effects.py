@@ -1,0 +1,163 @@
+"""What ``fegear effects`` leaves behind: ``tables/effects.csv``, a picture of each effect, report, summary."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import fegear
+from fegear.engine.outcome import Column, Table
+from fegear.output.folder import SUMMARY, files_in
+from fegear.output.report.effects import write_effects_report
+from fegear.output.summary import write_json
+from fegear.output.tables import write_table
+from fegear.studies.effect_study import CURVES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from fegear.case.reading import Scene
+    from fegear.studies.effect_study import Fixed, Measured, Switched
+
+    Array = NDArray[np.float64]
+    Curve = tuple[Table, Table, str, str]
+
+
+def curves_of(measured: Measured) -> dict[str, Table]:
+    """Tables of a run by name."""
+    return {table.name: table for table in measured.results.tables}
+
+
+def telling_curve(found: Switched) -> Curve | None:
+    """The curve to draw: of the first kind that the runs have, the table that the effect changes most."""
+    before, after = curves_of(found.without), curves_of(found.with_it)
+    for start, x, y in CURVES:
+        shared = [name for name in before if name.startswith(start) and name in after and _is_curve(before[name], x, y)]
+        changed = [(_change(before[name], after[name], x, y), name) for name in shared]
+        if changed and max(changed)[0] > 1e-9:
+            name = max(changed)[1]
+            return before[name], after[name], x, y
+    return None
+
+
+def _is_curve(table: Table, x: str, y: str) -> bool:
+    """Whether a table holds one curve, and not one for each of several loads."""
+    names = {column.name for column in table.columns}
+    return {x, y} <= names and "total_load" not in names
+
+
+def _change(before: Table, after: Table, x: str, y: str) -> float:
+    """Largest change of a curve over its largest value, where both reach."""
+    xa, ya, xb, yb = (np.asarray(table[column], dtype=float) for table in (before, after) for column in (x, y))
+    inside = (xa >= xb[0]) & (xa <= xb[-1])
+    scale = float(np.nanmax(np.abs(ya), initial=0.0))
+    if not inside.any():
+        return 0.0
+    change = float(np.nanmax(np.abs(np.interp(xa[inside], xb, yb) - ya[inside])))
+    return change / scale if scale > 0.0 else change
+
+
+def effects_table(switched: Sequence[Switched]) -> Table:
+    """One row for each effect and value: without and with the effect, seconds, and the kernels that it calls more."""
+    rows = []
+    for found in switched:
+        kernels = kernel_changes(found)
+        for a, b in found.values():
+            change = b.shown - a.shown
+            scale = max(abs(a.shown), abs(b.shown))
+            rows.append(
+                (found.effect, "on" if found.named else "off", a.name, a.unit, a.shown, b.shown, change,
+                 change / scale if scale > 0.0 else 0.0, found.without.seconds, found.with_it.seconds, kernels)
+            )  # fmt: skip
+    columns = list(zip(*rows, strict=True)) if rows else [()] * 11
+    heads = (
+        ("effect", "", "which effect"),
+        ("in_the_case", "", "whether the case has it on"),
+        ("result", "", "name of the value"),
+        ("unit", "", "of the value"),
+        ("without", "", "value without the effect"),
+        ("with", "", "value with the effect"),
+        ("change", "", "with less without"),
+        ("share", "", "change over the larger of the two"),
+        ("processor_without", "s", "processor seconds without the effect"),
+        ("processor_with", "s", "processor seconds with the effect"),
+        ("kernels", "", "calls of the kernels without -> with"),
+    )
+    made = [Column(h, np.array(c), unit, meaning) for (h, unit, meaning), c in zip(heads, columns, strict=True)]
+    return Table("effects", tuple(made), "What each effect changes and what it costs")
+
+
+def kernel_changes(found: Switched) -> str:
+    """Kernels whose number of calls the effect changes."""
+    before, after = found.without.kernels, found.with_it.kernels
+    names = [name for name in {**before, **after} if before.get(name, 0) != after.get(name, 0)]
+    return "; ".join(f"{name} {before.get(name, 0)} -> {after.get(name, 0)}" for name in names)
+
+
+def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fixed], folder: Path) -> list[str]:
+    """Write table, pictures, report and summary.
+
+    Parameters
+    ----------
+    scene : Scene
+    switched : sequence of Switched
+    fixed : sequence of Fixed
+    folder : Path
+        An empty folder.
+
+    Returns
+    -------
+    list of str
+        One sentence for each effect.
+    """
+    from fegear.output.pictures.effects import draw_effect
+
+    (folder / "tables").mkdir()
+    (folder / "plots").mkdir()
+    table = effects_table(switched)
+    write_table(folder / "tables", table)
+    curves = {found.effect: telling_curve(found) for found in switched}
+    for found in switched:
+        title = scene.case.title or scene.name
+        draw_effect(found, curves[found.effect], folder / "plots" / f"effect_{found.effect}.png", title)
+    sentences = {found.effect: sentence(found) for found in switched}
+    write_effects_report(folder / "report.html", scene, switched, fixed, table, curves, sentences)
+    told = list(sentences.values())
+    told += [f"{one.effect} cannot be switched in this case: {one.reason}" for one in fixed]
+    write_json(
+        folder / SUMMARY,
+        {
+            "title": scene.case.title,
+            "case": scene.name,
+            "effects": {
+                found.effect: {
+                    "in_the_case": found.named,
+                    "processor_seconds": {
+                        "without": round(found.without.seconds, 6), "with": round(found.with_it.seconds, 6)
+                    },
+                    "kernels": {"without": dict(found.without.kernels), "with": dict(found.with_it.kernels)},
+                }
+                for found in switched
+            },
+            "remarks": told,
+            "files": [*files_in(folder), SUMMARY],
+            "version": fegear.__version__,
+        },
+    )  # fmt: skip
+    return told
+
+
+def sentence(found: Switched) -> str:
+    """The value that an effect changes most, and what that costs."""
+    a, b = found.without.seconds, found.with_it.seconds
+    cost = f"{a:.2f} s of processor without, {b:.2f} s with"
+    changes = [(abs(q.shown - p.shown) / max(abs(p.shown), abs(q.shown)), p, q) for p, q in found.values()
+               if max(abs(p.shown), abs(q.shown)) > 0.0]  # fmt: skip
+    if not changes or max(c for c, _, _ in changes) == 0.0:
+        return f"{found.effect} changes no value; {cost}."
+    _, p, q = max(changes, key=lambda c: c[0])
+    return f"{found.effect} changes {p.name} most: {p.shown:.5g} -> {q.shown:.5g} {p.unit}; {cost}.".replace(" ;", ";")

@@ -1,0 +1,28 @@
+"""``report.html``: one self-contained page, with plots to point at, every table to take along, and sources.
+
+`write_report` makes the page of a run. Any other command makes a page of its own through the same door::
+
+    from fegear.output.report import Page, Section, write_page
+    from fegear.output.report.blocks import DataTable, Facts, Notes, Paragraph, Plot, Still
+    from fegear.output.report.figure import Figure
+
+    figure = Figure("cost", "Error against time", "Each point is one setting.")
+    panel = figure.panel("seconds [s]", "relative error", log_x=True, log_y=True)
+    panel.points(table, "seconds", "error", "finite elements", where={"source": "fe"})
+    page = Page(
+        title="What accuracy costs",
+        note="one line below the title",
+        sections=(Section("Error against time", (Paragraph("..."), Plot(figure), DataTable(table))),),
+        tables=(table,),             # every table that a plot or a DataTable shows; written once, as its CSV
+        name="nasa_four_square",     # of the files that the page offers for download
+    )
+    write_page(folder / "cost.html", page)
+
+The page holds each table once, as the bytes of its CSV file; plots are drawn from these, so that what is seen is what
+is downloaded. Nothing is fetched from anywhere. plotly.js comes from plotly's wheel; plotly's Python is never imported.
+"""
+
+from fegear.output.report.page import Page, Section, write_page
+from fegear.output.report.run import write_report
+
+__all__ = ["Page", "Section", "write_page", "write_report"]

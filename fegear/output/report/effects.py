@@ -1,0 +1,149 @@
+"""The page of ``fegear effects``: for each effect its most telling curve without and with it, its values, its price."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.engine.outcome import Table
+from fegear.output.report.blocks import Bars, DataTable, Facts, Folded, Grid, Paragraph, Plot
+from fegear.output.report.figure import Figure, heading
+from fegear.output.report.numbers import plain_number, pretty_unit
+from fegear.output.report.page import Page, Section, write_page
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from fegear.case.reading import Scene
+    from fegear.output.report.page import Block
+    from fegear.studies.effect_study import Fixed, Switched
+
+    Curve = tuple[Table, Table, str, str]
+
+#: Changes of values by less than this share are round-off.
+_ROUND_OFF = 1e-12
+
+
+def _words(told: str) -> str:
+    return told.replace("_", " ")
+
+
+def _title(table: Table, name: str) -> str:
+    unit = heading(table, name)
+    return f"{_words(name)} [{unit}]" if unit else _words(name)
+
+
+def _curve(effect: str, found: Curve) -> tuple[Figure, tuple[Table, Table]]:
+    """The curve without and with an effect, and the two tables under names of their own."""
+    before, after, x, y = found
+    tables = tuple(
+        Table(f"{effect}_{label}", table.columns, f"{table.title or table.name}, {label} {effect}")
+        for table, label in ((before, "without"), (after, "with"))
+    )
+    made = Figure(f"effect_{effect}", f"{before.title or _words(before.name)}", f"Without and with {effect}.")
+    panel = made.panel(_title(before, x), _title(before, y))
+    for number, (table, label) in enumerate(zip(tables, ("without", "with"), strict=True)):
+        panel.line(table, x, y, f"{label} {effect}", number)
+    return made, (tables[0], tables[1])
+
+
+def _values(found: Switched) -> Block:
+    rows = []
+    for a, b in found.values():
+        scale = max(abs(a.shown), abs(b.shown))
+        share = (b.shown - a.shown) / scale if scale > 0.0 else 0.0
+        if abs(share) > _ROUND_OFF:
+            rows.append((abs(share), (a.name, a.shown, b.shown, pretty_unit(a.unit), f"{100.0 * share:+.3g} %")))
+    rows.sort(key=lambda row: -row[0])
+    if not rows:
+        return Paragraph("It changes no value.")
+    grid = Grid(("Value", "Without", "With", "Unit", "Change"), [row for _, row in rows])
+    return Folded(f"The {len(rows)} values that it changes", (grid,))
+
+
+def _kernels(found: Switched) -> Block:
+    names = sorted({*found.without.kernels, *found.with_it.kernels})
+    calls = {name: (found.without.kernels.get(name, 0), found.with_it.kernels.get(name, 0)) for name in names}
+    changed = {name: f"{a} without, {b} with" for name, (a, b) in calls.items() if a != b}
+    told = Facts(changed or {"every kernel": "called as often without as with"})
+    return Folded("Calls of the kernels", (told,))
+
+
+def effects_page(
+    scene: Scene,
+    switched: Sequence[Switched],
+    fixed: Sequence[Fixed],
+    table: Table,
+    curves: Mapping[str, Curve | None],
+    told: Mapping[str, str],
+) -> Page:
+    """Put the page together.
+
+    Parameters
+    ----------
+    scene : Scene
+    switched : sequence of Switched
+    fixed : sequence of Fixed
+    table : Table
+        What ``tables/effects.csv`` holds.
+    curves : mapping
+        The curve to draw of each effect, or None.
+    told : mapping
+        One sentence for each effect.
+    """
+    sections, carried = [], [table]
+    for found in switched:
+        blocks: list[Block] = [Paragraph(told[found.effect])]
+        curve = curves[found.effect]
+        if curve is not None:
+            figure, tables = _curve(found.effect, curve)
+            blocks.append(Plot(figure))
+            carried += tables
+        seconds = {"without": found.without.seconds, "with": found.with_it.seconds}
+        blocks += [Paragraph("Processor seconds:"), Bars(seconds, "s"), _values(found), _kernels(found)]
+        state = "on" if found.named else "off"
+        sections.append(Section(f"{found.effect} ({state} in the case)", tuple(blocks)))
+    stuck = [(one.effect, one.reason) for one in fixed]
+    rows = [(found.effect, "on" if found.named else "off", *_largest(found)) for found in switched]
+    summary = Grid(("Effect", "In the case", "Value that it changes most", "Change", "Processor seconds"), rows)
+    return Page(
+        title=f"Effects: {scene.case.title or scene.name}",
+        note=f"Case {scene.name} with each of {len(switched)} effects switched, one at a time.",
+        sections=(
+            Section("At a glance", (summary,) if rows else ()),
+            *sections,
+            Section("Effects that cannot be switched", (Grid(("Effect", "Why"), stuck),) if stuck else ()),
+            Section("Table", (DataTable(table),)),
+        ),
+        tables=tuple(carried),
+        files={f"{scene.name}.toml": scene.text.encode()} if scene.text else {},
+        name=f"{scene.name}_effects",
+    )
+
+
+def _largest(found: Switched) -> tuple[str, str, str]:
+    """The value that an effect changes most, by how much, and what the effect costs."""
+    changes = [
+        (abs(b.shown - a.shown) / max(abs(a.shown), abs(b.shown)), a, b)
+        for a, b in found.values()
+        if max(abs(a.shown), abs(b.shown)) > 0.0
+    ]
+    price = f"{found.without.seconds:.2f} without, {found.with_it.seconds:.2f} with"
+    share, a, b = max(changes, key=lambda change: change[0], default=(0.0, None, None))
+    if a is None or b is None or share <= _ROUND_OFF:
+        return "none", "", price
+    unit = f" {pretty_unit(a.unit)}".rstrip()
+    return a.name, f"{plain_number(a.shown, 5)} to {plain_number(b.shown, 5)}{unit}", price
+
+
+def write_effects_report(
+    path: Path,
+    scene: Scene,
+    switched: Sequence[Switched],
+    fixed: Sequence[Fixed],
+    table: Table,
+    curves: Mapping[str, Curve | None],
+    told: Mapping[str, str],
+) -> None:
+    """Write the page; see `effects_page`."""
+    write_page(path, effects_page(scene, switched, fixed, table, curves, told))

@@ -1,0 +1,170 @@
+"""The page of a run: what was asked, the numbers and how sure they are, each stage's plots and tables, plan, price."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import fegear
+from fegear.output.report.accuracy import accuracy_blocks
+from fegear.output.report.blocks import (
+    Code,
+    DataTable,
+    Download,
+    Facts,
+    Folded,
+    Grid,
+    Heading,
+    Notes,
+    Paragraph,
+    Plot,
+    Still,
+    Values,
+)
+from fegear.output.report.citations import bibliography, citations
+from fegear.output.report.page import Page, Section, write_page
+from fegear.output.report.plots import figures
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from fegear.engine.run import Results
+    from fegear.engine.stage import Task
+    from fegear.output.pictures.style import Picture
+    from fegear.output.report.page import Block
+
+#: More values than this are folded, task by task: nobody reads forty numbers before the first plot.
+_MOST_OPEN = 16
+
+
+def _title(results: Results, task: Task) -> str:
+    step = next((step for step in results.plan.steps if step.task == task), None)
+    title = step.stage.title if step else task.stage.replace("-", " ").capitalize()
+    return f"{title}: {task.subject}" if task.subject else title
+
+
+def _values(results: Results) -> tuple[Block, ...]:
+    """Results of every task: wanted before those that only serve others, estimated before exact ones."""
+    wanted = {step.task for step in results.plan.steps if any(r.startswith("results asks") for r in step.reasons)}
+    told = [(task, outcome.values) for task, outcome in results.outcomes.items() if outcome.values]
+    told.sort(key=lambda item: (bool(wanted) and item[0] not in wanted, not any(value.error for value in item[1])))
+    blocks: list[Block] = []
+    shown, tolerance = 0, results.scene.case.accuracy.tolerance
+    for task, values in told:
+        if shown and shown + len(values) > _MOST_OPEN:
+            folded = Values(values, tolerance)
+            blocks.append(Folded(f"{_title(results, task)} ({len(values)} values)", (folded,)))
+            continue
+        shown += len(values)
+        blocks += [Heading(_title(results, task)), Values(values[:_MOST_OPEN], tolerance)]
+        if len(values) > _MOST_OPEN:
+            rest = values[_MOST_OPEN:]
+            blocks.append(Folded(f"{len(rest)} more of them", (Values(rest, tolerance),)))
+    return tuple(blocks)
+
+
+def _sources(results: Results, task: Task) -> tuple[Block, ...]:
+    works = bibliography()
+    told = [
+        f"{works[c.key].short}{f', {c.where}' if c.where else ''}: {c.what}" for c in citations(results, task)
+    ]  # fmt: skip
+    return (Folded("Sources of these results", (Notes(told, "sources"),)),) if told else ()
+
+
+def _stage(results: Results, task: Task, pictures: Sequence[Picture]) -> Section:
+    outcome = results.outcomes[task]
+    drawn = figures(outcome, task)
+    blocks: list[Block] = [Plot(figure) for figure in drawn]
+    blocks += [Still(picture) for picture in pictures]
+    blocks += [DataTable(table) for table in outcome.tables]
+    return Section(_title(results, task), (*blocks, *_sources(results, task)) if blocks else ())
+
+
+def _plan(results: Results) -> tuple[Block, ...]:
+    plan, case = results.plan, results.scene.case
+    steps = [
+        (
+            str(step.task),
+            "; ".join(step.reasons),
+            ", ".join(step.effects) or "none",
+            f"{results.seconds[step.task]:.3f}",
+        )
+        for step in plan.steps
+    ]
+    off = [name for name in type(case.effects).model_fields if not case.effects.is_on(name)]
+    facts = {
+        "wanted": ", ".join(case.results),
+        "tolerance": case.accuracy.tolerance,
+        "effects that are on": ", ".join(case.effects.on()) or "none",
+        "effects that are off": ", ".join(off) or "none",
+    }
+    if plan.idle_effects:
+        facts["effects on that nothing uses"] = ", ".join(plan.idle_effects)
+    skipped = Folded(
+        f"What was not computed, and why ({len(plan.skipped)} stages)", (Grid(("Stage", "Why not"), plan.skipped),)
+    )
+    return (
+        Facts(facts),
+        Grid(("Computed", "Why", "Effects used", "Seconds"), steps, "plan"),
+        *((skipped,) if plan.skipped else ()),
+    )
+
+
+def _references(results: Results) -> tuple[Block, ...]:
+    works = bibliography()
+    cited = {c.key for task in results.outcomes for c in citations(results, task)}
+    return (
+        Notes([work.full for key, work in works.items() if key in cited], "references"),
+        Paragraph(f"To cite fegear itself: fegear {fegear.__version__}, a workbench for gear teeth, BSD 3-clause."),
+    )  # fmt: skip
+
+
+def run_page(results: Results, pictures: Sequence[tuple[Task, Picture]], remarks: Sequence[str]) -> Page:
+    """Put the page of a run together.
+
+    Parameters
+    ----------
+    results : Results
+    pictures : sequence of (Task, Picture)
+        Those that no interactive figure stands for are embedded; their files are read when the page is written.
+    remarks : sequence of str
+        Sentences that the reader should see first.
+
+    Returns
+    -------
+    Page
+    """
+    scene = results.scene
+    described = {figure.key for task, outcome in results.outcomes.items() for figure in figures(outcome, task)}
+    still = [(task, picture) for task, picture in pictures if picture.path.stem not in described]
+    name = f"{scene.name}.toml"
+    files = {name: scene.text.encode()} if scene.text else {}
+    total = sum(results.seconds.values())
+    count = sum(len(outcome.values) for outcome in results.outcomes.values())
+    return Page(
+        title=scene.case.title or scene.name,
+        note=f"Case {scene.name}: {', '.join(scene.case.results)}. {count} values and {len(results.tables)} tables, "
+        f"computed in {total:.2f} s by fegear {fegear.__version__}.",
+        sections=(
+            Section("To know first", (Notes(remarks, "warning"),) if remarks else ()),
+            Section("Results", _values(results)),
+            *(
+                _stage(results, task, [picture for owner, picture in still if owner == task])
+                for task in results.outcomes
+            ),
+            Section("Accuracy and its price", accuracy_blocks(results)),
+            Section("Plan", _plan(results)),
+            Section("Case file", (Code(scene.text), Download(name)) if files else ()),
+            Section("References", _references(results)),
+        ),
+        tables=results.tables,
+        files=files,
+        name=scene.name,
+    )
+
+
+def write_report(
+    path: Path, results: Results, pictures: Sequence[tuple[Task, Picture]], remarks: Sequence[str]
+) -> None:
+    """Write the page of a run; see `run_page`."""
+    write_page(path, run_page(results, pictures, remarks))

@@ -1,0 +1,65 @@
+"""``summary.json``: single values with their errors, settings, seconds, version."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING
+
+import fegear
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from fegear.engine.run import Results
+
+
+def _finite(number: float | None) -> float | None:
+    """JSON knows no infinity; a value that is not finite is told as null."""
+    return number if number is not None and math.isfinite(number) else None
+
+
+def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str, object]:
+    """Collect what the summary holds.
+
+    Parameters
+    ----------
+    results : Results
+    remarks : list of str
+    files : list of str
+        Names of all files of the run.
+    """
+    case = results.scene.case
+    return {
+        "title": case.title,
+        "case": results.scene.name,
+        "results": {
+            value.name: {"value": _finite(value.shown), "unit": value.unit, "error": _finite(value.shown_error)}
+            for value in results.values
+        },
+        "settings": {
+            "tolerance": case.accuracy.tolerance,
+            "effects": list(case.effects.on()),
+            "stages": {str(task): dict(outcome.settings) for task, outcome in results.outcomes.items()},
+        },
+        "timings": {str(task): round(seconds, 6) for task, seconds in results.seconds.items()}
+        | {"total": round(sum(results.seconds.values()), 6)},
+        "from_cache": {
+            str(task): {"shapes": found.shapes, "seconds_when_solved": round(found.seconds, 6)}
+            for task, found in results.from_cache.items()
+        },
+        "remarks": remarks,
+        "files": files,
+        "version": fegear.__version__,
+    }
+
+
+def write_summary(path: Path, results: Results, remarks: list[str], files: list[str]) -> None:
+    """Write the summary as JSON."""
+    write_json(path, summary(results, remarks, files))
+
+
+def write_json(path: Path, told: Mapping[str, object]) -> None:
+    """Write a JSON file that people can read."""
+    path.write_text(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")

@@ -1,0 +1,103 @@
+"""What a sweep leaves: ``tables/sweep.csv`` with a row for each point, ``sweep.nc``, report, pictures, summary."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import fegear
+from fegear.engine.outcome import Column, Table
+from fegear.output.folder import SUMMARY, files_in
+from fegear.output.report.swept import axis_head, varying, write_sweep_report
+from fegear.output.summary import write_json
+from fegear.output.sweep_dataset import failures, swept_values, write_sweep_dataset
+from fegear.output.tables import write_table
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fegear.output.sweep_dataset import Swept
+    from fegear.studies.sweep import SweepResults
+
+#: Of more values than this the report alone has pictures.
+_MOST_PICTURES = 12
+
+
+def sweep_table(results: SweepResults) -> Table:
+    """One row for each point: where it is, its values with their errors, and why it failed if it did."""
+    where = np.unravel_index(np.arange(len(results.points)), [len(axis) for axis in results.axes])
+    columns = []
+    for axis, index in zip(results.axes, where, strict=True):
+        told = np.array(axis.values if axis.numbers is None else axis.numbers)
+        if axis.numbers is not None and all(isinstance(value, int) for value in axis.values):
+            told = told.astype(int)
+        columns.append(Column(axis_head(axis), told[index]))
+    for one in swept_values(results):
+        columns.append(Column(one.head, one.number))
+        if one.error is not None and np.nan_to_num(one.error).any():
+            columns.append(Column(one.error_head, one.error))
+    columns.append(Column("failure", failures(results)))
+    return Table("sweep", tuple(columns), results.title)
+
+
+def _draw(results: SweepResults, swept: list[Swept], folder: Path) -> list[str]:
+    """Draw the values that vary over one or two axes; returns a remark where that is too many."""
+    axes = tuple(axis for axis in results.axes if len(axis) > 1)
+    moving = varying(swept)
+    if not 1 <= len(axes) <= 2 or not moving:
+        return []
+    from fegear.output.pictures.sweep import draw_value
+
+    folder.mkdir()
+    for one in moving[:_MOST_PICTURES]:
+        draw_value(one, axes, folder)
+    left = len(moving) - _MOST_PICTURES
+    return [f"Pictures are drawn of the first {_MOST_PICTURES} values; the report shows all."] if left > 0 else []
+
+
+def write_sweep(results: SweepResults, folder: Path, *, plots: bool = True) -> list[str]:
+    """Write dataset, table, pictures, report and summary.
+
+    Parameters
+    ----------
+    results : SweepResults
+    folder : Path
+        An empty folder.
+    plots : bool
+        Whether to draw; without, matplotlib is not imported.
+
+    Returns
+    -------
+    list of str
+        Sentences that the user should read: grouped failures, and what the points remark.
+    """
+    (folder / "tables").mkdir()
+    table, swept = sweep_table(results), list(swept_values(results))
+    write_table(folder / "tables", table)
+    write_sweep_dataset(folder / "sweep.nc", results)
+    drawn = _draw(results, swept, folder / "plots") if plots else []
+    remarks = [*results.grouped_failures(), *results.remarks(), *drawn]
+    write_sweep_report(folder / "report.html", results, table, swept, results.remarks())
+    solved, read, spared = results.shapes
+    told = {
+        "title": results.title,
+        "case": results.name,
+        "sweep": {
+            "axes": {axis.key: {"values": list(axis.values), "unit": axis.unit} for axis in results.axes},
+            "points": len(results.points),
+            "failed": len(results.failures),
+        },
+        "timings": {
+            "total": round(results.seconds, 6),
+            "points_kept_from_earlier": results.kept,
+            "shapes_solved": solved,
+            "shapes_from_cache": read,
+            "seconds_that_these_took_when_solved": round(spared, 6),
+        },
+        "remarks": remarks,
+        "files": [*files_in(folder), SUMMARY],
+        "version": fegear.__version__,
+    }
+    write_json(folder / SUMMARY, told)
+    return remarks

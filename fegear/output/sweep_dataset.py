@@ -1,0 +1,150 @@
+"""``sweep.nc``: every value and table of a sweep over its axes, for ``xarray.open_dataset``.
+
+The axes are dimensions and coordinates; a value is a variable over them, a table's column one over them and the table's
+rows (dimension ``<table>.row``). Where a point failed, numbers are NaN and the variable ``failure`` holds the reason.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+import fegear
+from fegear.engine.point_job import Failure
+from fegear.output.netcdf import put
+from fegear.studies.sweep import Point
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+    from scipy.io import netcdf_file
+
+    from fegear.engine.outcome import Column, Table
+    from fegear.studies.sweep import SweepResults
+
+    Array = NDArray[np.generic]
+
+
+def failures(results: SweepResults) -> Array:
+    """Why each point failed; an empty text where it did not."""
+    return np.array([f"{p.kind}: {p.reason}" if isinstance(p, Failure) else "" for p in results.points])
+
+
+def _shared(meanings: Iterable[str]) -> str:
+    """Clauses that all meanings have in common: some name a place that differs from point to point."""
+    first, *others = dict.fromkeys(meanings)
+    return ", ".join(clause for clause in first.split(", ") if all(clause in other.split(", ") for other in others))
+
+
+class Swept(NamedTuple):
+    """One value of a run over all points of a sweep.
+
+    Attributes
+    ----------
+    name, unit, meaning : str
+    number : ndarray, shape (points,)
+        In that unit; NaN where the point has no such value.
+    error : ndarray, shape (points,), or None
+        Estimated errors; None if no point has one.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    number: NDArray[np.float64]
+    error: NDArray[np.float64] | None
+
+    @property
+    def head(self) -> str:
+        """Head of its column in the table of the sweep."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    @property
+    def error_head(self) -> str:
+        """Head of the column of its errors."""
+        return f"{self.name}_error [{self.unit}]" if self.unit else f"{self.name}_error"
+
+
+def swept_values(results: SweepResults) -> Iterator[Swept]:
+    """Every single value of the runs, over all points."""
+    found = [(i, v) for i, point in enumerate(results.points) if isinstance(point, Point) for v in point.values]
+    for name, unit in dict.fromkeys((v.name, v.unit) for _, v in found):
+        number, error = np.full(len(results.points), np.nan), np.full(len(results.points), np.nan)
+        same = [(i, v) for i, v in found if (v.name, v.unit) == (name, unit)]
+        for i, v in same:
+            number[i], error[i] = v.shown, np.nan if v.shown_error is None else v.shown_error
+        yield Swept(name, unit, _shared(v.meaning for _, v in same), number, None if np.isnan(error).all() else error)
+
+
+def _found_tables(results: SweepResults) -> dict[str, dict[int, Table]]:
+    """Tables by name, and of each the points that have it."""
+    found: dict[str, dict[int, Table]] = {}
+    for i, point in enumerate(results.points):
+        for table in point.tables if isinstance(point, Point) else ():
+            found.setdefault(table.name, {})[i] = table
+    return found
+
+
+def _stacked(columns: dict[int, Column], points: int, rows: int) -> Array:
+    """One column of all points, shape (points, rows); what is missing is NaN or an empty text."""
+    parts = {i: column.shown for i, column in columns.items()}
+    kinds = {part.dtype.kind for part in parts.values()}
+    if kinds & set("US"):
+        parts = {i: part.astype(str) for i, part in parts.items()}
+        filled: Array = np.full(
+            (points, rows), "", max((part.dtype for part in parts.values()), key=lambda d: d.itemsize)
+        )
+    elif kinds <= set("iub") and len(parts) == points and all(part.size == rows for part in parts.values()):
+        filled = np.zeros((points, rows), dtype=int)
+    else:
+        filled = np.full((points, rows), np.nan)
+    for i, part in parts.items():
+        filled[i, : part.size] = part
+    return filled
+
+
+def _put_table(
+    file: netcdf_file, name: str, found: dict[int, Table], axes: tuple[str, ...], sizes: tuple[int, ...]
+) -> None:
+    points = int(np.prod(sizes))
+    rows = {i: len(table.columns[0].values) for i, table in found.items()}
+    file.createDimension(f"{name}.row", max(rows.values()))
+    if len(rows) < points or len(set(rows.values())) > 1:
+        count = np.array([rows.get(i, 0) for i in range(points)]).reshape(sizes)
+        put(file, f"{name}.rows", axes, count, "", "rows of the table at this point; the others are empty")
+    for column, unit in dict.fromkeys((c.name, c.unit) for table in found.values() for c in table.columns):
+        same = {i: c for i, table in found.items() for c in table.columns if (c.name, c.unit) == (column, unit)}
+        values = _stacked(same, points, max(rows.values())).reshape(*sizes, -1)
+        put(file, f"{name}.{column}", (*axes, f"{name}.row"), values, unit, _shared(c.meaning for c in same.values()))
+
+
+def write_sweep_dataset(path: Path, results: SweepResults) -> None:
+    """Write the dataset.
+
+    Parameters
+    ----------
+    path : Path
+    results : SweepResults
+    """
+    from scipy.io import netcdf_file
+
+    sizes = tuple(len(axis) for axis in results.axes)
+    names = tuple(axis.key for axis in results.axes)
+    with netcdf_file(path, "w", version=2) as file:
+        file.title, file.source = results.title.encode(), f"fegear {fegear.__version__}"
+        file.axes = json.dumps({axis.key: list(axis.values) for axis in results.axes}, ensure_ascii=False).encode()
+        for axis in results.axes:
+            file.createDimension(axis.key, len(axis))
+            told = np.array([str(value) for value in axis.values] if axis.numbers is None else axis.numbers)
+            put(file, axis.key, (axis.key,), told, axis.unit)
+        put(file, "failure", names, failures(results).reshape(sizes), "", "why the point has no result")
+        for name, unit, meaning, number, error in swept_values(results):
+            put(file, name, names, number.reshape(sizes), unit, meaning)
+            if error is not None:
+                put(file, f"{name}_error", names, error.reshape(sizes), unit, f"estimated error of {name}")
+        for name, found in _found_tables(results).items():
+            _put_table(file, name, found, names, sizes)

@@ -1,0 +1,45 @@
+"""Tables as CSV: the first line holds the column heads with their units."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fegear.engine.outcome import Table
+
+
+def cell(value: np.generic) -> str:
+    """Write one cell: floats with 12 significant digits, whole numbers and texts as they are."""
+    return f"{value:.12g}" if isinstance(value, np.floating) else str(value)
+
+
+def table_text(table: Table) -> str:
+    """Write a table as CSV text."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(column.head for column in table.columns)
+    writer.writerows(zip(*([cell(v) for v in column.shown] for column in table.columns), strict=True))
+    return stream.getvalue()
+
+
+def write_table(folder: Path, table: Table) -> Path:
+    """Write ``<name>.csv`` into a folder.
+
+    Parameters
+    ----------
+    folder : Path
+    table : Table
+
+    Returns
+    -------
+    Path
+    """
+    path = folder / f"{table.name}.csv"
+    path.write_text(table_text(table), encoding="utf-8", newline="")
+    return path

@@ -1,0 +1,56 @@
+"""The stages that fegear knows, in the order in which plans list them; each imports its heavy libraries only when it runs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.results import (
+    crosscheck,
+    design_chart,
+    dynamic_factor,
+    dynamic_root_stress,
+    gear_train,
+    geometry,
+    load_sharing,
+    loaded_pair,
+    mesh_forces,
+    relief,
+    relief_chart,
+    root_stress_history,
+    root_stress_study,
+    stiffness,
+    tooth_contact,
+    train_response,
+    transmissibility,
+    transmission_error,
+)
+
+if TYPE_CHECKING:
+    from fegear.engine.stage import Stage
+
+#: Every stage, in the order in which plans list those that they skip.
+STAGES: tuple[Stage, ...] = (
+    geometry.GEOMETRY,
+    stiffness.STIFFNESS,
+    stiffness.ROOT_STRESS,
+    crosscheck.CROSSCHECK,
+    root_stress_study.ROOT_STRESS_STUDY,
+    loaded_pair.LOADED_PAIR,
+    load_sharing.LOAD_SHARING,
+    transmission_error.TRANSMISSION_ERROR,
+    root_stress_history.ROOT_STRESS_HISTORY,
+    relief.RELIEF,
+    relief_chart.RELIEF_CHART,
+    relief_chart.ROBUSTNESS,
+    tooth_contact.TOOTH_CONTACT,
+    gear_train.GEAR_TRAIN,
+    train_response.NATURAL_MODES,
+    train_response.DYNAMIC_INCREMENTS,
+    mesh_forces.MESH_FORCE_SPECTRUM,
+    mesh_forces.TOOTH_FORCE,
+    dynamic_root_stress.DYNAMIC_ROOT_STRESS,
+    dynamic_factor.MOTION,
+    dynamic_factor.DYNAMIC_FACTOR,
+    design_chart.DESIGN_CHART,
+    transmissibility.TRANSMISSIBILITY,
+)

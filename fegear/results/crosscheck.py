@@ -1,0 +1,282 @@
+"""Stage ``crosscheck``: every closed form beside the finite elements, over load positions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.results import forecasts
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.models.settings import mesh_settings
+from fegear.engine.stage import Stage, Task
+from fegear.models.tooth_mesh import own_sector_mesh
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from fegear.contact.crosscheck import ComplianceAnswers, RootStressAnswers
+    from fegear.fem import GearInfluence, StiffnessTable
+    from fegear.geometry import Gear, GearPair
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+
+    Array = NDArray[np.float64]
+
+#: Line load of the pairs when the case names none [N/m].
+USUAL_LINE_LOAD = 100e3
+_COMPLIANCE, _STRESS = "um.mm/N", "MPa.mm/N"
+#: The whole case is one subject: gears and pairs share the tables of sources and the remarks.
+_WHOLE = ""
+
+_REMARKS = (
+    (
+        "Crosscheck: one tooth of the whole gear is loaded normal to its flank, without friction and with no other "
+        "tooth loaded; everything is per unit line load (secant, not local slope)."
+    ),
+    (
+        "Crosscheck of root stress: FE is the largest tangential stress along the fillet below the loaded flank, "
+        "radial compression included, in the whole ring with its own rim; the formulas know no rim, and whether they "
+        "subtract the radial compression stands in table crosscheck_sources. Root stress per line load is the same in "
+        "plane stress and plane strain."
+    ),
+    (
+        "Crosscheck of gear compliance: tooth and body without the contact zone; from FE the exact half-plane approach "
+        "down to the tooth's centre line along the line of action is taken off."
+    ),
+    (
+        "Crosscheck of pair compliance: one tooth pair with its contact of Hertz's width, no load sharing; FE "
+        "deflections are means weighted with the contact pressure."
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class CrosscheckData:
+    """Names of the gears and pairs whose tables the outcome holds, and the pairs' line load [N/m]."""
+
+    gears: tuple[str, ...]
+    pairs: tuple[str, ...]
+    line_load: Mapping[str, float]
+
+
+def _gears(scene: Scene) -> tuple[str, ...]:
+    return (scene.case.stiffness.gear,) if scene.case.stiffness.gear else tuple(scene.gears)
+
+
+def _pairs(scene: Scene) -> tuple[str, ...]:
+    """The pair that ``[stiffness]`` names, else those of the gears that are looked at."""
+    chosen, gears = scene.case.stiffness.pair, _gears(scene)
+    return tuple(
+        name
+        for name in scene.pairs
+        if chosen in (None, name) and {scene.case.pair[name].driver, scene.case.pair[name].driven} & set(gears)
+    )
+
+
+def _root_stress_table(
+    name: str, gear: Gear, fe: StiffnessTable, answers: Mapping[str, RootStressAnswers]
+) -> tuple[Table, tuple[Value, ...]]:
+    count, m = fe.radius.size, gear.module
+    times = len(answers)
+
+    def tiled(values: Array) -> Array:
+        return np.tile(values, times)
+
+    def joined(attribute: str, scale: float) -> Array:
+        return np.concatenate([getattr(a, attribute) for a in answers.values()]) * scale
+
+    stress = joined("stress", 1.0 / m)
+    ratio = stress / tiled(fe.root_tension)
+    columns = (
+        Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources"),
+        Column("radius", tiled(fe.radius), "mm", "radius of the contact point"),
+        Column("roll_angle", tiled(fe.roll_angle), "deg", "roll angle of the contact point"),
+        Column("root_tension", stress, _STRESS, "by the formula, per line load normal to the flank"),
+        Column("root_tension_fe", tiled(fe.root_tension), _STRESS, "largest tangential stress of the fillet by FE"),
+        Column("root_tension_fe_error", tiled(fe.errors["root_tension"]), _STRESS, "estimated error of FE"),
+        Column("ratio_to_fe", ratio, "", "formula over FE"),
+        Column("place_radius", joined("radius", m), "mm", "where the formula puts it"),
+        Column("place_radius_fe", tiled(fe.root_tension_radius), "mm", "where FE puts it"),
+        Column("place_angle", joined("tangent_angle", 1.0), "deg", "fillet tangent to tooth centre line there"),
+        Column("place_angle_fe", tiled(fe.root_tension_angle), "deg", "the same by FE"),
+        Column("reason", _words(answers), "", "why the formula gives nothing; empty where it does"),
+    )
+    title = f"Root stress of gear {name}: closed forms over finite elements"
+    values = _extremes(f"{name}.root_stress", ratio.reshape(times, count), tuple(answers))
+    return Table(f"crosscheck_root_stress_{name}", columns, title), values
+
+
+def _words(answers: Mapping[str, RootStressAnswers] | Mapping[str, ComplianceAnswers]) -> NDArray[np.str_]:
+    return np.array([reason for a in answers.values() for reason in a.reasons], dtype=np.str_)
+
+
+def _extremes(prefix: str, ratio: Array, names: tuple[str, ...]) -> tuple[Value, ...]:
+    """Smallest and largest ratio and the largest deviation of every formula that gives anything."""
+    found = []
+    for name, row in zip(names, ratio, strict=True):
+        r = row[np.isfinite(row)]
+        if r.size:
+            key = f"{prefix}.{name}"
+            found += [
+                Value(f"{key}.lowest_ratio", float(r.min()), "", None, f"{name} over FE, smallest over the positions"),
+                Value(f"{key}.highest_ratio", float(r.max()), "", None, f"{name} over FE, largest over the positions"),
+                Value(
+                    f"{key}.largest_deviation", float(np.abs(r - 1.0).max()), "", None, f"{name} against FE, relative"
+                ),
+            ]
+    return tuple(found)
+
+
+def _compliance_table(
+    name: str,
+    what: str,
+    first: tuple[Column, ...],
+    reference: tuple[Column, ...],
+    answers: Mapping[str, ComplianceAnswers],
+    parts: tuple[str, ...],
+) -> tuple[Table, tuple[Value, ...]]:
+    times, count = len(answers), len(first[0].values)
+    total = np.concatenate([a.total for a in answers.values()])
+    ratio = total / np.tile(reference[0].values, times)
+    split = [
+        np.concatenate([a.parts[i] if len(a.parts) > i else a.parts[0] for a in answers.values()])
+        for i in range(len(parts))
+    ]
+    columns = (
+        Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources"),
+        *(Column(c.name, np.tile(c.values, times), c.unit, c.meaning) for c in first),
+        Column("compliance", total, _COMPLIANCE, "by the formula, deflection along the line of action per line load"),
+        *(Column(c.name, np.tile(c.values, times), c.unit, c.meaning) for c in reference),
+        Column("ratio_to_fe", ratio, "", "formula over FE"),
+        *(Column(p, s, _COMPLIANCE, "part of the formula's sum") for p, s in zip(parts, split, strict=True)),
+        Column("reason", _words(answers), "", "why the formula gives nothing; empty where it does"),
+    )
+    table = Table(f"crosscheck_compliance_{name}", columns, f"{what}: closed forms over finite elements")
+    return table, _extremes(f"{name}.compliance", ratio.reshape(times, count), tuple(answers))
+
+
+def _gear_compliance(name: str, gear: Gear, fe: StiffnessTable) -> tuple[Table, tuple[Value, ...]]:
+    from fegear.contact.crosscheck import contact_zone, tooth_compliance_answers
+
+    zone = contact_zone(gear, fe.radius, fe.half_width)
+    first = (
+        Column("radius", fe.radius, "mm", "radius of the contact point"),
+        Column("roll_angle", fe.roll_angle, "deg", "roll angle of the contact point"),
+    )
+    reference = (
+        Column("compliance_fe", fe.c_self - zone, _COMPLIANCE, "FE, the loaded tooth without its contact zone"),
+        Column("compliance_fe_error", fe.errors["c_self"], _COMPLIANCE, "estimated error of FE"),
+        Column("contact_zone", zone, _COMPLIANCE, "half-plane approach that was taken off from FE"),
+    )
+    answers = tooth_compliance_answers(gear, fe.radius)
+    parts = ("bending", "shear", "axial", "foundation")
+    what = f"Compliance of one tooth of gear {name} without its contact, plane {gear.plane_assumption}"
+    return _compliance_table(name, what, first, reference, answers, parts)
+
+
+def _line_load(scene: Scene, name: str, pair: GearPair) -> tuple[float, str]:
+    """Line load of a pair [N/m], and a remark where it had to be chosen."""
+    if scene.case.stiffness.load is not None:
+        return scene.case.stiffness.load, ""
+    force = scene.case.pair[name].normal_load(pair)
+    if force is not None:
+        return force / min(pair.driver.face_width, pair.driven.face_width), ""
+    return USUAL_LINE_LOAD, (
+        f"Pair {name}: no load was given; its contact is that of {USUAL_LINE_LOAD * 1e-3:.6g} N/mm."
+    )
+
+
+def _influence(scene: Scene, name: str, done: Done) -> GearInfluence:
+    task = Task("stiffness", name)
+    if task in done:
+        return cast("StiffnessTable", done[task].data).influence
+    from fegear.fem import solve_gear
+
+    settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
+    return solve_gear(scene.gears[name], settings, estimate_error=False, mesh=mesh)
+
+
+def _pair(scene: Scene, name: str, done: Done, w: float) -> tuple[Table, tuple[Value, ...]]:
+    from fegear.contact.crosscheck import pair_compliance_answers, pair_reference
+    from fegear.formulas.iso6336_stiffness import pair_stiffness
+    from fegear.formulas.outcome import attempt
+
+    pair, part = scene.pairs[name], scene.case.pair[name]
+    x = np.linspace(pair.x_start, pair.x_end, scene.case.stiffness.positions)
+    fe = pair_reference(pair, _influence(scene, part.driver, done), _influence(scene, part.driven, done), x, w)
+    first = (Column("x", fe.x, "mm", "contact point from the pitch point, positive toward the driver's tip"),)
+    reference = (
+        Column("compliance_fe", fe.total, _COMPLIANCE, "FE, one tooth pair with its contact"),
+        Column("driver_fe", fe.driver, _COMPLIANCE, "FE, the driver's tooth with its side of the contact"),
+        Column("driven_fe", fe.driven, _COMPLIANCE, "FE, the driven tooth with its side of the contact"),
+        Column("contact_half_width", fe.half_width, "mm", "Hertz's half-width under the line load"),
+    )
+    answers = pair_compliance_answers(pair, fe.x, w)
+    what = f"Compliance of one tooth pair of pair {name} under {w * 1e-3:.6g} N/mm"
+    table, values = _compliance_table(name, what, first, reference, answers, ("driver", "driven", "contact"))
+    greatest = float(1.0 / fe.total.min())
+    unit = "N/(mm.um)"
+    own = Value(f"{name}.single_stiffness_fe", greatest, unit, None, "greatest stiffness of one tooth pair by FE")
+    iso = attempt(lambda: pair_stiffness(pair, w)).value
+    if iso is None:
+        return table, (*values, own)
+    return table, (
+        *values,
+        own,
+        Value(f"{name}.single_stiffness_iso", iso.single, unit, None, "ISO 6336-1 c', solid blank, with C_M = 0.8"),
+        Value(f"{name}.theoretical_stiffness_iso", iso.theoretical, unit, None, "ISO 6336-1 c'_th"),
+        Value(f"{name}.single_stiffness_iso.ratio_to_fe", iso.single / greatest, "", None, "c' over FE"),
+    )
+
+
+def _sources() -> Table:
+    from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
+    from fegear.formulas.sources import SOURCES
+
+    rows = [(s.name, "root stress", s.citation, s.compared) for s in ROOT_STRESS_SOURCES.values()]
+    rows += [(s.name, "compliance", s.citation, s.remark) for s in SOURCES.values()]
+    heads = ("formula", "gives", "source", "what_is_compared")
+    columns = (Column(head, np.array(values)) for head, values in zip(heads, zip(*rows, strict=True), strict=True))
+    return Table("crosscheck_sources", tuple(columns), "The closed forms and what each compares")
+
+
+def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.contact.crosscheck import root_stress_answers
+
+    tables, values, remarks = [_sources()], [], list(_REMARKS)
+    gears, pairs = _gears(scene), _pairs(scene)
+    loads = {}
+    for number, name in enumerate(gears, start=1):
+        gear, fe = scene.gears[name], cast("StiffnessTable", done[Task("stiffness", name)].data)
+        found = [
+            _root_stress_table(name, gear, fe, root_stress_answers(gear.tooth, fe.radius / gear.module)),
+            _gear_compliance(name, gear, fe),
+        ]
+        tables += [table for table, _ in found]
+        values += [value for _, some in found for value in some]
+        progress(number / (len(gears) + len(pairs)))
+    for name in pairs:
+        loads[name], remark = _line_load(scene, name, scene.pairs[name])
+        remarks += [remark] if remark else []
+        table, some = _pair(scene, name, done, loads[name])
+        tables.append(table)
+        values += some
+    for table in tables[1:]:
+        silent = {str(f): str(r) for f, r in zip(table["formula"], table["reason"], strict=True) if r}
+        remarks += [f"{table.title}: {f} is out of its range at some positions: {r}" for f, r in silent.items()]
+    return Outcome(CrosscheckData(gears, pairs, loads), tuple(tables), tuple(values), {}, tuple(remarks))
+
+
+CROSSCHECK = Stage(
+    name="crosscheck",
+    title="Closed forms against finite elements",
+    results=("crosscheck",),
+    subjects=lambda scene: (_WHOLE,) if scene.gears else (),
+    run=_run,
+    needs=lambda scene, _subject: tuple(Task("stiffness", name) for name in _gears(scene)),
+    forecast=forecasts.crosscheck,
+)

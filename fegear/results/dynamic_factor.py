@@ -1,0 +1,200 @@
+"""Stage ``dynamic-factor``: largest tooth force over speed, with contact loss or from the linearised train."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.results import forecasts
+from fegear.models.neglected_in_motion import motion_remarks
+from fegear.models.motion import in_time, motion_model
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Stage, Task
+from fegear.results.gear_train import gear_train, needs_train, the_train
+from fegear.results.mesh_forces import force_history, mesh_force_range, meshes, needs_speeds, pull_remarks
+from fegear.models.train import train_part
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.dynamics.charts import SpeedChart
+    from fegear.dynamics.steady_state import SteadyState
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+    from fegear.models.train import GearTrain
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SweepData:
+    """Steady motions over speeds, in increasing order of speed."""
+
+    train: GearTrain
+    speeds: Array
+    states: tuple[SteadyState, ...]
+
+
+@dataclass(frozen=True)
+class DynamicFactorData:
+    """What pictures need: the chart of one mesh, speeds in rad/s of the body that the case refers to."""
+
+    chart: SpeedChart
+    speed_of: str
+
+
+def check_motion(scene: Scene, _subject: str = "") -> None:
+    """Refuse friction where teeth are lumped, and backlash that nothing looks at."""
+    effects = scene.case.effects
+    if effects.friction and (effects.neighbour_coupling or effects.corner_contact):
+        raise InputError(
+            "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
+            "leave out neighbour_coupling and corner_contact",
+        )  # fmt: skip
+    if effects.friction and not effects.parametric:
+        raise InputError(
+            "effects.friction", "true", "needs tooth pairs that come and go", "set effects.parametric = true"
+        )
+
+
+def _run_sweep(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.dynamics.steady_state import steady_state
+
+    data, part = gear_train(done), scene.case.dynamics
+    speeds = part.speed_values / data.speed_ratio
+    order = speeds[::-1] if part.direction == "down" else speeds
+    start: str | tuple[Array, Array] = "rest" if part.direction == "rest" else "static"
+    states: list[SteadyState] = []
+    model = motion_model(scene, data, float(order[0]))
+    for number, speed in enumerate(order):
+        model = motion_model(scene, data, float(speed)) if scene.case.effects.friction else model.at_speed(float(speed))
+        state = steady_state(model, start=start, tolerance=part.tolerance)
+        states.append(state)
+        if part.direction in ("up", "down"):
+            start = (state.x, state.v)
+        progress((number + 1) / order.size)
+    found = tuple(states[::-1] if part.direction == "down" else states)
+    remarks = [*motion_remarks(scene, data, found)]
+    if "friction" in part.model_fields_set and not scene.case.effects.friction:
+        remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
+    odd = [state for state in found if state.kind != "periodic"]
+    if odd:
+        told = ", ".join(f"{state.model.speed * data.speed_ratio * 30.0 / np.pi:.6g} rpm {state.kind}" for state in odd)
+        remarks.append(f"The motion does not repeat at {len(odd)} of {len(found)} speeds: {told}.")
+    settings: dict[str, object] = {"direction": part.direction, "tolerance": part.tolerance}
+    return Outcome(SweepData(data, speeds, found), (), (), settings, tuple(remarks))
+
+
+def _linear_chart(scene: Scene, data: GearTrain, i: int, speeds: Array, progress: Progress) -> SpeedChart:
+    """Dynamic factor of the linearised train: no contact loss, the other meshes at the worst relative phase."""
+    from fegear.dynamics.charts import SpeedChart
+
+    part, mean = scene.case.dynamics, float(data.forces[i])
+    tooth, mesh = np.empty(speeds.size), np.empty(speeds.size)
+    for number, speed in enumerate(speeds):
+        found = force_history(data, i, float(speed) * data.speed_ratio, part.positions, part.harmonics)
+        tooth[number] = (float(found.total.max()) + float(found.cross_peak.sum())) / mean
+        mesh[number] = mesh_force_range(data, i, float(speed), part.harmonics)[1] / mean
+        progress((number + 1) / speeds.size)
+    none = np.zeros(speeds.size)
+    return SpeedChart(
+        speeds, tooth, mesh, none, none.copy(), np.ones(speeds.size, dtype=np.int64), ("periodic",) * speeds.size
+    )
+
+
+def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.dynamics.charts import SpeedChart
+
+    data, part = gear_train(done), scene.case.dynamics
+    states = cast("SweepData", done[Task("motion")].data).states if in_time(scene) else ()
+    speeds = part.speed_values / data.speed_ratio
+    i = data.train.mesh_index(name)
+    if data.forces[i] <= 1e-9 * float(np.max(np.abs(data.forces))):
+        remark = f"Mesh {name} carries no mean force, so it has no dynamic factor."
+        return Outcome(None, (), (), {}, (remark,))
+    if states:
+        mean = float(data.forces[i])
+        chart = SpeedChart(
+            speeds,
+            np.array([s.tooth_force[i] for s in states]) / mean,
+            np.array([s.largest[i] for s in states]) / mean,
+            np.array([s.apart[i] for s in states]),
+            np.array([s.behind[i] for s in states]),
+            np.array([s.periods for s in states], dtype=np.int64),
+            tuple(s.kind for s in states),
+        )
+    else:
+        chart = _linear_chart(scene, data, i, speeds, progress)
+    chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
+    parting = scene.case.effects.contact_loss and bool(states)
+    zero = "" if parting else "; zero, for nothing parts without effects.contact_loss"
+    table = Table(
+        f"dynamic_factor_{name}",
+        (
+            Column("speed", chart.speeds, "rpm", f"of {data.speed_of}"),
+            Column(
+                "dynamic_factor", chart.dynamic_factor, "", "largest force on one tooth pair over the mean mesh force"
+            ),
+            Column("contact_loss_fraction", chart.apart, "", f"share of the time without contact{zero}"),
+            Column("backside_fraction", chart.behind, "", f"share of the time on the back flanks{zero}"),
+            Column(
+                "periods", chart.periods, "", "periods of excitation after which the motion repeats; 0 if it does not"
+            ),
+            Column("mesh_force_factor", chart.mesh_force_factor, "", "largest mesh force over the mean mesh force"),
+            Column("motion", np.array(chart.kinds, dtype=str), "", "periodic, quasi-periodic, chaotic or long-period"),
+        ),
+        f"Dynamic factor of mesh {name} over speed",
+    )
+    worst, where = chart.worst
+    error = part.tolerance * worst if states else None
+    values = [
+        Value(f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {part.direction}"),
+        Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {data.speed_of}"),
+    ]
+    if parting:
+        lost = float(chart.apart.max())
+        values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "share of the time"))
+    remarks = [] if states else [*pull_remarks(data, i, speeds, part.harmonics)]
+    if states and not scene.case.effects.parametric:
+        remarks.append(
+            f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
+            "dynamic factor is that of the mesh force."
+        )
+    return Outcome(DynamicFactorData(chart, data.speed_of), (table,), tuple(values), {}, tuple(remarks))
+
+
+def _check(scene: Scene, name: str) -> None:
+    needs_speeds(scene, name)
+    if scene.case.effects.contact_loss is False and train_part(scene).mesh[name].backlash is not None:
+        raise InputError(
+            f"train.mesh.{name}.backlash", "(given)", "has a meaning only with effects.contact_loss = true",
+            "switch the effect on, or leave the backlash out",
+        )  # fmt: skip
+
+
+MOTION = Stage(
+    name="motion",
+    title="Motion over the speeds",
+    results=(),
+    subjects=the_train,
+    run=_run_sweep,
+    needs=needs_train,
+    check=check_motion,
+    effects=("contact_loss", "friction", "parametric"),
+    forecast=forecasts.motion,
+)
+
+DYNAMIC_FACTOR = Stage(
+    name="dynamic-factor",
+    title="Dynamic factor over speed",
+    results=("dynamic-factor",),
+    subjects=meshes,
+    run=_run,
+    needs=lambda scene, name: (*needs_train(scene, name), *((Task("motion"),) if in_time(scene) else ())),
+    check=_check,
+    effects=("contact_loss", "friction", "parametric"),
+    forecast=forecasts.dynamic_factor,
+)

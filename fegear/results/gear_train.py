@@ -1,0 +1,111 @@
+"""Stage ``gear-train``: the train of the case with the stiffness and transmission error of its gear pairs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.dynamics.matrices import static_forces
+from fegear.results import forecasts
+from fegear.models.loaded_pair import check_relief
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Stage, Task
+from fegear.results.loaded_pair import EFFECTS, loaded_pair
+from fegear.models.train import GearTrain, build_train, check_train, train_part
+
+if TYPE_CHECKING:
+    from fegear.dynamics.excitation import MeshExcitation
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+
+
+def the_train(scene: Scene) -> tuple[str, ...]:
+    """The one train of a case that has one."""
+    return () if scene.case.train is None else ("",)
+
+
+def needs_train(_scene: Scene, _subject: str) -> tuple[Task, ...]:
+    """The task of this stage."""
+    return (Task("gear-train"),)
+
+
+def gear_train(done: Done) -> GearTrain:
+    """What this stage left."""
+    return cast("GearTrain", done[Task("gear-train")].data)
+
+
+def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
+    part = train_part(scene)
+    return tuple(Task("loaded-pair", name) for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh))
+
+
+def _check(scene: Scene, _subject: str) -> None:
+    check_train(scene)
+    part = train_part(scene)
+    for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh):
+        check_relief(scene, name)
+
+
+def assemble(scene: Scene, excitations: dict[str, MeshExcitation]) -> GearTrain:
+    """Put excitations, by mesh, into the train."""
+    part = train_part(scene)
+    train = build_train(scene, {name: 1.0 / found.mean_compliance() for name, found in excitations.items()})
+    forces = static_forces(train)
+    errors = tuple(
+        found.transmission_error(max(float(force), 0.0), tolerance=1e-9)
+        for found, force in zip(excitations.values(), forces, strict=True)
+    )
+    speed_of = scene.case.dynamics.speed_of or train.bodies[0].name
+    ratio = abs(float(train.ratios[train.dof[speed_of]]))
+    pairs = tuple(scene.pairs[part.pair_of(name)] for name in part.mesh)
+    return GearTrain(train, pairs, tuple(excitations.values()), errors, forces, ratio, speed_of)
+
+
+def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.models.mesh_excitation import mesh_excitation, stands_alone, unmodified
+
+    part = train_part(scene)
+    forces = static_forces(build_train(scene))
+    excitations: dict[str, MeshExcitation] = {}
+    remarks: list[str] = []
+    for number, (name, mesh) in enumerate(part.mesh.items()):
+        loaded = loaded_pair(done, part.loaded_pair_of(name))
+        width = mesh.like.width_ratio if mesh.like else 1.0
+        found = mesh_excitation(loaded.engagement, abs(float(forces[number])) / width or loaded.nominal)
+        if mesh.like:
+            found = unmodified(found, width)
+        excitations[name] = replace(found, phase=mesh.phase)
+        if not stands_alone(loaded.engagement):
+            remarks.append(f"Mesh {name}: coupled teeth and contacts off the path are linear about the mean load.")
+        if mesh.like is None and loaded.engagement.cycles > 1:
+            remarks.append(
+                f"Mesh {name}: its excitation repeats after {loaded.engagement.cycles} base pitches (spacing errors)."
+            )
+        progress((number + 1) / len(part.mesh))
+    data = assemble(scene, excitations)
+    values: list[Value] = []
+    for mesh_, force, error in zip(data.train.meshes, data.forces, data.errors, strict=True):
+        name = mesh_.name
+        s = np.linspace(0.0, 1.0, 2001)
+        values += [
+            Value(f"{name}.mean_force", float(force), "N", None, "along the line of action, from the torques"),
+            Value(f"{name}.mean_stiffness", mesh_.stiffness, "N/um", None, "1 over the mean compliance"),
+            Value(f"{name}.static_te_peak_to_peak", float(np.ptp(error(s))), "um", None, "under the mean force"),
+        ]
+    settings: dict[str, object] = {body.name: body.inertia for body in data.train.bodies}
+    return Outcome(data, (), tuple(values), {"inertia": settings}, tuple(remarks))
+
+
+GEAR_TRAIN = Stage(
+    name="gear-train",
+    title="Gear train",
+    results=("gear-train",),
+    subjects=the_train,
+    run=_run,
+    needs=_needs,
+    check=_check,
+    effects=EFFECTS,
+    forecast=forecasts.gear_train,
+)

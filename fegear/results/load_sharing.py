@@ -1,0 +1,137 @@
+"""Stage ``load-sharing``: one tooth pair followed from first to last contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.results import forecasts
+from fegear.models.loaded_pair import LoadedPair, check_relief
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Stage
+from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair, spur_pairs
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.contact import PairHistory
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+
+    Array = NDArray[np.float64]
+
+_POSITIONS = 200
+
+
+@dataclass(frozen=True)
+class LoadSharingData:
+    """What the stage hands to pictures.
+
+    Parameters
+    ----------
+    pair : LoadedPair
+    history : PairHistory
+        Under every load of the case.
+    """
+
+    pair: LoadedPair
+    history: PairHistory
+
+
+def _columns(h: PairHistory, i: int) -> tuple[Column, ...]:
+    return (
+        Column("x", h.x, "mm", "position of the pair on the line of action, from the pitch point"),
+        Column("roll_angle", h.driver_roll_angle, "deg", "of the contact point on the driver"),
+        Column("load", h.load[:, i], "N", "on the pair along the line of action"),
+        Column("share", h.share[:, i], "", "of the total load"),
+        Column("deflection", h.deflection[:, i], "um", "of both teeth and their contact"),
+        Column("hertz_pressure", h.hertz_pressure[:, i], "MPa", "largest pressure of smooth flanks"),
+    )
+
+
+def _at_corner(pair: LoadedPair, h: PairHistory) -> Array:
+    p = pair.engagement.pair
+    return np.where((h.x < p.x_start) | (h.x > p.x_end), 1.0, 0.0)
+
+
+def _run(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
+    from fegear.contact import pair_history
+
+    pair = loaded_pair(done, name)
+    e = pair.engagement
+    history = pair_history(e, pair.loads, _POSITIONS)
+    others = [pair_history(other, pair.loads, _POSITIONS) for other in pair.shifted]
+    i = pair.loads.index(pair.nominal)
+    shift = [_difference(history, other) for other in others]
+    load_error = sum((s[:, i] for s in shift), np.zeros(history.x.size)) if shift else None
+    off_path = _at_corner(pair, history)
+    columns = [*_columns(history, i), Column("corner", off_path, "", "1 where a tip corner touches off the path")]
+    if load_error is not None:
+        columns.append(Column("load_error", load_error, "N", "estimated error of load"))
+    tables = [Table(f"load_sharing_{name}", tuple(columns), f"Load on one tooth pair of {name}, {pair.nominal:.6g} N")]
+    if len(pair.loads) > 1:
+        tables.append(_all_loads(name, pair, history))
+    largest = int(np.argmax(history.load[:, i]))
+    pressure = history.hertz_pressure[:, i] * (1.0 - off_path)
+    hardest = int(np.argmax(pressure))
+    error = None if load_error is None else float(load_error[largest])
+    relative = None if error is None else error / history.load[largest, i]
+    where = f"at x = {history.x[hardest] * 1e3:.5g} mm"
+    values = (
+        Value(f"{name}.largest_load", float(history.load[largest, i]), "N", error, "on one tooth pair"),
+        Value(f"{name}.largest_share", float(history.share[largest, i]), "", relative, "of one tooth pair"),
+        Value(
+            f"{name}.largest_hertz_pressure", float(pressure[hardest]), "MPa",
+            None if relative is None else 0.5 * relative * float(pressure[hardest]), f"smooth flanks, {where}",
+        ),
+    )  # fmt: skip
+    remarks = []
+    if scene.case.effects.corner_contact and (off_path * history.load[:, i]).max() > 0.0:
+        worst = float((off_path * history.load[:, i]).max())
+        remarks.append(
+            f"Pair {name}: tip corners touch off the path and carry up to {worst:.4g} N ({worst / pair.nominal:.1%}); "
+            "hertz_pressure there is that of smooth flanks, the true one is higher."
+        )
+    return Outcome(LoadSharingData(pair, history), tuple(tables), values, {"positions": _POSITIONS}, tuple(remarks))
+
+
+def _difference(history: PairHistory, other: PairHistory) -> Array:
+    """How far the loads of a shifted solution are from the original's, shape of its loads [N]."""
+    columns = [
+        np.interp(history.x, other.x, other.load[:, i], left=0.0, right=0.0) for i in range(history.load.shape[1])
+    ]
+    difference = np.abs(np.stack(columns, axis=1) - history.load)
+    # A jump of the load at an end of the path is in the same place in both; outside it one of them may have no point.
+    inside = (history.x >= other.x[0]) & (history.x <= other.x[-1]) if other.x.size else np.zeros(history.x.size, bool)
+    return np.where(inside[:, None], difference, 0.0)
+
+
+def _all_loads(name: str, pair: LoadedPair, h: PairHistory) -> Table:
+    n = h.x.size
+    parts = [_columns(h, i) for i in range(len(pair.loads))]
+    joined = (
+        Column(c.name, np.concatenate([np.asarray(part[k].values) for part in parts]), c.unit, c.meaning)
+        for k, c in enumerate(parts[0])
+    )
+    total = Column("total_load", np.repeat(pair.loads, n), "N", "along the line of action")
+    return Table(f"load_sharing_loads_{name}", (total, *joined), f"Load on one tooth pair of {name} for every load")
+
+
+def check(scene: Scene, name: str) -> None:
+    """What every stage that computes with the gears' own relief refuses."""
+    check_relief(scene, name)
+
+
+LOAD_SHARING = Stage(
+    name="load-sharing",
+    title="Load sharing",
+    results=("load-sharing",),
+    subjects=spur_pairs,
+    run=_run,
+    needs=needs_pair,
+    check=check,
+    effects=EFFECTS,
+    forecast=forecasts.load_sharing,
+)

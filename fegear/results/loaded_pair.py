@@ -1,0 +1,92 @@
+"""Stage ``loaded-pair``: compliances, modifications and errors of a pair, for the stages that load it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from fegear.results import forecasts
+from fegear.models.neglected_effects import pair_remarks
+from fegear.models.loaded_pair import MEMBERS, LoadedPair, build_loaded_pair, check_pair, effect_remarks, gear_name
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Stage, Task
+from fegear.models.tooth_influence import solution_remarks, solution_told
+
+if TYPE_CHECKING:
+    from fegear.contact import Engagement, Loaded
+    from fegear.contact.engagement import RollGrid
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+
+#: How many times the finite-element parts of both gears report that they go on.
+_STEPS = 4
+#: Effects that load sharing knows.
+EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact")
+
+
+def spur_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs of spur gears that carry a load; all pairs where none does, so that the missing load is told."""
+    loaded = tuple(name for name, pair in scene.pairs.items() if scene.case.pair[name].normal_load(pair) is not None)
+    return loaded or tuple(scene.pairs)
+
+
+def needs_pair(_scene: Scene, name: str) -> tuple[Task, ...]:
+    """The task of this stage for a pair."""
+    return (Task("loaded-pair", name),)
+
+
+def loaded_pair(done: Done, name: str) -> LoadedPair:
+    """What this stage left for a pair."""
+    return cast("LoadedPair", done[Task("loaded-pair", name)].data)
+
+
+def change_by_shifts(pair: LoadedPair, grid: RollGrid, loaded: Loaded) -> list[Loaded]:
+    """The same sharing solved again with each compliance off by its error."""
+    return [solve_again(other, grid, loaded) for other in pair.shifted]
+
+
+def solve_again(other: Engagement, grid: RollGrid, loaded: Loaded) -> Loaded:
+    """Solve with another engagement's compliances at the same contacts, loads and separations."""
+    from fegear.contact import Loaded, RollGrid, share_load
+
+    m = other.compliance.matrices(grid.contacts)
+    shared = share_load(m.compliance, loaded.separation, loaded.load, m.log_slope, m.reference_load, m.tilt, m.power)
+    return Loaded(RollGrid(grid.x, grid.contacts, m), loaded.load, shared, loaded.separation)
+
+
+def _run(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
+    from fegear.contact.fe_compliance import FiniteElementCompliance
+
+    steps = iter(range(_STEPS))
+    pair = build_loaded_pair(scene, name, lambda _title: progress(next(steps, _STEPS) / _STEPS))
+    settings: dict[str, object] = {
+        "compliance": "; ".join(pair.sources),
+        "hertz": scene.case.effects.hertz,
+        "neighbour_coupling": scene.case.effects.neighbour_coupling,
+        "corner_contact": scene.case.effects.corner_contact,
+        "face_width": pair.engagement.compliance.face_width,
+        "nominal_load": pair.nominal,
+        "loads": list(pair.loads),
+    }
+    remarks: list[str] = []
+    for gear, source in zip(
+        (gear_name(scene, name, member) for member in MEMBERS),
+        (pair.engagement.compliance.driver, pair.engagement.compliance.driven),
+        strict=True,
+    ):
+        if isinstance(source, FiniteElementCompliance):
+            settings[f"gear_{gear}"] = solution_told(source.influence)
+            remarks += solution_remarks(scene, gear, source.influence)
+    remarks += [*effect_remarks(scene, name), *pair_remarks(scene, pair)]
+    return Outcome(pair, (), (), settings, tuple(dict.fromkeys(remarks)))
+
+
+LOADED_PAIR = Stage(
+    name="loaded-pair",
+    title="Compliances of a loaded pair",
+    results=(),
+    subjects=spur_pairs,
+    run=_run,
+    check=check_pair,
+    effects=EFFECTS,
+    forecast=forecasts.loaded_pair,
+)

@@ -1,0 +1,188 @@
+"""Stages ``relief-chart`` and ``robustness``: many candidate reliefs, and how one holds up off its nominal state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.results import forecasts
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Stage, Task
+from fegear.results.loaded_pair import loaded_pair, needs_pair
+from fegear.results.relief import DESIGN_EFFECTS, ReliefData, design_pairs, design_part
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.contact import Engagement
+    from fegear.design import ReliefChart, Robustness, TipReliefPair
+    from fegear.case.reading import Scene
+    from fegear.models.loaded_pair import LoadedPair
+    from fegear.engine.stage import Done, Progress
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ReliefChartData:
+    """What the stage hands to pictures.
+
+    Parameters
+    ----------
+    pair : LoadedPair
+    chart : ReliefChart
+    best : TipReliefPair
+        Found by the optimiser over the chart's loads, each gear on its own.
+    delta : float
+        Unit of the amounts in the picture [m]: transmission error of the unmodified pair at its largest.
+    """
+
+    pair: LoadedPair
+    chart: ReliefChart
+    best: TipReliefPair
+    delta: float
+
+
+def _unmodified(engagement: Engagement) -> Engagement:
+    from fegear.contact import Engagement
+
+    return Engagement(engagement.compliance, corner_contact=engagement.corner_contact)
+
+
+def _delta(engagement: Engagement, load: float) -> float:
+    """Largest transmission error of the unmodified pair [m]: Welbourn's Delta for contact ratios between 1 and 2."""
+    from fegear.contact import transmission_error
+    from fegear.design import welbourn_amount
+
+    if 1.0 <= engagement.pair.contact_ratio < 2.0:
+        return welbourn_amount(engagement, load)
+    return float(transmission_error(_unmodified(engagement), load, 12).values.max())
+
+
+def _run_chart(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.design import optimise_tip_relief, relief_chart
+
+    pair, part = loaded_pair(done, name), design_part(scene)
+    asked, e = part.chart, _unmodified(loaded_pair(done, name).engagement)
+    loads = np.array(asked.loads or pair.loads)
+    delta = _delta(e, pair.nominal)
+    amounts = np.array(asked.amounts) if asked.amounts else delta * np.linspace(0.1, 1.6, 16)
+    lengths = np.array(asked.lengths) if asked.lengths else np.linspace(0.05, 1.3, 26)
+    chart = relief_chart(e, np.sort(amounts), np.sort(lengths), loads, asked.shape)
+    progress(0.5)
+    best = optimise_tip_relief(e, loads, asked.shape, part.metric)
+    a, b, w = np.meshgrid(chart.amounts, chart.lengths, chart.loads, indexing="ij")
+    optimum = {metric: chart.optimum_lengths(metric) for metric in ("effective_error", "peak_to_peak")}
+    aa, ww = np.meshgrid(chart.amounts, chart.loads, indexing="ij")
+    tables = (
+        Table(
+            f"relief_chart_{name}",
+            (
+                Column("amount", a.ravel(), "um", "removal at both tips"),
+                Column("length", b.ravel(), "", "in lengths from tip to HPSTC along the line of action"),
+                Column("total_load", w.ravel(), "N", "along the line of action"),
+                Column("te_effective", chart.effective_error.ravel(), "um", "A_e of NASA TM-89901"),
+                Column("te_peak_to_peak", chart.peak_to_peak.ravel(), "um", "largest less smallest"),
+            ),
+            f"Excitation of {name} over amount, length and load",
+        ),
+        Table(
+            f"relief_optimum_{name}",
+            (
+                Column("amount", aa.ravel(), "um", "removal at both tips"),
+                Column("total_load", ww.ravel(), "N", "along the line of action"),
+                Column("length_effective", optimum["effective_error"].ravel(), "", "length with the least A_e"),
+                Column(
+                    "length_peak_to_peak", optimum["peak_to_peak"].ravel(), "", "length with the least peak to peak"
+                ),
+            ),
+            f"Optimum lengths of tip relief of {name}",
+        ),
+    )
+    amount, length = chart.best()
+    values = [
+        Value(f"{name}.delta", delta, "um", None, "largest transmission error without relief (Welbourn's Delta)"),
+        Value(f"{name}.unit_length", chart.unit_length, "mm", 0.0, "length 1 of the chart on the line of action"),
+        Value(f"{name}.best_amount", amount, "um", None, "equal tip reliefs, worst load, by A_e"),
+        Value(f"{name}.best_length", length, "", None, "equal tip reliefs, worst load, by A_e"),
+    ]
+    for member, relief in (("driver", best.driver), ("driven", best.driven)):
+        values += [
+            Value(f"{name}.{member}.optimum_amount", relief.amount, "um", None, f"by the optimiser, {part.metric}"),
+            Value(f"{name}.{member}.optimum_start", relief.start, "deg", None, "roll angle where that relief starts"),
+        ]
+    left = float(getattr(best, part.metric)[-1])
+    values.append(Value(f"{name}.optimum_{part.metric}", left, "um", None, "left at the largest load"))
+    settings = {"shape": asked.shape, "metric": part.metric, "evaluations": best.evaluations}
+    return Outcome(ReliefChartData(pair, chart, best, delta), tables, tuple(values), settings)
+
+
+@dataclass(frozen=True)
+class RobustnessData:
+    """What the stage hands to pictures: the candidates by name."""
+
+    pair: LoadedPair
+    candidates: dict[str, Robustness]
+
+
+def _run_robustness(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+    from fegear.design import robustness
+
+    pair, part = loaded_pair(done, name), design_part(scene)
+    designed = cast("ReliefData", done[Task("relief", name)].data)
+    asked = part.robustness
+    states = {"designed": designed.designed}
+    states |= {f"{shape} tip relief": g.applied(designed.designed) for shape, g in designed.ground.items()}
+    if scene.case.effects.relief:
+        states["relief of the case"] = replace(pair.engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
+    found, rows, values = {}, [], []
+    for number, (label, state) in enumerate(states.items()):
+        r = found[label] = robustness(
+            state, designed.load, asked.load_factors, asked.spacing_errors, asked.relief_errors, part.metric
+        )
+        progress((number + 1) / len(states))
+        for (i, j, k), value in np.ndenumerate(r.values):
+            rows.append((label, r.load_factors[i], r.spacing_errors[j], r.relief_errors[k], value))
+        factor, spacing, depth = r.worst_case
+        where = f"load x {factor:g}, spacing error {spacing * 1e6:g} um, relief {depth:+.0%}"
+        key = label.replace(" ", "_")
+        values.append(Value(f"{name}.worst_{part.metric}.{key}", r.worst, "um", None, f"{label}, {where}"))
+    columns = list(zip(*rows, strict=True))
+    table = Table(
+        f"robustness_{name}",
+        (
+            Column("candidate", np.array(columns[0]), "", "which relief"),
+            Column("load_factor", np.array(columns[1]), "", "load over design load"),
+            Column("spacing_error", np.array(columns[2]), "um", "of every second pair"),
+            Column("relief_error", np.array(columns[3]), "", "relative error of the relief's depth"),
+            Column(part.metric, np.array(columns[4]), "um", "excitation"),
+        ),
+        f"Robustness of the reliefs of {name}",
+    )
+    return Outcome(RobustnessData(pair, found), (table,), tuple(values), {"metric": part.metric})
+
+
+RELIEF_CHART = Stage(
+    name="relief-chart",
+    title="Chart of tip reliefs",
+    results=("relief-chart",),
+    subjects=design_pairs,
+    run=_run_chart,
+    needs=needs_pair,
+    effects=DESIGN_EFFECTS,
+    forecast=forecasts.relief_chart,
+)
+
+
+ROBUSTNESS = Stage(
+    name="robustness",
+    title="Robustness of the reliefs",
+    results=("robustness",),
+    subjects=design_pairs,
+    run=_run_robustness,
+    needs=lambda scene, name: (*needs_pair(scene, name), Task("relief", name)),
+    effects=DESIGN_EFFECTS,
+    forecast=forecasts.robustness,
+)

@@ -1,0 +1,155 @@
+"""Stage ``root-stress-study``: a sweep of teeth that shows where each formula is high, low or breaks down."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.results import forecasts
+from fegear.case.names import nearest
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.models.settings import mesh_settings
+from fegear.engine.stage import Stage
+
+if TYPE_CHECKING:
+    from fegear.contact.root_stress_study import VariantStress
+    from fegear.case.study import StudyPart
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+
+
+def _gear(scene: Scene) -> str:
+    study = scene.case.study
+    return (study.gear if study else None) or next(iter(scene.gears))
+
+
+def _study(scene: Scene) -> StudyPart:
+    if scene.case.study is None:
+        raise InputError("study", "(not given)", "is what root-stress-study is about", "add a [study] part")
+    return scene.case.study
+
+
+def _check(scene: Scene, _subject: str) -> None:
+    study = _study(scene)
+    if study.gear is not None and study.gear not in scene.gears:
+        raise InputError("study.gear", f'"{study.gear}"', "is no gear of this case", nearest(study.gear, scene.gears))
+    if study.gear is None and len(scene.gears) > 1:
+        raise InputError(
+            "study.gear", "(not given)", "must say which gear is varied", f"one of {', '.join(scene.gears)}"
+        )
+    name = _gear(scene)
+    for key in ("tip_diameter", "tooth_mesh"):
+        if getattr(scene.case.gear[name], key) is not None:
+            raise InputError(
+                f"gear.{name}.{key}", "(given)", "has no meaning in a study of many gears", f"remove {key}"
+            )
+
+
+def _table(found: list[VariantStress], names: tuple[str, ...], module: float) -> Table:
+    from fegear.contact.root_stress_study import verdict
+
+    rows = []
+    for one in found:
+        v = one.variant
+        for name in names:
+            answers = one.answers.get(name)
+            for i, position in enumerate(one.position):
+                stress = answers.stress[i] if answers else np.nan
+                ratio = stress / one.fe[i]
+                rows.append(
+                    (
+                        v.teeth,
+                        v.profile_shift,
+                        v.rack_tip_radius,
+                        position,
+                        one.radius[i],
+                        name,
+                        stress / module,
+                        one.fe[i] / module,
+                        ratio,
+                        answers.tangent_angle[i] if answers else np.nan,
+                        one.fe_angle[i],
+                        verdict(ratio),
+                        answers.reasons[i] if answers else v.reason,
+                    )
+                )
+    columns = list(zip(*rows, strict=True))
+    heads = (
+        ("teeth", "", "number of teeth"),
+        ("profile_shift", "", "profile shift coefficient"),
+        ("rack_tip_radius", "", "of the generating rack, in modules"),
+        ("load_position", "", "share of the roll angle between start (0) and end (1) of the involute"),
+        ("load_radius", "mm", "radius of the load"),
+        ("formula", "", "name of the formula"),
+        ("stress", "MPa.mm/N", "by the formula: root stress over line load"),
+        ("stress_fe", "MPa.mm/N", "by finite elements"),
+        ("ratio_to_fe", "", "formula over finite elements"),
+        ("place_angle", "deg", "fillet tangent to tooth centre line where the formula puts the stress"),
+        ("place_angle_fe", "deg", "the same by finite elements"),
+        ("verdict", "", "high, low, within 5 %, or breaks down"),
+        ("reason", "", "why the formula gives nothing; empty where it does"),
+    )
+    made = (Column(h, np.array(c), unit, meaning) for (h, unit, meaning), c in zip(heads, columns, strict=True))
+    return Table("root_stress_study", tuple(made), "Where each root-stress formula is high, low or breaks down")
+
+
+def _values(table: Table, names: tuple[str, ...]) -> tuple[Value, ...]:
+    values = []
+    for name in names:
+        ratio = np.asarray(table["ratio_to_fe"], dtype=float)[table["formula"] == name]
+        r = ratio[np.isfinite(ratio)]
+        verdicts = table["verdict"][table["formula"] == name]
+        if r.size:
+            for key, number, words in (
+                ("lowest_ratio", r.min(), "smallest formula over FE"),
+                ("median_ratio", np.median(r), "median formula over FE"),
+                ("highest_ratio", r.max(), "largest formula over FE"),
+            ):
+                values.append(Value(f"{name}.{key}", float(number), "", None, f"{words} in the study"))
+        for key in ("high", "low", "within 5 %", "breaks down"):
+            share = float(np.mean(verdicts == key))
+            head = key.replace(" %", "_percent").replace(" ", "_")
+            values.append(Value(f"{name}.share_{head}", share, "", 0.0, f"share of all points: {key}"))
+    return tuple(values)
+
+
+def _run(scene: Scene, _subject: str, _done: Done, progress: Progress) -> Outcome:
+    from fegear.contact.root_stress_study import root_stress_study, variants
+    from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
+
+    study, base = _study(scene), scene.gears[_gear(scene)]
+    tooth, settings = base.tooth, mesh_settings(scene.case.accuracy)
+    gears = variants(
+        base,
+        study.teeth or [tooth.teeth],
+        study.profile_shift or [tooth.profile_shift],
+        study.rack_tip_radius or [tooth.rack.tip_radius],
+    )
+    found = root_stress_study(gears, study.load_position, settings, progress)
+    names = tuple(ROOT_STRESS_SOURCES)
+    table = _table(found, names, base.module)
+    told = (
+        "Study of root stress: one tooth of the whole ring under one load normal to its flank, no friction; FE is the "
+        "largest tangential stress of the fillet below the load, radial compression included; ratio of bore to root "
+        f"radius {base.bore_radius / base.root_radius:.4g} in all gears. A stress per line load is the same in plane "
+        "stress and plane strain."
+    )
+    remarks = (
+        told,
+        *(f"{s.name} ({s.citation}): {s.compared}." for s in ROOT_STRESS_SOURCES.values()),
+    )
+    return Outcome(found, (table,), _values(table, names), {**asdict(settings), "gears": len(gears)}, remarks)
+
+
+ROOT_STRESS_STUDY = Stage(
+    name="root-stress-study",
+    title="Root-stress formulas against finite elements over many gears",
+    results=("root-stress-study",),
+    subjects=lambda scene: ("",) if scene.gears else (),
+    run=_run,
+    check=_check,
+    forecast=forecasts.root_stress_study,
+)

@@ -1,0 +1,262 @@
+"""Stages ``stiffness`` and ``root-stress``: the tables of one gear by finite elements on the whole ring."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.errors import InputError, RangeError
+from fegear.results import forecasts
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.models.settings import mesh_settings
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.models.assumed import bore_remarks
+from fegear.models.tooth_influence import gear_influence, solution_remarks, solution_told
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.fem import GearInfluence, StiffnessTable
+    from fegear.geometry import Gear, GearPair
+    from fegear.geometry.pair import Member
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+
+    Array = NDArray[np.float64]
+
+#: Half-width of the contact in modules when the case gives neither a width nor a load.
+USUAL_HALF_WIDTH = 0.02
+#: Wider contacts than this [modules] are refused where a case gives them: the flank is too short to hold them.
+LARGEST_HALF_WIDTH = 0.5
+#: Reading off one position of a solved gear [s].
+_SECONDS_PER_POSITION = 3e-4
+#: The error estimates of a table [s].
+_SECONDS_OF_TABLE = 0.05
+#: How many times the finite-element part reports that it goes on.
+_STEPS = 3
+
+
+def _gear(scene: Scene) -> tuple[str, ...]:
+    """The gear that ``[stiffness]`` names; every gear of the case if it names none."""
+    return (scene.case.stiffness.gear,) if scene.case.stiffness.gear else tuple(scene.gears)
+
+
+def _pair_of(scene: Scene, name: str) -> tuple[GearPair, Member] | None:
+    """The pair in which the gear's contact is looked at, and its role there; None if it meshes with nothing."""
+    for key, part in scene.case.pair.items():
+        if scene.case.stiffness.pair in (None, key) and name in (part.driver, part.driven):
+            return scene.pairs[key], "driver" if part.driver == name else "driven"
+    return None
+
+
+def _check(scene: Scene, name: str) -> None:
+    part = scene.case.stiffness
+    if part.pair is not None and _pair_of(scene, name) is None:
+        raise InputError("stiffness.pair", f'"{part.pair}"', f"does not hold gear {name}", "name a pair of that gear")
+    if part.load is not None and _pair_of(scene, name) is None:
+        raise InputError(
+            "stiffness.load",
+            f"{part.load * 1e-3:.6g} N/mm",
+            "gives a contact width only together with the mating flank",
+            f"describe a pair with gear {name}, or give contact_half_width",
+        )
+    gear = scene.gears[name]
+    for i, radius in enumerate(part.radii or ()):
+        low, high = gear.form_radius, gear.involute_tip_radius
+        if not low * (1 - 1e-9) <= radius <= high * (1 + 1e-9):
+            raise InputError(
+                f"stiffness.radii[{i}]",
+                f"{radius * 1e3:.9g} mm",
+                f"lies off the involute flank of gear {name}",
+                f"it runs from {low * 1e3:.9g} mm to {high * 1e3:.9g} mm",
+            )
+
+
+def load_radii(scene: Scene, name: str) -> Array:
+    """Radii of the table [m]: those of the case, or positions equally spaced in roll angle over the active profile."""
+    part, gear = scene.case.stiffness, scene.gears[name]
+    if part.radii is not None:
+        return np.array(part.radii)
+    found = _pair_of(scene, name)
+    if found:
+        pair, member = found
+        ends = np.sort(pair.radius(np.array([pair.x_start, pair.x_end]), member))
+    else:
+        ends = np.array([gear.form_radius, gear.involute_tip_radius])
+    low, high = np.clip(ends, gear.form_radius, gear.involute_tip_radius)
+    first, last = (float(np.sqrt((r - gear.base_radius) * (r + gear.base_radius))) for r in (low, high))
+    return np.clip(np.hypot(gear.base_radius, np.linspace(first, last, part.positions)), low, high)
+
+
+def contact_half_width(scene: Scene, name: str, radii: Array) -> Array:
+    """Half-width of the contact at every radius [m]: given, from Hertz for a load and a mate, or 0.02 modules."""
+    part, gear = scene.case.stiffness, scene.gears[name]
+    if part.contact_half_width is not None:
+        if part.contact_half_width > LARGEST_HALF_WIDTH * gear.module:
+            raise RangeError(
+                "stiffness.contact_half_width",
+                f"{part.contact_half_width * 1e3:.6g} mm",
+                f"is no contact on a flank: it exceeds half a module, {LARGEST_HALF_WIDTH * gear.module * 1e3:.6g} mm",
+                f"{USUAL_HALF_WIDTH * gear.module * 1e3:.6g} mm is usual",
+            )
+        return np.full(radii.shape, part.contact_half_width)
+    if part.load is None:
+        return np.full(radii.shape, USUAL_HALF_WIDTH * gear.module)
+    from fegear.formulas.hertz import line_contact, relative_curvature
+
+    pair, member = cast("tuple[GearPair, Member]", _pair_of(scene, name))
+    mate: Member = "driven" if member == "driver" else "driver"
+    x = np.clip(pair.x_of_radius(radii, member), pair.x_start, pair.x_end)
+    curvature = relative_curvature(pair.flank_curvature_radius(x, member), pair.flank_curvature_radius(x, mate))
+    modulus = 1.0 / (1.0 / gear.plane_modulus + 1.0 / pair.gear(mate).plane_modulus)
+    return line_contact(part.load, curvature, modulus).half_width
+
+
+def _tables(name: str, t: StiffnessTable) -> tuple[Table, ...]:
+    compliance, stress = "um.mm/N", "MPa.mm/N"
+    columns = (
+        Column("radius", t.radius, "mm", "radius of the contact point"),
+        Column("roll_angle", t.roll_angle, "deg", "roll angle of the contact point"),
+        Column("c_self", t.c_self, compliance, "deflection of the loaded tooth at the contact per line load"),
+        Column("c_prev", t.c_prev, compliance, "deflection of the tooth before it at the same radius"),
+        Column("c_next", t.c_next, compliance, "deflection of the tooth after it (which the loaded flank faces)"),
+        Column("contact_half_width", t.half_width, "mm", "half-width of the contact that c_self is for"),
+        Column(
+            "root_tension", t.root_tension, stress, "largest tangential stress of the fillet below the loaded flank"
+        ),
+        Column("root_tension_radius", t.root_tension_radius, "mm", "where it sits"),
+        Column("root_compression", t.root_compression, stress, "most negative tangential stress of the other fillet"),
+        Column("root_compression_radius", t.root_compression_radius, "mm", "where it sits"),
+        Column("c_self_error", t.errors["c_self"], compliance, "estimated error of c_self"),
+        Column("c_neighbour_error", t.errors["c_neighbour"], compliance, "estimated error of c_prev and c_next"),
+        Column("root_tension_error", t.errors["root_tension"], stress, "estimated error of root_tension"),
+        Column("root_compression_error", t.errors["root_compression"], stress, "estimated error of root_compression"),
+        Column("root_tension_angle", t.root_tension_angle, "deg", "fillet tangent to tooth centre line there"),
+        Column("root_compression_angle", t.root_compression_angle, "deg", "the same on the other fillet"),
+    )
+    return (Table(f"stiffness_{name}", columns, f"Compliance and root stress of gear {name}"),)
+
+
+def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
+    tension, compression = int(np.argmax(t.root_tension)), int(np.argmin(t.root_compression))
+    stress, found = "MPa.mm/N", []
+    if gear.form_radius <= gear.pitch_radius <= gear.involute_tip_radius:
+        known, at = t.influence, np.array([gear.pitch_radius])
+        b = np.interp(gear.pitch_radius, t.radius[np.argsort(t.radius)], t.half_width[np.argsort(t.radius)])
+        for key, c, error, meaning in (
+            ("c_self", known.self_compliance(at, b)[0], known.self_error(at, b)[0], "self compliance"),
+            ("c_prev", known.neighbour(-1, at, at)[0, 0], known.neighbour_error(-1, at, at)[0, 0], "tooth before"),
+            ("c_next", known.neighbour(1, at, at)[0, 0], known.neighbour_error(1, at, at)[0, 0], "tooth after"),
+        ):
+            found.append(Value(f"{name}.{key}_at_pitch", c, "um.mm/N", error, f"{meaning}, load on the pitch circle"))
+    for key, i, value, error in (
+        ("largest_root_tension", tension, t.root_tension, t.errors["root_tension"]),
+        ("largest_root_compression", compression, t.root_compression, t.errors["root_compression"]),
+    ):
+        where = f"load at radius {t.radius[i] * 1e3:.6g} mm"
+        found.append(Value(f"{name}.{key}", float(value[i]), stress, float(error[i]), f"per line load, {where}"))
+    return tuple(found)
+
+
+def _remarks(scene: Scene, name: str, t: StiffnessTable) -> tuple[str, ...]:
+    tolerance, remarks = scene.case.accuracy.tolerance, []
+    # The neighbour's deflection is small beside the loaded tooth's, to which it is added: that is its scale.
+    for label, value, error in (
+        ("c_self", t.c_self, t.errors["c_self"]),
+        ("c_next over c_self", t.c_self, t.errors["c_neighbour"]),
+        ("root tension", t.root_tension, t.errors["root_tension"]),
+        ("root compression", t.root_compression, t.errors["root_compression"]),
+    ):
+        relative = np.abs(error / value)
+        i = int(np.argmax(relative))
+        if relative[i] > tolerance:
+            remarks.append(
+                f"Gear {name}: the estimated error of {label} reaches {relative[i]:.1e} (tolerance {tolerance:.0e}), "
+                f"at radius {t.radius[i] * 1e3:.6g} mm; at {np.mean(relative <= tolerance):.0%} of the positions it is "
+                "within the tolerance."
+            )
+    part = scene.case.stiffness
+    if part.contact_half_width is None and part.load is None:
+        remarks.append(
+            f"Gear {name}: no contact_half_width or load was given, so c_self is for a half-width of "
+            f"{USUAL_HALF_WIDTH} modules."
+        )
+    return (*remarks, *bore_remarks(scene, name))
+
+
+def _run_stiffness(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
+    from fegear.fem import stiffness_table
+
+    gear = scene.gears[name]
+    steps = iter(range(_STEPS))
+    radii = load_radii(scene, name)
+    influence = gear_influence(scene, name, lambda _title: progress(next(steps, _STEPS) / _STEPS))
+    table = stiffness_table(gear, radii, contact_half_width(scene, name, radii), influence=influence)
+    remarks = (*solution_remarks(scene, name, influence), *_remarks(scene, name, table))
+    return Outcome(table, _tables(name, table), _values(name, gear, table), solution_told(influence), remarks)
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    settings = mesh_settings(scene.case.accuracy)
+    if scene.case.gear[name].tooth_mesh is not None:
+        return Forecast({"mesh": scene.case.gear[name].tooth_mesh, "order": settings.order})
+    positions = len(scene.case.stiffness.radii or ()) or scene.case.stiffness.positions
+    return Forecast(
+        asdict(settings), _SECONDS_OF_TABLE + _SECONDS_PER_POSITION * positions, forecasts.shapes(scene, [name])
+    )
+
+
+STIFFNESS = Stage(
+    name="stiffness",
+    title="Compliance and root stress, whole gear",
+    results=("stiffness",),
+    subjects=_gear,
+    run=_run_stiffness,
+    check=_check,
+    forecast=_forecast,
+)
+
+
+def _curve_columns(influence: GearInfluence, radius: float) -> tuple[Column, ...]:
+    m, at = influence.gear.module, np.array([radius])
+    fillets = [influence.fine.fillets[side] for side in ("tension", "compression")]
+    stress = {
+        k: np.concatenate([influence.fillet_stress(k, side, at)[:, 0] for side in ("tension", "compression")])
+        for k in (-1, 0, 1)
+    }
+    side = np.repeat(np.array(["tension", "compression"]), [fillet.arc.size for fillet in fillets])
+
+    def both(attribute: str, scale: float) -> Array:
+        return np.concatenate([getattr(fillet, attribute) for fillet in fillets]) * scale
+
+    return (
+        Column("arc", both("arc", m), "mm", "arc length along the fillet from the root land"),
+        Column("side", side, "", "fillet below the loaded flank (tension) or the other one"),
+        Column("radius", both("radius", m), "mm", "distance from the gear's centre"),
+        Column("angle", both("angle", 1.0), "deg", "clockwise angle from the tooth's centre line"),
+        Column("tangent_angle", both("tangent_angle", 1.0), "deg", "fillet tangent to tooth centre line"),
+        Column("stress", stress[0], "MPa.mm/N", "tangential stress per line load on the same tooth"),
+        Column("stress_prev", stress[-1], "MPa.mm/N", "the same on the tooth before the loaded one"),
+        Column("stress_next", stress[1], "MPa.mm/N", "the same on the tooth after the loaded one"),
+    )
+
+
+def _run_root_stress(_scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
+    t = cast("StiffnessTable", done[Task("stiffness", name)].data)
+    i = int(np.argmax(t.root_tension))
+    radius = float(t.radius[i])
+    title = f"Root stress along the fillets of gear {name}, load at radius {radius * 1e3:.6g} mm"
+    return Outcome(radius, (Table(f"root_stress_{name}", _curve_columns(t.influence, radius), title),))
+
+
+ROOT_STRESS = Stage(
+    name="root-stress",
+    title="Root stress along the fillets",
+    results=("root-stress",),
+    subjects=_gear,
+    run=_run_root_stress,
+    needs=lambda _scene, name: (Task("stiffness", name),),
+    forecast=lambda _scene, _name: Forecast({}, 0.01),
+)

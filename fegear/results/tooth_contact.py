@@ -1,0 +1,200 @@
+"""Stage ``tooth-contact``: tooth contact analysis of helical pairs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.results import forecasts
+from fegear.case.part import at
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Stage
+
+if TYPE_CHECKING:
+    from fegear.helical.bearing import Bearing
+    from fegear.helical.contact import PairContact, ToothContact
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+
+
+@dataclass(frozen=True, slots=True)
+class ToothContactData:
+    """What the stage hands to pictures: the analysis, and contact ellipses where load and surfaces give them."""
+
+    contact: ToothContact
+    bearing: Bearing | None
+
+
+def _pairs(scene: Scene) -> tuple[str, ...]:
+    return tuple(scene.helical_pairs)
+
+
+def _check(scene: Scene, name: str) -> None:
+    part = scene.case.pair[name]
+    if part.misalignment is not None and not scene.case.effects.misalignment:
+        raise InputError(
+            f"pair.{name}.misalignment", "(a table)", "is given, but the effect is off",
+            "write misalignment = true under [effects], or leave the table out",
+        )  # fmt: skip
+    _check_data(scene)
+
+
+def _check_data(scene: Scene) -> None:
+    if scene.case.effects.misalignment and all(part.misalignment is None for part in scene.case.pair.values()):
+        name = next(iter(scene.helical_pairs), "NAME")
+        raise InputError(
+            "effects.misalignment", "true", "finds no pair with a misalignment in this case",
+            f'give pair.{name}.misalignment = {{ shaft_angle = "3 arcmin" }}, or leave the effect out',
+        )  # fmt: skip
+
+
+def _contact_columns(contact: PairContact) -> tuple[Column, ...]:
+    return (
+        Column("contact", contact.kind, "", "surface, or the edge that touches"),
+        Column("r1", contact.r1, "mm", "radius of the contact point on the pinion"),
+        Column("z1", contact.z1, "mm", "its height on the pinion"),
+        Column("r2", contact.r2, "mm", "radius of the contact point on the gear"),
+        Column("z2", contact.z2, "mm", "its height on the gear"),
+    )
+
+
+def _tables(name: str, t: ToothContact, bearing: Bearing | None) -> tuple[Table, ...]:
+    error = "transmission error phi2 - (N1/N2) phi1, positive where the gear runs ahead"
+    spread = Column("spread", t.mesh.spread, "mm", "length over which the flanks are within a nanometre")
+    pieces = t.pieces()
+    reach = t.single.kind != "none"
+    tables = [
+        Table(
+            f"tooth_contact_{name}",
+            (
+                Column("phi1", t.phi_1, "deg", "pinion angle"),
+                Column("te", t.error, "arcsec", error),
+                *_contact_columns(t.mesh),
+                Column("pair", t.leader, "", "which tooth pair touches first"),
+                Column("slope", t.mesh.slope, "", "derivative of the transmission error by phi1"),
+                spread,
+            ),
+            f"Tooth contact of pair {name}, gear set over one cycle",
+        ),
+        Table(
+            f"tooth_contact_single_{name}",
+            (
+                Column("phi1", t.single.phi_1[reach], "deg", "pinion angle"),
+                Column("te", t.single.error[reach], "arcsec", error),
+                *(Column(c.name, c.values[reach], c.unit, c.meaning) for c in _contact_columns(t.single)),
+            ),
+            f"Tooth contact of pair {name}, one tooth pair alone",
+        ),
+        Table(
+            f"tooth_contact_pieces_{name}",
+            (
+                Column("phi1_first", np.array([p[0] for p in pieces]), "deg", "first pinion angle of the piece"),
+                Column("phi1_last", np.array([p[1] for p in pieces]), "deg", "last pinion angle of the piece"),
+                Column("pair", np.array([p[2] for p in pieces]), "", "tooth pair that leads"),
+                Column("contact", np.array([p[3] for p in pieces]), "", "kind of contact"),
+                Column("slope", np.array([p[4] for p in pieces]), "", "mean slope of the transmission error"),
+            ),
+            f"Pieces of the cycle of pair {name}",
+        ),
+    ]
+    if bearing is not None:
+        tables.append(
+            Table(
+                f"contact_ellipses_{name}",
+                (
+                    Column("phi1", t.phi_1[bearing.index], "deg", "pinion angle"),
+                    Column("long", bearing.ellipse.long, "mm", "half the long axis"),
+                    Column("short", bearing.ellipse.short, "mm", "half the short axis"),
+                    Column("pressure", bearing.ellipse.pressure, "MPa", "largest pressure"),
+                    Column("approach", bearing.ellipse.approach, "um", "approach of the flanks"),
+                ),
+                f"Contact ellipses of pair {name}",
+            )
+        )
+    return tuple(tables)
+
+
+def _values(name: str, t: ToothContact) -> tuple[Value, ...]:
+    error = t.maximum.error + t.minimum.error
+    pair = t.pair
+    return (
+        Value(f"{name}.te_peak_to_peak", t.peak_to_peak, "arcsec", error, "variation over a cycle of the gear set"),
+        Value(f"{name}.te_max", t.maximum.value, "arcsec", t.maximum.error, "largest transmission error"),
+        Value(f"{name}.te_min", t.minimum.value, "arcsec", t.minimum.error, "smallest transmission error"),
+        Value(f"{name}.transverse_contact_ratio", pair.transverse_contact_ratio, "", 0.0, "aligned drive"),
+        Value(f"{name}.overlap_ratio", pair.overlap_ratio, "", 0.0, "common face over axial pitch"),
+        Value(f"{name}.centre_distance", pair.centre_distance, "mm", 0.0, "with the pinion as cut"),
+    )
+
+
+def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
+    kinds, counts = np.unique(t.mesh.kind, return_counts=True)
+    share = {str(k): c / t.mesh.kind.size for k, c in zip(kinds, counts, strict=True)}
+    edges = {k: s for k, s in share.items() if k != "surface"}
+    remarks = []
+    if edges:
+        told = ", ".join(f"{k} {s:.0%}" for k, s in sorted(edges.items(), key=lambda item: -item[1]))
+        remarks.append(f"Pair {name}: contact is on an edge over part of the cycle: {told}.")
+    if any("circle" in k or "tangent" in k for k in edges):
+        remarks.append(f"Pair {name}: contact reaches the end of the involute near the root: the fillet would be hit.")
+    for member, hit in zip(("pinion", "gear"), t.pair.interferes, strict=True):
+        if hit:
+            remarks.append(
+                f"Pair {name}: the mating tip reaches below the {member}'s form circle; that fillet is not analysed."
+            )
+    vague = float(np.mean(t.mesh.ill_defined))
+    if vague > 0.0:
+        remarks.append(
+            f"Pair {name}: over {vague:.0%} of the cycle the flanks touch along a line, or nearly so; the place of the "
+            "contact point is ill-defined there, the transmission error is not."
+        )
+    return tuple(remarks)
+
+
+def _run(scene: Scene, name: str, _done: Done, _progress: Progress) -> Outcome:
+    from fegear.helical.bearing import bearing_contact
+    from fegear.helical.contact import tooth_contact
+    from fegear.helical.predesign import absorb_linear_error
+
+    pair, part, asked = scene.helical_pairs[name], scene.case.pair[name], scene.case.tooth_contact
+    values: tuple[Value, ...] = ()
+    settings: dict[str, object] = {"positions": asked.positions}
+    if part.modification is not None and part.modification.absorb:
+        try:
+            design = absorb_linear_error(pair)
+        except InputError as error:
+            raise at(f"pair.{name}.modification", error) from None
+        pair = design.pair
+        arm = pair.pinion.base_radius * np.cos(pair.pinion.base_helix_angle)
+        end = design.crown * arm * (0.5 * pair.pinion.face_width) ** 2
+        values = (
+            Value(f"{name}.crown", end, "um", None, "material to remove at each end of the face, along the normal"),
+            Value(f"{name}.predesigned_te", design.peak_to_peak, "arcsec", None, "parabolic error it is designed for"),
+        )
+    contact = tooth_contact(pair, asked.positions)
+    bearing, remarks = None, _remarks(name, contact)
+    if asked.load is not None:
+        a, b = scene.case.gear[part.driver].material.build(), scene.case.gear[part.driven].material.build()
+        modulus = 1.0 / (1.0 / a.plane_modulus("strain") + 1.0 / b.plane_modulus("strain"))
+        settings |= {"load": asked.load, "contact_modulus": modulus}
+        try:
+            bearing = bearing_contact(pair, contact.mesh, asked.load, modulus)
+        except InputError as error:
+            remarks += (f"Pair {name}: no contact ellipses: {error.rule}; {error.remedy}.",)
+    data = ToothContactData(contact, bearing)
+    return Outcome(data, _tables(name, contact, bearing), _values(name, contact) + values, settings, remarks)
+
+
+TOOTH_CONTACT = Stage(
+    name="tooth-contact",
+    title="Tooth contact analysis",
+    results=("tooth-contact",),
+    subjects=_pairs,
+    run=_run,
+    check=_check,
+    effects=("misalignment",),
+    forecast=forecasts.tooth_contact,
+)

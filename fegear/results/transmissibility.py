@@ -1,0 +1,155 @@
+"""Stage ``transmissibility``: modes and force transmissibility of helical pairs."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.results import forecasts
+from fegear.case.part import at
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Stage
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from fegear.dynamics.mesh_parameters import MeshParameters
+    from fegear.dynamics.modal_indices import ModeTable, RankedMode
+    from fegear.dynamics.transmissibility import ReducedTransmissibility, Transmissibility
+    from fegear.case.transmissibility import MeshStiffnessPart
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
+
+#: Heads of a load distribution file and the factors to SI.
+_DISTRIBUTION = {"z [mm]": 1e-3, "load [N/mm]": 1e3, "deflection [um]": 1e-6}
+
+
+@dataclass(frozen=True, slots=True)
+class TransmissibilityData:
+    """Modes, ranking and frequency response."""
+
+    mesh: MeshParameters
+    modes: ModeTable
+    ranking: list[RankedMode]
+    response: Transmissibility | ReducedTransmissibility
+
+
+def _read_distribution(path: Path, key: str) -> list[NDArray[np.float64]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    missing = [head for head in _DISTRIBUTION if not rows or head not in rows[0]]
+    if missing:
+        raise InputError(key, f'"{path.name}"', f"has no column {missing[0]}", f"heads are {', '.join(_DISTRIBUTION)}")
+    try:
+        return [np.array([float(row[head]) for row in rows]) * factor for head, factor in _DISTRIBUTION.items()]
+    except (TypeError, ValueError):
+        raise InputError(key, f'"{path.name}"', "holds something that is no number") from None
+
+
+def _mesh(scene: Scene, name: str, part: MeshStiffnessPart) -> MeshParameters:
+    from fegear.dynamics.mesh_parameters import mesh_parameters
+
+    prefix = f"transmissibility.{name}.mesh"
+    try:
+        if part.distribution is None:
+            return part.build()
+        key = f"{prefix}.distribution"
+        z, load, deflection = _read_distribution(scene.file(part.distribution, key), key)
+        return mesh_parameters(
+            z, load, deflection, face_width=part.face_width or math.nan, base_helix_angle=part.base_helix_angle
+        )
+    except InputError as error:
+        raise at("", error) if error.key.startswith(prefix) else at(prefix, error) from None
+
+
+def _mode_table(name: str, modes: ModeTable, ranking: list[RankedMode]) -> Table:
+    def ranked(excitation: str, field: str) -> NDArray[np.float64]:
+        rows = sorted((row for row in ranking if row.excitation == excitation), key=lambda row: row.mode)
+        return np.array([getattr(row, field) for row in rows])
+
+    count = modes.ratio.size
+    return Table(
+        f"helical_modes_{name}",
+        (
+            Column("mode", np.arange(1, count + 1), "", "by falling frequency"),
+            Column("Lambda", modes.ratio, "", "frequency over sqrt(K_M/m_eq); 0 for rigid-body motion"),
+            Column("frequency", modes.frequency / (2.0 * math.pi), "Hz", "natural frequency"),
+            Column("Delta_normal", modes.normal, "", "relative mesh displacement along the tooth normal"),
+            Column("Delta_bending", modes.bending, "", "relative mesh rotation about x"),
+            Column("coupling", modes.coupling, "", "coupling strain energy over the sum of the two"),
+            Column("rank_normal", ranked("normal", "rank"), "", "rank for normal transmission error and forces"),
+            Column("weight_normal", ranked("normal", "weight"), "", "modal mesh force over the largest"),
+            Column("rank_bending", ranked("bending", "rank"), "", "rank for bending error and moments"),
+            Column("weight_bending", ranked("bending", "weight"), "", "modal mesh moment over the largest"),
+        ),
+        f"Modes of pair {name}",
+    )
+
+
+def _response_table(name: str, response: Transmissibility | ReducedTransmissibility) -> Table:
+    from fegear.dynamics.helical_pair import COORDINATES
+    from fegear.dynamics.transmissibility import Transmissibility
+
+    if isinstance(response, Transmissibility):
+        matrices = {"G": response.G, "R_ii": response.R_ii, "R_ij": response.R_ij}
+    else:
+        matrices = {"G": response.G, "R": response.R}
+    columns = [
+        Column("Lambda", response.ratio, "", "frequency over sqrt(K_M/m_eq)"),
+        Column("frequency", response.frequency / (2.0 * math.pi), "Hz", "frequency"),
+    ]
+    for label, matrix in matrices.items():
+        unit, meaning = ("N/um", "spectral mesh stiffness") if label == "G" else ("", "mesh force transmissibility")
+        for i, row in enumerate(COORDINATES):
+            for j, column in enumerate(COORDINATES):
+                for part, values in (("re", matrix[:, i, j].real), ("im", matrix[:, i, j].imag)):
+                    columns.append(Column(f"{label}_{row}_{column}_{part}", values, unit, meaning))
+    return Table(f"transmissibility_{name}", tuple(columns), f"Force transmissibility of pair {name}")
+
+
+def _run(scene: Scene, name: str, _done: Done, _progress: Progress) -> Outcome:
+    from fegear.dynamics.helical_pair import HelicalPairModel
+    from fegear.dynamics.modal_indices import mode_table, rank_modes
+    from fegear.dynamics.transmissibility import reduced_transmissibility, transmissibility
+
+    part = scene.case.transmissibility[name]
+    mesh = _mesh(scene, name, part.mesh)
+    model = part.build(mesh, f"transmissibility.{name}")
+    modes, ranking = mode_table(model), rank_modes(model)
+    frequency = model.natural_frequency * np.linspace(part.lambda_from, part.lambda_to, part.frequencies)
+    try:
+        response: Transmissibility | ReducedTransmissibility
+        if isinstance(model, HelicalPairModel):
+            response = transmissibility(model, frequency)
+        else:
+            response = reduced_transmissibility(model, frequency)
+    except InputError as error:
+        raise at(f"transmissibility.{name}", error) from None
+    values = (
+        Value(f"{name}.omega", model.natural_frequency / (2.0 * math.pi), "Hz", 0.0, "sqrt(K_M/m_eq)"),
+        Value(f"{name}.mesh_stiffness", mesh.stiffness, "N/um", 0.0, "K_M"),
+        Value(f"{name}.kappa", mesh.kappa, "", 0.0, "axial centre of the mesh stiffness over half the face"),
+        Value(f"{name}.mu", mesh.mu, "", 0.0, "rotary mesh stiffness"),
+    )
+    data = TransmissibilityData(mesh, modes, ranking, response)
+    tables = (_mode_table(name, modes, ranking), _response_table(name, response))
+    settings = {"damping_ratio": part.damping_ratio, "frequencies": part.frequencies}
+    remarks = tuple(f"Pair {name}: {remark}." for remark in modes.remarks)
+    return Outcome(data, tables, values, settings, remarks)
+
+
+TRANSMISSIBILITY = Stage(
+    name="transmissibility",
+    title="Force transmissibility",
+    results=("transmissibility",),
+    subjects=lambda scene: tuple(scene.case.transmissibility),
+    run=_run,
+    forecast=forecasts.transmissibility,
+)

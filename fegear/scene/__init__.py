@@ -1,1 +1,0 @@
-"""Scenes: what a case file asks for, the plan of stages that answers it, and their running."""

@@ -1,5 +1,0 @@
-"""The parts of a case file, one file per part."""
-
-from fegear.scene.case.model import Case
-
-__all__ = ["Case"]

@@ -1,0 +1,86 @@
+"""From a source to the value of a quantity, by the stages that a run uses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.contact import transmission_error
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Task
+from fegear.models.loaded_pair import build_loaded_pair
+from fegear.models.motion import motion_model
+from fegear.results.gear_train import GEAR_TRAIN
+from fegear.results.mesh_forces import force_history
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.contact import TransmissionError
+    from fegear.models.loaded_pair import LoadedPair
+    from fegear.models.train import GearTrain
+    from fegear.studies.cost.asked import Asked
+    from fegear.studies.cost.quantities import Quantity
+    from fegear.studies.cost.sources import Source
+
+    Array = NDArray[np.float64]
+
+#: Harmonics of the transmission error and of the forces that a run sums.
+HARMONICS, FORCE_HARMONICS = 64, 256
+
+
+def loaded(asked: Asked, source: Source, name: str) -> LoadedPair:
+    """A pair with the compliances of a source."""
+    return build_loaded_pair(asked.scene, name, given=lambda pair, member: source.compliance(pair, member, asked))
+
+
+def pair_error(asked: Asked, source: Source, order: int = 16) -> TransmissionError:
+    """Transmission error of the pair that is priced; `order` is the number of Gauss points between jumps."""
+    pair = loaded(asked, source, asked.pair)
+    return transmission_error(pair.engagement, pair.nominal, HARMONICS, order=order)
+
+
+def train_of(asked: Asked, source: Source) -> GearTrain:
+    """The train with the compliances of a source in all its meshes."""
+    done = {Task("loaded-pair", name): Outcome(loaded(asked, source, name)) for name in asked.pairs}
+    return cast("GearTrain", GEAR_TRAIN.run(asked.scene, "", done, lambda _fraction: None).data)
+
+
+def largest_force(asked: Asked, data: GearTrain, harmonics: int = FORCE_HARMONICS, positions: int = 0) -> float:
+    """Largest force on one tooth pair [N], without the other meshes' share."""
+    part = asked.scene.case.dynamics
+    found = force_history(
+        data, data.train.mesh_index(asked.mesh), part.one_speed, positions or part.positions,
+        max(harmonics, part.harmonics) if harmonics == FORCE_HARMONICS else harmonics,
+    )  # fmt: skip
+    return float(found.total.max())
+
+
+def factor_at(asked: Asked, data: GearTrain, speed: float, tolerance: float) -> float:
+    """Dynamic factor of steady motion at a speed of the reference body [rad/s], started from static deflection."""
+    from fegear.dynamics.steady_state import steady_state
+
+    i = data.train.mesh_index(asked.mesh)
+    state = steady_state(motion_model(asked.scene, data, speed / data.speed_ratio), start="static", tolerance=tolerance)
+    return float(state.tooth_force[i]) / float(data.forces[i])
+
+
+def speed_looked_at(asked: Asked) -> float:
+    """The case's one speed, else the middle of its speeds [rad/s]."""
+    part = asked.scene.case.dynamics
+    return part.one_speed if np.isfinite(part.one_speed) else float(np.median(part.speed_values))
+
+
+def answer(asked: Asked, quantity: Quantity, source: Source, order: int = 16) -> Array:
+    """Values of a quantity, shape (P,) for a gear's, (1,) for a pair's; SI."""
+    if quantity.of_gear:
+        return source.of_gear(quantity.name, asked)
+    if quantity.name == "te-peak-to-peak":
+        return np.array([pair_error(asked, source, order).peak_to_peak])
+    if quantity.name == "dynamic-factor":
+        tolerance = asked.scene.case.dynamics.tolerance
+        return np.array([factor_at(asked, train_of(asked, source), speed_looked_at(asked), tolerance)])
+    if asked.mesh and quantity.subject == asked.mesh:
+        return np.array([largest_force(asked, train_of(asked, source))])
+    return np.array([float(pair_error(asked, source, order).loaded.loads.max())])

@@ -1,0 +1,221 @@
+"""What a case asks to be priced, and of which gear, pair and mesh."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.models.motion import in_time
+from fegear.results.loaded_pair import spur_pairs
+from fegear.results.stiffness import contact_half_width, load_radii
+from fegear.studies.cost.quantities import OF_GEAR, Quantity
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.case.reading import Scene
+
+    Array = NDArray[np.float64]
+
+#: Quantities that each wanted result stands for.
+_OF_RESULT = {
+    "stiffness": ("c_0", "c_1"),
+    "root-stress": ("root-stress",),
+    "crosscheck": ("c_0", "root-stress"),
+    "root-stress-history": ("root-stress",),
+    "transmission-error": ("te-peak-to-peak",),
+    "load-sharing": ("tooth-force",),
+    "relief": ("te-peak-to-peak",),
+    "relief-chart": ("te-peak-to-peak",),
+    "robustness": ("te-peak-to-peak",),
+    "tooth-force": ("tooth-force",),
+    "mesh-force-spectrum": ("tooth-force",),
+    "dynamic-root-stress": ("root-stress", "tooth-force"),
+    "dynamic-factor": ("dynamic-factor",),
+}
+#: Line load where the case names none [N/m].
+_USUAL_LINE_LOAD = 100e3
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a case asks to be priced, and where.
+
+    Parameters
+    ----------
+    scene : Scene
+    quantities : tuple of Quantity
+    gear, pair, mesh : str
+        Subjects; empty where no quantity needs one. The mesh is that of the train, empty without dynamics.
+    radii, half_width : ndarray, shape (P,)
+        Load positions of the gear's quantities and the contact's half-width there [m].
+    line_load : float
+        [N/m], for closed forms whose contact is not linear in it.
+    """
+
+    scene: Scene
+    quantities: tuple[Quantity, ...]
+    gear: str
+    pair: str
+    mesh: str
+    radii: Array
+    half_width: Array
+    line_load: float
+
+    @property
+    def pairs(self) -> tuple[str, ...]:
+        """Pairs whose compliances are needed."""
+        if not self.pair:
+            return ()
+        train = self.scene.case.train
+        if not self.mesh or train is None:
+            return (self.pair,)
+        return tuple(dict.fromkeys([self.pair, *(train.loaded_pair_of(mesh) for mesh in train.mesh)]))
+
+    @property
+    def tabled(self) -> bool:
+        """Whether the pair's compliances are read from a file: then nothing is more accurate than they are."""
+        return any(self.scene.case.pair[name].compliance.source == "table" for name in self.pairs)
+
+    def solves(self, quantity: Quantity) -> bool:
+        """Whether finite elements and formulas have a say in a quantity."""
+        return quantity.of_gear or not self.tabled
+
+    def gears_for(self, quantity: Quantity) -> tuple[str, ...]:
+        """Gears whose solution a quantity needs."""
+        if quantity.of_gear:
+            return (self.gear,)
+        if self.tabled:
+            return ()
+        dynamic = self.mesh and quantity.name in ("tooth-force", "dynamic-factor")
+        parts = [self.scene.case.pair[name] for name in (self.pairs if dynamic else (self.pair,))]
+        return tuple(dict.fromkeys(name for part in parts for name in (part.driver, part.driven)))
+
+    @property
+    def gears(self) -> tuple[str, ...]:
+        """Gears that any quantity needs."""
+        return tuple(dict.fromkeys(name for q in self.quantities for name in self.gears_for(q)))
+
+    @property
+    def usual_half_width(self) -> float:
+        """Half-width of the true contact in the middle of the flank [modules]; NaN if no quantity has one."""
+        if self.half_width.size:
+            return float(np.median(self.half_width)) / self.scene.gears[self.gear].module
+        if not self.pair:
+            return math.nan
+        from fegear.formulas.hertz import line_contact, relative_curvature
+
+        pair = self.scene.pairs[self.pair]
+        curvature = relative_curvature(*(pair.flank_curvature_radius(0.0, m) for m in ("driver", "driven")))
+        modulus = 1.0 / (1.0 / pair.driver.plane_modulus + 1.0 / pair.driven.plane_modulus)
+        return float(line_contact(self.line_load, curvature, modulus).half_width) / pair.driver.module
+
+
+def _names(scene: Scene) -> list[str]:
+    given = scene.case.cost.quantities
+    if given is not None:
+        return list(dict.fromkeys(given))
+    found = [name for result in scene.case.results for name in _OF_RESULT.get(result, ())]
+    if not found:
+        raise InputError(
+            "results", ", ".join(f'"{r}"' for r in scene.case.results), "ask for nothing whose cost can be chosen",
+            "ask for one of " + ", ".join(f'"{r}"' for r in _OF_RESULT)
+            + ', or write quantities = ["c_0"] under [cost]',
+        )  # fmt: skip
+    order = (*OF_GEAR, "te-peak-to-peak", "tooth-force", "dynamic-factor")
+    return sorted(set(found), key=order.index)
+
+
+def _pair(scene: Scene, names: list[str]) -> str:
+    if not set(names) - set(OF_GEAR):
+        return ""
+    loaded = [name for name in spur_pairs(scene) if scene.case.pair[name].normal_load(scene.pairs[name]) is not None]
+    chosen = scene.case.cost.pair or next((p for p in (scene.case.stiffness.pair, *loaded) if p in loaded), None)
+    if chosen is None or chosen not in loaded:
+        raise InputError(
+            "cost.pair", f'"{chosen}"' if chosen else "(not given)", "must be a pair of spur gears that carries a load",
+            "describe one with load or torque, or leave the quantities of pairs out",
+        )  # fmt: skip
+    if scene.case.pair[chosen].compliance.source != "table" and scene.case.effects.hertz == "none":
+        raise InputError(
+            "effects.hertz", '"none"', "leaves contacts as wide as the pressure that loads the mesh, so that nothing "
+            "converges", 'write hertz = "load-dependent" under [effects], or leave the quantities of pairs out',
+        )  # fmt: skip
+    return chosen
+
+
+def _gear(scene: Scene, names: list[str], pair: str) -> str:
+    if not set(names) & set(OF_GEAR):
+        return ""
+    first = scene.case.pair[pair].driver if pair else next(iter(scene.gears), "")
+    chosen = scene.case.cost.gear or scene.case.stiffness.gear or first
+    if not chosen:
+        raise InputError("gear", "(none)", "a spur gear is needed for these quantities", "describe one")
+    return chosen
+
+
+def _mesh(scene: Scene, pair: str, names: list[str]) -> str:
+    """Mesh of the train whose dynamics are priced; empty where the case describes none."""
+    train, speed = scene.case.train, scene.case.dynamics
+    if not pair or train is None or not speed.speed_values.size:
+        mesh = ""
+    else:
+        mesh = next((m for m, part in train.mesh.items() if part.like is None and train.pair_of(m) == pair), "")
+    if "dynamic-factor" in names and not (mesh and in_time(scene)):
+        raise InputError(
+            "cost.quantities", '"dynamic-factor"', "needs a train, speeds, and an effect of motion in time",
+            "describe them and set effects.contact_loss = true, or leave the quantity out",
+        )  # fmt: skip
+    return mesh if mesh and ("dynamic-factor" in names or not math.isnan(speed.one_speed)) else ""
+
+
+def asked(scene: Scene) -> Asked:
+    """Read from a case what is to be priced.
+
+    Raises
+    ------
+    InputError
+        If nothing can be, or a quantity lacks its gear, pair, load or train.
+    """
+    names = _names(scene)
+    pair = _pair(scene, names)
+    gear = _gear(scene, names, pair)
+    mesh = _mesh(scene, pair, names)
+    for name in (gear, *((scene.case.pair[pair].driver, scene.case.pair[pair].driven) if pair else ())):
+        own = scene.case.gear[name].tooth_mesh if name else None
+        if own is not None:
+            raise InputError(
+                f"gear.{name}.tooth_mesh", f'"{own}"', "fixes the mesh, whose fineness is what is priced",
+                "leave it out, for example in a second case",
+            )  # fmt: skip
+    none = np.empty(0)
+    radii = load_radii(scene, gear) if gear else none
+    width = contact_half_width(scene, gear, radii) if gear else none
+    line_load = scene.case.stiffness.load
+    if line_load is None and pair:
+        p = scene.pairs[pair]
+        line_load = (scene.case.pair[pair].normal_load(p) or 0.0) / min(p.driver.face_width, p.driven.face_width)
+    quantities = tuple(_quantity(name, gear, pair, mesh, scene) for name in names)
+    return Asked(scene, quantities, gear, pair, mesh, radii, width, line_load or _USUAL_LINE_LOAD)
+
+
+def _quantity(name: str, gear: str, pair: str, mesh: str, scene: Scene) -> Quantity:
+    speed = scene.case.dynamics.one_speed * 30.0 / math.pi
+    force = (
+        Quantity(name, mesh, "N", f"largest force on one tooth pair of mesh {mesh} at {speed:.6g} rpm")
+        if mesh and not math.isnan(speed)
+        else Quantity(name, pair, "N", f"largest static load on one tooth pair of {pair}")
+    )
+    known = {
+        "c_0": Quantity(name, gear, "um.mm/N", f"self compliance of gear {gear} at its load positions"),
+        "c_1": Quantity(name, gear, "um.mm/N", f"deflection of the next tooth of gear {gear}"),
+        "root-stress": Quantity(name, gear, "MPa.mm/N", f"largest root tension of gear {gear} per line load"),
+        "te-peak-to-peak": Quantity(name, pair, "um", f"peak-to-peak loaded transmission error of pair {pair}"),
+        "tooth-force": force,
+        "dynamic-factor": Quantity(name, mesh, "", f"largest tooth force over the mean mesh force, mesh {mesh}"),
+    }
+    return known[name]

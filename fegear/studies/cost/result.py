@@ -1,0 +1,218 @@
+"""What a study of cost found."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.studies.cost.orders import Order, observed_order
+from fegear.studies.cost.pareto import cheapest, pareto_front
+from fegear.studies.cost.timing import NOTHING, Seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.studies.cost.asked import Asked
+    from fegear.studies.cost.quantities import Miss, Quantity
+    from fegear.studies.cost.rung import Rung
+
+    Array = NDArray[np.float64]
+
+#: Tolerances for which the cheapest settings are told.
+TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
+#: Stands for every quantity at once.
+ALL = "all"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One quantity by one rung.
+
+    Parameters
+    ----------
+    rung : Rung
+    quantity : str
+    value : float
+        The answer, or of many the one of largest size; SI; NaN without an answer.
+    miss : Miss
+        Against the reference.
+    solve, own : Seconds
+        For the gears' solutions that the quantity needs, and for the quantity from them.
+    reason : str
+        Why there is no answer; empty where there is one.
+    """
+
+    rung: Rung
+    quantity: str
+    value: float
+    miss: Miss
+    solve: Seconds = NOTHING
+    own: Seconds = NOTHING
+    reason: str = ""
+
+    @property
+    def seconds(self) -> Seconds:
+        """From nothing to the answer."""
+        return self.solve.plus(self.own)
+
+
+@dataclass(frozen=True)
+class Knob:
+    """One setting varied alone.
+
+    Parameters
+    ----------
+    quantity, name : str
+        Of what, and which setting.
+    at : str
+        What the others were, and what the error is against.
+    settings, step : ndarray, shape (n,)
+        The setting, and the length (or its inverse) that goes to zero.
+    error : ndarray, shape (n,)
+        Relative.
+    seconds : ndarray, shape (n,)
+        Processor seconds; NaN where the setting costs nothing that can be told.
+    floor : float
+    order : Order
+    """
+
+    quantity: str
+    name: str
+    at: str
+    settings: Array
+    step: Array
+    error: Array
+    seconds: Array
+    floor: float
+    order: Order
+
+
+def make_knob(
+    quantity: str, name: str, at: str, settings: ArrayLike, step: ArrayLike, error: ArrayLike,
+    floor: float = 0.0, seconds: ArrayLike | None = None,
+) -> Knob:  # fmt: skip
+    """A knob with the order that its errors show."""
+    s, h, e = (np.asarray(v, dtype=float) for v in (settings, step, error))
+    t = np.full(s.shape, math.nan) if seconds is None else np.asarray(seconds, dtype=float)
+    return Knob(quantity, name, at, s, h, e, t, floor, observed_order(h, e, floor))
+
+
+@dataclass(frozen=True)
+class Front:
+    """Rungs of one quantity in arrays, shape (n,): what pictures and tables draw on.
+
+    Parameters
+    ----------
+    rows : tuple of Measured
+        Those that a user may choose from: tolerances, which pay for their own error estimate, stand apart.
+    seconds, error : ndarray
+        Errors no smaller than the floor.
+    front : ndarray of int
+        Indices that nothing beats, in rising time.
+    """
+
+    rows: tuple[Measured, ...]
+    seconds: Array
+    error: Array
+    front: NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class CostResults:
+    """Errors and seconds of every rung, the orders of the knobs, the cheapest settings.
+
+    Parameters
+    ----------
+    asked : Asked
+    reference : Rung
+    reference_values : mapping of str to float
+        As `Measured.value`.
+    floors : mapping of str to float
+        Relative error of the reference for each quantity, estimated from a coarser one.
+    rows : tuple of Measured
+    knobs : tuple of Knob
+    planned : int
+        Rungs that were to be tried.
+    seconds : float
+        On the wall, for all.
+    remarks : tuple of str
+    """
+
+    asked: Asked
+    reference: Rung
+    reference_values: Mapping[str, float]
+    floors: Mapping[str, float]
+    rows: tuple[Measured, ...]
+    knobs: tuple[Knob, ...]
+    planned: int
+    seconds: float
+    remarks: tuple[str, ...] = field(default=())
+
+    @property
+    def quantities(self) -> tuple[Quantity, ...]:
+        """What was priced."""
+        return self.asked.quantities
+
+    @property
+    def finished(self) -> int:
+        """Rungs that were tried."""
+        return len(dict.fromkeys(row.rung for row in self.rows))
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing interrupted it."""
+        return self.finished == self.planned
+
+    def shown_error(self, row: Measured) -> float:
+        """Relative error, no smaller than what the reference itself knows; NaN without an answer everywhere."""
+        return self.error_where_answered(row) if row.miss.answered == 1.0 else math.nan
+
+    def error_where_answered(self, row: Measured) -> float:
+        """The same over the positions that a formula answers; NaN without any."""
+        return math.nan if row.reason else max(row.miss.largest, self.floors[row.quantity])
+
+    def of(self, quantity: str) -> tuple[Measured, ...]:
+        """All rungs of a quantity."""
+        return tuple(row for row in self.rows if row.quantity == quantity)
+
+    def front(self, quantity: str) -> Front:
+        """Time, error and Pareto front of one quantity, or of `ALL` at once."""
+        rows = self.at_once() if quantity == ALL else self.of(quantity)
+        chosen = tuple(row for row in rows if row.rung.family != "tolerance")
+        seconds = np.array([row.seconds.cpu for row in chosen])
+        error = np.array([row.miss.largest if quantity == ALL else self.shown_error(row) for row in chosen])
+        return Front(chosen, seconds, error, pareto_front(seconds, error))
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """Names of the quantities, and of all at once where there are several and some rung answers them all."""
+        names = tuple(q.name for q in self.quantities)
+        return (*names, ALL) if len(names) > 1 and self.at_once() else names
+
+    def at_once(self) -> tuple[Measured, ...]:
+        """Rungs that answer every quantity: the worst error of any, the gears solved once."""
+        from fegear.studies.cost.quantities import Miss
+
+        names, found = [q.name for q in self.quantities], []
+        for rung in dict.fromkeys(row.rung for row in self.rows):
+            rows = [row for row in self.rows if row.rung == rung]
+            errors = [self.shown_error(row) for row in rows]
+            if [row.quantity for row in rows] != names or not np.isfinite(errors).all():
+                continue
+            solve = max((row.solve for row in rows), key=lambda s: s.cpu)
+            own = NOTHING
+            for row in rows:
+                own = own.plus(row.own)
+            found.append(Measured(rung, ALL, math.nan, Miss(max(errors), math.nan, 1.0), solve, own))
+        return tuple(found)
+
+    def cheapest(self, quantity: str, tolerance: float) -> Measured | None:
+        """The cheapest rung within a tolerance; None if none is."""
+        front = self.front(quantity)
+        i = cheapest(tolerance, front.seconds, front.error)
+        return None if i is None else front.rows[i]

@@ -1,0 +1,128 @@
+"""A whole study: the reference, every rung, the knobs; what is finished survives Ctrl-C."""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+from typing import TYPE_CHECKING
+
+from fegear.engine.run import Silence
+from fegear.models.settings import seconds_of_gear
+from fegear.studies.cost.answers import answer
+from fegear.studies.cost.knobs import ladder_knobs
+from fegear.studies.cost.ladder import make_ladder
+from fegear.studies.cost.measure import Found, answered, climb, climb_mesh, finite_elements, largest, refer, solve_gears
+from fegear.studies.cost.pair_knobs import pair_knobs
+from fegear.studies.cost.result import CostResults
+from fegear.studies.cost.sources import CaseTable
+from fegear.studies.cost.timing import one_thread
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from fegear.engine.run import Watcher
+    from fegear.studies.cost.asked import Asked
+    from fegear.studies.cost.ladder import Ladder
+    from fegear.studies.cost.sources import FiniteElements, Source
+
+#: What answering takes from a solved gear, about [s].
+_ANSWER_SECONDS = {"te-peak-to-peak": 0.15, "tooth-force": 1.1, "dynamic-factor": 2.0}
+_KNOB_SECONDS = 6.0
+
+
+def forecast(asked: Asked, ladder: Ladder) -> float:
+    """About how long a study takes on one core [s]."""
+    own = sum(_ANSWER_SECONDS.get(q.name, 0.02) for q in asked.quantities)
+    total = _KNOB_SECONDS * bool(asked.pair) + own * (len(ladder.rungs) + 2)
+    for rung in [ladder.reference, ladder.check, *(group[0] for group in ladder.meshes)]:
+        if rung.settings is not None:
+            one = seconds_of_gear(rung.settings)
+            total += one * len(asked.gears) * (3.0 if one < 0.3 else 1.0)
+    return total
+
+
+def ladder_of(asked: Asked, *, quick: bool = False) -> Ladder:
+    """The ladder for what is asked."""
+    teeth = min((asked.scene.gears[name].teeth for name in asked.gears), default=0)
+    solved = [q.name for q in asked.quantities if asked.solves(q)]
+    return make_ladder(asked.usual_half_width, solved, teeth, tabled=asked.tabled, quick=quick)
+
+
+def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = None) -> CostResults:
+    """Run the ladder of settings for every quantity that is asked.
+
+    Parameters
+    ----------
+    asked : Asked
+    quick : bool
+        A few rungs instead of all.
+    watcher : Watcher, optional
+
+    Returns
+    -------
+    CostResults
+        After Ctrl-C those of the rungs that were finished, if the reference was.
+    """
+    watcher = watcher or Silence()
+    started = time.perf_counter()
+    ladder = ladder_of(asked, quick=quick)
+    found = Found(asked)
+    steps = _steps(found, ladder)
+    try:
+        with one_thread():
+            for number, (title, work) in enumerate(steps, start=1):
+                watcher.begin(title, number, len(steps))
+                clock = time.perf_counter()
+                work()
+                watcher.end(time.perf_counter() - clock)
+    except KeyboardInterrupt:
+        if not found.rows:
+            raise
+        found.remarks.append("Interrupted: only the rungs that were finished are here.")
+    whole = {rung: len(answered(asked, rung)) for rung in ladder.rungs}
+    done = [rung for rung, count in whole.items() if sum(row.rung == rung for row in found.rows) == count]
+    return CostResults(
+        asked, ladder.reference, {name: largest(v) for name, v in found.reference.items()}, found.floors,
+        tuple(row for row in found.rows if row.rung in done), tuple(found.knobs), len(ladder.rungs),
+        time.perf_counter() - started, tuple(found.remarks),
+    )  # fmt: skip
+
+
+def _steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], None]]]:
+    """Everything that will be done, in order, with the words for the watcher."""
+    asked = found.asked
+    kept: dict[str, FiniteElements] = {}
+
+    def reference() -> None:
+        kept["reference"] = refer(found, ladder)
+
+    def vary() -> None:
+        found.knobs += ladder_knobs(found, ladder, kept["reference"])
+
+    steps: list[tuple[str, Callable[[], None]]] = [
+        ("Warm-up", lambda: _warm_up(asked, ladder)),
+        (f"Reference: {ladder.reference.label}", reference),
+    ]
+    steps += [(rung.label, partial(climb, found, rung)) for rung in ladder.others if rung.formula]
+    for group in ladder.meshes:
+        more = f" and {len(group) - 1} more" if len(group) > 1 else ""
+        steps.append((group[0].label + more, partial(climb_mesh, found, group)))
+    steps += [(rung.label, partial(climb, found, rung)) for rung in ladder.others if not rung.formula]
+    steps.append(("Knobs of the finite elements", vary))
+    if asked.pair:
+        steps.append(
+            ("Knobs of load sharing and dynamics", lambda: found.knobs.extend(pair_knobs(asked, _of_pair(asked, kept))))
+        )
+    return steps
+
+
+def _of_pair(asked: Asked, kept: Mapping[str, Source]) -> Source:
+    return CaseTable() if asked.tabled else kept["reference"]
+
+
+def _warm_up(asked: Asked, ladder: Ladder) -> None:
+    """Import and compile everything once: no rung pays for that."""
+    coarse = ladder.meshes[0][0] if ladder.meshes else ladder.check
+    source = finite_elements(asked, coarse, solve_gears(asked, coarse)[0])
+    for quantity in asked.quantities:
+        answer(asked, quantity, source if asked.solves(quantity) else CaseTable())

@@ -1,0 +1,127 @@
+"""The study's numbers as tables."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.outcome import Column, Table
+from fegear.studies.cost.result import ALL, TOLERANCES
+from fegear.units import from_si
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.studies.cost.result import CostResults, Measured
+
+
+def cost_table(results: CostResults) -> Table:
+    """Every rung for every quantity, in rising time."""
+    names = [q.name for q in results.quantities]
+    rows = sorted(results.rows, key=lambda row: (names.index(row.quantity), row.seconds.cpu))
+    unit = {q.name: q.unit for q in results.quantities}
+    on_front = set()
+    for quantity in results.quantities:
+        front = results.front(quantity.name)
+        on_front |= {id(front.rows[i]) for i in front.front}
+
+    def number(read: Callable[[Measured], float]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        return np.array([read(row) for row in rows], dtype=float)
+
+    def words(read: Callable[[Measured], str]) -> np.ndarray[tuple[int], np.dtype[np.str_]]:
+        return np.array([read(row) for row in rows], dtype=np.str_)
+
+    def setting(name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        return number(lambda row: float(getattr(row.rung.settings, name)) if row.rung.settings else math.nan)
+
+    columns = (
+        Column("quantity", words(lambda r: r.quantity), "", "what was computed"),
+        Column("rung", words(lambda r: r.rung.label), "", "with what"),
+        Column("family", words(lambda r: r.rung.family), "", "kind of rung"),
+        Column("seconds", number(lambda r: r.seconds.cpu), "s", "of one core, from nothing to the answer"),
+        Column("seconds_wall", number(lambda r: r.seconds.wall), "s", "the same by the clock on the wall"),
+        Column("seconds_solving", number(lambda r: r.solve.cpu), "s", "of these for meshing and solving the gears"),
+        Column("error", number(results.shown_error), "", "largest relative error, no smaller than the reference's own"),
+        Column("below_floor", number(lambda r: r.miss.largest <= results.floors[r.quantity]).astype(int), "",
+               "1 where the error is below what the reference itself knows: at most `error`"),
+        Column("floor", number(lambda r: results.floors[r.quantity]), "", "estimated error of the reference"),
+        Column("error_where_answered", number(results.error_where_answered), "", "`error` over the positions answered"),
+        Column("answered", number(lambda r: r.miss.answered), "", "share of the load positions with an answer"),
+        Column("on_front", np.array([int(id(r) in on_front) for r in rows]), "", "1: nothing is quicker and better"),
+        Column("value", number(lambda r: r.value * (from_si(unit[r.quantity]) if unit[r.quantity] else 1.0)), "",
+               "the answer; of many positions the largest"),
+        Column("unit", words(lambda r: unit[r.quantity]), "", "of value"),
+        Column("order", setting("order"), "", "of the elements"),
+        Column("root_edge_length", setting("root_edge_length"), "", "[modules]"),
+        Column("flank_edge_length", setting("flank_edge_length"), "", "[modules]"),
+        Column("patch_half_width", setting("patch_half_width"), "", "[modules]"),
+        Column("teeth", np.array([r.rung.teeth for r in rows]), "", "of a sector; 0 for the whole gear"),
+        Column("case_line", words(lambda r: r.rung.paste(results.asked.pair)), "", "asks a case for this rung"),
+        Column("reason", words(lambda r: r.reason), "", "why there is no answer"),
+    )  # fmt: skip
+    return Table("cost", columns, "Error and seconds of every rung")
+
+
+def orders_table(results: CostResults) -> Table:
+    """Observed order of every knob."""
+    knobs = results.knobs
+    columns = (
+        Column("quantity", np.array([k.quantity for k in knobs], dtype=np.str_)),
+        Column("knob", np.array([k.name for k in knobs], dtype=np.str_), "", "the setting that was varied alone"),
+        Column("order", np.array([k.order.slope for k in knobs]), "", "p of error ~ step^p; nan: none"),
+        Column("rungs_used", np.array([k.order.used for k in knobs], dtype=int), "", "on the line"),
+        Column("rungs", np.array([k.step.size for k in knobs], dtype=int), "", "tried"),
+        Column("scatter", np.array([k.order.scatter for k in knobs]), "", "largest factor off the line"),
+        Column("rests_on", np.array([k.order.words for k in knobs], dtype=np.str_)),
+        Column("at", np.array([k.at for k in knobs], dtype=np.str_), "", "what the other settings were"),
+    )
+    return Table("cost_orders", columns, "Observed order of each knob")
+
+
+def knobs_table(results: CostResults) -> Table:
+    """The rungs behind the observed orders."""
+    knobs = results.knobs
+    count = [k.step.size for k in knobs]
+
+    def joined(name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        return np.concatenate([np.empty(0), *(getattr(k, name) for k in knobs)])
+
+    columns = (
+        Column("quantity", np.repeat(np.array([k.quantity for k in knobs], dtype=np.str_), count)),
+        Column("knob", np.repeat(np.array([k.name for k in knobs], dtype=np.str_), count)),
+        Column("setting", joined("settings"), "", "its value: edges and patches in modules"),
+        Column("error", joined("error"), "", "relative, from this knob alone"),
+        Column("floor", np.repeat(np.array([k.floor for k in knobs]), count), "", "what the reference itself knows"),
+        Column("seconds", joined("seconds"), "s", "of one core; nan where it takes no time of its own"),
+    )
+    return Table("cost_knobs", columns, "Error over each knob")
+
+
+def cheapest_table(results: CostResults) -> Table:
+    """The cheapest settings for each tolerance, of each quantity and of all at once."""
+    wanted = [(name, tolerance) for name in results.named for tolerance in TOLERANCES]
+    found = [results.cheapest(name, tolerance) for name, tolerance in wanted]
+    error = [_error(results, row) for row in found]
+    lines = [row.rung.paste(results.asked.pair) if row else "" for row in found]
+    columns = (
+        Column("quantity", np.array([name for name, _ in wanted], dtype=np.str_)),
+        Column("tolerance", np.array([tolerance for _, tolerance in wanted]), "", "relative"),
+        Column("rung", np.array([row.rung.label if row else "not reached" for row in found], dtype=np.str_)),
+        Column("seconds", np.array([row.seconds.cpu if row else math.nan for row in found]), "s", "of one core"),
+        Column("error", np.array(error), "", "largest relative error"),
+        Column("case_line", np.array(lines, dtype=np.str_), "", "asks a case for it"),
+    )  # fmt: skip
+    return Table("cost_cheapest", columns, "Cheapest settings for a tolerance")
+
+
+def _error(results: CostResults, row: Measured | None) -> float:
+    if row is None:
+        return math.nan
+    return row.miss.largest if row.quantity == ALL else results.shown_error(row)
+
+
+def tables(results: CostResults) -> tuple[Table, ...]:
+    """All of them."""
+    return cost_table(results), orders_table(results), knobs_table(results), cheapest_table(results)
