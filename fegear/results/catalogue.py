@@ -1,4 +1,4 @@
-"""The stages that fegear knows, in the order in which plans list them; each imports its heavy libraries only when it runs."""
+"""The stages that fegear knows, in the order in which plans list them."""
 
 from __future__ import annotations
 

@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.results import forecasts
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.models.settings import mesh_settings
 from fegear.engine.stage import Stage, Task
+from fegear.models.settings import mesh_settings
 from fegear.models.tooth_mesh import own_sector_mesh
+from fegear.results import forecasts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
     from fegear.contact.crosscheck import ComplianceAnswers, RootStressAnswers
+    from fegear.engine.stage import Done, Progress
     from fegear.fem import GearInfluence, StiffnessTable
     from fegear.geometry import Gear, GearPair
-    from fegear.case.reading import Scene
-    from fegear.engine.stage import Done, Progress
 
     Array = NDArray[np.float64]
 

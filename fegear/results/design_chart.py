@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.errors import FegearError, InputError
-from fegear.results import forecasts
-from fegear.models.motion import excitations_at
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Need, Stage, Task
+from fegear.errors import FegearError, InputError
+from fegear.models.motion import excitations_at
+from fegear.models.train import train_part
+from fegear.results import forecasts
 from fegear.results.dynamic_factor import check_motion
 from fegear.results.gear_train import assemble, gear_train, the_train
 from fegear.results.loaded_pair import loaded_pair
 from fegear.results.mesh_forces import needs_speeds, own_meshes
-from fegear.models.train import train_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fegear.contact import Engagement
     from fegear.case.dynamics import DesignChartPart
     from fegear.case.reading import Scene
+    from fegear.contact import Engagement
     from fegear.engine.stage import Done, Progress
     from fegear.models.train import GearTrain
 

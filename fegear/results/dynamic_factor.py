@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.results import forecasts
-from fegear.models.neglected_in_motion import motion_remarks
-from fegear.models.motion import in_time, motion_model
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage, Task
+from fegear.errors import InputError
+from fegear.models.motion import in_time, motion_model
+from fegear.models.neglected_in_motion import motion_remarks
+from fegear.models.train import train_part
+from fegear.results import forecasts
 from fegear.results.gear_train import gear_train, needs_train, the_train
 from fegear.results.mesh_forces import force_history, mesh_force_range, meshes, needs_speeds, pull_remarks
-from fegear.models.train import train_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
     from fegear.dynamics.charts import SpeedChart
     from fegear.dynamics.steady_state import SteadyState
-    from fegear.case.reading import Scene
     from fegear.engine.stage import Done, Progress
     from fegear.models.train import GearTrain
 

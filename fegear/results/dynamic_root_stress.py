@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.results import forecasts
-from fegear.models.loaded_pair import MEMBERS, gear_name
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage, Task
+from fegear.errors import InputError
+from fegear.models.loaded_pair import MEMBERS, gear_name
+from fegear.models.train import train_part
+from fegear.results import forecasts
 from fegear.results.mesh_forces import force_at, needs_one_speed, own_meshes, summed_harmonics
 from fegear.results.root_stress_history import table_names
-from fegear.models.train import train_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
     from fegear.contact.fe_compliance import FiniteElementCompliance
     from fegear.dynamics.tooth_force import ToothForce
-    from fegear.geometry.pair import GearPair, Member
-    from fegear.case.reading import Scene
     from fegear.engine.stage import Done, Progress
+    from fegear.geometry.pair import GearPair, Member
     from fegear.results.mesh_forces import ToothForceData
 
     Array = NDArray[np.float64]

@@ -12,9 +12,9 @@ from dataclasses import asdict
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from fegear.engine.stage import Forecast
 from fegear.models.motion import in_time
 from fegear.models.settings import mesh_settings, seconds_of_gear
-from fegear.engine.stage import Forecast
 from fegear.models.train import build_train
 
 if TYPE_CHECKING:

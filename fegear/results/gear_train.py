@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.dynamics.matrices import static_forces
-from fegear.results import forecasts
-from fegear.models.loaded_pair import check_relief
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Stage, Task
-from fegear.results.loaded_pair import EFFECTS, loaded_pair
+from fegear.models.loaded_pair import check_relief
 from fegear.models.train import GearTrain, build_train, check_train, train_part
+from fegear.results import forecasts
+from fegear.results.loaded_pair import EFFECTS, loaded_pair
 
 if TYPE_CHECKING:
-    from fegear.dynamics.excitation import MeshExcitation
     from fegear.case.reading import Scene
+    from fegear.dynamics.excitation import MeshExcitation
     from fegear.engine.stage import Done, Progress
 
 

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.geometry import interference
-from fegear.geometry.span import span, span_teeth
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
+from fegear.geometry import interference
+from fegear.geometry.span import span, span_teeth
 
 if TYPE_CHECKING:
-    from fegear.geometry import GearPair
     from fegear.case.reading import Scene
     from fegear.engine.stage import Done, Progress
+    from fegear.geometry import GearPair
 
 
 def _everything(scene: Scene) -> tuple[str, ...]:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from fegear.results import forecasts
-from fegear.models.neglected_effects import pair_remarks
-from fegear.models.loaded_pair import MEMBERS, LoadedPair, build_loaded_pair, check_pair, effect_remarks, gear_name
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Task
+from fegear.models.loaded_pair import MEMBERS, LoadedPair, build_loaded_pair, check_pair, effect_remarks, gear_name
+from fegear.models.neglected_effects import pair_remarks
 from fegear.models.tooth_influence import solution_remarks, solution_told
+from fegear.results import forecasts
 
 if TYPE_CHECKING:
+    from fegear.case.reading import Scene
     from fegear.contact import Engagement, Loaded
     from fegear.contact.engagement import RollGrid
-    from fegear.case.reading import Scene
     from fegear.engine.stage import Done, Progress
 
 #: How many times the finite-element parts of both gears report that they go on.

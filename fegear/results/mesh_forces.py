@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.results import forecasts
-from fegear.models.neglected_effects import percent
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
-from fegear.results.gear_train import gear_train, needs_train
+from fegear.errors import InputError
+from fegear.models.neglected_effects import percent
 from fegear.models.train import train_part
+from fegear.results import forecasts
+from fegear.results.gear_train import gear_train, needs_train
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
     from fegear.dynamics.spectra import MeshForceSpectrum
     from fegear.dynamics.tooth_force import ToothForce
-    from fegear.case.reading import Scene
     from fegear.engine.stage import Done, Progress
     from fegear.models.train import GearTrain
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.results import forecasts
 from fegear.case.design import DesignPart
-from fegear.models.neglected_effects import design_remarks
-from fegear.models.loaded_pair import LoadedPair, gear_name
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
+from fegear.errors import InputError
+from fegear.models.loaded_pair import LoadedPair, gear_name
+from fegear.models.neglected_effects import design_remarks
+from fegear.results import forecasts
 from fegear.results.loaded_pair import loaded_pair, needs_pair
 from fegear.results.root_stress_history import table_names
 from fegear.results.transmission_error import HARMONICS, roll_positions
@@ -22,13 +22,13 @@ from fegear.results.transmission_error import HARMONICS, roll_positions
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
     from fegear.contact import Engagement, Loaded, TransmissionError
     from fegear.design import LoadingFunction, MinimumExcitationRelief, TipReliefPair
     from fegear.design.minimum_excitation import ReliefTable
+    from fegear.engine.stage import Done, Progress
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Shape
-    from fegear.case.reading import Scene
-    from fegear.engine.stage import Done, Progress
 
     Array = NDArray[np.float64]
 

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.results import forecasts
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage, Task
+from fegear.results import forecasts
 from fegear.results.loaded_pair import loaded_pair, needs_pair
 from fegear.results.relief import DESIGN_EFFECTS, ReliefData, design_pairs, design_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
     from fegear.contact import Engagement
     from fegear.design import ReliefChart, Robustness, TipReliefPair
-    from fegear.case.reading import Scene
-    from fegear.models.loaded_pair import LoadedPair
     from fegear.engine.stage import Done, Progress
+    from fegear.models.loaded_pair import LoadedPair
 
     Array = NDArray[np.float64]
 

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.results import forecasts
-from fegear.models.loaded_pair import MEMBERS, LoadedPair, check_relief, gear_name
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
+from fegear.errors import InputError
+from fegear.models.loaded_pair import MEMBERS, LoadedPair, check_relief, gear_name
+from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair, solve_again, spur_pairs
 from fegear.results.transmission_error import roll_positions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fegear.contact import Engagement, Loaded
-    from fegear.geometry.pair import Member
     from fegear.case.reading import Scene
+    from fegear.contact import Engagement, Loaded
     from fegear.engine.stage import Done, Progress
+    from fegear.geometry.pair import Member
 
     Array = NDArray[np.float64]
 

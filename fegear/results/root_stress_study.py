@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.results import forecasts
 from fegear.case.names import nearest
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.models.settings import mesh_settings
 from fegear.engine.stage import Stage
+from fegear.errors import InputError
+from fegear.models.settings import mesh_settings
+from fegear.results import forecasts
 
 if TYPE_CHECKING:
-    from fegear.contact.root_stress_study import VariantStress
-    from fegear.case.study import StudyPart
     from fegear.case.reading import Scene
+    from fegear.case.study import StudyPart
+    from fegear.contact.root_stress_study import VariantStress
     from fegear.engine.stage import Done, Progress
 
 

@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.errors import InputError, RangeError
-from fegear.results import forecasts
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.models.settings import mesh_settings
 from fegear.engine.stage import Forecast, Stage, Task
+from fegear.errors import InputError, RangeError
 from fegear.models.assumed import bore_remarks
+from fegear.models.settings import mesh_settings
 from fegear.models.tooth_influence import gear_influence, solution_remarks, solution_told
+from fegear.results import forecasts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Done, Progress
     from fegear.fem import GearInfluence, StiffnessTable
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
-    from fegear.case.reading import Scene
-    from fegear.engine.stage import Done, Progress
 
     Array = NDArray[np.float64]
 

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.results import forecasts
 from fegear.case.part import at
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
+from fegear.errors import InputError
+from fegear.results import forecasts
 
 if TYPE_CHECKING:
-    from fegear.helical.bearing import Bearing
-    from fegear.helical.contact import PairContact, ToothContact
     from fegear.case.reading import Scene
     from fegear.engine.stage import Done, Progress
+    from fegear.helical.bearing import Bearing
+    from fegear.helical.contact import PairContact, ToothContact
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.results import forecasts
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
+from fegear.results import forecasts
 from fegear.results.gear_train import gear_train, needs_train, the_train
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fegear.dynamics.modes import Campbell, Modes
     from fegear.case.reading import Scene
+    from fegear.dynamics.modes import Campbell, Modes
     from fegear.engine.stage import Done, Progress
     from fegear.models.train import GearTrain
 

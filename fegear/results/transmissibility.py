@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.results import forecasts
 from fegear.case.part import at
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
+from fegear.errors import InputError
+from fegear.results import forecasts
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
+    from fegear.case.transmissibility import MeshStiffnessPart
     from fegear.dynamics.mesh_parameters import MeshParameters
     from fegear.dynamics.modal_indices import ModeTable, RankedMode
     from fegear.dynamics.transmissibility import ReducedTransmissibility, Transmissibility
-    from fegear.case.transmissibility import MeshStiffnessPart
-    from fegear.case.reading import Scene
     from fegear.engine.stage import Done, Progress
 
 #: Heads of a load distribution file and the factors to SI.

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.results import forecasts
-from fegear.models.loaded_pair import LoadedPair, check_relief
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
+from fegear.models.loaded_pair import LoadedPair, check_relief
+from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, change_by_shifts, loaded_pair, needs_pair, spur_pairs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fegear.contact import FourierSeries, Loaded, TransmissionError
     from fegear.case.reading import Scene
+    from fegear.contact import FourierSeries, Loaded, TransmissionError
     from fegear.engine.stage import Done, Progress
 
     Array = NDArray[np.float64]
