@@ -175,13 +175,11 @@ class Engagement:
     def breaks(self) -> tuple[float, ...]:
         """Roll positions [m] in one base pitch where pairs enter or leave or a modification has a kink."""
         pair = self.pair
-        at_pitch1 = float(pair.flank_curvature_radius(0.0, "driver"))
-        at_pitch2 = float(pair.flank_curvature_radius(0.0, "driven"))
         places = [
             pair.x_start,
             pair.x_end,
-            *(roll * pair.driver.base_radius - at_pitch1 for roll in self.driver_relief.kinks),
-            *(at_pitch2 - roll * pair.driven.base_radius for roll in self.driven_relief.kinks),
+            *(float(pair.x_of_roll(roll, "driver")) for roll in self.driver_relief.kinks),
+            *(float(pair.x_of_roll(roll, "driven")) for roll in self.driven_relief.kinks),
             *(float(pair.x_of_radius(radius, "driver")) for radius in self.compliance.driver.kinks),
             *(float(pair.x_of_radius(radius, "driven")) for radius in self.compliance.driven.kinks),
         ]

@@ -2,8 +2,9 @@
 
 from fegear.design.charts import ReliefChart, harris_map, relief_chart, welbourn_amount
 from fegear.design.loading import LoadingFunction, Ramp, slope_trade_off
-from fegear.design.minimum_excitation import MinimumExcitationRelief, minimum_excitation, relief_table
+from fegear.design.minimum_excitation import MinimumExcitationRelief, minimum_excitation, relief_nodes, relief_table
 from fegear.design.optimise import TipReliefPair, grindable, optimise_tip_relief
+from fegear.design.relief_bound import deepest_relief
 from fegear.design.robustness import Robustness, robustness
 from fegear.design.root_stress_loading import design_stress, least_root_stress
 
@@ -14,6 +15,7 @@ __all__ = [
     "ReliefChart",
     "Robustness",
     "TipReliefPair",
+    "deepest_relief",
     "design_stress",
     "grindable",
     "harris_map",
@@ -21,6 +23,7 @@ __all__ = [
     "minimum_excitation",
     "optimise_tip_relief",
     "relief_chart",
+    "relief_nodes",
     "relief_table",
     "robustness",
     "slope_trade_off",

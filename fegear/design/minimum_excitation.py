@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
+from fegear.design.relief_bound import refuse_deeper_than_the_tooth
+from fegear.errors import InputError, RangeError
+from fegear.geometry.relief import TabulatedRelief
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -29,6 +31,10 @@ if TYPE_CHECKING:
 #: The extrapolation takes its slope from the end of the design zone to this fraction of the ramp inside it: the slope
 #: at the very end is infinite with a load-dependent contact (W ln W).
 _SECANT = 0.05
+#: Largest distance of a tabulated relief from the designed one, over the pair's largest deflection.
+_CHORD = 1e-6
+#: Nodes no nearer than this fraction of the path: nearer ones would print as the same roll angle.
+_NEAREST = 1e-7
 
 
 @dataclass(frozen=True)
@@ -51,7 +57,9 @@ class MinimumExcitationRelief:
     load: float
 
     def __post_init__(self) -> None:
-        """Refuse design zones that reach beyond the path of contact."""
+        """Refuse design zones that reach beyond the path of contact, and loads that are none."""
+        if not (np.isfinite(self.load) and self.load > 0.0):
+            raise InputError("design.load", f"{self.load} N", "must be positive and finite")
         pair, slack = self.compliance.pair, 1e-9 * self.compliance.pair.base_pitch
         if self.loading.x_start < pair.x_start - slack or self.loading.x_end > pair.x_end + slack:
             raise RangeError(
@@ -140,10 +148,7 @@ class MinimumExcitationRelief:
 
     def removal(self, roll: ArrayLike) -> Array:
         """Removal at roll angles [m] (the interface of a relief)."""
-        pair = self.compliance.pair
-        sign = 1.0 if self.member == "driver" else -1.0
-        length = np.asarray(roll, dtype=float) * pair.gear(self.member).base_radius
-        return self.at(sign * (length - float(pair.flank_curvature_radius(0.0, self.member))))
+        return self.at(self.compliance.pair.x_of_roll(roll, self.member))
 
 
 def minimum_excitation(
@@ -161,13 +166,18 @@ def minimum_excitation(
         W_d [N].
     full_matrix : bool
         Whether the design counts what a loaded tooth does to its neighbours; False is the paper's (5.4).
+
+    Raises
+    ------
+    RangeError
+        If a relief is deeper than its tooth can take: a design contact ratio at or just above a whole number loads a
+        tooth almost at once, and the straight line beyond the design zone is then all but vertical.
     """
     c = engagement.compliance if full_matrix else replace(engagement.compliance, coupling=False)
-    return replace(
-        engagement,
-        driver_relief=MinimumExcitationRelief(c, "driver", loading, load),
-        driven_relief=MinimumExcitationRelief(c, "driven", loading, load),
-    )
+    driver = MinimumExcitationRelief(c, "driver", loading, load)
+    driven = MinimumExcitationRelief(c, "driven", loading, load)
+    refuse_deeper_than_the_tooth(driver, driven)
+    return replace(engagement, driver_relief=driver, driven_relief=driven)
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,11 +200,75 @@ class ReliefTable:
     load: Array
     relief: Array
 
+    def relieved(self) -> TabulatedRelief:
+        """The relief that straight lines between the nodes make."""
+        order = np.argsort(self.roll_angle)
+        return TabulatedRelief(self.roll_angle[order], self.relief[order])
 
-def relief_table(relief: MinimumExcitationRelief, positions: int = 121) -> ReliefTable:
-    """Tabulate a designed relief over the whole path of contact."""
+
+def relief_nodes(*reliefs: MinimumExcitationRelief, tolerance: float | None = None) -> Array:
+    """Positions at which designed reliefs are to be tabulated so that straight lines between them keep to the design.
+
+    Every kink of the loading and of a table of compliances is a node, and pieces are cut until the straight line
+    over each is near enough: nodes crowd where the load starts, W ln W having an infinite slope there.
+
+    Parameters
+    ----------
+    reliefs : MinimumExcitationRelief
+        Of one pair.
+    tolerance : float, optional
+        Largest distance from any of them [m]; by default 1e-6 of the pair's largest deflection.
+
+    Returns
+    -------
+    ndarray, shape (P,)
+        From the start to the end of the path of contact [m].
+    """
+    pair = reliefs[0].compliance.pair
+    bound = _CHORD * sum(r.offset for r in reliefs) if tolerance is None else tolerance
+    places = [pair.x_start, pair.x_end]
+    for r in reliefs:
+        places += [float(x) for x in pair.x_of_roll(np.array(r.kinks), r.member)]
+        radii = np.array(r.compliance.source(r.member).kinks)
+        places += [float(x) for x in pair.x_of_radius(radii, r.member)]
+    x = np.unique(np.clip(places, pair.x_start, pair.x_end))
+    nearest = _NEAREST * pair.path_length
+    x = x[np.concatenate([[True], np.diff(x) > nearest])]
+    x[-1] = pair.x_end
+    inside = np.array([0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95])
+    left, right, done = x[:-1], x[1:], [x]
+    while left.size:
+        trial = left + np.multiply.outer(inside, right - left)
+        off = np.zeros(left.size)
+        for r in reliefs:
+            a, b = r.at(left), r.at(right)
+            off = np.maximum(off, np.abs(r.at(trial) - a - np.multiply.outer(inside, b - a)).max(axis=0))
+        split = (off > bound) & (right - left > 4.0 * nearest)
+        left, right = left[split], right[split]
+        # Halved while far off; near the goal into just as many pieces as the square of their length asks for.
+        pieces = np.where(off > 16.0 * bound, 2, np.ceil(np.sqrt(off / bound)))[split].astype(int)
+        cuts = [np.linspace(a, b, n + 1) for a, b, n in zip(left, right, pieces, strict=True)]
+        done += [cut[1:-1] for cut in cuts]
+        left, right = np.concatenate([x[:0], *(c[:-1] for c in cuts)]), np.concatenate([x[:0], *(c[1:] for c in cuts)])
+    return np.sort(np.concatenate(done))
+
+
+def relief_table(relief: MinimumExcitationRelief, positions: int | ArrayLike | None = None) -> ReliefTable:
+    """Tabulate a designed relief over the whole path of contact.
+
+    Parameters
+    ----------
+    relief : MinimumExcitationRelief
+    positions : int or array_like, optional
+        Positions on the line of action [m], or how many, evenly spaced; by default `relief_nodes`.
+    """
     pair = relief.compliance.pair
-    x = np.linspace(pair.x_start, pair.x_end, positions)
+    if positions is None:
+        x = relief_nodes(relief)
+    elif np.ndim(positions) == 0:
+        x = np.linspace(pair.x_start, pair.x_end, int(np.asarray(positions)))
+    else:
+        x = np.array(positions, dtype=float)
     return ReliefTable(
         x,
         np.asarray(pair.radius(x, relief.member)),

@@ -136,6 +136,12 @@ class GearPair:
         sign = 1.0 if member == "driver" else -1.0
         return sign * (np.sqrt((r - rb) * (r + rb)) - self._curvature_at_pitch(member))
 
+    def x_of_roll(self, roll: ArrayLike, member: Member) -> Array:
+        """Contact position x [m] at which a gear touches at a roll angle [rad]."""
+        sign = 1.0 if member == "driver" else -1.0
+        length = np.asarray(roll, dtype=float) * self.gear(member).base_radius
+        return np.asarray(sign * (length - self._curvature_at_pitch(member)))
+
     @cached_property
     def x_start(self) -> float:
         """Start of the path of contact [m], negative: the driven tip, or the driver's form circle if higher."""

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_POSITIONS = 121
 #: What the design knows of the effects; the gears' own reliefs are what it replaces.
 DESIGN_EFFECTS = ("neighbour_coupling", "hertz", "corner_contact")
 
@@ -123,8 +122,11 @@ def _least_stress(
 def _relief_tables(
     scene: Scene, pair: LoadedPair, designed: Engagement, diagonal: Engagement | None, others: list[Engagement]
 ) -> tuple[dict[Member, ReliefTable], list[Table]]:
-    from fegear.design import relief_table
+    from fegear.design import relief_nodes, relief_table
 
+    nodes = relief_nodes(
+        *(cast("MinimumExcitationRelief", r) for r in (designed.driver_relief, designed.driven_relief))
+    )
     found: dict[Member, ReliefTable] = {}
     tables = []
     for member, label in table_names(scene, pair.name).items():
@@ -133,7 +135,7 @@ def _relief_tables(
             # minimum_excitation has put its own relief on both flanks
             return cast("MinimumExcitationRelief", e.driver_relief if member == "driver" else e.driven_relief)
 
-        t = found[member] = relief_table(of(designed), _POSITIONS)
+        t = found[member] = relief_table(of(designed), nodes)
         columns = [
             Column("x", t.x, "mm", "position on the line of action, positive toward the driver's tip"),
             Column("radius", t.radius, "mm", "radius of the flank point"),
@@ -251,6 +253,10 @@ def _values(
         error = left if label == "designed" else None
         values.append(Value(f"{name}.te_peak_to_peak.{key}", t.peak_to_peak, "um", error, f"{label}, design load"))
         values.append(Value(f"{name}.te_effective.{key}", t.effective_error, "um", None, f"A_e, {label}, design load"))
+    read = replace(designed, **{f"{m}_relief": table.relieved() for m, table in found.items()})
+    tables_leave = transmission_error(read, te["designed"].load, HARMONICS).peak_to_peak
+    about = "designed, its relief tables read back linearly, design load"
+    values.append(Value(f"{name}.te_peak_to_peak.relief_tables", tables_leave, "um", None, about))
     values.append(Value(f"{name}.te_mean.designed", te["designed"].mean, "um", None, "design load"))
     for member, relief in found.items():
         values.append(Value(f"{name}.{member}.largest_relief", float(relief.relief.max()), "um", None, "over the path"))

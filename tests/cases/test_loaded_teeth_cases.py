@@ -209,6 +209,7 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("calculix_pair", ('gear.a.spacing_errors=["1 um"]', "effects.spacing_errors=true"), "each of the 28 teeth"),
         ("mark_minimum_excitation", ('design.length="20 mm"',), "beyond the path"),
         ("mark_minimum_excitation", ('design.length="5 mm"',), "below 1 no pair"),
+        ("mark_minimum_excitation", ('design.length="9.3731 mm"',), "what its tooth can take.*choose at least 1.0"),
         ("mark_minimum_excitation", ("design.contact_ratio=1.3",), "contradicts length"),
         ("mark_minimum_excitation", ("design.pair=II",), "is no pair of this case"),
         ("mark_minimum_excitation", ("design.slope=2.5",), "must lie between 0 and 2"),
@@ -241,20 +242,36 @@ def test_spacing_errors_give_rotational_harmonics():
     assert values["I.te_largest_rotational"].shown == pytest.approx(rotational["amplitude"][0], rel=1e-12)
 
 
+def fed_back(tables, folder):
+    """What a run writes into its folder, as the relief of a case: one file, the gear meshes with its like."""
+    t = tables["relief_I_test"]
+    order = np.argsort(t["roll_angle"])
+    rows = "\n".join(f"{a:.12g},{r:.12g}" for a, r in zip(t["roll_angle"][order], t["relief"][order], strict=True))
+    (folder / "relief.csv").write_text(f"roll_angle [deg],relief [um]\n{rows}\n")
+    table = f'{{table={{file="{folder / "relief.csv"}"}}}}'
+    return f"gear.test.relief={table}", 'results=["transmission-error"]', "effects.relief=true"
+
+
 def test_a_designed_relief_can_be_fed_back_as_a_table(tmp_path):
     """The relief table that one run writes is the relief of the next: the transmission error is gone."""
     tables, values, _ = run("mark_minimum_excitation")
-    for label, name in (("I_test", "driver"), ("I_test_driven", "driven")):
-        t = tables[f"relief_{label}"]
-        order = np.argsort(t["roll_angle"])
-        rows = "\n".join(f"{a:.12g},{r:.12g}" for a, r in zip(t["roll_angle"][order], t["relief"][order], strict=True))
-        (tmp_path / f"{name}.csv").write_text(f"roll_angle [deg],relief [um]\n{rows}\n")
-    table = f'{{table={{file="{tmp_path / "driver.csv"}"}}}}'
-    again, found, _ = run(
-        "mark_tip_relief", f"gear.test.relief={table}", 'results=["transmission-error"]', "effects.relief=true"
-    )
-    assert found["I.te_peak_to_peak"].value < 0.02 * values["I.te_peak_to_peak.no_relief"].value
+    again, found, _ = run("mark_tip_relief", *fed_back(tables, tmp_path))
+    assert found["I.te_peak_to_peak"].value < 1e-9
     assert again["transmission_error_I"]["te"].mean() == pytest.approx(values["I.te_mean.designed"].shown, rel=1e-2)
+
+
+def test_a_relief_designed_with_finite_elements_survives_its_own_table(tmp_path):
+    """121 even nodes left .07 um. Stated is what the tables leave; read back through the case file, they leave that.
+
+    It lies below a tenth of a thousandth of a micrometre, and far below a tenth of the design's own error.
+    """
+    tables, values, _ = run("nasa_relief_design")
+    again = run("nasa_relief_design", *fed_back(tables, tmp_path), 'pair.I.loads=["1615 N"]')[1]
+    found = again["I.te_peak_to_peak"].value
+    stated = values["I.te_peak_to_peak.relief_tables"].value
+    assert found == pytest.approx(stated, rel=0.1)
+    assert 0.0 < found < 1e-10
+    assert found < 0.1 * values["I.te_peak_to_peak.designed"].error
 
 
 def test_pinion_and_wheel():

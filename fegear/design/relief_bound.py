@@ -1,0 +1,121 @@
+"""How deep a relief a tooth can take, and what to change where a design asks for more."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import RangeError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.design.minimum_excitation import MinimumExcitationRelief
+    from fegear.geometry.gear import Gear
+
+    Array = NDArray[np.float64]
+
+#: Deepest relief in modules. Deflections reach it only under line loads that no steel carries (some 1.5 GPa times the
+#: module), and the influence functions, which are those of the unrelieved tooth, no longer hold there.
+_DEEPEST = 0.1
+
+
+def deepest_relief(gear: Gear, roll: ArrayLike) -> Array:
+    """Removal along the normal that a tooth can take at roll angles [rad], same shape [m].
+
+    A tenth of the module, and nowhere beyond the middle of the tooth: a removal m moves the flank by m / cos(alpha_r)
+    along the arc of its radius, alpha_r the pressure angle there.
+    """
+    angle = np.asarray(roll, dtype=float)
+    radius = np.hypot(1.0, angle) * gear.base_radius
+    half_thickness = radius * np.maximum(gear.tooth.half_thickness_angle(radius / gear.module), 0.0)
+    return np.asarray(np.minimum(_DEEPEST * gear.module, half_thickness / np.hypot(1.0, angle)))
+
+
+def refuse_deeper_than_the_tooth(*reliefs: MinimumExcitationRelief) -> None:
+    """Refuse designs that remove more than the tooth has to give, and name what would do.
+
+    Parameters
+    ----------
+    reliefs : MinimumExcitationRelief
+        Of one design: same loading and load.
+
+    Raises
+    ------
+    RangeError
+        With the shortest design zone, or else the largest load, that stays within the tooth.
+    """
+    worst = max(reliefs, key=_depth)
+    depth = _depth(worst)
+    if depth <= 1.0:
+        return
+    loading, pair = worst.loading, worst.compliance.pair
+    ratio, middle = loading.length / loading.base_pitch, 0.5 * (pair.x_start + pair.x_end)
+    rule = (
+        f"asks for a relief of {_most(worst) * 1e6:.4g} um on the {worst.member}, {depth:.3g} times what its tooth can "
+        f"take ({_DEEPEST:g} module, to the middle of the tooth at most)"
+    )
+    room = 2.0 * min(loading.centre - pair.x_start, pair.x_end - loading.centre)
+    longest = max(loading.length, room)
+
+    def fits(length: float, centre: float, load: float) -> bool:
+        n = max(math.floor(length / loading.base_pitch * (1.0 + 1e-12)), 1)
+        kept = loading.peak if n == loading.order else math.nan
+        tried = replace(loading, length=length, centre=centre, peak=kept)
+        return all(_depth(replace(r, loading=tried, load=load)) <= 1.0 for r in reliefs)
+
+    if fits(longest, loading.centre, worst.load):
+        pitch = loading.base_pitch
+        least = _least(lambda a: fits(a * pitch, loading.centre, worst.load), ratio, longest / pitch)
+        raise RangeError(
+            "design.contact_ratio", f"{ratio:.6g}", rule,
+            f"choose at least {least:.4g} (design.length {least * pitch * 1e3:.5g} mm)",
+        )  # fmt: skip
+    if fits(pair.path_length, middle, worst.load):
+        raise RangeError(
+            "design.centre", f"{loading.centre * 1e3:.6g} mm", rule,
+            f"choose the middle of the path, {middle * 1e3:.6g} mm, and a design length up to "
+            f"{pair.path_length * 1e3:.6g} mm",
+        )  # fmt: skip
+    load = worst.load
+    while load > 1e-9 * worst.load and not fits(pair.path_length, middle, load):
+        load *= 0.9
+    raise RangeError(
+        "design.load", f"{worst.load:.6g} N", rule,
+        f"lower the load: the whole path of contact as design length allows {load:.3g} N "
+        f"({load / worst.compliance.face_width * 1e-3:.3g} N/mm)",
+    )  # fmt: skip
+
+
+def _places(relief: MinimumExcitationRelief) -> Array:
+    pair = relief.compliance.pair
+    return np.linspace(pair.x_start, pair.x_end, 241)
+
+
+def _depth(relief: MinimumExcitationRelief) -> float:
+    """Largest removal over what the tooth can take; infinite where the removal is no number."""
+    pair, x = relief.compliance.pair, _places(relief)
+    share = relief.at(x) / deepest_relief(pair.gear(relief.member), pair.roll_angle(x, relief.member))
+    return float(share.max()) if np.isfinite(share).all() else math.inf
+
+
+def _most(relief: MinimumExcitationRelief) -> float:
+    return float(relief.at(_places(relief)).max())
+
+
+def _least(fits: Callable[[float], bool], low: float, high: float) -> float:
+    """Smallest contact ratio above `low` that fits, in thousandths; `high` fits."""
+    thousandths = range(math.floor(low * 1e3) + 1, math.ceil(high * 1e3))
+    first, last = 0, len(thousandths)
+    while first < last:
+        tried = (first + last) // 2
+        if fits(thousandths[tried] * 1e-3):
+            last = tried
+        else:
+            first = tried + 1
+    return thousandths[first] * 1e-3 if first < len(thousandths) else high
