@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fegear.engine.figure import DeferredFigure, Figure
+
 
 @dataclass(frozen=True, slots=True)
 class Column:
@@ -125,6 +127,8 @@ class Outcome:
         The settings that it was computed with, plain numbers and texts.
     remarks : tuple of str
         Sentences that the user should read.
+    figures : tuple of Figure or DeferredFigure
+        What can be drawn.
     """
 
     data: object = None
@@ -132,3 +136,4 @@ class Outcome:
     values: tuple[Value, ...] = ()
     settings: Mapping[str, object] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    figures: tuple[Figure | DeferredFigure, ...] = ()

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from fegear.engine.run import Results, Watcher
     from fegear.engine.stage import Task
-    from fegear.output.pictures.style import Picture
+    from fegear.output.draw_png import Picture
 
 #: Steps of writing that a watcher sees after those of the plan.
 STEPS = 1

@@ -7,11 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Curve, Figure, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
 from fegear.models.loaded_pair import LoadedPair, check_relief
 from fegear.results import forecasts
-from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair, spur_pairs
+from fegear.results.loaded_pair import (
+    EFFECTS,
+    LINE_OF_ACTION,
+    drawn_loads,
+    loaded_pair,
+    needs_pair,
+    path_ends,
+    spur_pairs,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -94,7 +103,9 @@ def _run(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
             f"Pair {name}: tip corners touch off the path and carry up to {worst:.4g} N ({worst / pair.nominal:.1%}); "
             "hertz_pressure there is that of smooth flanks, the true one is higher."
         )
-    return Outcome(LoadSharingData(pair, history), tuple(tables), values, {"positions": _POSITIONS}, tuple(remarks))
+    data = LoadSharingData(pair, history)
+    figures = (_figure(name, data, load_error),)
+    return Outcome(data, tuple(tables), values, {"positions": _POSITIONS}, tuple(remarks), figures)
 
 
 def _difference(history: PairHistory, other: PairHistory) -> Array:
@@ -122,6 +133,27 @@ def _all_loads(name: str, pair: LoadedPair, h: PairHistory) -> Table:
 def check(scene: Scene, name: str) -> None:
     """What every stage that computes with the gears' own relief refuses."""
     check_relief(scene, name)
+
+
+def _figure(name: str, data: LoadSharingData, load_error: Array | None) -> Figure:
+    h, pair = data.history, data.pair
+    x, marks = h.x * 1e3, path_ends(pair)
+    load, pressure = [], []
+    for i, label, role in drawn_loads(pair.loads, pair.nominal):
+        error = load_error if pair.loads[i] == pair.nominal else None
+        load.append(Curve(x, h.load[:, i], label, role, error))
+        pressure.append(Curve(x, h.hertz_pressure[:, i] * 1e-6, label, role))
+    beyond = ", beyond which tip corners touch" if pair.engagement.corner_contact else ""
+    return Figure(
+        f"load_sharing_{name}",
+        f"Load on a tooth pair of {name}",
+        f"Pair {name}: one tooth pair from its first to its last contact; dotted: ends of the path of contact{beyond}. "
+        f"Compliances: {'; '.join(pair.sources)}.",
+        (
+            Panel(LINE_OF_ACTION, Axis("load on the pair", "N", zero=True), tuple(load), marks),
+            Panel(LINE_OF_ACTION, Axis("largest Hertzian pressure", "MPa", zero=True), tuple(pressure), marks),
+        ),
+    )
 
 
 LOAD_SHARING = Stage(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from fegear.engine.figure import Axis, Mark, few, ramp
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Task
 from fegear.models.loaded_pair import MEMBERS, LoadedPair, build_loaded_pair, check_pair, effect_remarks, gear_name
@@ -12,15 +13,34 @@ from fegear.models.tooth_influence import solution_remarks, solution_told
 from fegear.results import forecasts
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fegear.case.reading import Scene
     from fegear.contact import Engagement, Loaded
     from fegear.contact.engagement import RollGrid
     from fegear.engine.stage import Done, Progress
 
+#: Abscissae of figures.
+LINE_OF_ACTION = Axis("position on the line of action from the pitch point", "mm")
+BASE_PITCH = Axis("roll position over one base pitch", "mm")
 #: How many times the finite-element parts of both gears report that they go on.
 _STEPS = 4
 #: Effects that load sharing knows.
 EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact")
+
+
+def drawn_loads(loads: Sequence[float], nominal: float, word: str = "nominal") -> list[tuple[int, str, str]]:
+    """Index, label and role of the loads that are drawn: all, or evenly many with the nominal one."""
+    near = min(range(len(loads)), key=lambda i: abs(loads[i] - nominal))
+    chosen = few(len(loads), (near,))
+    labels = [f"{loads[i]:.5g} N" + (f" ({word})" if loads[i] == nominal and len(loads) > 1 else "") for i in chosen]
+    return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
+
+
+def path_ends(pair: LoadedPair) -> tuple[Mark, ...]:
+    """Marks of the ends of the path of contact, beyond which only tip corners touch."""
+    p = pair.engagement.pair
+    return tuple(Mark("x", x * 1e3) for x in (p.x_start, p.x_end))
 
 
 def spur_pairs(scene: Scene) -> tuple[str, ...]:

@@ -7,11 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel, Stems
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
 from fegear.models.loaded_pair import LoadedPair, check_relief
 from fegear.results import forecasts
-from fegear.results.loaded_pair import EFFECTS, change_by_shifts, loaded_pair, needs_pair, spur_pairs
+from fegear.results.loaded_pair import (
+    BASE_PITCH,
+    EFFECTS,
+    change_by_shifts,
+    drawn_loads,
+    loaded_pair,
+    needs_pair,
+    spur_pairs,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,6 +34,8 @@ if TYPE_CHECKING:
 HARMONICS = 64
 #: Roll positions of the table over the base pitch; those on either side of every jump come in addition.
 _POSITIONS = 200
+#: Harmonics in the figure.
+_BARS = 16
 #: Largest number of base pitches over which rotational harmonics of spacing errors are computed.
 _MOST_CYCLES = 10_000
 
@@ -237,9 +248,9 @@ def _run(_scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
                     )
                 )
     data = TransmissionErrorData(pair, tuple(exact), curve, stiffness, rotational)
-    return Outcome(
-        data, tuple(tables), tuple(values), {"harmonics": HARMONICS, "positions": _POSITIONS}, tuple(remarks)
-    )
+    settings = {"harmonics": HARMONICS, "positions": _POSITIONS}
+    figures = _figures(name, data, None if shifts is None else shifts.amplitude)
+    return Outcome(data, tuple(tables), tuple(values), settings, tuple(remarks), figures)
 
 
 def _summary_over_loads(name: str, pair: LoadedPair, exact: list[TransmissionError]) -> Table:
@@ -272,6 +283,58 @@ def _rotational_table(name: str, series: FourierSeries, cycles: int) -> Table:
         ),
         f"Rotational harmonics of the transmission error of {name}",
     )
+
+
+def _figures(name: str, data: TransmissionErrorData, errors: Array | None) -> tuple[Figure, ...]:
+    pair, curve = data.pair, data.curve
+    drawn, i = drawn_loads(pair.loads, pair.nominal), pair.loads.index(pair.nominal)
+    te, x = data.exact[i], curve.x * 1e3
+    over_pitch = Figure(
+        f"transmission_error_{name}",
+        f"Transmission error of {name}",
+        f"Pair {name}: loaded transmission error over one base pitch (Harris map of its loads), and the mesh stiffness "
+        f"at {pair.nominal:.5g} N: mean {te.average_stiffness * 1e-6:.4g} N/µm by the local slope. Peak to peak "
+        f"{te.peak_to_peak * 1e6:.3g} µm, effective error A_e {te.effective_error * 1e6:.3g} µm.",
+        (
+            Panel(BASE_PITCH, Axis("transmission error", "um"), tuple(
+                Curve(x, curve.transmission_error[:, k] * 1e6, label, role) for k, label, role in drawn
+            )),
+            Panel(BASE_PITCH, Axis("mesh stiffness", "N/um", zero=True), (
+                Curve(x, data.stiffness[:, i] * 1e-6, "secant stiffness", "secant"),
+                Curve(x, curve.local_stiffness[:, i] * 1e-6, "local slope", "local slope"),
+            )),
+        ),
+    )  # fmt: skip
+    n = np.arange(1, _BARS + 1)
+    amplitude = Axis("amplitude of the transmission error", "um, 0-peak")
+    harmonics = Figure(
+        f"transmission_error_harmonics_{name}",
+        f"Harmonics of the transmission error of {name}",
+        f"Pair {name}: harmonics of the static transmission error, integrated exactly between its jumps.",
+        (
+            Panel(Axis("harmonic of the tooth-mesh frequency", whole=True), amplitude, tuple(
+                Bars(n, data.exact[k].series.amplitude[:_BARS] * 1e6, label, role,
+                     None if errors is None or k != i else errors[:_BARS] * 1e6)
+                for k, label, role in drawn
+            )),
+        ),
+    )  # fmt: skip
+    if data.rotational is None:
+        return over_pitch, harmonics
+    cycles = pair.engagement.cycles
+    order = np.arange(1, data.rotational.amplitude.size + 1) / cycles
+    rotational = Figure(
+        f"transmission_error_rotational_{name}",
+        f"Rotational harmonics of the transmission error of {name}",
+        f"Pair {name}: harmonics over the {cycles} base pitches after which the same teeth meet again, at "
+        f"{pair.nominal:.5g} N. Whole numbers are harmonics of the tooth-mesh frequency, the others spacing errors.",
+        (
+            Panel(Axis("frequency over the tooth-mesh frequency"), amplitude, (
+                Stems(order, data.rotational.amplitude * 1e6, "", "blue"),
+            )),
+        ),
+    )  # fmt: skip
+    return over_pitch, harmonics, rotational
 
 
 TRANSMISSION_ERROR = Stage(

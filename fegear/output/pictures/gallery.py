@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from fegear.engine.figure import DeferredFigure
 from fegear.engine.stage import Task
 from fegear.errors import MissingLibraryError
+from fegear.output.draw_png import draw_pictures
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from fegear.engine.figure import Figure
     from fegear.engine.run import Results
     from fegear.fem import StiffnessTable
     from fegear.output.pictures.style import Picture
@@ -236,6 +239,12 @@ DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
 }
 
 
+def draw_figure(figure: Figure | DeferredFigure, folder: Path) -> Iterator[Picture]:
+    """Draw one figure, describing it first where that was put off."""
+    made = figure.make() if isinstance(figure, DeferredFigure) else figure
+    yield from draw_pictures(made, folder)
+
+
 def draw_all(
     results: Results, folder: Path, advance: Callable[[float], None]
 ) -> tuple[list[tuple[Task, Picture]], list[str]]:
@@ -259,10 +268,13 @@ def draw_all(
     folder.mkdir(exist_ok=True)
     pictures: list[tuple[Task, Picture]] = []
     missing: list[str] = []
-    tasks = [task for task in results.outcomes if task.stage in DRAWERS]
+    tasks = [task for task, outcome in results.outcomes.items() if outcome.figures or task.stage in DRAWERS]
     for number, task in enumerate(tasks, start=1):
         try:
-            pictures += ((task, picture) for picture in DRAWERS[task.stage](results, task, folder))
+            if results.outcomes[task].figures:
+                pictures += ((task, p) for f in results.outcomes[task].figures for p in draw_figure(f, folder))
+            else:
+                pictures += ((task, picture) for picture in DRAWERS[task.stage](results, task, folder))
         except MissingLibraryError as error:
             missing.append(f"{error}".rstrip(".") + ".")
         advance(number / len(tasks))

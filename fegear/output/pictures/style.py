@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+
+from fegear.output.draw_png import Picture
+
+__all__ = ["BLACK", "BLUE", "DASHES", "DPI", "GREEN", "ORANGE", "PURPLE", "RED", "SKY", "YELLOW", "Picture"]
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,15 +46,6 @@ _SETTINGS = {
     "legend.frameon": False,
     "lines.linewidth": 1.8,
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """A picture on disk and the sentence below it in the report."""
-
-    path: Path
-    title: str
-    caption: str
 
 
 def in_house_style(draw: Callable[P, R]) -> Callable[P, R]:

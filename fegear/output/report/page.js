@@ -315,7 +315,51 @@
     return painted(made, mode);
   }
 
+  // Figures come as plotly's own JSON in the shades of light ground; `shades` says what stands for each on dark ground.
   const drawn = [];
+  const shadesOf = (text, mode, darker) =>
+    JSON.parse(mode === "dark" ? text.replace(/#[0-9A-F]{6}/g, (shade) => darker[shade] ?? shade) : text);
+  function fitted(layout, look, width) { // on narrow screens every name of the legend has a line of its own
+    const { names, inner, beside } = layout.meta, narrow = width < 560;
+    const more = narrow && names > 1 ? 21 * (names - Math.ceil(names / beside)) : 0, below = narrow ? 16 : 0;
+    const made = { ...layout, template: look, dragmode: narrow ? false : "zoom", height: layout.height + more + below,
+      font: { family: getComputedStyle(document.body).fontFamily },
+      margin: { ...layout.margin, t: layout.margin.t + more, b: layout.margin.b + below, ...(narrow ? { l: 58, r: 12 } : {}) } };
+    if (layout.updatemenus) made.updatemenus = layout.updatemenus.map((menu) => ({ ...menu, y: menu.y + more / inner }));
+    if (narrow) for (const [name, axis] of Object.entries(layout)) {
+      if (name.startsWith("xaxis")) made[name] = { ...axis, title: { text: axis.title.text.replace(/(.{24,}?) /, "$1<br>") } };
+    }
+    return made;
+  }
+  function optionsOf(key) {
+    // The buttons are named one by one: plotly's own choice holds one that sends the data away.
+    return { responsive: true, displaylogo: false, showTips: false, displayModeBar: "hover", plotlyServerURL: "",
+      modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "resetScale2d"]],
+      toImageButtonOptions: { format: "svg", filename: key } };
+  }
+  const plain = [];
+  async function drawPlain(number, again) {
+    const shades = JSON.parse($("shades").textContent), mode = theme();
+    const spec = shadesOf($("figures").textContent, mode, shades.darker)[number];
+    const place = $(`plot-${spec.key}`);
+    const look = shadesOf(JSON.stringify(shades.template), mode, shades.darker);
+    const layout = fitted(spec.layout, look, place.clientWidth);
+    if (again) { // what the reader has hidden or chosen stays so
+      const menu = place.layout.updatemenus?.[0];
+      spec.data.forEach((trace, i) => { if (place.data[i].visible !== undefined) trace.visible = place.data[i].visible; });
+      if (menu?.active) {
+        layout.updatemenus[0].active = menu.active;
+        for (const [path, value] of Object.entries(layout.updatemenus[0].buttons[menu.active].args[1])) {
+          const [name, part] = path.split(".");
+          if (part === "title") layout[name] = { ...layout[name], title: { text: value } };
+        }
+      }
+    } else place.replaceChildren();
+    place.style.height = `${layout.height}px`; // the room stays taken while plotly fits the plot to a new width
+    await (again ? Plotly.react : Plotly.newPlot)(place, spec.data, layout, optionsOf(spec.key));
+    if (!again) plain.push(number);
+  }
+
   async function draw(spec) {
     const place = $(`plot-${spec.key}`);
     const data = await traces(spec), mode = theme();
@@ -330,6 +374,7 @@
     drawn.push({ spec, place, data, options });
   }
   async function repaint() {
+    for (const number of plain) await drawPlain(number, true);
     const mode = theme();
     for (const { spec, place, data, options } of drawn) {
       const hidden = place.data.map((trace) => trace.visible);
@@ -347,8 +392,8 @@
     const script = document.createElement("script");
     script.textContent = new TextDecoder().decode(await unpack(bytes($("plotly").textContent), "gzip"));
     document.head.append(script);
-    for (const spec of specs) {
-      await draw(spec);
+    for (const [number, spec] of specs.entries()) {
+      await (spec.data ? drawPlain(number, false) : draw(spec));
       await new Promise((done) => { setTimeout(done, 0); }); // the page stays alive between two plots
     }
     dark.addEventListener("change", repaint);

@@ -14,7 +14,9 @@ from importlib import resources
 from typing import TYPE_CHECKING, Protocol
 
 import fegear
+from fegear.engine.figure import Figure as NewFigure
 from fegear.errors import MissingLibraryError
+from fegear.output.draw_plotly import darker, plotly_json, template
 from fegear.output.report.library import compressed_plotly
 from fegear.output.tables import table_text
 
@@ -22,8 +24,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from fegear.engine.figure import Figure
     from fegear.engine.outcome import Table
-    from fegear.output.report.figure import Figure
+    from fegear.output.report.figure import Figure as OldFigure
 
 #: Files in archives carry this date, so that equal content is equal bytes.
 _DATE = (1980, 1, 1, 0, 0, 0)
@@ -89,8 +92,8 @@ def _resource(name: str) -> str:
     return resources.files("fegear.output.report").joinpath(name).read_text("utf-8")
 
 
-def _figures(page: Page) -> list[Figure]:
-    def within(block: object) -> list[Figure]:
+def _figures(page: Page) -> list[Figure | OldFigure]:
+    def within(block: object) -> list[Figure | OldFigure]:
         found = getattr(block, "figure", None)
         inner = [figure for part in getattr(block, "blocks", ()) for figure in within(part)]
         return ([found] if found is not None else []) + inner
@@ -100,6 +103,11 @@ def _figures(page: Page) -> list[Figure]:
 
 def _embedded(identity: str, kind: str, content: str) -> str:
     return f"<script type='{kind}' id='{identity}'>{content}</script>\n"
+
+
+def _json(content: object) -> str:
+    """JSON that can stand inside a script of a page."""
+    return json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
 def _library() -> str:
@@ -136,8 +144,13 @@ def page_text(page: Page) -> str:
         if files
         else ""
     )
-    specs = json.dumps([figure.spec() for figure in figures], ensure_ascii=False, separators=(",", ":"))
-    scripts = _embedded("figures", "application/json", specs.replace("</", "<\\/"))
+    specs = [
+        {"key": figure.key, **plotly_json(figure)} if isinstance(figure, NewFigure) else figure.spec()
+        for figure in figures
+    ]
+    drawn = [figure for figure in figures if isinstance(figure, NewFigure)]
+    scripts = _embedded("figures", "application/json", _json(specs))
+    scripts += _embedded("shades", "application/json", _json({"template": template(), "darker": darker(drawn)}))
     if figures:
         scripts += _library()
     return (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import fegear
+from fegear.engine.figure import Figure
 from fegear.output.report.accuracy import accuracy_blocks
 from fegear.output.report.blocks import (
     Code,
@@ -28,9 +29,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from fegear.engine.outcome import Outcome
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
-    from fegear.output.pictures.style import Picture
+    from fegear.output.draw_png import Picture
     from fegear.output.report.page import Block
 
 #: More values than this are folded, task by task: nobody reads forty numbers before the first plot.
@@ -71,10 +73,14 @@ def _sources(results: Results, task: Task) -> tuple[Block, ...]:
     return (Folded("Sources of these results", (Notes(told, "sources"),)),) if told else ()
 
 
+def _interactive(outcome: Outcome) -> list[Figure]:
+    return [f for f in outcome.figures if isinstance(f, Figure) and f.drawable_in_page]
+
+
 def _stage(results: Results, task: Task, pictures: Sequence[Picture]) -> Section:
     outcome = results.outcomes[task]
-    drawn = figures(outcome, task)
-    blocks: list[Block] = [Plot(figure) for figure in drawn]
+    blocks: list[Block] = [Plot(figure) for figure in _interactive(outcome)]
+    blocks += [Plot(figure) for figure in figures(outcome, task)]
     blocks += [Still(picture) for picture in pictures]
     blocks += [DataTable(table) for table in outcome.tables]
     return Section(_title(results, task), (*blocks, *_sources(results, task)) if blocks else ())
@@ -136,6 +142,9 @@ def run_page(results: Results, pictures: Sequence[tuple[Task, Picture]], remarks
     """
     scene = results.scene
     described = {figure.key for task, outcome in results.outcomes.items() for figure in figures(outcome, task)}
+    described |= {
+        f.key for o in results.outcomes.values() for f in o.figures if isinstance(f, Figure) and f.drawable_in_page
+    }
     still = [(task, picture) for task, picture in pictures if picture.path.stem not in described]
     name = f"{scene.name}.toml"
     files = {name: scene.text.encode()} if scene.text else {}

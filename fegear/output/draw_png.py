@@ -1,0 +1,469 @@
+"""Figures as PNG or SVG, by matplotlib: margins are set in inches, legends stand above the panels, off the curves."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.engine.colours import look
+from fegear.engine.figure import (
+    Axis,
+    Bars,
+    Curve,
+    Figure,
+    HeatMap,
+    Mark,
+    Panel,
+    Points,
+    Spot,
+    Stems,
+    Surface,
+    TriangleField,
+    View,
+    few,
+)
+from fegear.output.report.numbers import pretty_unit
+from fegear.output.shades import DIVERGING, SEQUENTIAL, shade
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+
+DPI = 150
+#: Views that paper has side by side.
+_MOST_VIEWS = 4
+#: Inches: a panel alone, panels above each other, and around them.
+_WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
+_ALONE, _STACKED = 3.4, 2.3
+_LEFT, _RIGHT, _BOTTOM, _NARROW = 0.85, 0.25, 0.55, 0.22
+_TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
+#: Marks of an axis of whole numbers.
+_MOST_WHOLE = 20
+#: Inches of a legend's letter and of its line before the words.
+_LETTER, _HANDLE = 0.078, 0.55
+_DASHES = {
+    "solid": "-", "dash": "--", "dashdot": "-.", "dot": ":", "longdash": (0, (8, 3)),
+    "longdashdot": (0, (8, 2, 2, 2)), "steps": "-",
+}  # fmt: skip
+_SYMBOLS = {
+    "circle": "o", "square": "s", "triangle-up": "^", "triangle-down": "v", "diamond": "D", "cross": "P", "x": "X",
+    "star": "*",
+}  # fmt: skip
+_SETTINGS = {
+    "font.size": 10.0,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "grid.color": "0.88",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 10.5,
+    "axes.titlelocation": "left",
+    "legend.frameon": False,
+    "svg.hashsalt": "fegear",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture on disk and the sentence below it in the report."""
+
+    path: Path
+    title: str
+    caption: str
+
+
+def draw_pictures(figure: Figure, folder: Path, kind: str = "png") -> Iterator[Picture]:
+    """Draw a figure into ``<key>.png``, or every view of it into a file of its own where views have keys.
+
+    Parameters
+    ----------
+    figure : Figure
+    folder : Path
+    kind : {"png", "svg"}
+    """
+    alone = [view for view in figure.views if view.key]
+    for view in alone:
+        path = folder / f"{view.key}.{kind}"
+        _draw(figure, (view,), path)
+        yield Picture(path, view.label, figure.caption)
+    if not alone:
+        path = folder / f"{figure.key}.{kind}"
+        chosen = few(len(figure.views), most=_MOST_VIEWS)
+        _draw(figure, tuple(figure.views[i] for i in chosen), path)
+        yield Picture(path, figure.title, figure.caption)
+
+
+def _words(text: str) -> str:
+    """Plain text for matplotlib: nothing in it is mathematics but what ``_{...}`` sets lower."""
+    safe = text.replace("\\", "\\backslash ").replace("$", r"\$") if "$" in text or "\\" in text else text
+    return re.sub(r"_\{([^{}]*)\}", lambda found: rf"$_{{\mathrm{{{found[1]}}}}}$", safe)
+
+
+def _titled(label: str, unit: str) -> str:
+    return _words(f"{label} [{pretty_unit(unit)}]" if unit else label)
+
+
+def _draw(figure: Figure, views: tuple[View, ...], path: Path) -> None:
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure as Canvas
+
+    panels = [
+        (panel, view.label if len(views) > 1 and not panel.title else panel.title)
+        for view in views
+        for panel in view.panels
+    ]
+    columns = figure.columns if len(views) == 1 else min(len(views), 2 if len(views) == _MOST_VIEWS else 3)
+    with rc_context(_SETTINGS):
+        made = Canvas()
+        FigureCanvasAgg(made)
+        _Sheet(made, panels, min(columns, len(panels))).draw()
+        options: dict[str, Any] = {"metadata": {"Date": None}} if path.suffix == ".svg" else {}
+        made.savefig(path, dpi=DPI, **options)
+
+
+class _Sheet:
+    """Panels placed on a sheet in rows, all sizes in inches."""
+
+    def __init__(self, made: Any, panels: Sequence[tuple[Panel, str]], columns: int) -> None:
+        self.made, self.panels, self.columns = made, panels, columns
+        self.rows = -(-len(panels) // columns)
+
+    def _title_room(self, row: int) -> float:
+        here = self.panels[row * self.columns : (row + 1) * self.columns]
+        second = any(panel.x.second for panel, _ in here)
+        return _TITLE * any(title for _, title in here) + _SECOND * second
+
+    def _joined(self, row: int, column: int) -> bool:
+        """Whether the panel below has the same abscissa, which then names it for both."""
+        i = row * self.columns + column
+        below = i + self.columns
+        return below < len(self.panels) and self.panels[i][0].x.like(self.panels[below][0].x) and not any(
+            panel.equal for panel, _ in self.panels
+        )  # fmt: skip
+
+    def _beside(self, i: int) -> bool:
+        """Whether the panel to the left has the same ordinate, which then names it for both."""
+        if i % self.columns == 0:
+            return False
+        here, left = self.panels[i][0], self.panels[i - 1][0]
+        return here.y.like(left.y) and (not _maps(here) or self._one_bar())
+
+    def _one_bar(self) -> bool:
+        """Whether all panels are maps of one quantity, which have one scale of colours."""
+        labels = {_bar_label(item) for panel, _ in self.panels for item in _maps(panel)}
+        return len(labels) == 1
+
+    def draw(self) -> None:
+        panels = [panel for panel, _ in self.panels]
+        base = _ALONE if self.rows == 1 else _STACKED
+        width = _WIDTHS.get(self.columns, _WIDTHS[3])
+        heights = [
+            base * max(p.height for p in panels[r * self.columns : (r + 1) * self.columns]) for r in range(self.rows)
+        ]
+        bottoms = [
+            _NARROW if all(self._joined(r, c) for c in range(min(self.columns, len(panels) - r * self.columns)))
+            else _BOTTOM + 0.14 * max(_lines(p.x) - 1 for p in panels[r * self.columns : (r + 1) * self.columns])
+            for r in range(self.rows)
+        ]  # fmt: skip
+        tops = [self._title_room(r) for r in range(self.rows)]
+        lefts = [
+            _NARROW if all(self._beside(i) for i in range(c, len(panels), self.columns))
+            else _LEFT + _category_room([panels[i].y for i in range(c, len(panels), self.columns)])
+            for c in range(self.columns)
+        ]  # fmt: skip
+        shared = self._one_bar()
+        bars = [
+            _BAR * (any(_maps(panels[i]) for i in range(c, len(panels), self.columns)) and
+                    (not shared or c == self.columns - 1))
+            for c in range(self.columns)
+        ]  # fmt: skip
+        whole = sum(lefts) + self.columns * width + sum(bars) + _RIGHT
+        legend = _legend_entries(panels)
+        across = max(1, int((whole - 0.3) / (_HANDLE + _LETTER * max((len(n) for n in legend), default=1))))
+        lines = -(-len(legend) // across) if len(legend) > 1 else 0
+        head = 0.18 + lines * _LINE
+        tall = head + sum(heights) + sum(bottoms) + sum(tops)
+        self.made.set_size_inches(whole, tall)
+        drawn: list[Any] = []
+        y = tall - head
+        for i, (panel, title) in enumerate(self.panels):
+            row, column = divmod(i, self.columns)
+            if column == 0:
+                y -= heights[row] + tops[row] + (bottoms[row - 1] if row else 0.0)
+            x = sum(lefts[: column + 1]) + column * width + sum(bars[:column])
+            axes = self.made.add_axes((x / whole, y / tall, width / whole, heights[row] / tall))
+            _scales(axes, panel)
+            image = _fill(axes, panel)
+            axes.set_title(_words(title), pad=6 + 72 * _SECOND * bool(panel.x.second))
+            _dress(axes, panel, joined=self._joined(row, column), beside=self._beside(i))
+            drawn.append(axes)
+            if image is not None and (not shared or i == len(panels) - 1):
+                self._bar(image, panel, (x + width + 0.15, y, heights[row]), whole, tall)
+        self._share(drawn)
+        if lines:
+            handles = list(legend.values())
+            self.made.legend(
+                handles, [_words(name) for name in legend], loc="upper left", ncols=across, fontsize=9,
+                bbox_to_anchor=((lefts[0] - 0.06) / whole, 1.0 - 0.03 / tall), borderaxespad=0.0, columnspacing=1.4,
+            )  # fmt: skip
+
+    def _bar(self, image: Any, panel: Panel, place: tuple[float, float, float], whole: float, tall: float) -> None:
+        x, y, height = place
+        room = self.made.add_axes((x / whole, y / tall, 0.14 / whole, height / tall))
+        item = _maps(panel)[0]
+        ends = {"extend": "max"} if isinstance(item, TriangleField) else {}
+        self.made.colorbar(image, cax=room, label=_bar_label(item), **ends)
+        room.grid(visible=False)
+
+    def _share(self, drawn: Sequence[Any]) -> None:
+        """Give panels with the same axes the same range."""
+        for c in range(self.columns):
+            column = list(range(c, len(drawn), self.columns))
+            if len(column) > 1 and all(self._joined(i // self.columns, c) for i in column[:-1]):
+                _span("x", [drawn[i] for i in column])
+        for r in range(self.rows):
+            row = list(range(r * self.columns, min((r + 1) * self.columns, len(drawn))))
+            if len(row) > 1 and all(self._beside(i) for i in row[1:]) and not self.panels[row[0]][0].equal:
+                _span("y", [drawn[i] for i in row])
+
+
+def _span(which: str, drawn: Sequence[Any]) -> None:
+    """Give axes the range that holds all of theirs."""
+    ends = np.array([getattr(axes, f"get_{which}lim")() for axes in drawn])
+    for axes in drawn:
+        getattr(axes, f"set_{which}lim")(ends.min(), ends.max())
+
+
+def _scales(axes: Any, panel: Panel) -> None:
+    for which, axis in (("x", panel.x), ("y", panel.y)):
+        if axis.log:
+            getattr(axes, f"set_{which}scale")("log")
+
+
+def _maps(panel: Panel) -> list[HeatMap | TriangleField | Points]:
+    """Items whose colours need a scale."""
+    return [
+        i for i in panel.items
+        if isinstance(i, (HeatMap, TriangleField)) or (isinstance(i, Points) and i.shade is not None)
+    ]  # fmt: skip
+
+
+def _bar_label(item: HeatMap | TriangleField | Points) -> str:
+    return _words(item.shade_label) if isinstance(item, Points) else _titled(item.label, item.unit)
+
+
+def _lines(axis: Axis) -> int:
+    return max((name.count("\n") + 1 for name in axis.categories), default=1)
+
+
+def _category_room(axes: Sequence[Axis]) -> float:
+    longest = max((len(name) for axis in axes for name in axis.categories), default=0)
+    return max(0.0, 0.075 * longest - 0.3)
+
+
+def _legend_entries(panels: Sequence[Panel]) -> dict[str, Any]:
+    """A handle for each name, in the order of the items."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    found: dict[str, Any] = {}
+    for panel in panels:
+        for item in panel.items:
+            name = getattr(item, "name", "")
+            if not name or name in found:
+                continue
+            style, colour = look(item.role), shade(item.role).light  # type: ignore[union-attr]
+            if isinstance(item, Bars):
+                found[name] = Patch(color=colour)
+            elif isinstance(item, Curve):
+                found[name] = Line2D(
+                    [], [], color=colour, ls=_DASHES[item.dash or style.dash], lw=item.width,
+                    marker=_SYMBOLS[style.symbol] if item.marked else "", ms=4,
+                )  # fmt: skip
+            else:
+                symbol = getattr(item, "symbol", "") or style.symbol
+                found[name] = Line2D([], [], color=colour, ls="", marker=_SYMBOLS[symbol], ms=5)
+    return found
+
+
+def _dress(axes: Any, panel: Panel, *, joined: bool, beside: bool) -> None:
+    """Axes: titles, scales, ranges, marks."""
+    _axis(axes, panel.x, "x", "" if joined else _titled(panel.x.label, panel.x.unit))
+    _axis(axes, panel.y, "y", "" if beside else _titled(panel.y.label, panel.y.unit))
+    if panel.equal:
+        axes.set_aspect("equal")
+        axes.grid(visible=False)
+    if panel.limits:
+        axes.set_ylim(*panel.limits)
+    elif panel.y.zero:
+        axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0] if np.min(axes.dataLim.intervaly) < 0.0 else 0.0))
+    if panel.x.limits:
+        axes.set_xlim(*panel.x.limits)
+    elif panel.x.zero:
+        axes.set_xlim(left=0.0)
+    if joined:
+        axes.tick_params(labelbottom=False)
+    if beside:
+        axes.tick_params(labelleft=False)
+    if any(isinstance(item, HeatMap) for item in panel.items):
+        axes.grid(visible=False)
+    elif any(isinstance(item, Bars) for item in panel.items):
+        axes.grid(visible=False, axis="x")
+    if panel.x.second:
+        places, texts = panel.x.second.ticks()
+        top = axes.secondary_xaxis("top")
+        top.set_xticks(places, texts)
+        top.set_xlabel(_titled(panel.x.second.label, panel.x.second.unit))
+    _marks(axes, panel)
+
+
+def _marks(axes: Any, panel: Panel) -> None:
+    grey = shade("grey").light
+    placed: list[float] = []
+    for mark in panel.marks:
+        line, span = (axes.axvline, axes.axvspan) if mark.axis == "x" else (axes.axhline, axes.axhspan)
+        if not isinstance(mark, Mark):
+            span(mark.low, mark.high, color="0.5", alpha=0.12, lw=0, zorder=0)
+            continue
+        line(mark.at, color=grey, lw=1.0, ls=":")
+        if not mark.label:
+            continue
+        low, high = axes.get_ylim() if mark.axis == "y" else axes.get_xlim()
+        if any(abs(mark.at - other) < 0.045 * abs(high - low) for other in placed):
+            continue
+        placed.append(mark.at)
+        where, shift, more = (
+            ((mark.at, 1.0), (3, -9), {"xycoords": ("data", "axes fraction")}) if mark.axis == "x"
+            else ((1.0, mark.at), (-2, 2), {"xycoords": ("axes fraction", "data"), "ha": "right"})
+        )  # fmt: skip
+        axes.annotate(
+            _words(mark.label), where, xytext=shift, textcoords="offset points", fontsize=8, color="0.35", **more
+        )
+
+
+def _axis(axes: Any, axis: Axis, which: str, title: str) -> None:
+    getattr(axes, f"set_{which}label")(title)
+    if axis.categories:
+        getattr(axes, f"set_{which}ticks")(range(len(axis.categories)), [_words(name) for name in axis.categories])
+    if axis.whole:
+        from matplotlib.ticker import MaxNLocator
+
+        getattr(axes, f"{which}axis").set_major_locator(MaxNLocator(_MOST_WHOLE, integer=True))
+    if axis.hidden:
+        getattr(axes, f"{which}axis").set_visible(False)
+        axes.spines["left" if which == "y" else "bottom"].set_visible(False)
+
+
+def _fill(axes: Any, panel: Panel) -> Any:
+    """Draw the items; return what a scale of colours needs, if anything does."""
+    image = None
+    solid = [item for item in panel.items if isinstance(item, (Surface, Spot))]
+    if solid:
+        from fegear.output.draw_space import draw_space
+
+        axes.imshow(draw_space(solid, panel.camera))
+        axes.set_axis_off()
+        return None
+    for bars, x, foot, width in panel.bars():
+        colour = shade(bars.role).light
+        error = {} if bars.error is None else {"yerr": bars.error, "error_kw": {"lw": 1.0}}
+        axes.bar(x, bars.y, width, foot, color=colour, **error)
+    for item in panel.items:
+        found = _DRAWN[type(item)](axes, item) if type(item) in _DRAWN else None
+        image = found if found is not None else image
+    return image
+
+
+def _curve(axes: Any, item: Curve) -> None:
+    style, colour = look(item.role), shade(item.role).light
+    x, y = np.asarray(item.x), np.asarray(item.y)
+    axes.plot(
+        x, y, ls=_DASHES[item.dash or style.dash], color=colour, lw=item.width, ms=4,
+        marker=_SYMBOLS[style.symbol] if item.marked else "",
+        drawstyle="steps-post" if item.dash == "steps" else "default",
+    )  # fmt: skip
+    if item.error is not None:
+        error = np.asarray(item.error)
+        axes.fill_between(x, y - error, y + error, color=colour, alpha=0.25, lw=0)
+    if item.fill:
+        axes.fill_between(x, y, color=colour, alpha=0.25, lw=0)
+
+
+def _points(axes: Any, item: Points) -> Any:
+    symbol = _SYMBOLS[item.symbol or look(item.role).symbol]
+    if item.shade is not None:
+        shaded = np.asarray(item.shade)
+        order = np.argsort(shaded)
+        return axes.scatter(
+            np.asarray(item.x)[order], np.asarray(item.y)[order], c=shaded[order], s=item.size**2, cmap=SEQUENTIAL,
+            norm="log", linewidths=0.0,
+        )  # fmt: skip
+    axes.plot(item.x, item.y, ls="", marker=symbol, ms=0.8 * item.size, color=shade(item.role).light, mew=0.3)
+    if item.written:
+        _write_notes(axes, item)
+    return None
+
+
+def _write_notes(axes: Any, item: Points) -> None:
+    """Names beside points; those that would lie on each other go below each other."""
+    log = axes.get_xscale() == "log", axes.get_yscale() == "log"
+    x, y = np.asarray(item.x), np.asarray(item.y)
+    placed: list[tuple[float, float]] = []
+    for i in np.argsort(-y):
+        a, b = (math.log10(v) if scale else float(v) for v, scale in zip((x[i], y[i]), log, strict=True))
+        crowd = sum(abs(a - c) < 0.9 and abs(b - d) < 0.13 for c, d in placed)
+        placed.append((a, b))
+        axes.annotate(
+            _words(item.notes[i]), (x[i], y[i]), xytext=(6, 3 - 8 * crowd), textcoords="offset points", fontsize=7,
+            bbox={"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.6}, color="0.25", zorder=1.5,
+        )  # fmt: skip
+
+
+def _stems(axes: Any, item: Stems) -> None:
+    style, colour = look(item.role), shade(item.role).light
+    low = float(np.min(item.y)) if axes.get_yscale() == "log" else 0.0
+    axes.vlines(item.x, 0.5 * low, item.y, color=colour, lw=1.0)
+    axes.plot(item.x, item.y, ls="", marker=_SYMBOLS[style.symbol], color=colour, ms=4)
+
+
+def _heat(axes: Any, item: HeatMap) -> Any:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    low, high = item.ends
+    scale: Any = SEQUENTIAL
+    if item.centre:
+        scale = LinearSegmentedColormap.from_list("diverging", [tuple(v / 255 for v in c) for c in DIVERGING])
+    x, y, z = np.asarray(item.x), np.asarray(item.y), np.asarray(item.z)
+    axes.set_facecolor("0.75")
+    image = axes.pcolormesh(x, y, np.ma.masked_invalid(z), cmap=scale, vmin=low, vmax=high, shading="nearest")
+    if item.numbers:
+        for (row, column), value in np.ndenumerate(z):
+            known = bool(np.isfinite(value))
+            dark = known and item.centre and abs(value - item.centre[0]) > 0.75 * item.centre[1] and value < high
+            axes.text(
+                x[column], y[row], f"{value:.2f}" if known else "×", ha="center", va="center", fontsize=8.5,
+                color="white" if dark and value < item.centre[0] else "black",  # type: ignore[index]
+            )  # fmt: skip
+    return image
+
+
+def _field(axes: Any, item: TriangleField) -> Any:
+    x, y = np.asarray(item.points)
+    return axes.tripcolor(
+        x, y, item.triangles.T, item.values, shading="gouraud", cmap=SEQUENTIAL, vmin=0.0, vmax=item.top
+    )
+
+
+_DRAWN: dict[type, Callable[[Any, Any], Any]] = {
+    Curve: _curve,
+    Points: _points,
+    Stems: _stems,
+    HeatMap: _heat,
+    TriangleField: _field,
+}
