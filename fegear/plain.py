@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _ALIGN = 64
 _KINDS = "biufcSU"
 #: Libraries whose version may change the last bits of a result.
-_LIBRARIES = ("numpy", "scipy", "gmsh")
+_LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
 
 
 def pack(value: object) -> bytes:

@@ -46,7 +46,7 @@ LAYERS = {
 #: Where each heavy library may be imported.
 DOORS = {
     "gmsh": ["fegear.fem.sector"],
-    "skfem": [],  # the tests' independent check
+    "skfem": ["fegear.fem.elements"],
     "meshio": ["fegear.fem.mesh_files"],
     "pint": ["fegear.units"],
     "pydantic": ["fegear.case", "fegear.case.*"],
