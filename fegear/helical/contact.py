@@ -199,9 +199,10 @@ def tooth_contact(pair: HelicalPair, positions: int = 400, start: float | None =
     error, _, leader, found = _gear_set(pair, p, phi_1)
     mesh = _describe(pair, p, phi_1 - leader * pitch, found)
 
-    def evaluate(angle: Array) -> tuple[Array, Array]:
-        value, slope, _, _ = _gear_set(pair, p, angle)
-        return value, slope
+    def evaluate(angle: Array) -> tuple[Array, ...]:
+        value, slope, number, contact = _gear_set(pair, p, angle)
+        first, second = contact.bounds.astype(float)
+        return value, slope, (number * len(Bound) + first) * len(Bound) + second
 
     lowest, highest = extremes(evaluate, 0.5 * (sum(pair.engagement) - pitch), pitch)
     lo, hi = pair.engagement
