@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from fegear.errors import ConvergenceError, RangeError
 from fegear.formulas.root_stress import RootStress, RootStressSource
@@ -18,6 +18,10 @@ from fegear.formulas.root_stress import RootStress, RootStressSource
 if TYPE_CHECKING:
     from fegear.geometry import GearPair, Tooth
     from fegear.geometry.pair import Member
+
+
+#: Editions of ISO 6336-3; that of 2019 shares the load of several teeth (f_epsilon) and has another Y_beta.
+Edition = Literal[2006, 2019]
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,11 +208,38 @@ def virtual_teeth(teeth: float, helix_angle: float, pressure_angle: float = math
     return teeth / (math.cos(base) ** 2 * math.cos(helix_angle))
 
 
-def helix_factor(overlap_ratio: float, helix_angle: float) -> float:
-    """Y_beta = 1 - eps_beta beta/120 deg, eps_beta at most 1, beta at most 30 deg (ISO 6336-3:2006, 8)."""
+def helix_factor(overlap_ratio: float, helix_angle: float, edition: Edition = 2006) -> float:
+    """Y_beta = 1 - eps_beta beta/120 deg, eps_beta at most 1, beta at most 30 deg (ISO 6336-3:2006, 8).
+
+    The edition of 2019 divides by cos^3(beta), beta at most 30 deg there too.
+    """
     if overlap_ratio < 0.0 or helix_angle < 0.0:
         raise RangeError("overlap ratio, helix angle", (overlap_ratio, helix_angle), "must not be negative")
-    return 1.0 - min(overlap_ratio, 1.0) * min(math.degrees(helix_angle), 30.0) / 120.0
+    beta = min(helix_angle, math.radians(30.0))
+    factor = 1.0 - min(overlap_ratio, 1.0) * math.degrees(beta) / 120.0
+    return factor if edition == 2006 else factor / math.cos(beta) ** 3
+
+
+def load_distribution_factor(contact_ratio: float, overlap_ratio: float = 0.0, edition: Edition = 2006) -> float:
+    """f_epsilon, by which the edition of 2019 multiplies Y_F; 1 in 2006 (ISO 6336-3:2019, 6.2).
+
+    Parameters
+    ----------
+    contact_ratio : float
+        epsilon_alpha_n of the virtual pair, at least 1.
+    overlap_ratio : float
+        epsilon_beta.
+    """
+    if not contact_ratio >= 1.0:
+        raise RangeError("contact ratio", f"{contact_ratio:.4g}", "must be at least 1")
+    if overlap_ratio < 0.0:
+        raise RangeError("overlap ratio", overlap_ratio, "must not be negative")
+    if edition == 2006:
+        return 1.0
+    if overlap_ratio == 0.0:
+        return 1.0 if contact_ratio < 2.0 else 0.7
+    part = min(overlap_ratio, 1.0)
+    return math.sqrt((1.0 - part) / (1.0 if contact_ratio < 2.0 else 2.0) + part / contact_ratio)
 
 
 def rim_factor(rim_thickness: float, tooth_height: float) -> float:
@@ -243,12 +274,17 @@ def nominal_root_stress(
     helix: float = 1.0,
     rim: float = 1.0,
     deep_tooth: float = 1.0,
+    load_distribution: float = 1.0,
 ) -> float:
-    """sigma_F0 = F_t/(b m_n) Y_F Y_S Y_beta Y_B Y_DT [Pa] (ISO 6336-3:2006, 5.2); F_t [N], b [m], m_n [m]."""
+    """sigma_F0 = F_t/(b m_n) Y_F Y_S Y_beta Y_B Y_DT [Pa] (ISO 6336-3:2006, 5.2); F_t [N], b [m], m_n [m].
+
+    `load_distribution` is the f_epsilon that the edition of 2019 puts into Y_F.
+    """
     for name, value in (("face_width", face_width), ("module", module)):
         if not value > 0.0:
             raise RangeError(name, value, "must be positive")
-    return tangential_load / (face_width * module) * form.Y_F * form.Y_S * helix * rim * deep_tooth
+    factors = form.Y_F * load_distribution * form.Y_S * helix * rim * deep_tooth
+    return tangential_load / (face_width * module) * factors
 
 
 def rack_tooth(tooth: Tooth) -> RackTooth:

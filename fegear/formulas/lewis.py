@@ -20,12 +20,14 @@ if TYPE_CHECKING:
 def lewis_section(tooth: Tooth, radius: float) -> tuple[FilletPoint, LoadLine]:
     """Section where the parabola through the load apex touches the fillet, for a load at `radius` [modules].
 
-    On a parabola with its apex h above the section the tangent makes atan(x / (2 h)) with the axis.
+    On a parabola with its apex h above the section the tangent makes atan(x / (2 h)) with the axis. Many teeth loaded
+    near the tip are so like a wedge that the parabola touches above the fillet; as in AGMA 908-B89, whose iteration
+    knows no end of the trochoid, it then touches the trochoid continued beyond the start of the involute.
 
     Raises
     ------
     RangeError
-        If the parabola touches the tooth elsewhere than on the fillet.
+        If the parabola touches neither the fillet nor its continuation.
     """
     from scipy.optimize import brentq
 
@@ -38,12 +40,33 @@ def lewis_section(tooth: Tooth, radius: float) -> tuple[FilletPoint, LoadLine]:
 
     low, high = tangent_range(tooth)
     high = min(high, 0.5 * math.pi - 1e-9)
-    if excess(low) > 0.0 or excess(high) < 0.0:
-        raise RangeError(
-            "load radius",
-            f"{radius:.6g} modules",
-            "gives a Lewis parabola that does not touch the fillet",
-            "the formula has no critical section here",
-        )
-    gamma = brentq(excess, low, high, xtol=1e-13)
-    return fillet_point(tooth, fillet_parameter(tooth, gamma)), load
+    if excess(low) > 0.0:
+        section = _above_the_fillet(tooth, apex)
+        if section is not None:
+            return section, load
+    elif excess(high) >= 0.0:
+        gamma = brentq(excess, low, high, xtol=1e-13)
+        return fillet_point(tooth, fillet_parameter(tooth, gamma)), load
+    raise RangeError(
+        "load radius",
+        f"{radius:.6g} modules",
+        "gives a Lewis parabola that does not touch the fillet",
+        "the formula has no critical section here",
+    )
+
+
+def _above_the_fillet(tooth: Tooth, apex: float) -> FilletPoint | None:
+    """Section at which the parabola touches the trochoid beyond its junction with the involute; None if nowhere."""
+    from scipy.optimize import brentq
+
+    def excess(beta: float) -> float:
+        p = fillet_point(tooth, beta)
+        return math.tan(p.tangent_angle) * 2.0 * (apex - p.height) - p.half_thickness
+
+    end, steps = tooth.fillet.end, 200
+    last = 0.5 * math.pi - 1e-6
+    for i in range(1, steps):
+        beta = end + (last - end) * i / steps
+        if excess(beta) <= 0.0:
+            return fillet_point(tooth, brentq(excess, end, beta, xtol=1e-14))
+    return None

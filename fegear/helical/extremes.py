@@ -107,7 +107,8 @@ def extremes(function: Pieces, start: float, period: float, tolerance: float = 1
     if not np.isfinite(f).all():  # somewhere nothing touches
         low, high = int(np.argmin(f)), int(np.argmax(f))
         return Extreme(float(f[low]), float(x[low]), np.inf), Extreme(float(f[high]), float(x[high]), np.inf)
-    whole = _Cells(*(np.stack([v[:-1:2], v[2::2]]) for v in (x, f, d, piece)), np.zeros(CELLS))
+    x_, f_, d_, piece_ = (np.stack([v[:-1:2], v[2::2]]) for v in (x, f, d, piece))
+    whole = _Cells(x_, f_, d_, piece_, np.zeros(CELLS))
     cells = _split(whole, x[None, 1::2], (f[None, 1::2], d[None, 1::2], piece[None, 1::2]))
     best = {sign: _best(sign, x, f) for sign in _SIGNS}
     given_up = dict.fromkeys(_SIGNS, -np.inf)

@@ -200,7 +200,8 @@ def _influence(scene: Scene, name: str, done: Done) -> GearInfluence:
     return solve_gear(scene.gears[name], settings, estimate_error=False, mesh=mesh)
 
 
-def _pair(scene: Scene, name: str, done: Done, w: float) -> tuple[Table, tuple[Value, ...]]:
+def _pair(scene: Scene, name: str, done: Done, w: float) -> tuple[Table, tuple[Value, ...], str]:
+    """Table and values of a pair, and what is to be remarked about ISO's c'; empty if nothing."""
     from fegear.contact.crosscheck import pair_compliance_answers, pair_reference
     from fegear.formulas.iso6336_stiffness import pair_stiffness
     from fegear.formulas.outcome import attempt
@@ -221,16 +222,18 @@ def _pair(scene: Scene, name: str, done: Done, w: float) -> tuple[Table, tuple[V
     greatest = float(1.0 / fe.total.min())
     unit = "N/(mm.um)"
     own = Value(f"{name}.single_stiffness_fe", greatest, unit, None, "greatest stiffness of one tooth pair by FE")
-    iso = attempt(lambda: pair_stiffness(pair, w)).value
+    answer = attempt(lambda: pair_stiffness(pair, w))
+    iso = answer.value
     if iso is None:
-        return table, (*values, own)
-    return table, (
+        return table, (*values, own), f"Pair {name}: ISO 6336-1 gives no c': {answer.reason}"
+    extra = (
         *values,
         own,
         Value(f"{name}.single_stiffness_iso", iso.single, unit, None, "ISO 6336-1 c', solid blank, with C_M = 0.8"),
         Value(f"{name}.theoretical_stiffness_iso", iso.theoretical, unit, None, "ISO 6336-1 c'_th"),
         Value(f"{name}.single_stiffness_iso.ratio_to_fe", iso.single / greatest, "", None, "c' over FE"),
     )
+    return table, extra, f"Pair {name}: {iso.remark}." if iso.remark else ""
 
 
 def _sources() -> Table:
@@ -262,7 +265,8 @@ def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome
     for name in pairs:
         loads[name], remark = _line_load(scene, name, scene.pairs[name])
         remarks += [remark] if remark else []
-        table, some = _pair(scene, name, done, loads[name])
+        table, some, remark = _pair(scene, name, done, loads[name])
+        remarks += [remark] if remark else []
         tables.append(table)
         values += some
     for table in tables[1:]:

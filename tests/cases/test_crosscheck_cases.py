@@ -136,6 +136,24 @@ def test_unloaded_pairs_say_which_load_they_use():
     assert len(tables["crosscheck_compliance_I"]["x"]) == 9
 
 
+def test_c_prime_outside_the_stated_range_is_remarked_and_where_it_has_no_value_the_reason_is():
+    def with_mate(shift):
+        mate = "teeth=40, diametral_pitch='8 / inch', rack={addendum=1.0, dedendum=1.25, tip_radius=0.25}"
+        return run(
+            "cornell_test_gear",
+            "stiffness={gear='test', positions=2}",
+            f"gear.mate={{{mate}, profile_shift={shift}, plane='stress', face_width='6.35 mm'}}",
+            "pair.I={driver='test', driven='mate'}",
+        )
+
+    _, values, results = with_mate(0.3)
+    assert values["I.single_stiffness_iso"] > 0.0
+    assert any("x_1 = 0 is below x_2 = 0.3" in remark for remark in results.remarks)
+    _, values, results = with_mate(-0.6)
+    assert "I.single_stiffness_iso" not in values
+    assert any("ISO 6336-1 gives no c'" in remark and "x_1 + x_2" in remark for remark in results.remarks)
+
+
 # ---- the study ------------------------------------------------------------------------------------------------------
 def test_study_marks_every_point(study):
     tables, values, _ = study

@@ -31,7 +31,8 @@ def run(name, *overrides):
         ("litvin_lead", {"gear tip", "pinion face end", "corner"}, 4.3015),
         ("litvin_profile_angle", {"gear tip"}, 0.0),
         ("litvin_combined", {"pinion tip", "gear face end", "pinion face end", "corner"}, 1.4386),
-        ("litvin_localised", {"surface", "gear face end", "pinion face end"}, 12.3313),
+        # A dense search finds 12.33324; the bottom lies where another pair takes the lead.
+        ("litvin_localised", {"surface", "gear face end", "pinion face end"}, 12.3332),
     ],
 )
 def test_litvin_cases(name, kinds, peak_to_peak):

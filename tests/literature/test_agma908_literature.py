@@ -1,6 +1,7 @@
 """AGMA 908-B89 J factors and the concentration factors behind them."""
 
 import math
+from itertools import pairwise
 
 import pytest
 
@@ -47,6 +48,38 @@ def test_lewis_parabola_touches_the_fillet_from_inside():
     x, y = tooth.fillet.points([tooth.fillet.start + f * (tooth.fillet.end - tooth.fillet.start) for f in (0.2, 0.9)])
     # the parabola's half thickness at the height of other fillet points stays inside the tooth
     assert (x >= g.section.half_thickness * ((apex - y) / g.load_height) ** 0.5).all()
+
+
+@pytest.mark.parametrize(("z", "shift"), [(129, 0.25), (135, 0.0), (200, 0.0), (400, 0.5), (1000, 0.0)])
+def test_many_teeth_loaded_at_the_tip_have_a_section_on_the_trochoid_beyond_the_fillet(z, shift):
+    """Own search: the rack's tip circle is rolled, and of the sections of its trace the one is taken whose bending
+    6 h / s^2 is largest; that is where Lewis' parabola touches (AGMA 908-B89 bounds its iteration nowhere)."""
+    import numpy as np
+
+    tooth = Tooth(z, RACK, shift)
+    apex = tooth.base_radius / math.cos(float(tooth.roll(tooth.tip_radius)) - tooth.base_half_angle)
+    beta = np.linspace(1e-3, 1.5, 400_001)  # of the contact normal against the space's centre line
+    rho, depth, r = RACK.tip_radius, RACK.dedendum - RACK.tip_radius - shift, 0.5 * z
+    offset = RACK.tip_centre_offset
+    along = depth * np.tan(beta)  # centre of the circle before the pitch point, as the normal passes through it
+    turn = (along - offset) / r
+    x, y = along + rho * np.sin(beta), r - depth - rho * np.cos(beta)
+    angle = math.pi / z - (np.arctan2(x, y) - turn)
+    half, height = np.hypot(x, y) * np.sin(angle), np.hypot(x, y) * np.cos(angle)
+    bending = np.where(height < apex, (apex - height) / half**2, 0.0)
+    best = int(np.argmax(bending))
+    assert 0 < best < beta.size - 1
+    found = agma908.geometry_factor(tooth, tooth.tip_radius)
+    assert found.section.half_thickness == pytest.approx(half[best], rel=1e-5)
+    assert found.load_height == pytest.approx(apex - height[best], rel=2e-5)
+    assert 0.28 < found.J < 0.33
+
+
+def test_j_at_the_tip_goes_on_smoothly_where_the_section_leaves_the_fillet():
+    j = [agma908.geometry_factor(Tooth(z, RACK, 0.1), Tooth(z, RACK, 0.1).tip_radius).J for z in range(120, 220, 4)]
+    steps = [b - a for a, b in pairwise(j)]
+    assert all(s > 0.0 for s in steps)
+    assert max(abs(b - a) for a, b in pairwise(steps)) < 2e-5
 
 
 def test_heywoods_factor_at_two_known_points():
