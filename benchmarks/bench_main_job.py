@@ -18,7 +18,6 @@ import pytest
 
 from fegear.fem import MeshSettings, solve_gear, stiffness_table
 from fegear.fem.elasticity import assemble
-from fegear.fem.gear import influence_of_shape
 from fegear.fem.sector import mesh_sector
 from fegear.geometry import BasicRack, Gear, Tooth
 from fegear.output.mesh_export import write_meshes
@@ -56,7 +55,6 @@ def test_numerical_core(benchmark, teeth, estimate):
     positions = radii(gear)
 
     def job():
-        influence_of_shape.cache_clear()
         return stiffness_table(gear, positions, 0.08e-3, influence=solve_gear(gear, SETTINGS, estimate_error=estimate))
 
     table = benchmark.pedantic(job, rounds=5, warmup_rounds=1)

@@ -15,8 +15,6 @@ import typer
 import fegear
 from fegear.errors import FegearError
 
-#: Finished points of sweeps may take this many bytes on disk.
-_POINTS_LIMIT = 1 << 29
 _INTERRUPTED = "interrupted; results of earlier runs are as they were."
 
 app = typer.Typer(
@@ -63,18 +61,20 @@ def run(
     scheduler: Scheduler = None,
     cache: Annotated[
         bool,
-        typer.Option("--cache", help="Read solved tooth shapes from the disk cache and keep new ones there."),
+        typer.Option(
+            "--cache", help="Recall tooth shapes and chart points from the disk cache, and keep new ones there."
+        ),
     ] = False,
 ) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
     from fegear.case.reading import read_scene
-    from fegear.engine.executor import computing_by
+    from fegear.engine.executor import Executor
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan
     from fegear.output.folder import whole_or_nothing
     from fegear.output.write import STEPS, write_results
     from fegear.results.catalogue import STAGES
-    from fegear.store import keeping_shapes
+    from fegear.solution_cache import SolutionCache, cache_on_disk
     from fegear.terminal import watcher
 
     start = time.perf_counter()
@@ -85,11 +85,9 @@ def run(
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))
             watching = stack.enter_context(watcher(sys.stderr))
-            stack.enter_context(computing_by(scheduler))
             # Afresh by default: the seconds of a run are one of its results.
-            if cache:
-                stack.enter_context(keeping_shapes())
-            results = run_plan(scene, planned, watching, following=STEPS)
+            known = cache_on_disk() if cache else SolutionCache()
+            results = run_plan(scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler))
             remarks = write_results(results, scratch, watching, plots=not no_plots)
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         _leave(_INTERRUPTED, 130)
@@ -173,9 +171,10 @@ def sweep(
     ] = False,
 ) -> None:
     """Run a case over a grid of values; killed and started again, it goes on where it was."""
+    from fegear.engine.executor import Executor
     from fegear.output.folder import check_target, whole_or_nothing
     from fegear.output.sweep import write_sweep
-    from fegear.store import Store, cache_folder, keeping_shapes
+    from fegear.solution_cache import SolutionCache, cache_on_disk
     from fegear.studies.axis import read_axis
     from fegear.studies.sweep import sweep_case
     from fegear.terminal import watcher
@@ -186,18 +185,14 @@ def sweep(
         check_target(target)
         with contextlib.ExitStack() as stack:
             watching = stack.enter_context(watcher(sys.stderr, remaining=True))
-            store = None if no_cache else Store(cache_folder() / "points", _POINTS_LIMIT)
-            if not no_cache:
-                stack.enter_context(keeping_shapes())
             count = math.prod(len(axis) for axis in axes)
             watching.begin(f"{count} points", 1, 1)
             results = sweep_case(
                 case,
                 axes,
                 overrides or (),
-                store=store,
-                scheduler=scheduler,
-                workers=workers,
+                cache=SolutionCache() if no_cache else cache_on_disk(),
+                executor=Executor(scheduler, workers),
                 progress=watching.advance,
             )
             watching.end(results.seconds)
@@ -212,7 +207,7 @@ def sweep(
     if results.kept:
         typer.echo(f"{results.kept} points were finished by an earlier sweep.")
     if read:
-        typer.echo(f"Tooth shapes: {solved} solved now; {read} from the disk cache ({spared:.2f} s when solved).")
+        typer.echo(f"Tooth shapes: {solved} solved now; {read} recalled ({spared:.2f} s when solved).")
     typer.echo(f"Wrote {target} in {results.seconds:.2f} s.")
     if len(results.failures) == count:
         raise typer.Exit(1)

@@ -7,7 +7,6 @@ import hashlib
 import os
 import tempfile
 import time
-from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -132,50 +131,3 @@ class Store:
             with contextlib.suppress(OSError):
                 fcntl.flock(file, fcntl.LOCK_EX)
             yield
-
-
-class ShapeKeeper:
-    """The store of solved tooth shapes in use, and how often it helped.
-
-    Attributes
-    ----------
-    solved, read : int
-        Shapes that were solved, and that were read from the store.
-    spared : float
-        Seconds that the shapes read took when they were solved.
-    """
-
-    def __init__(self, store: Store) -> None:
-        self.store = store
-        self.solved, self.read, self.spared = 0, 0, 0.0
-
-    def count(self, solved: int, read: int, spared: float) -> None:
-        """Add what happened elsewhere, in another process for example."""
-        self.solved += solved
-        self.read += read
-        self.spared += spared
-
-
-_keeper: ContextVar[ShapeKeeper | None] = ContextVar("fegear_shape_keeper", default=None)
-
-
-def shape_keeper() -> ShapeKeeper | None:
-    """Return the keeper of solved tooth shapes in use; None where shapes are solved afresh."""
-    return _keeper.get()
-
-
-@contextlib.contextmanager
-def keeping_shapes(folder: Path | None = None) -> Iterator[ShapeKeeper]:
-    """Keep solved tooth shapes on disk inside the block; numbers are the same with and without, to the last bit.
-
-    Parameters
-    ----------
-    folder : Path, optional
-        By default `cache_folder`.
-    """
-    keeper = ShapeKeeper(Store((folder or cache_folder()) / "shapes"))
-    token = _keeper.set(keeper)
-    try:
-        yield keeper
-    finally:
-        _keeper.reset(token)

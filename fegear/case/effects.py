@@ -18,7 +18,6 @@ class EffectsPart(Part):
     contact_loss: bool = False
     friction: bool = False
     parametric: bool = False
-    off_line_of_action: bool = False
     misalignment: bool = False
 
     def is_on(self, name: str) -> bool:

@@ -12,7 +12,6 @@ from fegear.contact.root_stress_history import RootStressHistory, root_stress_hi
 from fegear.contact.table_compliance import table_sources
 from fegear.contact.transmission_error import (
     TransmissionError,
-    off_path_warning,
     pair_stiffness,
     revolution,
     transmission_error,
@@ -32,7 +31,6 @@ __all__ = [
     "closed_form_compliance",
     "effective_error",
     "finite_element_compliance",
-    "off_path_warning",
     "pair_history",
     "pair_stiffness",
     "revolution",

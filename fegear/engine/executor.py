@@ -8,19 +8,18 @@ from __future__ import annotations
 
 import contextlib
 import functools
-from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from fegear.engine.cluster import on_cluster
-from fegear.engine.point_job import Job, Reply, here, inside_a_worker, opened
+from fegear.engine.point_job import Job, Reply, here, opened
 from fegear.engine.processes import cores, on_cores
 from fegear.errors import InputError
 from fegear.plain import code_version, content_key
-from fegear.store import shape_keeper
+from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Generator, Mapping, Sequence
 
     from fegear.engine.stage import Progress
     from fegear.store import Store
@@ -30,34 +29,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Executor:
-    """Who computes, where a call does not say it itself.
+    """Who computes points that do not depend on each other.
 
     Parameters
     ----------
     scheduler : str or None
-        Address of a Dask scheduler; None for processes on this machine.
+        Address of a running Dask scheduler, for example ``"tcp://10.0.0.5:8786"``; None for processes on this machine.
     workers : int or None
         How many processes; by default one for each core.
+    here : bool
+        One after the other in this process, whose cores are busy already: what a worker hands down.
     """
 
     scheduler: str | None = None
     workers: int | None = None
+    here: bool = False
 
 
-_executor: ContextVar[Executor] = ContextVar("fegear_executor", default=Executor())  # noqa: B039  (it is frozen)
-
-
-@contextlib.contextmanager
-def computing_by(scheduler: str | None = None, workers: int | None = None) -> Iterator[None]:
-    """Set who computes for every `map_points` inside the block that does not say it itself."""
-    token = _executor.set(Executor(scheduler, workers))
-    try:
-        yield
-    finally:
-        _executor.reset(token)
-
-
-def _name(function: Callable[[Any], object]) -> object:
+def _name(function: Callable[..., object]) -> object:
     if isinstance(function, functools.partial):
         return [_name(function.func), function.args, function.keywords]
     name = f"{function.__module__}.{function.__qualname__}"
@@ -67,13 +56,13 @@ def _name(function: Callable[[Any], object]) -> object:
 
 
 def map_points(
-    function: Callable[[Any], object],
+    function: Callable[..., object],
     points: Sequence[Any],
+    executor: Executor | None = None,
+    cache: SolutionCache | None = None,
     *,
-    store: Store | None = None,
     key: Callable[[Any], object] | None = None,
-    scheduler: str | None = None,
-    workers: int | None = None,
+    shares_cache: bool = False,
     progress: Progress | None = None,
 ) -> tuple[Any, ...]:
     """Apply a function to every point, in parallel, never twice to the same.
@@ -83,19 +72,20 @@ def map_points(
     function : callable
         Of a module (or `functools.partial` of one); takes a point and returns plain data (see `fegear.plain.pack`).
     points : sequence
-        Anything that can be pickled; with a store, what `fegear.plain.content_key` takes, unless `key` is given.
-    store : Store, optional
-        Finished points are kept there at once and read from there if they were computed before by the same code, so
-        that a killed run loses only what it was at.
+        Anything that can be pickled; with a cache on disk, what `fegear.plain.content_key` takes, unless `key` is
+        given.
+    executor : Executor, optional
+        By default processes on this machine.
+    cache : SolutionCache, optional
+        Where it has a disk, finished points are kept there at once and read from there if they were computed before by
+        the same code, so that a killed run loses only what it was at.
     key : callable, optional
         ``key(point)`` is all that the result depends on, by default the point itself.
-    scheduler : str, optional
-        Address of a running Dask scheduler, for example ``"tcp://10.0.0.5:8786"``; by default one process for each
-        core of this machine. Inside a worker the points are computed one after the other.
-    workers : int, optional
-        Number of processes.
+    shares_cache : bool
+        Whether the function is called as ``function(point, cache)`` with the cache of the process that it runs in, so
+        that points there share tooth shapes.
     progress : callable, optional
-        Is told the fraction of points done.
+        Receives the fraction of points done.
 
     Returns
     -------
@@ -106,13 +96,12 @@ def map_points(
     Raises
     ------
     InputError
-        If the scheduler does not answer, or the store cannot be written to.
+        If the scheduler does not answer, or the disk cannot be written to.
     MissingLibraryError
         If something is missing that every point needs.
     """
-    name = _name(function)
-    own = _executor.get()
-    scheduler, workers = scheduler or own.scheduler, workers or own.workers
+    executor, cache = executor or Executor(), SolutionCache() if cache is None else cache
+    name, store = _name(function), cache.disk
     keys = _keys(name, points, key, store)
     payloads: dict[str, bytes] = {}
     for one in set(keys) if store else ():
@@ -121,30 +110,32 @@ def map_points(
             payloads[one] = kept
     first = {one: i for i, one in reversed(list(enumerate(keys))) if one not in payloads}
     todo = {i: points[i] for i in sorted(first.values())}
-    tell = progress or _silent
+    report = progress or _silent
     count = len(set(keys)) or 1
-    tell(len(payloads) / count)
-    with contextlib.closing(_replies(function, todo, scheduler, workers)) as replies:
+    report(len(payloads) / count)
+    with contextlib.closing(_replies(function, todo, executor, cache, shares_cache)) as replies:
         for i, reply in replies:
             payloads[keys[i]] = reply.payload
             if store and reply.lasting:
                 _keep(store, keys[i], reply.payload)
-            keeper = shape_keeper()
-            if keeper:
-                keeper.count(*reply.shapes)
-            tell(len(payloads) / count)
+            cache.shapes.add(*reply.shapes)
+            report(len(payloads) / count)
     return tuple(opened(payloads[one]) for one in keys)
 
 
 def count_kept(
-    function: Callable[[Any], object], points: Sequence[Any], store: Store, key: Callable[[Any], object] | None = None
+    function: Callable[..., object],
+    points: Sequence[Any],
+    cache: SolutionCache,
+    key: Callable[[Any], object] | None = None,
 ) -> int:
-    """How many of the points `map_points` would find in the store."""
-    return sum(one in store for one in _keys(_name(function), points, key, store))
+    """How many of the points `map_points` would find on the cache's disk."""
+    store = cache.disk
+    return sum(one in store for one in _keys(_name(function), points, key, store)) if store else 0
 
 
 def _silent(fraction: float) -> None:
-    """Tell nobody."""
+    """Report to nobody."""
 
 
 def _keys(name: object, points: Sequence[Any], key: Callable[[Any], object] | None, store: Store | None) -> list[str]:
@@ -167,16 +158,17 @@ def _keep(store: Store, key: str, payload: bytes) -> None:
 
 
 def _replies(
-    function: Callable[[Any], object], todo: Todo, scheduler: str | None, workers: int | None
+    function: Callable[..., object], todo: Todo, executor: Executor, cache: SolutionCache, shares_cache: bool
 ) -> Generator[tuple[int, Reply]]:
-    keeper = shape_keeper()
     if not todo:
         return
-    if inside_a_worker():
-        yield from ((i, here(function, point)) for i, point in todo.items())
-    elif scheduler is not None:
-        # Folders of this machine mean nothing on others: workers of a cluster keep shapes where they keep theirs.
-        yield from on_cluster(Job(function, keeper is not None, None), todo, scheduler)
+    if executor.here:
+        yield from ((i, here(function, point, cache if shares_cache else None)) for i, point in todo.items())
+    elif executor.scheduler is not None:
+        # Folders of this machine mean nothing on others: workers of a cluster keep solutions where they keep theirs.
+        yield from on_cluster(Job(function, shares_cache, cache.disk is not None, None), todo, executor.scheduler)
     else:
-        job = Job(function, keeper is not None, str(keeper.store.folder.parent) if keeper else None)
-        yield from on_cores(job, todo, workers or cores())
+        folder = str(cache.disk.folder.parent) if cache.disk else None
+        yield from on_cores(
+            Job(function, shares_cache, cache.disk is not None, folder), todo, executor.workers or cores()
+        )

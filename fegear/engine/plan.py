@@ -111,7 +111,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
 
 def _idle(effect: str, stages: Sequence[Stage]) -> str:
     results = dict.fromkeys(f'"{result}"' for stage in stages if effect in stage.effects for result in stage.results)
-    who = f"ask for {' or '.join(results)}, or leave the effect out" if results else "no result knows it: leave it out"
+    who = f"ask for {' or '.join(results)}, or leave the effect out"
     return f"effects.{effect} is on, but nothing that is wanted uses it; {who}."
 
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def forecast_seconds(scene: Scene, plan: Plan) -> list[float | None]:
-    """Predicted seconds of each step [s], a gear shape counted where it is solved first; None where nobody knows."""
+    """Predicted seconds of each step [s], a gear shape counted where it is solved first; None where it is unknown."""
     solved: set[object] = set()
     found: list[float | None] = []
     for step in plan.steps:
@@ -30,12 +30,12 @@ def plan_lines(scene: Scene, plan: Plan) -> list[str]:
         told = step.stage.forecast(scene, step.task.subject)
         if told.settings:
             lines.append("     settings: " + ", ".join(f"{key} = {_short(v)}" for key, v in told.settings.items()))
-        lines.append("     nobody knows how long" if predicted is None else f"     about {predicted:.2g} s")
+        lines.append("     run time unknown" if predicted is None else f"     about {predicted:.2g} s")
     if plan.skipped:
         lines.append("Will not compute:")
         lines += [f"  - {name}: {reason}" for name, reason in plan.skipped]
     unknown = [str(step.task) for step, predicted in zip(plan.steps, seconds, strict=True) if predicted is None]
-    without = f", without {', '.join(unknown)}, of which nobody knows" if unknown else ""
+    without = f", without {', '.join(unknown)}, whose run time is unknown" if unknown else ""
     total = sum(predicted or 0.0 for predicted in seconds)
     lines.append(
         f"Predicted: about {total:.2g} s of one core, measured on a usual machine{without}; tables, pictures and "

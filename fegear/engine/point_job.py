@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import contextlib
 import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from fegear.errors import FegearError, MissingLibraryError
 from fegear.plain import code_version, pack, unpack
-from fegear.store import keeping_shapes
+from fegear.solution_cache import SolutionCache, cache_on_disk
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 #: One point at a time in a process: gmsh keeps its model in global variables.
 _alone = threading.Lock()
-_inside = threading.local()
+#: What a worker process has solved so far, by the folder where it keeps it; a worker lives for many points.
+_caches: dict[str, SolutionCache] = {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +38,14 @@ class Failure:
 
 @dataclass(frozen=True)
 class Reply:
-    """What comes back for a point: packed result or failure, whether it will always be so, and the shapes used."""
+    """What comes back for a point: packed result or failure, whether it will always be so, and the shapes used.
+
+    The shapes count as in `fegear.solution_cache.Account`.
+    """
 
     payload: bytes
     lasting: bool = True
-    shapes: tuple[int, int, float] = (0, 0, 0.0)
+    shapes: tuple[int, int, int, float] = (0, 0, 0, 0.0)
 
 
 def failed(error: Exception) -> bytes:
@@ -52,10 +55,22 @@ def failed(error: Exception) -> bytes:
 
 @dataclass(frozen=True)
 class Job:
-    """A function with what its process must know, sent along with each point."""
+    """A function with what its process must know, sent along with each point.
 
-    function: Callable[[Any], object]
-    keep_shapes: bool
+    Parameters
+    ----------
+    function : callable
+    shares_cache : bool
+        Whether it takes the process's cache besides the point.
+    on_disk : bool
+        Whether tooth shapes are kept beyond the process.
+    folder : str or None
+        Where; None for the worker's own cache folder.
+    """
+
+    function: Callable[..., object]
+    shares_cache: bool
+    on_disk: bool
     folder: str | None
     version: str = field(default_factory=code_version)
 
@@ -67,24 +82,19 @@ class Job:
         import scipy.linalg  # noqa: F401  (loaded before it is limited: scipy brings a BLAS of its own)
         from threadpoolctl import threadpool_limits
 
-        with _alone, contextlib.ExitStack() as stack:
-            stack.enter_context(threadpool_limits(limits=1))
-            keeper = None
-            if self.keep_shapes:
-                keeper = stack.enter_context(keeping_shapes(Path(self.folder) if self.folder else None))
-            _inside.worker = True
-            try:
-                payload, lasting = pack({"result": self.function(point)}), True
-            except MissingLibraryError:
-                raise  # every other point would fail alike
-            except FegearError as error:
-                payload, lasting = failed(error), True
-            except Exception as error:  # noqa: BLE001  (one point's bug must not take the others' results with it)
-                payload, lasting = failed(error), False
-            finally:
-                _inside.worker = False
-        shapes = (keeper.solved, keeper.read, keeper.spared) if keeper else (0, 0, 0.0)
-        return Reply(payload, lasting, shapes)
+        with _alone, threadpool_limits(limits=1):
+            cache = self._cache()
+            before = cache.shapes.state
+            reply = here(self.function, point, cache if self.shares_cache else None)
+            return replace(reply, shapes=cache.shapes.since(before).state)
+
+    def _cache(self) -> SolutionCache:
+        name = f"{self.folder or ''}" if self.on_disk else "memory"
+        if name not in _caches:
+            _caches[name] = (
+                cache_on_disk(Path(self.folder) if self.folder else None) if self.on_disk else SolutionCache()
+            )
+        return _caches[name]
 
 
 def opened(payload: bytes) -> object:
@@ -93,16 +103,13 @@ def opened(payload: bytes) -> object:
     return found["result"] if "result" in found else Failure(found["kind"], found["reason"])
 
 
-def inside_a_worker() -> bool:
-    """Whether this code runs for one point of a `Job` already."""
-    return getattr(_inside, "worker", False)
-
-
-def here(function: Callable[[Any], object], point: object) -> Reply:
-    """Inside a worker: its cores are busy already, and it holds the lock and the shapes' store."""
+def here(function: Callable[..., object], point: object, cache: SolutionCache | None) -> Reply:
+    """Compute one point in this process; a failure is a reply like any other."""
     try:
-        return Reply(pack({"result": function(point)}))
+        return Reply(pack({"result": function(point) if cache is None else function(point, cache)}))
     except MissingLibraryError:
-        raise
+        raise  # every other point would fail alike
     except FegearError as error:
         return Reply(failed(error))
+    except Exception as error:  # noqa: BLE001  (one point's bug must not take the others' results with it)
+        return Reply(failed(error), lasting=False)

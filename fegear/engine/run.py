@@ -1,19 +1,23 @@
-"""Run a plan: every task once, in order, with its seconds."""
+"""Run a plan: every task once, in order, computed or recalled, with its seconds."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from fegear.store import shape_keeper
+from fegear.engine.executor import Executor
+from fegear.engine.stage import Work
+from fegear.plain import content_key
+from fegear.solution_cache import Solution, SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.case.reading import Scene
     from fegear.engine.outcome import Outcome, Table, Value
-    from fegear.engine.plan import Plan
+    from fegear.engine.plan import Plan, Step
     from fegear.engine.stage import Task
 
 
@@ -43,11 +47,36 @@ class Silence:
         """Say nothing."""
 
 
-class FromCache(NamedTuple):
-    """Tooth shapes that a task read from the disk cache, and the seconds that they took when they were solved."""
+class Timing(NamedTuple):
+    """What a task took now.
 
-    shapes: int
+    Attributes
+    ----------
+    seconds : float
+        From its inputs to its tables.
+    recalled : bool
+        Whether its result was known before and only presented now.
+    when_computed : float
+        Seconds that its result took when it was computed: now, or then.
+    shapes : int
+        Tooth shapes that it recalled on its way.
+    from_disk : int
+        Those of them that an earlier run had kept on disk.
+    spared : float
+        Seconds that the shapes recalled took when they were solved.
+    """
+
     seconds: float
+    recalled: bool = False
+    when_computed: float = 0.0
+    shapes: int = 0
+    from_disk: int = 0
+    spared: float = 0.0
+
+    @property
+    def origin(self) -> str:
+        """``computed`` or ``recalled``."""
+        return "recalled" if self.recalled else "computed"
 
 
 @dataclass(frozen=True)
@@ -60,17 +89,18 @@ class Results:
     plan : Plan
     outcomes : mapping of Task to Outcome
         In the order of the plan.
-    seconds : mapping of Task to float
-        What each task took now.
-    from_cache : mapping of Task to FromCache
-        Tasks whose seconds leave out work that an earlier run did.
+    timings : mapping of Task to Timing
     """
 
     scene: Scene
     plan: Plan
     outcomes: Mapping[Task, Outcome]
-    seconds: Mapping[Task, float]
-    from_cache: Mapping[Task, FromCache] = field(default_factory=dict)
+    timings: Mapping[Task, Timing]
+
+    @property
+    def seconds(self) -> Mapping[Task, float]:
+        """What each task took now [s]."""
+        return {task: timing.seconds for task, timing in self.timings.items()}
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -91,16 +121,34 @@ class Results:
 
     @property
     def cache_remarks(self) -> tuple[str, ...]:
-        """What the disk cache spared each task: its seconds alone would tell too low a price."""
-        return tuple(
-            f"{task}: {found.shapes} solved tooth shapes came from the disk cache; solving them took "
-            f"{found.seconds:.2f} s then, which the seconds told here leave out."
-            for task, found in self.from_cache.items()
-        )
+        """What was recalled: the seconds of such tasks alone would give too low a price."""
+        recalled = {task: timing for task, timing in self.timings.items() if timing.recalled}
+        said = []
+        if recalled:
+            spared = sum(timing.when_computed for timing in recalled.values())
+            said.append(
+                f"Recalled, not computed again: {', '.join(map(str, recalled))}; "
+                f"computing them took {spared:.2f} s then."
+            )
+        said += [
+            f"{task}: {timing.from_disk} solved tooth shapes came from the disk cache; solving them took "
+            f"{timing.spared:.2f} s then, which the seconds given here do not contain."
+            for task, timing in self.timings.items()
+            if timing.from_disk
+        ]
+        return tuple(said)
 
 
-def run_plan(scene: Scene, plan: Plan, watcher: Watcher | None = None, following: int = 0) -> Results:
-    """Run every task of a plan.
+def run_plan(
+    scene: Scene,
+    plan: Plan,
+    watcher: Watcher | None = None,
+    following: int = 0,
+    *,
+    cache: SolutionCache | None = None,
+    executor: Executor | None = None,
+) -> Results:
+    """Compute or recall every task of a plan, in order.
 
     Parameters
     ----------
@@ -109,24 +157,58 @@ def run_plan(scene: Scene, plan: Plan, watcher: Watcher | None = None, following
     watcher : Watcher, optional
     following : int
         Steps that the caller will do after the plan's, so that the watcher counts them.
+    cache : SolutionCache, optional
+        Where results are recalled from and kept; by default one of this run's own.
+    executor : Executor, optional
+        Who computes points that do not depend on each other; by default processes on this machine.
 
     Returns
     -------
     Results
     """
     watcher = watcher or Silence()
-    outcomes: dict[Task, Outcome] = {}
-    seconds: dict[Task, float] = {}
-    from_cache: dict[Task, FromCache] = {}
+    work = Work(watcher.advance, SolutionCache() if cache is None else cache, executor or Executor())
+    done: dict[Task, _Finished] = {}
     for number, step in enumerate(plan.steps, start=1):
         title = f"{step.stage.title} ({step.task.subject})" if step.task.subject else step.stage.title
         watcher.begin(title, number, len(plan.steps) + following)
-        keeper = shape_keeper()
-        before = (keeper.read, keeper.spared) if keeper else (0, 0.0)
-        start = time.perf_counter()
-        outcomes[step.task] = step.stage.run(scene, step.task.subject, outcomes, watcher.advance)
-        seconds[step.task] = time.perf_counter() - start
-        watcher.end(seconds[step.task])
-        if keeper and keeper.read > before[0]:
-            from_cache[step.task] = FromCache(keeper.read - before[0], keeper.spared - before[1])
-    return Results(scene, plan, outcomes, seconds, from_cache)
+        done[step.task] = _finish(scene, step, done, work)
+        watcher.end(done[step.task].timing.seconds)
+    return Results(scene, plan, {t: one.outcome for t, one in done.items()}, {t: one.timing for t, one in done.items()})
+
+
+class _Finished(NamedTuple):
+    """A task's outcome, its key (None for a stage that has no inputs of its own), and its timing."""
+
+    outcome: Outcome
+    key: str | None
+    timing: Timing
+
+
+def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work) -> _Finished:
+    started = time.perf_counter()
+    work.cache.begin()
+    shapes = work.cache.shapes.state
+    stage, subject = step.stage, step.task.subject
+    if stage.inputs is None or stage.compute is None or stage.present is None:
+        if stage.run is None:
+            raise TypeError(f"stage {stage.name} has neither run nor inputs, compute and present")
+        outcome = stage.run(scene, subject, {t: one.outcome for t, one in done.items()}, work)
+        key, solution = None, None
+    else:
+        inputs, needs = stage.inputs(scene, subject), stage.needs(scene, subject)
+        upstream = {need: done[need].outcome.data for need in needs}
+        key = _key(stage.name, inputs, [done[need].key for need in needs])
+        compute = partial(stage.compute, inputs, upstream, work)
+        solution = work.cache.solve(key, compute) if key else Solution(compute(), 0.0, "computed")
+        outcome = stage.present(solution.value, inputs)
+    seconds = time.perf_counter() - started
+    recalled = solution is not None and solution.source != "computed"
+    used = work.cache.shapes.since(shapes)
+    when = solution.seconds if solution is not None and recalled else seconds
+    return _Finished(outcome, key, Timing(seconds, recalled, when, used.recalled, used.from_disk, used.spared))
+
+
+def _key(stage: str, inputs: object, upstream: list[str | None]) -> str | None:
+    """Key of a task: what it reads of the case and what it builds on; None where something of that has no key."""
+    return None if None in upstream else content_key(stage, inputs, upstream)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
+    from fegear.engine.executor import Executor
     from fegear.engine.outcome import Outcome
+    from fegear.solution_cache import SolutionCache
 
 
 class Task(NamedTuple):
@@ -31,6 +33,31 @@ class Progress(Protocol):
 
 
 Done = Mapping[Task, "Outcome"]
+#: What the tasks that a task needs have computed, by task.
+Upstream = Mapping[Task, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What is handed to a computation besides its inputs; none of it changes a number.
+
+    Parameters
+    ----------
+    progress : Progress
+        Where it reports how far it is.
+    cache : SolutionCache
+        Where it keeps solutions of its own parts (tooth shapes, points of a chart).
+    executor : Executor
+        Who computes points that do not depend on each other.
+    """
+
+    progress: Progress
+    cache: SolutionCache
+    executor: Executor
+
+    def __call__(self, fraction: float) -> None:
+        """Report the fraction done."""
+        self.progress(fraction)
 
 
 class Need(NamedTuple):
@@ -59,7 +86,7 @@ class Forecast(NamedTuple):
     settings : mapping
         Settings that it will use, plain numbers and texts.
     seconds : float or None
-        What it will take, alone on one core of a usual machine; None where nobody knows.
+        What it will take, alone on one core of a usual machine; None where it is unknown.
     shapes : mapping
         Seconds of the gear shapes that it solves besides, unless an earlier task has solved them, by shape.
     """
@@ -95,8 +122,16 @@ class Stage:
         Names by which ``results = [...]`` asks for it; empty for stages that only serve others.
     subjects : callable
         ``subjects(scene)`` -> names it will be done for when asked for by name.
+    inputs : callable
+        ``inputs(scene, subject)`` -> a frozen dataclass of all that the result reads of the case, files included.
+        Its content is the key under which the result is remembered; names that only appear in words are fields with
+        ``compare=False``.
+    compute : callable
+        ``compute(inputs, upstream, work)`` -> the numerical result; `upstream` holds what the needed tasks computed.
+    present : callable
+        ``present(data, inputs)`` -> `Outcome`: tables, values, figures and remarks. It computes nothing of weight.
     run : callable
-        ``run(scene, subject, done, progress)`` -> `Outcome`; `done` holds the outcomes of the tasks it needs.
+        ``run(scene, subject, done, work)`` -> `Outcome`, all in one, for stages that are not yet split in three.
     needs : callable
         ``needs(scene, subject)`` -> tasks that must run first.
     check : callable
@@ -113,7 +148,10 @@ class Stage:
     title: str
     results: tuple[str, ...]
     subjects: Callable[[Scene], tuple[str, ...]]
-    run: Callable[[Scene, str, Done, Progress], Outcome]
+    run: Callable[[Scene, str, Done, Any], Outcome] | None = None
+    inputs: Callable[[Scene, str], Any] | None = None
+    compute: Callable[[Any, Upstream, Work], Any] | None = None
+    present: Callable[[Any, Any], Outcome] | None = None
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
     effects: tuple[str, ...] = ()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import time
 from dataclasses import dataclass, replace
@@ -15,8 +14,10 @@ from fegear.fem.boundary import check_bore
 from fegear.fem.influence import REFERENCE_HALF_WIDTH, SIDES, Influence, Side, solve_influence
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import COARSEST_LEVEL, FINEST_LEVEL, LEVEL_RATIO, MeshSettings, settings_at
-from fegear.fem.shape_cache import kept_or_solved
+from fegear.fem.shape_cache import known_or_solved
 from fegear.geometry.gear import Gear, Material
+from fegear.plain import content_key
+from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -67,11 +68,16 @@ class Round:
         return max(self.errors.values())
 
 
-@functools.lru_cache(maxsize=32)
 def influence_of_shape(
-    tooth: Tooth, bore_radius: float, poisson_ratio: float, plane: Plane, settings: MeshSettings, reach: int
+    tooth: Tooth,
+    bore_radius: float,
+    poisson_ratio: float,
+    plane: Plane,
+    settings: MeshSettings,
+    reach: int,
+    cache: SolutionCache | None = None,
 ) -> Influence:
-    """Solve one gear shape (lengths in modules); equal shapes in a process are solved once."""
+    """Solve one gear shape (lengths in modules), or recall it from a cache."""
 
     def solve() -> Influence:
         return solve_influence(
@@ -84,7 +90,8 @@ def influence_of_shape(
             corner_distance=settings.corner_distance,
         )
 
-    return kept_or_solved(tooth, (bore_radius, poisson_ratio, plane, settings, reach), solve)
+    what = (bore_radius, poisson_ratio, plane, settings, reach)
+    return solve() if cache is None else known_or_solved(cache, tooth, what, solve)
 
 
 @dataclass(frozen=True)
@@ -266,6 +273,7 @@ def solve_gear(
     coarser: MeshSettings | None = None,
     mesh: SectorMesh | None = None,
     progress: Progress | None = None,
+    cache: SolutionCache | None = None,
 ) -> GearInfluence:
     """Solve a gear for its influence functions.
 
@@ -284,6 +292,8 @@ def solve_gear(
         order higher.
     progress : callable, optional
         Called with the name of each stage as it starts.
+    cache : SolutionCache, optional
+        Where solved shapes are recalled from and kept.
 
     Returns
     -------
@@ -306,7 +316,8 @@ def solve_gear(
         order, closest = settings.order, settings.corner_distance
 
         def solve(order: int) -> Influence:
-            return kept_or_solved(
+            return known_or_solved(
+                cache or SolutionCache(),
                 gear.tooth,
                 (mesh, nu, plane, order, reach, closest),
                 lambda: solve_influence(gear.tooth, mesh, nu, plane, order=order, reach=reach, corner_distance=closest),
@@ -318,16 +329,21 @@ def solve_gear(
     else:
         check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
         say("influence functions")
-        fine = influence_of_shape(*shape, settings, reach)
+        fine = influence_of_shape(*shape, settings, reach, cache)
         if estimate_error:
             say("influence functions on a coarser mesh, for the error")
-            coarse = influence_of_shape(*shape, coarser, reach)
+            coarse = influence_of_shape(*shape, coarser, reach, cache)
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
     return GearInfluence(gear, fine, coarse, replace(settings), coarser.patch_half_width, seconds)
 
 
 def solve_to_tolerance(
-    gear: Gear, tolerance: float, *, reach: int = 1, progress: Progress | None = None
+    gear: Gear,
+    tolerance: float,
+    *,
+    reach: int = 1,
+    progress: Progress | None = None,
+    cache: SolutionCache | None = None,
 ) -> GearInfluence:
     """Solve a gear as cheaply as a relative tolerance allows.
 
@@ -350,11 +366,12 @@ def solve_to_tolerance(
         round.
     """
     level, rounds = level_for(tolerance), []
+    cache = SolutionCache() if cache is None else cache  # each round's solution is the coarser one of the next
     while True:
         started = time.perf_counter()
         settings, coarser = settings_at(level), settings_at(level - 1)
-        known = solve_gear(gear, settings, reach=reach, coarser=coarser, progress=progress)
-        errors = _errors_of_shape(*_shape(gear), settings, coarser, reach)
+        known = solve_gear(gear, settings, reach=reach, coarser=coarser, progress=progress, cache=cache)
+        errors = _errors_of_shape(_shape(gear), settings, coarser, reach, cache)
         rounds.append(Round(settings, known.fine.unknowns, errors, time.perf_counter() - started))
         if rounds[-1].error <= tolerance or level >= FINEST_LEVEL or len(rounds) == _MOST_ROUNDS:
             seconds = {**known.seconds, "total": sum(one.seconds for one in rounds)}
@@ -362,13 +379,22 @@ def solve_to_tolerance(
         level += 1
 
 
-@functools.lru_cache(maxsize=256)
 def _errors_of_shape(
-    tooth: Tooth, bore_radius: float, nu: float, plane: Plane, settings: MeshSettings, coarser: MeshSettings, reach: int
+    shape: tuple[Tooth, float, float, Plane],
+    settings: MeshSettings,
+    coarser: MeshSettings,
+    reach: int,
+    cache: SolutionCache,
 ) -> Mapping[str, float]:
     """`GearInfluence.largest_errors`, which neither size nor steel change: a sweep over loads asks again and again."""
-    gear = Gear(tooth, 1.0, bore_radius, material=Material(1.0, nu), plane=plane)
-    return MappingProxyType(solve_gear(gear, settings, reach=reach, coarser=coarser).largest_errors())
+    tooth, bore_radius, nu, plane = shape
+
+    def largest() -> Mapping[str, float]:
+        gear = Gear(tooth, 1.0, bore_radius, material=Material(1.0, nu), plane=plane)
+        solved = solve_gear(gear, settings, reach=reach, coarser=coarser, cache=cache)
+        return MappingProxyType(solved.largest_errors())
+
+    return cache.solve(content_key("largest errors", shape, settings, coarser, reach), largest).value
 
 
 def _shape(gear: Gear) -> tuple[Tooth, float, float, Plane]:

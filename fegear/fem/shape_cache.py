@@ -1,12 +1,11 @@
-"""Solved tooth shapes on disk: the same shape is never solved twice, across processes and runs.
+"""Solved tooth shapes by their content, in memory and on disk: where a cache is handed down, none is solved twice.
 
-Used only inside `fegear.store.keeping_shapes`. The key holds all that the solution depends on, the source of this
+The key holds all that the solution depends on, the source of this
 package and of the geometry among it, so that a changed program never reads what an older one made.
 """
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 from typing import TYPE_CHECKING
 
@@ -15,42 +14,34 @@ from fegear.fem.mesh import SectorMesh
 from fegear.fem.root_stress import FilletStrain
 from fegear.fem.trace import LoadedFlank
 from fegear.plain import code_version, content_key, pack, unpack
-from fegear.store import shape_keeper
+from fegear.solution_cache import Codec
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.geometry.tooth import Tooth
+    from fegear.solution_cache import SolutionCache
 
 _KINDS: dict[str, Callable[..., object]] = {
     kind.__name__: kind for kind in (Influence, SectorMesh, LoadedFlank, FilletStrain)
 }
 
 
-def kept_or_solved(tooth: Tooth, what: tuple[object, ...], solve: Callable[[], Influence]) -> Influence:
-    """Read a solution from the store in use, or solve and keep it; just solve if none is in use.
+def known_or_solved(
+    cache: SolutionCache, tooth: Tooth, what: tuple[object, ...], solve: Callable[[], Influence]
+) -> Influence:
+    """Recall the solution of a shape, or solve and keep it.
 
     Parameters
     ----------
+    cache : SolutionCache
     tooth : Tooth
     what : tuple
         All else that the solution depends on; anything that `content_key` takes.
     solve : callable
     """
-    keeper = shape_keeper()
-    if keeper is None:
-        return solve()
     key = content_key(code_version("fem", "geometry"), tooth, what)
-    with keeper.store.claim(key):
-        known = _restored(keeper.store.read(key), tooth)
-        if known is not None:
-            keeper.count(0, 1, sum(known.seconds.values()))
-            return known
-        found = solve()
-        with contextlib.suppress(OSError):  # a full disk or a read-only folder costs the next run time, nothing else
-            keeper.store.write(key, pack(_plain(found)))
-    keeper.count(1, 0, 0.0)
-    return found
+    return cache.solve(key, solve, Codec(lambda found: pack(_plain(found)), lambda data: _restored(data, tooth))).value
 
 
 def _plain(item: object) -> object:
@@ -63,10 +54,8 @@ def _plain(item: object) -> object:
     return item
 
 
-def _restored(data: bytes | None, tooth: Tooth) -> Influence | None:
-    """Rebuild a solution; None if there is none or it does not fit."""
-    if data is None:
-        return None
+def _restored(data: bytes, tooth: Tooth) -> Influence | None:
+    """Rebuild a solution; None if the bytes do not fit."""
 
     def build(item: object) -> object:
         if not isinstance(item, dict):

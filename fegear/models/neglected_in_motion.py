@@ -128,5 +128,5 @@ def motion_remarks(scene: Scene, data: GearTrain, states: Sequence[SteadyState])
             if change.share > scene.case.accuracy.tolerance
         ]
         if sizes:
-            told.append(remark("Motion", scene, effect, sizes))
+            told.append(remark("Motion", scene.case.effects, scene.case.accuracy.tolerance, effect, sizes))
     return tuple(told)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING
 
 from fegear.case.part import at
@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.fem import GearInfluence
+    from fegear.fem.mesh import SectorMesh
+    from fegear.fem.settings import MeshSettings
+    from fegear.geometry import Gear
+    from fegear.solution_cache import SolutionCache
 
 
 def needed_reach(scene: Scene, name: str) -> int:
@@ -38,17 +42,56 @@ def needed_reach(scene: Scene, name: str) -> int:
     return reach
 
 
-def gear_influence(scene: Scene, name: str, progress: Callable[[str], None] | None = None) -> GearInfluence:
-    """Solve a gear of the scene; equal shapes with equal settings are solved once in a process.
-
-    A tolerance is solved to, with finer settings while the error estimate misses it; settings that the case gives
-    itself, or its own tooth mesh, are taken as they are.
+@dataclass(frozen=True)
+class GearToSolve:
+    """All that the influence functions of a gear depend on.
 
     Parameters
     ----------
-    scene : Scene
+    gear : Gear
+    tolerance : float
+        Relative; met by finer settings while the error estimate misses it.
+    settings : MeshSettings or None
+        Given by the case, or for its own tooth mesh: taken as they are.
+    reach : int
+        K: neighbours -K..K.
+    mesh : SectorMesh or None
+        A user's own.
     name : str
-        Name of the gear.
+        Of the gear, for messages.
+    """
+
+    gear: Gear
+    tolerance: float
+    settings: MeshSettings | None
+    reach: int
+    mesh: SectorMesh | None = None
+    name: str = field(default="", compare=False)
+
+
+def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
+    """What the case asks of the influence functions of a gear.
+
+    Raises
+    ------
+    InputError
+        If the gear's own mesh cannot be read.
+    """
+    mesh, accuracy = own_sector_mesh(scene, name), scene.case.accuracy
+    taken = mesh is not None or bool(given_settings(accuracy))
+    settings = mesh_settings(accuracy) if taken else None
+    return GearToSolve(scene.gears[name], accuracy.tolerance, settings, needed_reach(scene, name), mesh, name)
+
+
+def solve_influence_functions(
+    asked: GearToSolve, cache: SolutionCache | None = None, progress: Callable[[str], None] | None = None
+) -> GearInfluence:
+    """Solve a gear for its influence functions, or recall its shapes from a cache.
+
+    Parameters
+    ----------
+    asked : GearToSolve
+    cache : SolutionCache, optional
     progress : callable, optional
         Called with the name of each step as it starts.
 
@@ -59,16 +102,16 @@ def gear_influence(scene: Scene, name: str, progress: Callable[[str], None] | No
     """
     from fegear.fem import solve_gear, solve_to_tolerance
 
-    mesh, reach, accuracy = own_sector_mesh(scene, name), needed_reach(scene, name), scene.case.accuracy
+    gear, reach = asked.gear, asked.reach
     try:
-        if mesh is None and not given_settings(accuracy):
-            return solve_to_tolerance(scene.gears[name], accuracy.tolerance, reach=reach, progress=progress)
-        return solve_gear(scene.gears[name], mesh_settings(accuracy), reach=reach, mesh=mesh, progress=progress)
+        if asked.settings is None:
+            return solve_to_tolerance(gear, asked.tolerance, reach=reach, progress=progress, cache=cache)
+        return solve_gear(gear, asked.settings, reach=reach, mesh=asked.mesh, progress=progress, cache=cache)
     except RangeError as error:
-        raise at(f"gear.{name}", error) from None
+        raise at(f"gear.{asked.name}", error) from None
 
 
-def solution_told(influence: GearInfluence) -> dict[str, object]:
+def solution_settings(influence: GearInfluence) -> dict[str, object]:
     """Settings of a gear's solution and what they cost, for the summary."""
     told: dict[str, object] = {
         **asdict(influence.settings),
@@ -90,9 +133,9 @@ def solution_told(influence: GearInfluence) -> dict[str, object]:
     return told
 
 
-def solution_remarks(scene: Scene, name: str, influence: GearInfluence) -> tuple[str, ...]:
+def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> tuple[str, ...]:
     """Say where a tolerance took more than one solution, and where the last of them still misses it."""
-    rounds, tolerance = influence.rounds, scene.case.accuracy.tolerance
+    rounds = influence.rounds
     if not rounds or (len(rounds) == 1 and rounds[0].error <= tolerance):
         return ()
     steps = ", ".join(f"{one.error:.1e} with {one.unknowns} unknowns a tooth" for one in rounds)

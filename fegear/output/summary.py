@@ -45,9 +45,14 @@ def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str,
         },
         "timings": {str(task): round(seconds, 6) for task, seconds in results.seconds.items()}
         | {"total": round(sum(results.seconds.values()), 6)},
-        "from_cache": {
-            str(task): {"shapes": found.shapes, "seconds_when_solved": round(found.seconds, 6)}
-            for task, found in results.from_cache.items()
+        "origin": {str(task): timing.origin for task, timing in results.timings.items()},
+        "recalled": {
+            str(task): {
+                "shapes": timing.shapes,
+                "seconds_when_computed": round(timing.when_computed + timing.spared, 6),
+            }
+            for task, timing in results.timings.items()
+            if timing.recalled or timing.shapes
         },
         "remarks": remarks,
         "files": files,

@@ -9,6 +9,7 @@ from fegear.results import (
     design_chart,
     dynamic_factor,
     dynamic_root_stress,
+    gear_solution,
     gear_train,
     geometry,
     load_sharing,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 #: Every stage, in the order in which plans list those that they skip.
 STAGES: tuple[Stage, ...] = (
     geometry.GEOMETRY,
+    gear_solution.GEAR_SOLUTION,
     stiffness.STIFFNESS,
     stiffness.ROOT_STRESS,
     crosscheck.CROSSCHECK,

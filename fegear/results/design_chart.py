@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fegear.case.dynamics import DesignChartPart
     from fegear.case.reading import Scene
     from fegear.contact import Engagement
-    from fegear.engine.stage import Done, Progress
+    from fegear.engine.stage import Done, Work
     from fegear.models.train import GearTrain
 
     Array = NDArray[np.float64]
@@ -145,11 +145,10 @@ def _check(scene: Scene, subject: str) -> None:
         )  # fmt: skip
 
 
-def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
+def _run(scene: Scene, _subject: str, done: Done, progress: Work) -> Outcome:
     from fegear.design import welbourn_amount
     from fegear.engine.executor import map_points
     from fegear.engine.point_job import Failure
-    from fegear.store import Store, cache_folder
 
     part, name, data = _chart(scene), _mesh(scene), gear_train(done)
     i = data.train.mesh_index(name)
@@ -158,8 +157,9 @@ def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome
     amounts, lengths = np.unique(part.amounts), np.unique(part.lengths)
     points = [Trial(scene, data, engagement, i, 0.0, 0.0, delta)]
     points += [Trial(scene, data, engagement, i, float(a), float(n), delta) for a in amounts for n in lengths]
-    store = Store(cache_folder() / "points")
-    found = map_points(chart_trial, points, store=store, key=trial_content, progress=progress)
+    found = map_points(
+        chart_trial, points, progress.executor, progress.cache, key=trial_content, progress=progress.progress
+    )
     failures = tuple(
         f"amount {p.amount:.4g} Delta, length {p.length:.4g}: {r.reason}"
         for p, r in zip(points, found, strict=True)

@@ -10,9 +10,10 @@ import numpy as np
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage, Task
 from fegear.errors import InputError
-from fegear.models.loaded_pair import MEMBERS, gear_name
+from fegear.models.pair_inputs import MEMBERS, gear_name
 from fegear.models.train import train_part
 from fegear.results import forecasts
+from fegear.results.gear_solution import needs_solution
 from fegear.results.mesh_forces import force_at, needs_one_speed, own_meshes, summed_harmonics
 from fegear.results.root_stress_history import table_names
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from fegear.contact.fe_compliance import FiniteElementCompliance
     from fegear.dynamics.tooth_force import ToothForce
     from fegear.engine.stage import Done, Progress
+    from fegear.fem import GearInfluence
     from fegear.geometry.pair import GearPair, Member
     from fegear.results.mesh_forces import ToothForceData
 
@@ -48,6 +50,11 @@ def _check(scene: Scene, name: str) -> None:
             "results", '"root-stress-history"', "and dynamic-root-stress would write the same tables",
             "ask for dynamic-root-stress alone: it holds the quasi-static stress too",
         )  # fmt: skip
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    pair = scene.case.pair[train_part(scene).pair_of(name)]
+    return (Task("tooth-force", name), *needs_solution(pair.driver, pair.driven))
 
 
 def _neighbours(scene: Scene, data: ToothForceData, source: FiniteElementCompliance) -> dict[int, ToothForce]:
@@ -90,7 +97,6 @@ def _own_error(source: FiniteElementCompliance, pair: GearPair, member: Member, 
 def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     from fegear.contact import finite_element_compliance
     from fegear.dynamics.tooth_force import root_stress
-    from fegear.models.tooth_influence import gear_influence
 
     data = cast("ToothForceData", done[Task("tooth-force", name)].data)
     pair_name = train_part(scene).pair_of(name)
@@ -101,7 +107,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     labels = table_names(scene, pair_name)
     for number, member in enumerate(MEMBERS):
         gear = gear_name(scene, pair_name, member)
-        source = finite_element_compliance(gear_influence(scene, gear))
+        source = finite_element_compliance(cast("GearInfluence", done[Task("gear-solution", gear)].data))
         around = _neighbours(scene, data, source)
         kernels = _kernels(source, pair, member, around)
         stress[member] = root_stress({k: f.total + f.cross.sum(axis=0) for k, f in around.items()}, kernels)
@@ -139,7 +145,7 @@ DYNAMIC_ROOT_STRESS = Stage(
     results=("dynamic-root-stress",),
     subjects=own_meshes,
     run=_run,
-    needs=lambda _scene, name: (Task("tooth-force", name),),
+    needs=_needs,
     check=_check,
     effects=("neighbour_coupling",),
     forecast=forecasts.dynamic_root_stress,

@@ -73,13 +73,9 @@ def _loads(scene: Scene, pair: str) -> int:
 
 
 def loaded_pair(scene: Scene, name: str) -> Forecast:
-    """Finite elements of both gears, or the tables of closed forms."""
-    if not _by_elements(scene, name):
-        return Forecast({"compliance": scene.case.pair[name].compliance.source}, 0.06)
-    settings = mesh_settings(scene.case.accuracy)
-    solved = shapes(scene, _gears(scene, name))
-    own = any(scene.case.gear[gear].tooth_mesh is not None for gear in _gears(scene, name))
-    return Forecast(asdict(settings), None if own else 0.1, solved)
+    """Tables over the flank, from the influence functions of both gears or from closed forms."""
+    source = scene.case.pair[name].compliance.source
+    return Forecast({"compliance": source}, 0.1 if source == "fe" else 0.06)
 
 
 def load_sharing(scene: Scene, name: str) -> Forecast:
@@ -162,13 +158,9 @@ def tooth_force(scene: Scene, _name: str) -> Forecast:
     return Forecast({"harmonics": harmonics, "positions": part.positions}, 0.06 * harmonics / 256)
 
 
-def dynamic_root_stress(scene: Scene, name: str) -> Forecast:
-    """Root stress by finite elements, whatever the compliances come from, and the neighbours' forces."""
-    if scene.case.train is None:
-        return Forecast()
-    pair = scene.case.train.pair_of(name)
-    solved = shapes(scene, _gears(scene, pair))
-    return Forecast({}, 0.12 if scene.case.effects.neighbour_coupling else 0.04, solved)
+def dynamic_root_stress(scene: Scene, _name: str) -> Forecast:
+    """Root stress from the influence functions, whatever the compliances come from, and the neighbours' forces."""
+    return constant(0.12 if scene.case.effects.neighbour_coupling else 0.04)
 
 
 def _periods(scene: Scene) -> int:

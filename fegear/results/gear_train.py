@@ -10,7 +10,7 @@ import numpy as np
 from fegear.dynamics.matrices import static_forces
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Stage, Task
-from fegear.models.loaded_pair import check_relief
+from fegear.models.pair_checks import check_relief
 from fegear.models.train import GearTrain, build_train, check_train, train_part
 from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, loaded_pair

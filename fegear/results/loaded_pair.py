@@ -2,31 +2,49 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
 from fegear.engine.figure import Axis, Mark, few, ramp
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Task
-from fegear.models.loaded_pair import MEMBERS, LoadedPair, build_loaded_pair, check_pair, effect_remarks, gear_name
-from fegear.models.neglected_effects import pair_remarks
-from fegear.models.tooth_influence import solution_remarks, solution_told
+from fegear.models.loaded_pair import LoadedPair, build_loaded_pair, compliance_sources
+from fegear.models.neglected_effects import Neglected, neglected_effects, neglected_remarks
+from fegear.models.pair_checks import check_pair
+from fegear.models.pair_inputs import pair_inputs
 from fegear.results import forecasts
+from fegear.results.gear_solution import needs_solution, solution_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
+    from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact import Engagement, Loaded
     from fegear.contact.engagement import RollGrid
-    from fegear.engine.stage import Done, Progress
+    from fegear.contact.left_out import Answer
+    from fegear.engine.stage import Upstream, Work
+    from fegear.models.pair_inputs import PairInputs
 
 #: Abscissae of figures.
 LINE_OF_ACTION = Axis("position on the line of action from the pitch point", "mm")
 BASE_PITCH = Axis("roll position over one base pitch", "mm")
-#: How many times the finite-element parts of both gears report that they go on.
-_STEPS = 4
 #: Effects that load sharing knows.
 EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact")
+#: What the results that load a pair stand on; those of the train stand on its transmission error.
+_ANSWERS: dict[str, Answer] = {
+    "load-sharing": "load on a tooth pair",
+    "root-stress-history": "root tension",
+    **dict.fromkeys(
+        (
+            "transmission-error", "relief-chart", "gear-train", "natural-modes", "campbell", "dynamic-increments",
+            "mesh-force-spectrum", "tooth-force", "dynamic-root-stress", "dynamic-factor", "design-chart",
+        ),
+        "transmission error",
+    ),
+}  # fmt: skip
+#: Results that are for every load of the case.
+_FOR_ALL_LOADS = frozenset({"load-sharing", "transmission-error", "root-stress-history", "relief", "relief-chart"})
 
 
 def drawn_loads(loads: Sequence[float], nominal: float, word: str = "nominal") -> list[tuple[int, str, str]]:
@@ -44,7 +62,7 @@ def path_ends(pair: LoadedPair) -> tuple[Mark, ...]:
 
 
 def spur_pairs(scene: Scene) -> tuple[str, ...]:
-    """All pairs of spur gears that carry a load; all pairs where none does, so that the missing load is told."""
+    """All pairs of spur gears that carry a load; all pairs where none does, so that the missing load is reported."""
     loaded = tuple(name for name, pair in scene.pairs.items() if scene.case.pair[name].normal_load(pair) is not None)
     return loaded or tuple(scene.pairs)
 
@@ -54,9 +72,10 @@ def needs_pair(_scene: Scene, name: str) -> tuple[Task, ...]:
     return (Task("loaded-pair", name),)
 
 
-def loaded_pair(done: Done, name: str) -> LoadedPair:
-    """What this stage left for a pair."""
-    return cast("LoadedPair", done[Task("loaded-pair", name)].data)
+def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
+    """What this stage computed for a pair."""
+    found = upstream[Task("loaded-pair", name)]
+    return cast("LoadedPairData", getattr(found, "data", found)).pair
 
 
 def change_by_shifts(pair: LoadedPair, grid: RollGrid, loaded: Loaded) -> list[Loaded]:
@@ -73,31 +92,72 @@ def solve_again(other: Engagement, grid: RollGrid, loaded: Loaded) -> Loaded:
     return Loaded(RollGrid(grid.x, grid.contacts, m), loaded.load, shared, loaded.separation)
 
 
-def _run(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
-    from fegear.contact.fe_compliance import FiniteElementCompliance
+@dataclass(frozen=True)
+class LoadedPairData:
+    """A pair ready for load sharing, and what its case neglects."""
 
-    steps = iter(range(_STEPS))
-    pair = build_loaded_pair(scene, name, lambda _title: progress(next(steps, _STEPS) / _STEPS))
+    pair: LoadedPair
+    neglected: Neglected
+
+
+@dataclass(frozen=True)
+class LoadedPairInputs:
+    """What this stage reads.
+
+    Parameters
+    ----------
+    asked : PairInputs
+    answers : tuple of str
+        What the wanted results stand on, for the sizes of neglected effects.
+    loads : tuple of float
+        For which those are estimated [N].
+    tolerance : float
+        That they are held against.
+    effects : EffectsPart
+        All of the case, for the remedies.
+    """
+
+    asked: PairInputs
+    answers: tuple[Answer, ...]
+    loads: tuple[float, ...]
+    tolerance: float = field(compare=False)
+    effects: EffectsPart = field(compare=False)
+
+
+def _inputs(scene: Scene, name: str) -> LoadedPairInputs:
+    asked, wanted = pair_inputs(scene, name), scene.case.results
+    answers = tuple(dict.fromkeys(_ANSWERS[result] for result in wanted if result in _ANSWERS))
+    loads = tuple(sorted({asked.loads[0], asked.nominal, asked.loads[-1]}))
+    if not _FOR_ALL_LOADS & set(wanted):
+        loads = (asked.nominal,)
+    return LoadedPairInputs(asked, answers, loads, scene.case.accuracy.tolerance, scene.case.effects)
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    part = scene.case.pair[name]
+    return needs_solution(part.driver, part.driven) if part.compliance.source == "fe" else ()
+
+
+def _compute(inputs: LoadedPairInputs, upstream: Upstream, _work: Work) -> LoadedPairData:
+    asked = inputs.asked
+    influences = {gear: solution_of(upstream, gear) for gear in asked.gears} if upstream else {}
+    pair = build_loaded_pair(asked, *compliance_sources(asked, influences))
+    return LoadedPairData(pair, neglected_effects(asked, pair, inputs.answers, inputs.loads))
+
+
+def _present(data: LoadedPairData, inputs: LoadedPairInputs) -> Outcome:
+    asked, pair = inputs.asked, data.pair
     settings: dict[str, object] = {
         "compliance": "; ".join(pair.sources),
-        "hertz": scene.case.effects.hertz,
-        "neighbour_coupling": scene.case.effects.neighbour_coupling,
-        "corner_contact": scene.case.effects.corner_contact,
+        "hertz": asked.effects.hertz,
+        "neighbour_coupling": asked.effects.neighbour_coupling,
+        "corner_contact": asked.effects.corner_contact,
         "face_width": pair.engagement.compliance.face_width,
         "nominal_load": pair.nominal,
         "loads": list(pair.loads),
     }
-    remarks: list[str] = []
-    for gear, source in zip(
-        (gear_name(scene, name, member) for member in MEMBERS),
-        (pair.engagement.compliance.driver, pair.engagement.compliance.driven),
-        strict=True,
-    ):
-        if isinstance(source, FiniteElementCompliance):
-            settings[f"gear_{gear}"] = solution_told(source.influence)
-            remarks += solution_remarks(scene, gear, source.influence)
-    remarks += [*effect_remarks(scene, name), *pair_remarks(scene, pair)]
-    return Outcome(pair, (), (), settings, tuple(dict.fromkeys(remarks)))
+    neglected = neglected_remarks(asked.name, data.neglected, inputs.effects, inputs.tolerance, pair.nominal)
+    return Outcome(data, (), (), settings, tuple(dict.fromkeys((*asked.assumed, *neglected))))
 
 
 LOADED_PAIR = Stage(
@@ -105,7 +165,10 @@ LOADED_PAIR = Stage(
     title="Compliances of a loaded pair",
     results=(),
     subjects=spur_pairs,
-    run=_run,
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     check=check_pair,
     effects=EFFECTS,
     forecast=forecasts.loaded_pair,

@@ -12,8 +12,8 @@ from fegear.case.design import DesignPart
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
 from fegear.errors import InputError
-from fegear.models.loaded_pair import LoadedPair, gear_name
-from fegear.models.neglected_effects import design_remarks
+from fegear.models.neglected_effects import design_remarks, neglected_in_design
+from fegear.models.pair_inputs import gear_name, pair_inputs
 from fegear.results import forecasts
 from fegear.results.loaded_pair import loaded_pair, needs_pair
 from fegear.results.root_stress_history import table_names
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Done, Progress
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Shape
+    from fegear.models.loaded_pair import LoadedPair
 
     Array = NDArray[np.float64]
 
@@ -95,11 +96,10 @@ def _loading(scene: Scene, pair: LoadedPair) -> LoadingFunction:
 
 
 def _least_stress(
-    scene: Scene, pair: LoadedPair, loading: LoadingFunction, load: float
+    scene: Scene, name: str, pair: LoadedPair, loading: LoadingFunction, load: float
 ) -> tuple[LoadingFunction, Table, Value]:
     from fegear.design import design_stress, least_root_stress
 
-    name = pair.name
     if scene.case.pair[name].compliance.source != "fe":
         raise InputError(
             "design.peak", '"least-root-stress"', "needs root stresses", f'set pair.{name}.compliance.source = "fe"'
@@ -120,7 +120,11 @@ def _least_stress(
 
 
 def _relief_tables(
-    scene: Scene, pair: LoadedPair, designed: Engagement, diagonal: Engagement | None, others: list[Engagement]
+    scene: Scene,
+    name: str,
+    designed: Engagement,
+    diagonal: Engagement | None,
+    others: list[Engagement],
 ) -> tuple[dict[Member, ReliefTable], list[Table]]:
     from fegear.design import relief_nodes, relief_table
 
@@ -129,7 +133,7 @@ def _relief_tables(
     )
     found: dict[Member, ReliefTable] = {}
     tables = []
-    for member, label in table_names(scene, pair.name).items():
+    for member, label in table_names(scene, name).items():
 
         def of(e: Engagement, member: Member = member) -> MinimumExcitationRelief:
             # minimum_excitation has put its own relief on both flanks
@@ -149,8 +153,8 @@ def _relief_tables(
         if others:
             error = np.sum([np.abs(of(other).at(t.x) - t.relief) for other in others], axis=0)
             columns.append(Column("relief_error", error, "um", "estimated error of relief"))
-        gear = gear_name(scene, pair.name, member)
-        tables.append(Table(f"relief_{label}", tuple(columns), f"Relief of gear {gear} in pair {pair.name}"))
+        gear = gear_name(scene, name, member)
+        tables.append(Table(f"relief_{label}", tuple(columns), f"Relief of gear {gear} in pair {name}"))
     return found, tables
 
 
@@ -187,7 +191,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     load = part.load or pair.nominal
     loading, values, tables = _loading(scene, pair), [], []
     if part.peak == "least-root-stress":
-        loading, table, value = _least_stress(scene, pair, loading, load)
+        loading, table, value = _least_stress(scene, name, pair, loading, load)
         tables.append(table)
         values.append(value)
     plain = replace(pair.engagement, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED)
@@ -198,7 +202,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     if coupled:
         states["diagonal only"] = minimum_excitation(plain, loading, load, full_matrix=False)
     others = [minimum_excitation(replace(plain, compliance=s.compliance), loading, load) for s in pair.shifted]
-    found, relief_tables = _relief_tables(scene, pair, designed, states.get("diagonal only"), others)
+    found, relief_tables = _relief_tables(scene, name, designed, states.get("diagonal only"), others)
     tables += relief_tables
     progress(0.3)
     ground: dict[Shape, TipReliefPair] = {}
@@ -213,7 +217,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     x = roll_positions(pair)
     curves = {label: state.solve(state.grid(x), loads) for label, state in states.items()}
     tables.append(_harris_table(name, curves))
-    values += _values(pair, designed, te, found)
+    values += _values(name, pair, designed, te, found)
     settings = {
         "design_load": load, "design_contact_ratio": loading.length / loading.base_pitch, "peak": loading.peak,
         "slope": loading.ramp.slope, "exponent": loading.ramp.exponent or 0, "centre": loading.centre,
@@ -236,11 +240,15 @@ def _harris_table(name: str, curves: dict[str, Loaded]) -> Table:
 
 
 def _values(
-    pair: LoadedPair, designed: Engagement, te: dict[str, TransmissionError], found: dict[Member, ReliefTable]
+    name: str,
+    pair: LoadedPair,
+    designed: Engagement,
+    te: dict[str, TransmissionError],
+    found: dict[Member, ReliefTable],
 ) -> list[Value]:
     from fegear.contact import transmission_error
 
-    values, name = [], pair.name
+    values = []
     # How much transmission error a design with compliances that are off by their error leaves on the true teeth.
     left = None
     if pair.shifted:
@@ -271,7 +279,9 @@ def _remarks(scene: Scene, name: str, designed: Engagement, te: dict[str, Transm
             f"Pair {name}: a design without the neighbours' loads (Mark 5.4) would leave {d * 1e6:.3g} um, "
             f"{d / te['diagonal only'].mean:.1%} of the mean, peak to peak, and {d / n:.0%} of what no relief leaves."
         )
-    return (*remarks, *design_remarks(scene, name, designed, te["designed"].load))
+    effects, tolerance = scene.case.effects, scene.case.accuracy.tolerance
+    neglected = neglected_in_design(pair_inputs(scene, name), designed, te["designed"].load, tolerance)
+    return (*remarks, *design_remarks(name, neglected, effects, tolerance))
 
 
 RELIEF = Stage(

@@ -10,7 +10,8 @@ import numpy as np
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
 from fegear.errors import InputError
-from fegear.models.loaded_pair import MEMBERS, LoadedPair, check_relief, gear_name
+from fegear.models.pair_checks import check_relief
+from fegear.models.pair_inputs import MEMBERS, gear_name
 from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair, solve_again, spur_pairs
 from fegear.results.transmission_error import roll_positions
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from fegear.contact import Engagement, Loaded
     from fegear.engine.stage import Done, Progress
     from fegear.geometry.pair import Member
+    from fegear.models.loaded_pair import LoadedPair
 
     Array = NDArray[np.float64]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -11,15 +11,14 @@ from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.errors import InputError, RangeError
 from fegear.models.assumed import bore_remarks
-from fegear.models.settings import mesh_settings
-from fegear.models.tooth_influence import gear_influence, solution_remarks, solution_told
-from fegear.results import forecasts
+from fegear.models.tooth_influence import solution_settings
+from fegear.results.gear_solution import needs_solution
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
-    from fegear.engine.stage import Done, Progress
+    from fegear.engine.stage import Upstream, Work
     from fegear.fem import GearInfluence, StiffnessTable
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
@@ -34,8 +33,6 @@ LARGEST_HALF_WIDTH = 0.5
 _SECONDS_PER_POSITION = 3e-4
 #: The error estimates of a table [s].
 _SECONDS_OF_TABLE = 0.05
-#: How many times the finite-element part reports that it goes on.
-_STEPS = 3
 
 
 def _gear(scene: Scene) -> tuple[str, ...]:
@@ -63,6 +60,13 @@ def _check(scene: Scene, name: str) -> None:
             f"describe a pair with gear {name}, or give contact_half_width",
         )
     gear = scene.gears[name]
+    if part.contact_half_width is not None and part.contact_half_width > LARGEST_HALF_WIDTH * gear.module:
+        raise RangeError(
+            "stiffness.contact_half_width",
+            f"{part.contact_half_width * 1e3:.6g} mm",
+            f"is no contact on a flank: it exceeds half a module, {LARGEST_HALF_WIDTH * gear.module * 1e3:.6g} mm",
+            f"{USUAL_HALF_WIDTH * gear.module * 1e3:.6g} mm is usual",
+        )
     for i, radius in enumerate(part.radii or ()):
         low, high = gear.form_radius, gear.involute_tip_radius
         if not low * (1 - 1e-9) <= radius <= high * (1 + 1e-9):
@@ -94,13 +98,6 @@ def contact_half_width(scene: Scene, name: str, radii: Array) -> Array:
     """Half-width of the contact at every radius [m]: given, from Hertz for a load and a mate, or 0.02 modules."""
     part, gear = scene.case.stiffness, scene.gears[name]
     if part.contact_half_width is not None:
-        if part.contact_half_width > LARGEST_HALF_WIDTH * gear.module:
-            raise RangeError(
-                "stiffness.contact_half_width",
-                f"{part.contact_half_width * 1e3:.6g} mm",
-                f"is no contact on a flank: it exceeds half a module, {LARGEST_HALF_WIDTH * gear.module * 1e3:.6g} mm",
-                f"{USUAL_HALF_WIDTH * gear.module * 1e3:.6g} mm is usual",
-            )
         return np.full(radii.shape, part.contact_half_width)
     if part.load is None:
         return np.full(radii.shape, USUAL_HALF_WIDTH * gear.module)
@@ -160,8 +157,8 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
     return tuple(found)
 
 
-def _remarks(scene: Scene, name: str, t: StiffnessTable) -> tuple[str, ...]:
-    tolerance, remarks = scene.case.accuracy.tolerance, []
+def _remarks(asked: StiffnessInputs, t: StiffnessTable) -> tuple[str, ...]:
+    name, tolerance, remarks = asked.name, asked.tolerance, []
     # The neighbour's deflection is small beside the loaded tooth's, to which it is added: that is its scale.
     for label, value, error in (
         ("c_self", t.c_self, t.errors["c_self"]),
@@ -177,35 +174,68 @@ def _remarks(scene: Scene, name: str, t: StiffnessTable) -> tuple[str, ...]:
                 f"at radius {t.radius[i] * 1e3:.6g} mm; at {np.mean(relative <= tolerance):.0%} of the positions it is "
                 "within the tolerance."
             )
-    part = scene.case.stiffness
+    return (*remarks, *asked.assumed)
+
+
+@dataclass(frozen=True)
+class StiffnessInputs:
+    """What the table of a gear depends on beside its influence functions.
+
+    Parameters
+    ----------
+    gear : Gear
+    radii, half_widths : ndarray, shape (P,)
+        Of the contacts [m].
+    tolerance : float
+        That estimated errors are held against.
+    assumed : tuple of str
+        Sentences about values that the case does not give.
+    name : str
+        Of the gear.
+    """
+
+    gear: Gear
+    radii: Array
+    half_widths: Array
+    tolerance: float
+    assumed: tuple[str, ...] = field(default=(), compare=False)
+    name: str = field(default="", compare=False)
+
+
+def _inputs(scene: Scene, name: str) -> StiffnessInputs:
+    part, radii = scene.case.stiffness, load_radii(scene, name)
+    assumed = bore_remarks(scene, name)
     if part.contact_half_width is None and part.load is None:
-        remarks.append(
+        usual = (
             f"Gear {name}: no contact_half_width or load was given, so c_self is for a half-width of "
             f"{USUAL_HALF_WIDTH} modules."
         )
-    return (*remarks, *bore_remarks(scene, name))
+        assumed = (usual, *assumed)
+    widths = contact_half_width(scene, name, radii)
+    return StiffnessInputs(scene.gears[name], radii, widths, scene.case.accuracy.tolerance, assumed, name)
 
 
-def _run_stiffness(scene: Scene, name: str, _done: Done, progress: Progress) -> Outcome:
+def _compute(asked: StiffnessInputs, upstream: Upstream, _work: Work) -> StiffnessTable:
     from fegear.fem import stiffness_table
 
-    gear = scene.gears[name]
-    steps = iter(range(_STEPS))
-    radii = load_radii(scene, name)
-    influence = gear_influence(scene, name, lambda _title: progress(next(steps, _STEPS) / _STEPS))
-    table = stiffness_table(gear, radii, contact_half_width(scene, name, radii), influence=influence)
-    remarks = (*solution_remarks(scene, name, influence), *_remarks(scene, name, table))
-    return Outcome(table, _tables(name, table), _values(name, gear, table), solution_told(influence), remarks)
+    (influence,) = upstream.values()
+    return stiffness_table(asked.gear, asked.radii, asked.half_widths, influence=influence)
 
 
-def _forecast(scene: Scene, name: str) -> Forecast:
-    settings = mesh_settings(scene.case.accuracy)
-    if scene.case.gear[name].tooth_mesh is not None:
-        return Forecast({"mesh": scene.case.gear[name].tooth_mesh, "order": settings.order})
-    positions = len(scene.case.stiffness.radii or ()) or scene.case.stiffness.positions
-    return Forecast(
-        asdict(settings), _SECONDS_OF_TABLE + _SECONDS_PER_POSITION * positions, forecasts.shapes(scene, [name])
+def _present(table: StiffnessTable, asked: StiffnessInputs) -> Outcome:
+    name = asked.name
+    return Outcome(
+        table,
+        _tables(name, table),
+        _values(name, asked.gear, table),
+        solution_settings(table.influence),
+        _remarks(asked, table),
     )
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    positions = len(scene.case.stiffness.radii or ()) or scene.case.stiffness.positions
+    return Forecast({"positions": positions}, _SECONDS_OF_TABLE + _SECONDS_PER_POSITION * positions)
 
 
 STIFFNESS = Stage(
@@ -213,7 +243,10 @@ STIFFNESS = Stage(
     title="Compliance and root stress, whole gear",
     results=("stiffness",),
     subjects=_gear,
-    run=_run_stiffness,
+    needs=lambda _scene, name: needs_solution(name),
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     check=_check,
     forecast=_forecast,
 )
@@ -243,12 +276,37 @@ def _curve_columns(influence: GearInfluence, radius: float) -> tuple[Column, ...
     )
 
 
-def _run_root_stress(_scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
-    t = cast("StiffnessTable", done[Task("stiffness", name)].data)
-    i = int(np.argmax(t.root_tension))
-    radius = float(t.radius[i])
+@dataclass(frozen=True)
+class FilletCurves:
+    """Stress along both fillets under the load that gives the largest root tension.
+
+    Parameters
+    ----------
+    table : StiffnessTable
+    radius : float
+        Of the contact [m].
+    """
+
+    table: StiffnessTable
+    radius: float
+
+
+@dataclass(frozen=True)
+class _Named:
+    """The gear that a stage is for: all else comes from the stages before it."""
+
+    name: str = field(compare=False)
+
+
+def _worst_load(_asked: _Named, upstream: Upstream, _work: Work) -> FilletCurves:
+    (table,) = upstream.values()
+    return FilletCurves(table, float(table.radius[int(np.argmax(table.root_tension))]))
+
+
+def _present_curves(found: FilletCurves, asked: _Named) -> Outcome:
+    name, radius = asked.name, found.radius
     title = f"Root stress along the fillets of gear {name}, load at radius {radius * 1e3:.6g} mm"
-    return Outcome(radius, (Table(f"root_stress_{name}", _curve_columns(t.influence, radius), title),))
+    return Outcome(found, (Table(f"root_stress_{name}", _curve_columns(found.table.influence, radius), title),))
 
 
 ROOT_STRESS = Stage(
@@ -256,7 +314,9 @@ ROOT_STRESS = Stage(
     title="Root stress along the fillets",
     results=("root-stress",),
     subjects=_gear,
-    run=_run_root_stress,
     needs=lambda _scene, name: (Task("stiffness", name),),
+    inputs=lambda _scene, name: _Named(name),
+    compute=_worst_load,
+    present=_present_curves,
     forecast=lambda _scene, _name: Forecast({}, 0.01),
 )

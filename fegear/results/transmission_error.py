@@ -10,7 +10,7 @@ import numpy as np
 from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel, Stems
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
-from fegear.models.loaded_pair import LoadedPair, check_relief
+from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
 from fegear.results.loaded_pair import (
     BASE_PITCH,
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact import FourierSeries, Loaded, TransmissionError
     from fegear.engine.stage import Done, Progress
+    from fegear.models.loaded_pair import LoadedPair
 
     Array = NDArray[np.float64]
 

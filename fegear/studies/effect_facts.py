@@ -61,7 +61,6 @@ FACTS: dict[str, EffectFact] = {
     "parametric": EffectFact(
         "tooth pairs come and go: the stiffness varies in time", "results in time", ("springs in time",)
     ),
-    "off_line_of_action": EffectFact("nothing yet", "no stage knows it", ()),
     "misalignment": EffectFact(
         "helical gears run with errors of axes, lead, profile and centre distance",
         "`misalignment` of a helical pair",

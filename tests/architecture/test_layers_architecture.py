@@ -25,6 +25,7 @@ LAYERS = {
     "units": 0.5,
     "tally": 0.5,
     "store": 0.6,
+    "solution_cache": 0.7,
     "geometry": 1,
     "formulas": 2,
     "fem": 2,

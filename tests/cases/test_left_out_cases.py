@@ -14,8 +14,10 @@ from fegear.contact import pair_history
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.models.neglected_effects import pair_changes, pair_remarks
+from fegear.models.neglected_effects import neglected_effects, neglected_remarks
+from fegear.models.pair_inputs import pair_inputs
 from fegear.results.catalogue import STAGES
+from fegear.results.loaded_pair import LOADED_PAIR
 
 CASES = Path(__file__).parents[2] / "cases"
 COARSE = "accuracy.tolerance=1e-2"
@@ -76,7 +78,7 @@ def true_load_change(before, after, load: float) -> float:
     """Between two runs' engagements, a tooth pair followed over twenty thousand positions."""
     histories = []
     for results in (before, after):
-        engagement = results.outcomes[Task("loaded-pair", "I")].data.engagement
+        engagement = results.outcomes[Task("loaded-pair", "I")].data.pair.engagement
         histories.append(pair_history(engagement, [load], 20_000))
     x = np.unique(np.concatenate([h.x for h in histories]))
     a, b = (np.interp(x, h.x, h.load[:, 0], left=0.0, right=0.0) for h in histories)
@@ -108,12 +110,13 @@ def test_the_size_told_is_that_of_the_run_with_the_effect_on(name, effect, among
     off = {**OFF, **among, effect: OFF[effect]}
     before = run(name, *effects(**off))
     after = run(name, *effects(**{**off, effect: ON[effect]}))
-    pair = before.outcomes[Task("loaded-pair", "I")].data
+    pair = before.outcomes[Task("loaded-pair", "I")].data.pair
+    inputs = LOADED_PAIR.inputs(before.scene, "I")
     compared = 0
     for load in (pair.loads[0], pair.nominal, pair.loads[-1]):
-        found, wrong = pair_changes(before.scene, pair, [load])
-        assert not wrong
-        for change in found[effect]:
+        found = neglected_effects(inputs.asked, pair, inputs.answers, [load])
+        assert not found.wrong
+        for change in found.changes[effect]:
             if change.answer == "root tension" and load != pair.nominal:
                 continue  # its values are for the nominal load
             true = true_change(before, after, change.answer, load)
@@ -136,17 +139,15 @@ def test_it_is_told_above_the_tolerance_and_not_below(effect):
         run("calculix_pair", *asked),
         run("calculix_pair", *results, *effects(**{**off, effect: ON[effect]})),
     )
-    pair = before.outcomes[Task("loaded-pair", "I")].data
+    pair = before.outcomes[Task("loaded-pair", "I")].data.pair
     load, te = pair.loads[-1], columns(before, "transmission_error_loads_I")
     share = true_change(before, after, "transmission error", load) / te["te"][te["total_load"] == load].mean()
 
     def told(tolerance: float) -> list[str]:
-        scene = read_scene(CASES / "calculix_pair.toml", (*PAIRS["calculix_pair"], *asked))
-        case = scene.case.model_copy(
-            update={"accuracy": scene.case.accuracy.model_copy(update={"tolerance": tolerance})}
-        )
+        scene = before.scene
         one_load = replace(pair, loads=(load,), nominal=load)
-        return [r for r in pair_remarks(replace(scene, case=case), one_load) if effect in r]
+        found = neglected_effects(pair_inputs(scene, "I"), one_load, ("transmission error",), [load])
+        return [r for r in neglected_remarks("I", found, scene.case.effects, tolerance, load) if effect in r]
 
     assert len(told(share / 2.2)) == 1
     assert told(share * 2.2) == []
@@ -164,7 +165,7 @@ def test_nothing_is_told_where_everything_is_on():
 def test_wrong_data_of_an_effect_that_is_off_does_not_stop_the_run():
     far = "gear.a.relief={ tip = { amount = '10 um', start_radius = '900 mm' } }"
     results = run("lin_tip_relief", "effects.relief=false", far)
-    assert any("relief is off, and could not be had as it is given" in r for r in results.remarks)
+    assert any("relief is off, and cannot be estimated as it is given" in r for r in results.remarks)
 
 
 def test_uneven_teeth_that_are_left_out_are_told_with_their_size():
@@ -209,8 +210,9 @@ def test_sizes_of_random_pairs_and_loads(seed):
     after = made(**whole)
     for effect in whole:
         before = made(**{name: value for name, value in whole.items() if name != effect})
-        found, _ = pair_changes(before.scene, before.outcomes[Task("loaded-pair", "I")].data, [load])
-        for change in found[effect]:
+        inputs = LOADED_PAIR.inputs(before.scene, "I")
+        pair = before.outcomes[Task("loaded-pair", "I")].data.pair
+        for change in neglected_effects(inputs.asked, pair, inputs.answers, [load]).changes[effect]:
             if change.answer == "load on a tooth pair":
                 true = true_load_change(before, after, load)
             else:

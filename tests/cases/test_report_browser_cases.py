@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from fegear.case.reading import read_scene
+from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
 from fegear.errors import MissingLibraryError
@@ -229,7 +230,7 @@ def swept(tmp_path_factory):
     """A sweep whose largest profile shifts are pointed teeth."""
     folder = tmp_path_factory.mktemp("sweep")
     axes = [read_axis("gear.a.profile_shift=0:2:5"), read_axis("gear.a.teeth=20:26:3")]
-    results = sweep_case(CASES / "lin_table1.toml", axes, ['results=["geometry"]'], workers=1)
+    results = sweep_case(CASES / "lin_table1.toml", axes, ['results=["geometry"]'], executor=Executor(workers=1))
     assert 0 < len(results.failures) < 15
     write_sweep(results, folder, plots=False)
     return results, folder

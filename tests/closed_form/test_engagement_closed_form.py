@@ -14,7 +14,6 @@ from fegear.contact.pair_compliance import PairCompliance
 from fegear.contact.spacing_errors import mesh_transfer, spacing_spectrum, transfer_of_stiffness
 from fegear.contact.transmission_error import (
     contact_changes,
-    off_path_warning,
     pair_stiffness,
     revolution,
     transmission_error,
@@ -177,19 +176,6 @@ def test_corner_contact_makes_it_continuous_without_relief():
     for at in (STANDARD.x_start, STANDARD.x_end):
         z = e.solve(e.grid(e.meshing.reduced([at - 1e-9, at + 1e-9])), [2000.0]).transmission_error[:, 0]
         assert z[1] == pytest.approx(z[0], rel=1e-4)
-
-
-def test_corner_contact_is_told_when_it_matters_and_only_then():
-    warning = off_path_warning(engaged(STANDARD), 3000.0)
-    assert warning is not None
-    assert warning.gap < warning.deflection
-    assert "corner_contact" in warning.sentence
-    e = engaged(STANDARD, corner_contact=True)
-    with_corner = e.solve(e.grid([warning.x]), [3000.0]).transmission_error[0, 0]
-    plain = engaged(STANDARD)
-    without = plain.solve(plain.grid([warning.x]), [3000.0]).transmission_error[0, 0]
-    assert with_corner - without == pytest.approx(warning.change, rel=1e-9)
-    assert off_path_warning(relieved(engaged(STANDARD), 80e-6, 2.5e-3), 1000.0) is None
 
 
 def test_fourier_coefficients_converge_with_the_quadrature_although_there_are_kinks():

@@ -12,12 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from fegear.fem import gear as fem_gear
 from fegear.fem import solve_gear
 from fegear.fem.settings import MeshSettings
 from fegear.geometry import BasicRack, Gear, Tooth
 from fegear.plain import content_key, pack, unpack
-from fegear.store import Store, cache_folder, keeping_shapes
+from fegear.solution_cache import Account, SolutionCache, cache_on_disk
+from fegear.store import Store, cache_folder
 
 COARSE = MeshSettings().scaled(2.0)
 
@@ -122,10 +122,9 @@ def test_the_cache_folder_can_be_chosen(monkeypatch, tmp_path):
     assert cache_folder().name == "fegear"
 
 
-def numbers(gear: Gear) -> list[bytes]:
+def numbers(gear: Gear, cache: SolutionCache | None = None) -> list[bytes]:
     """Every kind of number that a solution gives, solved or read afresh."""
-    fem_gear.influence_of_shape.cache_clear()
-    known = solve_gear(gear, COARSE)
+    known = solve_gear(gear, COARSE, cache=cache)
     r = np.linspace(known.lowest_radius, known.highest_radius, 7)
     return [
         known.self_compliance(r, 2e-5).tobytes(),
@@ -140,18 +139,57 @@ def numbers(gear: Gear) -> list[bytes]:
 def test_a_shape_is_solved_once_and_read_bit_for_bit(tmp_path):
     gear, larger = (Gear(Tooth(20, BasicRack()), m, 5.0 * m, 1e-3) for m in (1e-3, 2e-3))
     fresh = numbers(gear)
-    with keeping_shapes(tmp_path) as keeper:
-        assert numbers(gear) == fresh
-        assert (keeper.solved, keeper.read) == (2, 0)  # the second is for the error
-        assert numbers(gear) == fresh
-        assert (keeper.solved, keeper.read) == (2, 2)
-        assert keeper.spared > 0.0
-        numbers(larger)  # the same shape in another size
-        assert (keeper.solved, keeper.read) == (2, 4)
-        for place in (tmp_path / "shapes").rglob("*.entry"):
-            place.write_bytes(place.read_bytes()[:-5])
-        assert numbers(gear) == fresh
-        assert (keeper.solved, keeper.read) == (4, 4)
+    account = Account()
+
+    def again(which: Gear) -> list[bytes]:
+        """With an empty memory: only the disk knows what went before."""
+        cache = cache_on_disk(tmp_path)
+        found = numbers(which, cache)
+        account.add(*cache.shapes.state)
+        return found
+
+    assert again(gear) == fresh
+    assert (account.computed, account.from_disk) == (2, 0)  # the second is for the error
+    assert again(gear) == fresh
+    assert (account.computed, account.from_disk) == (2, 2)
+    assert account.spared > 0.0
+    again(larger)  # the same shape in another size
+    assert (account.computed, account.from_disk) == (2, 4)
+    for place in (tmp_path / "solutions").rglob("*.entry"):
+        place.write_bytes(place.read_bytes()[:-5])
+    assert again(gear) == fresh
+    assert (account.computed, account.from_disk) == (4, 4)
+
+
+def test_memory_gives_the_very_same_and_forgets_the_unused_first():
+    cache, made = SolutionCache(most=2), []
+
+    def solve(key: str) -> tuple[str, str]:
+        found = cache.solve(key, lambda: (made.append(key), [key])[1])
+        return found.source, found.value[0]
+
+    assert [solve(key)[0] for key in ("a", "b", "a", "c", "a", "b")] == [
+        "computed", "computed", "memory", "computed", "memory", "computed",
+    ]  # fmt: skip
+    assert made == ["a", "b", "c", "b"]
+    assert cache.solve("b", list).value is cache.solve("b", list).value
+
+
+def test_a_failure_is_not_remembered():
+    cache = SolutionCache()
+    with pytest.raises(ZeroDivisionError):
+        cache.solve("a", lambda: 1 / 0)
+    assert cache.solve("a", lambda: 1).source == "computed"
+
+
+def test_what_a_stretch_of_work_uses_again_itself_is_not_counted_as_recalled():
+    cache = SolutionCache()
+    for _ in range(2):
+        cache.solve("a", lambda: 1)
+    assert cache.solutions.recalled == 0
+    cache.begin()
+    cache.solve("a", lambda: 1)
+    assert cache.solutions.recalled == 1
 
 
 def test_a_closed_pipe_is_an_error_after_meshing_too():
@@ -173,26 +211,25 @@ def test_a_closed_pipe_is_an_error_after_meshing_too():
 
 
 def test_a_cache_that_cannot_be_written_costs_time_only(tmp_path):
-    (tmp_path / "shapes").write_text("a file where the folder should be")
-    gear = Gear(Tooth(20, BasicRack()), 1e-3, 5e-3, 1e-3)
-    with keeping_shapes(tmp_path) as keeper:
-        assert len(numbers(gear)) == 7
-        assert (keeper.solved, keeper.read) == (2, 0)
+    (tmp_path / "solutions").write_text("a file where the folder should be")
+    gear, cache = Gear(Tooth(20, BasicRack()), 1e-3, 5e-3, 1e-3), cache_on_disk(tmp_path)
+    assert len(numbers(gear, cache)) == 7
+    assert (cache.shapes.computed, cache.shapes.recalled) == (2, 0)
 
 
 @pytest.mark.parametrize(
     "change",
     [{"poisson_ratio": 0.31}, {"bore": 5.1e-3}, {"plane": "stress"}, {"shift": 0.1}, {"settings": COARSE.scaled(1.1)}],
 )
-def test_whatever_changes_the_solution_changes_the_key(change, tmp_path):
+def test_whatever_changes_the_solution_changes_the_key(change):
     from fegear.geometry import Material
 
     def solve(poisson_ratio=0.3, bore=5e-3, plane="strain", shift=0.0, settings=COARSE):
-        fem_gear.influence_of_shape.cache_clear()
         gear = Gear(Tooth(20, BasicRack(), shift), 1e-3, bore, 1e-3, Material(2e11, poisson_ratio, 7850.0), plane)
-        solve_gear(gear, settings, estimate_error=False)
+        solve_gear(gear, settings, estimate_error=False, cache=cache)
 
-    with keeping_shapes(tmp_path) as keeper:
-        solve()
-        solve(**change)
-        assert (keeper.solved, keeper.read) == (2, 0)
+    cache = SolutionCache()
+    solve()
+    cache.begin()
+    solve(**change)
+    assert (cache.shapes.computed, cache.shapes.recalled) == (2, 0)

@@ -12,6 +12,7 @@ import time
 import numpy as np
 import pytest
 
+from fegear.engine.executor import Executor
 from fegear.errors import InputError
 from fegear.studies.axis import read_axis
 from fegear.studies.sweep import point_content, sweep_case
@@ -251,7 +252,7 @@ def test_a_changed_file_that_the_case_names_is_computed_anew(tmp_path):
 
 
 def test_sweeps_work_from_python_too(case):
-    found = sweep_case(case, [read_axis("gear.a.teeth=20:22:3")], workers=2)
+    found = sweep_case(case, [read_axis("gear.a.teeth=20:22:3")], executor=Executor(workers=2))
     assert [point.values[0].name for point in found.points] == ["I.contact_ratio"] * 3
     assert found.kept == 0
     assert found.place(2) == "gear.a.teeth = 22"
@@ -265,9 +266,10 @@ def test_a_run_reads_the_cache_only_when_asked_and_then_says_so(case, tmp_path):
         environment = {**ENVIRONMENT, "FEGEAR_CACHE": str(tmp_path / "cache")}
         subprocess.run(arguments, cwd=tmp_path, env=environment, check=True, capture_output=True, timeout=60)
         found = json.loads((tmp_path / "o" / "summary.json").read_text())
-        told.append((found["from_cache"], [r for r in found["remarks"] if "disk cache" in r], found["results"]))
+        told.append((found["recalled"], [r for r in found["remarks"] if "disk cache" in r], found["results"]))
     assert [bool(cached) for cached, _, _ in told] == [False, False, True, False]
     assert [len(remarks) for _, remarks, _ in told] == [0, 0, 1, 0]
-    assert told[2][0]["stiffness of a"]["shapes"] == 2
-    assert told[2][0]["stiffness of a"]["seconds_when_solved"] > 0.0
+    assert told[2][0]["gear-solution of a"]["shapes"] == 2
+    assert told[2][0]["gear-solution of a"]["seconds_when_computed"] > 0.0
+    assert set(found["origin"].values()) == {"computed"}
     assert all(results == told[0][2] for _, _, results in told)

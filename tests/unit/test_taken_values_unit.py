@@ -7,7 +7,7 @@ import copy
 import pytest
 
 from fegear.case.reading import build_scene
-from fegear.models.loaded_pair import effect_remarks
+from fegear.models.pair_inputs import effect_remarks
 
 CASE = {
     "results": ["transmission-error"],

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fegear.results.relief import ReliefData
     from fegear.results.relief_chart import ReliefChartData, RobustnessData
     from fegear.results.root_stress_history import RootStressData
+    from fegear.results.stiffness import FilletCurves
     from fegear.results.tooth_contact import ToothContactData
     from fegear.results.train_response import IncrementsData, ModesData
     from fegear.results.transmissibility import TransmissibilityData
@@ -54,7 +55,7 @@ def _root_stress(results: Results, task: Task, folder: Path) -> Iterator[Picture
     from fegear.output.pictures.stiffness import draw_fillet
 
     outcome, name = results.outcomes[task], task.subject
-    yield draw_fillet(outcome.tables[0], cast("float", outcome.data), folder / f"fillet_{name}.png", name)
+    yield draw_fillet(outcome.tables[0], cast("FilletCurves", outcome.data).radius, folder / f"fillet_{name}.png", name)
     gear, data = results.scene.gears[name], cast("StiffnessTable", results.outcomes[Task("stiffness", name)].data)
     mesh = data.influence.fine.mesh
     whole, field = loaded_gear(gear, data.influence.settings, None if mesh.origin == GENERATED else mesh)

@@ -11,10 +11,15 @@ from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Task
 from fegear.models.loaded_pair import build_loaded_pair
 from fegear.models.motion import motion_model
+from fegear.models.neglected_effects import Neglected
+from fegear.models.pair_inputs import MEMBERS, pair_inputs
 from fegear.results.gear_train import GEAR_TRAIN
+from fegear.results.loaded_pair import LoadedPairData
 from fegear.results.mesh_forces import force_history
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fegear.contact import TransmissionError
@@ -32,7 +37,8 @@ HARMONICS, FORCE_HARMONICS = 64, 256
 
 def loaded(asked: Asked, source: Source, name: str) -> LoadedPair:
     """A pair with the compliances of a source."""
-    return build_loaded_pair(asked.scene, name, given=lambda pair, member: source.compliance(pair, member, asked))
+    driver, driven = (source.compliance(name, member, asked) for member in MEMBERS)
+    return build_loaded_pair(pair_inputs(asked.scene, name), (driver, driven))
 
 
 def pair_error(asked: Asked, source: Source, order: int = 16) -> TransmissionError:
@@ -43,8 +49,12 @@ def pair_error(asked: Asked, source: Source, order: int = 16) -> TransmissionErr
 
 def train_of(asked: Asked, source: Source) -> GearTrain:
     """The train with the compliances of a source in all its meshes."""
-    done = {Task("loaded-pair", name): Outcome(loaded(asked, source, name)) for name in asked.pairs}
-    return cast("GearTrain", GEAR_TRAIN.run(asked.scene, "", done, lambda _fraction: None).data)
+    nothing = Neglected({}, {})
+    done = {
+        Task("loaded-pair", name): Outcome(LoadedPairData(loaded(asked, source, name), nothing)) for name in asked.pairs
+    }
+    run = cast("Callable[..., Outcome]", GEAR_TRAIN.run)
+    return cast("GearTrain", run(asked.scene, "", done, lambda _fraction: None).data)
 
 
 def largest_force(asked: Asked, data: GearTrain, harmonics: int = FORCE_HARMONICS, positions: int = 0) -> float:

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import FegearError
-from fegear.fem.gear import influence_of_shape, solve_gear
+from fegear.fem.gear import solve_gear
 from fegear.fem.influence import solve_influence
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import MeshSettings
-from fegear.models.tooth_influence import gear_influence, needed_reach
+from fegear.models.tooth_influence import gear_to_solve, needed_reach, solve_influence_functions
+from fegear.solution_cache import SolutionCache
 from fegear.studies.cost.answers import answer
 from fegear.studies.cost.quantities import Miss, miss
 from fegear.studies.cost.result import Measured
@@ -183,12 +184,13 @@ def _tolerance(found: Found, rung: Rung) -> None:
     scene = found.asked.scene
     accuracy = type(scene.case.accuracy)(tolerance=rung.tolerance)
     wanted = replace(scene, case=scene.case.model_copy(update={"accuracy": accuracy}))
-    influence_of_shape.cache_clear()
     solved: dict[str, GearInfluence] = {}
     seconds: dict[str, Seconds] = {}
+    cache = SolutionCache()  # gears of one shape pay once, as they do in a run
     for name in found.asked.gears:
-        solved[name], seconds[name] = timed(functools.partial(gear_influence, wanted, name), repeat=False)
-    influence_of_shape.cache_clear()
+        solved[name], seconds[name] = timed(
+            functools.partial(solve_influence_functions, gear_to_solve(wanted, name), cache), repeat=False
+        )
     _record(found, rung, FiniteElements(solved), seconds)
 
 

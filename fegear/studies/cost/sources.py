@@ -16,7 +16,7 @@ from fegear.formulas.outcome import attempt
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import source as formula_source
 from fegear.geometry import GearPair
-from fegear.models.loaded_pair import gear_name, pair_compliance_table
+from fegear.models.pair_inputs import gear_name, pair_compliance_table
 from fegear.studies.cost.rung import ISO_STIFFNESS
 
 if TYPE_CHECKING:

@@ -1,0 +1,55 @@
+"""What makes a pair of a case impossible to load as the case asks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+
+
+def check_pair(scene: Scene, name: str) -> None:
+    """Refuse pairs that cannot be loaded as the case asks, and effects without data or data against an effect."""
+    part, effects = scene.case.pair[name], scene.case.effects
+    pair, key = scene.pairs[name], f"pair.{name}"
+    if part.normal_load(pair) is None:
+        raise InputError(f"{key}.load", "(not given)", "is needed for load sharing", "give load, loads or torque")
+    if pair.contact_ratio < 1.0 and not effects.corner_contact:
+        raise InputError(
+            key, f"contact ratio {pair.contact_ratio:.4f}",
+            "is below 1: at some roll positions no tooth pair is on the path of contact",
+            "lengthen the teeth, raise the number of teeth, or set effects.corner_contact = true",
+        )  # fmt: skip
+    source = part.compliance.source
+    if effects.neighbour_coupling and source != "fe":
+        raise InputError(
+            "effects.neighbour_coupling", "true", f'is not known to the compliances of {key}, source = "{source}"',
+            f'set {key}.compliance.source = "fe", or leave the effect out',
+        )  # fmt: skip
+    if source == "table" and effects.hertz != "none":
+        raise InputError(
+            "effects.hertz", f'"{effects.hertz}"', f"cannot change the contact that the table of {key} holds already",
+            'set effects.hertz = "none"',
+        )  # fmt: skip
+    if source == "table" and part.compliance.of != "pair" and pair.driver.base_radius != pair.driven.base_radius:
+        raise InputError(
+            f"{key}.compliance.of", '"tooth"', "takes the table for a tooth of either gear, but the gears differ",
+            'give the compliance of the pair and set of = "pair"',
+        )  # fmt: skip
+    if effects.spacing_errors and all(gear.spacing_errors is None for gear in scene.case.gear.values()):
+        raise InputError(
+            "effects.spacing_errors", "true", "finds no gear with spacing_errors in this case",
+            f"give gear.{part.driver}.spacing_errors, or leave the effect out",
+        )  # fmt: skip
+
+
+def check_relief(scene: Scene, name: str) -> None:
+    """Refuse the effect relief where no gear of the case has any: other pairs may do without."""
+    part = scene.case.pair[name]
+    if scene.case.effects.relief and all(gear.relief is None for gear in scene.case.gear.values()):
+        raise InputError(
+            "effects.relief", "true", "finds no gear with a relief in this case",
+            f"give gear.{part.driver}.relief, or leave the effect out",
+        )  # fmt: skip

@@ -1,0 +1,147 @@
+"""What has been computed, by the content of its inputs: kept in memory, and on disk where asked."""
+
+from __future__ import annotations
+
+import contextlib
+import struct
+import time
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
+
+from fegear.store import Store, cache_folder
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+T = TypeVar("T")
+Source = Literal["computed", "memory", "disk"]
+_SECONDS = struct.Struct("<d")
+
+
+class Codec(NamedTuple, Generic[T]):
+    """How solutions of one kind become bytes and come back; `read` gives None for bytes that it cannot use."""
+
+    write: Callable[[T], bytes]
+    read: Callable[[bytes], T | None]
+
+
+class Solution(NamedTuple, Generic[T]):
+    """A computed value, the seconds that computing it took, and where it comes from now."""
+
+    value: T
+    seconds: float
+    source: Source
+
+
+@dataclass
+class Account:
+    """How often a cache computed and recalled, and the seconds that the recalled solutions took when computed."""
+
+    computed: int = 0
+    recalled: int = 0
+    from_disk: int = 0
+    spared: float = 0.0
+
+    def add(self, computed: int, recalled: int, from_disk: int, spared: float) -> None:
+        """Count in what happened elsewhere, in another process for example."""
+        self.computed += computed
+        self.recalled += recalled
+        self.from_disk += from_disk
+        self.spared += spared
+
+    def since(self, earlier: tuple[int, int, int, float]) -> Account:
+        """What has been counted since `state` was taken."""
+        now = self.state
+        return Account(now[0] - earlier[0], now[1] - earlier[1], now[2] - earlier[2], now[3] - earlier[3])
+
+    @property
+    def state(self) -> tuple[int, int, int, float]:
+        """The numbers, to compare with later."""
+        return self.computed, self.recalled, self.from_disk, self.spared
+
+
+class SolutionCache:
+    """Solutions by key; an object that its owner hands down, so that equal inputs are computed once where it is shared.
+
+    Parameters
+    ----------
+    disk : Store, optional
+        Where solutions of kinds that have a `Codec` are kept beyond this process.
+    most : int
+        Solutions in memory; the ones unused for longest go first.
+
+    Attributes
+    ----------
+    solutions, shapes : Account
+        Whole results, and the tooth shapes among what they are made of.
+    """
+
+    def __init__(self, disk: Store | None = None, most: int = 512) -> None:
+        self.disk = disk
+        self.solutions, self.shapes = Account(), Account()
+        self._memory: OrderedDict[str, tuple[Any, float]] = OrderedDict()
+        self._most = most
+        self._new: set[str] = set()
+
+    def begin(self) -> None:
+        """Start a stretch of work: what is computed in it and used again in it does not count as recalled."""
+        self._new.clear()
+
+    def solve(self, key: str, compute: Callable[[], T], codec: Codec[T] | None = None) -> Solution[T]:
+        """Recall a solution, or compute and keep it.
+
+        Parameters
+        ----------
+        key : str
+            See `fegear.plain.content_key`; it holds all that the solution depends on.
+        compute : callable
+            What it raises is raised on and nothing is kept.
+        codec : Codec, optional
+            With it, and where the cache has a disk, solutions are kept there too.
+        """
+        account = self.shapes if codec else self.solutions
+        if key in self._memory:
+            self._memory.move_to_end(key)
+            value, seconds = self._memory[key]
+            if key not in self._new:
+                account.add(0, 1, 0, seconds)
+            return Solution(value, seconds, "memory")
+        if codec is None or self.disk is None:
+            found = _timed(compute)
+        else:
+            # Of several processes that want the same solution one computes it and the others wait.
+            with self.disk.claim(key):
+                found = _read(self.disk.read(key), codec) or self._computed_and_written(key, compute, codec)
+        account.add(*((1, 0, 0, 0.0) if found.source == "computed" else (0, 1, 1, found.seconds)))
+        self._memory[key] = found.value, found.seconds
+        self._new.add(key)
+        while len(self._memory) > self._most:
+            self._memory.popitem(last=False)
+        return found
+
+    def _computed_and_written(self, key: str, compute: Callable[[], T], codec: Codec[T]) -> Solution[T]:
+        found = _timed(compute)
+        if self.disk is not None:
+            with contextlib.suppress(OSError):  # a full disk or a read-only folder costs the next run time, no more
+                self.disk.write(key, _SECONDS.pack(found.seconds) + codec.write(found.value))
+        return found
+
+
+def cache_on_disk(folder: Path | None = None) -> SolutionCache:
+    """A cache that keeps solutions between runs, by default in `fegear.store.cache_folder`."""
+    return SolutionCache(Store((folder or cache_folder()) / "solutions"))
+
+
+def _timed(compute: Callable[[], T]) -> Solution[T]:
+    started = time.perf_counter()
+    value = compute()
+    return Solution(value, time.perf_counter() - started, "computed")
+
+
+def _read(data: bytes | None, codec: Codec[T]) -> Solution[T] | None:
+    if data is None or len(data) < _SECONDS.size:
+        return None
+    value = codec.read(data[_SECONDS.size :])
+    return None if value is None else Solution(value, _SECONDS.unpack_from(data)[0], "disk")
