@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
@@ -58,6 +58,24 @@ class Work:
     def __call__(self, fraction: float) -> None:
         """Report the fraction done."""
         self.progress(fraction)
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """Inputs of a stage that reads nothing of the case: all comes from the tasks before it.
+
+    Parameters
+    ----------
+    name : str
+        Of the gear, pair or train, for the names of its tables.
+    """
+
+    name: str = field(compare=False)
+
+    @classmethod
+    def of(cls, _scene: Scene, name: str) -> Subject:
+        """As `Stage.inputs`."""
+        return cls(name)
 
 
 class Need(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,9 +13,10 @@ from fegear.geometry import interference
 from fegear.geometry.span import span, span_teeth
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fegear.case.reading import Scene
-    from fegear.engine.stage import Done, Progress
-    from fegear.geometry import GearPair
+    from fegear.geometry import Gear, GearPair
 
 
 def _everything(scene: Scene) -> tuple[str, ...]:
@@ -32,8 +34,16 @@ def _pair_values(name: str, pair: GearPair) -> tuple[Value, ...]:
     )
 
 
-def _run(scene: Scene, _subject: str, _done: Done, _progress: Progress) -> Outcome:
-    gears = scene.gears
+@dataclass(frozen=True)
+class Drawing:
+    """Everything that a drawing would carry: gears and pairs by name."""
+
+    gears: Mapping[str, Gear]
+    pairs: Mapping[str, GearPair]
+
+
+def _present(_found: Drawing, drawing: Drawing) -> Outcome:
+    gears, pairs = drawing.gears, drawing.pairs
 
     def column(name: str, attribute: str, meaning: str) -> Column:
         values = np.array([getattr(gear, attribute) for gear in gears.values()])
@@ -60,14 +70,14 @@ def _run(scene: Scene, _subject: str, _done: Done, _progress: Progress) -> Outco
         ),
         "Gears",
     )
-    values = tuple(value for name, pair in scene.pairs.items() for value in _pair_values(name, pair))
+    values = tuple(value for name, pair in pairs.items() for value in _pair_values(name, pair))
     remarks = tuple(
         f"Pair {name}: {sentence}."
-        for name, pair in scene.pairs.items()
+        for name, pair in pairs.items()
         for sentence in (interference(pair, "driver").sentence, interference(pair, "driven").sentence)
         if sentence
     )
-    return Outcome(scene.gears, (table,), values, {}, remarks)
+    return Outcome(drawing, (table,), values, {}, remarks)
 
 
 GEOMETRY = Stage(
@@ -75,6 +85,8 @@ GEOMETRY = Stage(
     title="Geometry",
     results=("geometry",),
     subjects=_everything,
-    run=_run,
+    inputs=lambda scene, _subject: Drawing(scene.gears, scene.pairs),
+    compute=lambda drawing, _upstream, _work: drawing,
+    present=_present,
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
 )

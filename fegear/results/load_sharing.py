@@ -9,25 +9,16 @@ import numpy as np
 
 from fegear.engine.figure import Axis, Curve, Figure, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Stage, Subject
 from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
-from fegear.results.loaded_pair import (
-    EFFECTS,
-    LINE_OF_ACTION,
-    drawn_loads,
-    loaded_pair,
-    needs_pair,
-    path_ends,
-    spur_pairs,
-)
+from fegear.results.loaded_pair import EFFECTS, LINE_OF_ACTION, drawn_loads, needs_pair, path_ends, spur_pairs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fegear.case.reading import Scene
     from fegear.contact import PairHistory
-    from fegear.engine.stage import Done, Progress
+    from fegear.engine.stage import Upstream, Work
     from fegear.models.loaded_pair import LoadedPair
 
     Array = NDArray[np.float64]
@@ -44,10 +35,13 @@ class LoadSharingData:
     pair : LoadedPair
     history : PairHistory
         Under every load of the case.
+    load_error : ndarray or None
+        Estimated error of its loads [N].
     """
 
     pair: LoadedPair
     history: PairHistory
+    load_error: Array | None
 
 
 def _columns(h: PairHistory, i: int) -> tuple[Column, ...]:
@@ -66,16 +60,21 @@ def _at_corner(pair: LoadedPair, h: PairHistory) -> Array:
     return np.where((h.x < p.x_start) | (h.x > p.x_end), 1.0, 0.0)
 
 
-def _run(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
+def _compute(_inputs: Subject, upstream: Upstream, _work: Work) -> LoadSharingData:
     from fegear.contact import pair_history
+    from fegear.contact.error_by_shift import load_shift
 
-    pair = loaded_pair(done, name)
-    e = pair.engagement
-    history = pair_history(e, pair.loads, _POSITIONS)
-    others = [pair_history(other, pair.loads, _POSITIONS) for other in pair.shifted]
+    (found,) = upstream.values()
+    pair: LoadedPair = found.pair
+    history = pair_history(pair.engagement, pair.loads, _POSITIONS)
+    shifts = [load_shift(history, pair_history(other, pair.loads, _POSITIONS)) for other in pair.shifted]
+    return LoadSharingData(pair, history, np.sum(shifts, axis=0) if shifts else None)
+
+
+def _present(data: LoadSharingData, inputs: Subject) -> Outcome:
+    name, pair, history = inputs.name, data.pair, data.history
     i = pair.loads.index(pair.nominal)
-    shift = [_difference(history, other) for other in others]
-    load_error = sum((s[:, i] for s in shift), np.zeros(history.x.size)) if shift else None
+    load_error = None if data.load_error is None else data.load_error[:, i]
     off_path = _at_corner(pair, history)
     columns = [*_columns(history, i), Column("corner", off_path, "", "1 where a tip corner touches off the path")]
     if load_error is not None:
@@ -98,26 +97,14 @@ def _run(scene: Scene, name: str, done: Done, _progress: Progress) -> Outcome:
         ),
     )  # fmt: skip
     remarks = []
-    if scene.case.effects.corner_contact and (off_path * history.load[:, i]).max() > 0.0:
-        worst = float((off_path * history.load[:, i]).max())
+    worst = float((off_path * history.load[:, i]).max())
+    if pair.engagement.corner_contact and worst > 0.0:
         remarks.append(
             f"Pair {name}: tip corners touch off the path and carry up to {worst:.4g} N ({worst / pair.nominal:.1%}); "
             "hertz_pressure there is that of smooth flanks, the true one is higher."
         )
-    data = LoadSharingData(pair, history)
     figures = (_figure(name, data, load_error),)
     return Outcome(data, tuple(tables), values, {"positions": _POSITIONS}, tuple(remarks), figures)
-
-
-def _difference(history: PairHistory, other: PairHistory) -> Array:
-    """How far the loads of a shifted solution are from the original's, shape of its loads [N]."""
-    columns = [
-        np.interp(history.x, other.x, other.load[:, i], left=0.0, right=0.0) for i in range(history.load.shape[1])
-    ]
-    difference = np.abs(np.stack(columns, axis=1) - history.load)
-    # A jump of the load at an end of the path is in the same place in both; outside it one of them may have no point.
-    inside = (history.x >= other.x[0]) & (history.x <= other.x[-1]) if other.x.size else np.zeros(history.x.size, bool)
-    return np.where(inside[:, None], difference, 0.0)
 
 
 def _all_loads(name: str, pair: LoadedPair, h: PairHistory) -> Table:
@@ -129,11 +116,6 @@ def _all_loads(name: str, pair: LoadedPair, h: PairHistory) -> Table:
     )
     total = Column("total_load", np.repeat(pair.loads, n), "N", "along the line of action")
     return Table(f"load_sharing_loads_{name}", (total, *joined), f"Load on one tooth pair of {name} for every load")
-
-
-def check(scene: Scene, name: str) -> None:
-    """What every stage that computes with the gears' own relief refuses."""
-    check_relief(scene, name)
 
 
 def _figure(name: str, data: LoadSharingData, load_error: Array | None) -> Figure:
@@ -162,9 +144,11 @@ LOAD_SHARING = Stage(
     title="Load sharing",
     results=("load-sharing",),
     subjects=spur_pairs,
-    run=_run,
     needs=needs_pair,
-    check=check,
+    inputs=Subject.of,
+    compute=_compute,
+    present=_present,
+    check=check_relief,
     effects=EFFECTS,
     forecast=forecasts.load_sharing,
 )

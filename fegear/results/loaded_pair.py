@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
-    from fegear.contact import Engagement, Loaded
-    from fegear.contact.engagement import RollGrid
     from fegear.contact.left_out import Answer
     from fegear.engine.stage import Upstream, Work
     from fegear.models.pair_inputs import PairInputs
@@ -76,20 +74,6 @@ def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
     """What this stage computed for a pair."""
     found = upstream[Task("loaded-pair", name)]
     return cast("LoadedPairData", getattr(found, "data", found)).pair
-
-
-def change_by_shifts(pair: LoadedPair, grid: RollGrid, loaded: Loaded) -> list[Loaded]:
-    """The same sharing solved again with each compliance off by its error."""
-    return [solve_again(other, grid, loaded) for other in pair.shifted]
-
-
-def solve_again(other: Engagement, grid: RollGrid, loaded: Loaded) -> Loaded:
-    """Solve with another engagement's compliances at the same contacts, loads and separations."""
-    from fegear.contact import Loaded, RollGrid, share_load
-
-    m = other.compliance.matrices(grid.contacts)
-    shared = share_load(m.compliance, loaded.separation, loaded.load, m.log_slope, m.reference_load, m.tilt, m.power)
-    return Loaded(RollGrid(grid.x, grid.contacts, m), loaded.load, shared, loaded.separation)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from fegear.models.pair_inputs import gear_name, pair_inputs
 from fegear.results import forecasts
 from fegear.results.loaded_pair import loaded_pair, needs_pair
 from fegear.results.root_stress_history import table_names
-from fegear.results.transmission_error import HARMONICS, roll_positions
+from fegear.results.transmission_error import HARMONICS, POSITIONS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -184,6 +184,7 @@ def _ground_table(
 
 def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     from fegear.contact import transmission_error
+    from fegear.contact.mesh_curve import roll_positions
     from fegear.design import grindable, minimum_excitation
     from fegear.geometry.relief import UNMODIFIED
 
@@ -214,7 +215,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     if ground:
         tables.append(_ground_table(name, pair, ground, te))
     loads = sorted({*pair.loads, load})
-    x = roll_positions(pair)
+    x = roll_positions(pair.engagement, POSITIONS)
     curves = {label: state.solve(state.grid(x), loads) for label, state in states.items()}
     tables.append(_harris_table(name, curves))
     values += _values(name, pair, designed, te, found)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.stage import Forecast, Stage, Subject, Task
 from fegear.errors import InputError, RangeError
 from fegear.models.assumed import bore_remarks
 from fegear.models.tooth_influence import solution_settings
@@ -291,19 +291,12 @@ class FilletCurves:
     radius: float
 
 
-@dataclass(frozen=True)
-class _Named:
-    """The gear that a stage is for: all else comes from the stages before it."""
-
-    name: str = field(compare=False)
-
-
-def _worst_load(_asked: _Named, upstream: Upstream, _work: Work) -> FilletCurves:
+def _worst_load(_asked: Subject, upstream: Upstream, _work: Work) -> FilletCurves:
     (table,) = upstream.values()
     return FilletCurves(table, float(table.radius[int(np.argmax(table.root_tension))]))
 
 
-def _present_curves(found: FilletCurves, asked: _Named) -> Outcome:
+def _present_curves(found: FilletCurves, asked: Subject) -> Outcome:
     name, radius = asked.name, found.radius
     title = f"Root stress along the fillets of gear {name}, load at radius {radius * 1e3:.6g} mm"
     return Outcome(found, (Table(f"root_stress_{name}", _curve_columns(found.table.influence, radius), title),))
@@ -315,7 +308,7 @@ ROOT_STRESS = Stage(
     results=("root-stress",),
     subjects=_gear,
     needs=lambda _scene, name: (Task("stiffness", name),),
-    inputs=lambda _scene, name: _Named(name),
+    inputs=Subject.of,
     compute=_worst_load,
     present=_present_curves,
     forecast=lambda _scene, _name: Forecast({}, 0.01),
