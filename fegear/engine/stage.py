@@ -167,11 +167,11 @@ class Stage:
     results: tuple[str, ...]
     subjects: Callable[[Scene], tuple[str, ...]]
     run: Callable[[Scene, str, Done, Any], Outcome] | None = None
-    inputs: Callable[[Scene, str], Any] | None = None
-    compute: Callable[[Any, Upstream, Work], Any] | None = None
-    present: Callable[[Any, Any], Outcome] | None = None
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
     effects: tuple[str, ...] = ()
     requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown
+    inputs: Callable[[Scene, str], Any] | None = None
+    compute: Callable[[Any, Upstream, Work], Any] | None = None
+    present: Callable[[Any, Any], Outcome] | None = None

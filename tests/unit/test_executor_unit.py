@@ -36,7 +36,7 @@ def test_results_come_in_order_and_failures_are_values(tmp_path):
     assert told[-1] == 1.0
     assert told == sorted(told)
     # An unforeseen error is no lasting result; the others are.
-    assert count_kept(math.sqrt, points, store) == 3
+    assert count_kept(math.sqrt, points, SolutionCache(store)) == 3
     assert map_points(math.sqrt, points, cache=SolutionCache(store)) == found
 
 

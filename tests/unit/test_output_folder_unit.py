@@ -15,7 +15,7 @@ import xarray as xr
 from fegear.case.reading import build_scene
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.plan import Plan
-from fegear.engine.run import Results, Silence
+from fegear.engine.run import Results, Silence, Timing
 from fegear.engine.stage import Task
 from fegear.errors import InputError
 from fegear.output.folder import whole_or_nothing
@@ -115,7 +115,7 @@ def results() -> Results:
     )
     task = Task("demo", "a")
     outcome = Outcome(None, (table,), values, {"order": 2}, ("A remark.",))
-    return Results(scene, Plan((), (), ()), {task: outcome}, {task: 0.25})
+    return Results(scene, Plan((), (), ()), {task: outcome}, {task: Timing(0.25)})
 
 
 def test_every_file_holds_the_same_numbers(results, tmp_path):
@@ -147,7 +147,7 @@ def test_every_file_holds_the_same_numbers(results, tmp_path):
 
 def test_an_empty_table_can_be_written(results, tmp_path):
     empty = Table("none", (Column("x", np.array([]), "mm"),))
-    run = Results(results.scene, results.plan, {Task("none"): Outcome(None, (empty,))}, {Task("none"): 0.0})
+    run = Results(results.scene, results.plan, {Task("none"): Outcome(None, (empty,))}, {Task("none"): Timing(0.0)})
     write_results(run, tmp_path, Silence(), plots=False)
     assert (tmp_path / "tables" / "none.csv").read_text() == "x [mm]\n"
     with xr.open_dataset(tmp_path / "results.nc") as data:

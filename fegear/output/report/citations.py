@@ -99,6 +99,10 @@ def _geometry(_results: Results, _task: Task) -> Iterator[Citation]:
     yield Citation("iso-53", "standard basic racks", "Table 1")
 
 
+def _solution(_results: Results, _task: Task) -> Iterator[Citation]:
+    yield from _RING
+
+
 def _stiffness(_results: Results, _task: Task) -> Iterator[Citation]:
     yield from _RING
     yield _PATCH
@@ -206,6 +210,7 @@ def _transmissibility(_results: Results, _task: Task) -> Iterator[Citation]:
 #: For each stage, what its results rest on.
 SOURCES: dict[str, Callable[[Results, Task], Iterator[Citation]]] = {
     "geometry": _geometry,
+    "gear-solution": _solution,
     "stiffness": _stiffness,
     "root-stress": _root_stress,
     "crosscheck": _crosscheck,

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from fegear.engine.outcome import Outcome, Table
     from fegear.engine.stage import Task
+    from fegear.results.stiffness import FilletCurves
 
 _ROLL = "roll angle of the load [°]"
 _COMPLIANCE = "compliance [µm·mm/N]"
@@ -48,7 +49,7 @@ def stiffness(outcome: Outcome, task: Task) -> Iterator[Figure]:
 
 def fillets(outcome: Outcome, task: Task) -> Iterator[Figure]:
     """Describe the stress along both fillets for one load position."""
-    table, radius = outcome.tables[0], cast("float", outcome.data) * 1e3
+    table, radius = outcome.tables[0], cast("FilletCurves", outcome.data).radius * 1e3
     made = Figure(
         f"fillet_{task.subject}",
         f"Stress along the fillets of gear {task.subject}",

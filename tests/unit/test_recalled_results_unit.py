@@ -1,0 +1,89 @@
+"""Equal inputs are computed once where a cache is shared: what is recalled, what is not, and that both are said."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.results.catalogue import STAGES
+from fegear.solution_cache import SolutionCache
+
+COARSE = {"tolerance": 0.1}
+
+
+def run(cache, *, load="1000 N", names=("p", "w"), title="", **gear):
+    first, second = names
+    document = {
+        "title": title,
+        "results": ["stiffness", "load-sharing", "transmission-error", "root-stress-history"],
+        "gear": {
+            first: {"teeth": 20, "module": "2 mm", "bore_radius": "9 mm", "face_width": "10 mm", **gear},
+            second: {"teeth": 31, "module": "2 mm", "bore_radius": "15 mm", "face_width": "10 mm"},
+        },
+        "pair": {"I": {"driver": first, "driven": second, "load": load}},
+        "effects": {"neighbour_coupling": True},
+        "accuracy": COARSE,
+    }
+    scene = build_scene(document, "case", Path())
+    return run_plan(scene, make_plan(scene, STAGES), cache=cache)
+
+
+@pytest.fixture(scope="module")
+def first():
+    cache = SolutionCache()
+    return cache, run(cache)
+
+
+def recalled(results) -> set[str]:
+    return {str(task) for task, timing in results.timings.items() if timing.recalled}
+
+
+def test_a_second_run_recalls_everything_and_says_so(first):
+    cache, before = first
+    after = run(cache, title="the title changes no number")
+    assert recalled(before) == set()
+    assert recalled(after) == {str(task) for task in after.outcomes}
+    assert {timing.origin for timing in after.timings.values()} == {"recalled"}
+    assert any("Recalled, not computed again" in remark for remark in after.cache_remarks)
+    for one, two in zip(before.tables, after.tables, strict=True):
+        assert one.name == two.name
+        for a, b in zip(one.columns, two.columns, strict=True):
+            assert np.array_equal(a.values, b.values)
+    assert sum(after.seconds.values()) < 0.5 * sum(before.seconds.values())
+
+
+def test_a_changed_load_solves_no_gear_again(first):
+    cache, _before = first
+    after = run(cache, load="1100 N")
+    assert recalled(after) == {"gear-solution of p", "gear-solution of w", "stiffness of p", "stiffness of w"}
+    fresh = run(None, load="1100 N")
+    for one, two in zip(fresh.tables, after.tables, strict=True):
+        for a, b in zip(one.columns, two.columns, strict=True):
+            assert np.array_equal(a.values, b.values)
+
+
+def test_a_changed_gear_leaves_the_other_gear_alone(first):
+    cache, _ = first
+    after = run(cache, profile_shift=0.1)
+    assert "gear-solution of w" in recalled(after)
+    assert not recalled(after) & {"gear-solution of p", "stiffness of p", "loaded-pair of I", "transmission-error of I"}
+
+
+def test_other_names_recall_the_numbers_under_their_own_names(first):
+    cache, _ = first
+    after = run(cache, names=("pinion", "wheel"))
+    assert recalled(after) == {str(task) for task in after.outcomes}
+    assert {table.name for table in after.tables} >= {"stiffness_pinion", "root_stress_history_I_wheel"}
+
+
+def test_the_order_of_the_gears_in_the_case_is_kept(first):
+    cache, _ = first
+    document = {"results": ["geometry"], "gear": {}}
+    for order in (("a", "b"), ("b", "a")):
+        document["gear"] = {name: {"teeth": 20 if name == "a" else 30, "module": "1 mm"} for name in order}
+        scene = build_scene(document, "case", Path())
+        (table,) = run_plan(scene, make_plan(scene, STAGES), cache=cache).tables
+        assert tuple(table["gear"]) == order
