@@ -105,22 +105,35 @@ class SectorElements:
         InputError
             If an element is turned inside out.
         """
-        from skfem import Basis, MappingIsoparametric
-
-        chosen, mapping = np.flatnonzero(self.curved), MappingIsoparametric(self.grid, self.grid.elem())
-        basis = Basis(
-            self.grid, _element(self.order), mapping, _CURVED_DEGREE,
-            elements=chosen, dofs=self.dofs, disable_doflocs=True,
-        )  # fmt: skip
-        determinant = mapping.detDF(basis.X, tind=chosen)
+        chosen = np.flatnonzero(self.curved)
+        basis = self._basis(intorder=_CURVED_DEGREE, elements=chosen)
+        determinant = basis.mapping.detDF(basis.X, tind=chosen)
         # Elements with sorted corners run either way round, but each the same way everywhere.
         inverted = (determinant.min(axis=1) < 0.0) & (determinant.max(axis=1) > 0.0)
         if inverted.any():
             raise InputError(
-                "mesh", "", f"has {int(inverted.sum())} curved elements that are turned inside out",
+                "mesh",
+                "",
+                f"has {int(inverted.sum())} curved elements that are turned inside out",
                 "mesh finer near curved boundaries",
-            )  # fmt: skip
-        return np.stack([shape.grad for (shape,) in basis.basis]).transpose(2, 0, 1, 3), basis.dx
+            )
+        return _gradients(basis), basis.dx
+
+    def gradients_at_nodes(self) -> Array:
+        """Gradients of the shape functions of every element at its own nodes, shape (M, n, 2, n) [1/modules]."""
+        places = _element(self.order).doflocs.T
+        return _gradients(self._basis(quadrature=(places, np.ones(places.shape[1]))))
+
+    def _basis(self, **at: Any) -> Any:
+        from skfem import Basis, MappingIsoparametric
+
+        mapping = MappingIsoparametric(self.grid, self.grid.elem())
+        return Basis(self.grid, _element(self.order), mapping, dofs=self.dofs, disable_doflocs=True, **at)
+
+
+def _gradients(basis: Any) -> Array:
+    """Gradients of the shape functions, shape (m, n, 2, q)."""
+    return np.stack([shape.grad for (shape,) in basis.basis]).transpose(2, 0, 1, 3)
 
 
 def sector_elements(mesh: SectorMesh, order: int) -> SectorElements:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.elasticity import assemble, lame
+from fegear.fem.elements import sector_elements
 from fegear.fem.ring import close_ring
 from fegear.fem.trace import loaded_flank
 
@@ -82,31 +83,16 @@ def gear_field(
 
 def _nodal_stress(mesh: SectorMesh, displacement: Array, poisson_ratio: float, plane: Plane) -> Array:
     """Stress at the elements' own nodes, averaged where elements meet within a sector, shape (z, 4, N)."""
+    from scipy.sparse import csr_array
+
     lam, mu = lame(poisson_ratio, plane)
-    du, dv = _slopes_at_nodes()
-    nodes = mesh.points[:, mesh.triangles]
-    a, b = np.einsum("cim,iq->cqm", nodes, du), np.einsum("cim,iq->cqm", nodes, dv)
-    determinant = a[0] * b[1] - a[1] * b[0]
-    total = np.zeros((displacement.shape[0], 4, mesh.points.shape[1]))
-    count = np.zeros(mesh.points.shape[1])
-    np.add.at(count, mesh.triangles, 1.0)
-    for sector, u in enumerate(displacement):
-        ue = u[:, mesh.triangles]
-        ua, ub = np.einsum("cim,iq->cqm", ue, du), np.einsum("cim,iq->cqm", ue, dv)
-        gx = (ua * b[1] - ub * a[1]) / determinant
-        gy = (ub * a[0] - ua * b[0]) / determinant
-        xx, yy, shear = gx[0], gy[1], gx[1] + gy[0]
-        trace = lam * (xx + yy)
-        zz = trace if plane == "strain" else 0.0 * trace
-        for i, part in enumerate((trace + 2 * mu * xx, trace + 2 * mu * yy, mu * shear, zz)):
-            np.add.at(total[sector, i], mesh.triangles, part)
-    return total / count
-
-
-def _slopes_at_nodes() -> tuple[Array, Array]:
-    """Derivatives of the six shape functions along both reference axes at the six nodes, shape (6, 6) each."""
-    u, v = np.array([0.0, 1.0, 0.0, 0.5, 0.5, 0.0]), np.array([0.0, 0.0, 1.0, 0.0, 0.5, 0.5])
-    w = 1.0 - u - v
-    du = np.array([1 - 4 * w, 4 * u - 1, 0 * u, 4 * (w - u), 4 * v, -4 * v])
-    dv = np.array([1 - 4 * w, 0 * u, 4 * v - 1, -4 * u, 4 * u, 4 * (w - v)])
-    return du, dv
+    elements = sector_elements(mesh, order=2)
+    points = np.argsort(elements.point_nodes)[elements.element_nodes]  # (M, 6)
+    gradient = elements.gradients_at_nodes() / np.bincount(points.reshape(-1))[points][:, None, None]
+    columns, rows = (np.broadcast_to(p, (*points.shape, 6)).reshape(-1) for p in (points[:, :, None], points[:, None]))
+    by_x, by_y = (csr_array((gradient[:, :, d].reshape(-1), (rows, columns))) for d in range(2))
+    u, v = displacement.transpose(1, 2, 0)
+    xx, yy, shear = by_x @ u, by_y @ v, by_y @ u + by_x @ v
+    trace = lam * (xx + yy)
+    zz = trace if plane == "strain" else np.zeros_like(trace)
+    return np.stack([trace + 2 * mu * xx, trace + 2 * mu * yy, mu * shear, zz]).transpose(2, 0, 1)

@@ -13,6 +13,7 @@ from scipy.sparse.linalg import splu
 
 from fegear.errors import InputError
 from fegear.fem.elasticity import assemble
+from fegear.fem.field import _nodal_stress
 from fegear.fem.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import MeshSettings
@@ -164,6 +165,24 @@ def test_element_matrices_against_integration_with_40_digits(order, curved, poin
     found = assemble(mesh, NU, "strain", order).stiffness[element]
     exact = _exact_matrix(mesh, order, element, 40, points)
     assert np.abs(found - exact).max() < (1e-9 if curved else 1e-13) * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_stress_at_the_nodes_of_quadratic_displacements_is_exact(plane):
+    mesh = _sector(3, "straight")
+    terms = np.random.default_rng(5).standard_normal((mesh.teeth, 2, 5))  # of x, y, x^2, x y, y^2
+    x, y = mesh.points
+    u = terms @ np.stack([x, y, x * x, x * y, y * y])
+    by_x = terms @ np.stack([np.ones_like(x), 0 * x, 2 * x, y, 0 * x])
+    by_y = terms @ np.stack([0 * x, np.ones_like(x), 0 * x, x, 2 * y])
+    xx, yy, shear = by_x[:, 0], by_y[:, 1], by_y[:, 0] + by_x[:, 1]
+    found = _nodal_stress(mesh, u, NU, plane)
+    # Hooke's law the other way round: strains of the stresses found.
+    sx, sy, sxy, sz = found.transpose(1, 0, 2)
+    assert np.abs(sx - NU * (sy + sz) - xx).max() < 1e-12
+    assert np.abs(sy - NU * (sx + sz) - yy).max() < 1e-12
+    assert np.abs(2 * (1 + NU) * sxy - shear).max() < 1e-12
+    assert np.abs(sz - NU * (sx + sy) if plane == "strain" else sz).max() < 1e-12
 
 
 def test_cubic_elements_that_turn_inside_out_are_refused():
