@@ -19,9 +19,9 @@ import pytest
 from fegear.fem import MeshSettings, solve_gear, stiffness_table
 from fegear.fem.elasticity import assemble
 from fegear.fem.sector import mesh_sector
+from fegear.fem.whole_gear import whole_gear
 from fegear.geometry import BasicRack, Gear, Tooth
 from fegear.output.mesh_export import write_meshes
-from fegear.output.whole_gear import whole_gear
 
 CASE = Path(__file__).parents[1] / "cases" / "lin_table1.toml"
 SETTINGS = MeshSettings()

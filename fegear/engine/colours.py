@@ -49,6 +49,7 @@ ROLES: dict[str, Look] = {
     "linear tip relief": Look("orange", "dashdot", "triangle-up"),
     "parabolic tip relief": Look("green", "longdashdot", "diamond"),
     "relief of the case": Look("purple", "dash", "triangle-down"),
+    "over map": Look("white"),
     # motion
     "static": Look("grey", "dash"),
     "own force": Look("blue"),

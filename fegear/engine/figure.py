@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -494,6 +494,23 @@ class DeferredFigure:
     key: str
     title: str
     make: Callable[[], Figure]
+
+
+def polylines(lines: Iterable[Array]) -> Array:
+    """Several lines, each of shape (2, N), as one with gaps."""
+    gap = np.full((2, 1), np.nan)
+    return np.hstack([part for line in lines for part in (line, gap)])
+
+
+def edges(points: Array, chains: NDArray[np.int64]) -> Array:
+    """Lines through chains of points (2, N), one for each column of the chains (k, M), as one with gaps."""
+    gap = np.full((2, 1, chains.shape[1]), np.nan)
+    return np.concatenate([points[:, chains], gap], axis=1).transpose(0, 2, 1).reshape(2, -1)
+
+
+def outline(points: Array, name: str = "", role: str = "outline", width: float = 1.8, dash: str = "") -> Curve:
+    """A line of a drawing, shape (2, N), without marked points."""
+    return Curve(points[0], points[1], name, role, dash=dash, width=width, markers=False)
 
 
 def few(count: int, keep: Sequence[int] = (), most: int = MOST_CURVES) -> list[int]:

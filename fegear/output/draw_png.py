@@ -39,7 +39,7 @@ _MOST_VIEWS = 4
 #: Inches: a panel alone, panels above each other, and around them.
 _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
 _ALONE, _STACKED = 3.4, 2.3
-_LEFT, _RIGHT, _BOTTOM, _NARROW = 0.85, 0.25, 0.55, 0.22
+_LEFT, _RIGHT, _BOTTOM, _NARROW = 0.45, 0.25, 0.55, 0.22
 _TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
 #: Marks of an axis of whole numbers.
 _MOST_WHOLE = 20
@@ -152,71 +152,81 @@ class _Sheet:
         if i % self.columns == 0:
             return False
         here, left = self.panels[i][0], self.panels[i - 1][0]
+        if here.equal and here.y.limits != left.y.limits:
+            return False
         return here.y.like(left.y) and (not _maps(here) or self._one_bar())
 
     def _one_bar(self) -> bool:
         """Whether all panels are maps of one quantity, which have one scale of colours."""
-        labels = {_bar_label(item) for panel, _ in self.panels for item in _maps(panel)}
-        return len(labels) == 1
+        return len({_bar_label(item) for panel, _ in self.panels for item in _maps(panel)}) == 1
+
+    def _row(self, row: int) -> range:
+        return range(row * self.columns, min((row + 1) * self.columns, len(self.panels)))
+
+    def _column(self, column: int) -> range:
+        return range(column, len(self.panels), self.columns)
 
     def draw(self) -> None:
-        panels = [panel for panel, _ in self.panels]
-        base = _ALONE if self.rows == 1 else _STACKED
-        width = _WIDTHS.get(self.columns, _WIDTHS[3])
-        heights = [
-            base * max(p.height for p in panels[r * self.columns : (r + 1) * self.columns]) for r in range(self.rows)
-        ]
+        """Draw every panel, then give it the room that its numbers need."""
+        drawn, images = [], []
+        for i, (panel, title) in enumerate(self.panels):
+            axes = self.made.add_axes((0.1, 0.1, 0.8, 0.8), label=str(i))
+            _scales(axes, panel)
+            images.append(_fill(axes, panel))
+            axes.set_title(_words(title), pad=6 + 72 * _SECOND * bool(panel.x.second))
+            joined = self._joined(*divmod(i, self.columns))
+            _dress(axes, panel, joined=joined, beside=self._beside(i))
+            drawn.append(axes)
+        self._share(drawn)
+        for axes, (panel, _) in zip(drawn, self.panels, strict=True):
+            _marks(axes, panel)
+        self._place(drawn, images)
+
+    def _place(self, drawn: Sequence[Any], images: Sequence[Any]) -> None:
+        panels, count = [panel for panel, _ in self.panels], self.columns
+        base, width = _ALONE if self.rows == 1 else _STACKED, _WIDTHS.get(count, _WIDTHS[3])
+        heights = [base * max(panels[i].height for i in self._row(r)) for r in range(self.rows)]
         bottoms = [
-            _NARROW if all(self._joined(r, c) for c in range(min(self.columns, len(panels) - r * self.columns)))
-            else _BOTTOM + 0.14 * max(_lines(p.x) - 1 for p in panels[r * self.columns : (r + 1) * self.columns])
+            _NARROW if all(self._joined(r, i % count) for i in self._row(r))
+            else _BOTTOM + 0.14 * max(_lines(panels[i].x) - 1 for i in self._row(r))
             for r in range(self.rows)
         ]  # fmt: skip
         tops = [self._title_room(r) for r in range(self.rows)]
         lefts = [
-            _NARROW if all(self._beside(i) for i in range(c, len(panels), self.columns))
-            else _LEFT + _category_room([panels[i].y for i in range(c, len(panels), self.columns)])
-            for c in range(self.columns)
+            _NARROW if all(self._beside(i) for i in self._column(c))
+            else _LEFT + _LETTER * max(_longest(drawn[i].yaxis) for i in self._column(c) if not self._beside(i))
+            for c in range(count)
         ]  # fmt: skip
-        shared = self._one_bar()
+        one = self._one_bar()
         bars = [
-            _BAR * (any(_maps(panels[i]) for i in range(c, len(panels), self.columns)) and
-                    (not shared or c == self.columns - 1))
-            for c in range(self.columns)
-        ]  # fmt: skip
-        whole = sum(lefts) + self.columns * width + sum(bars) + _RIGHT
+            _BAR * (any(_maps(panels[i]) for i in self._column(c)) and (not one or c == count - 1))
+            for c in range(count)
+        ]
+        whole = sum(lefts) + count * width + sum(bars) + _RIGHT
         legend = _legend_entries(panels)
         across = max(1, int((whole - 0.3) / (_HANDLE + _LETTER * max((len(n) for n in legend), default=1))))
         lines = -(-len(legend) // across) if len(legend) > 1 else 0
-        head = 0.18 + lines * _LINE
-        tall = head + sum(heights) + sum(bottoms) + sum(tops)
+        tall = 0.18 + lines * _LINE + sum(heights) + sum(bottoms) + sum(tops)
         self.made.set_size_inches(whole, tall)
-        drawn: list[Any] = []
-        y = tall - head
-        for i, (panel, title) in enumerate(self.panels):
-            row, column = divmod(i, self.columns)
+        y = tall - 0.18 - lines * _LINE
+        for i, axes in enumerate(drawn):
+            row, column = divmod(i, count)
             if column == 0:
                 y -= heights[row] + tops[row] + (bottoms[row - 1] if row else 0.0)
             x = sum(lefts[: column + 1]) + column * width + sum(bars[:column])
-            axes = self.made.add_axes((x / whole, y / tall, width / whole, heights[row] / tall))
-            _scales(axes, panel)
-            image = _fill(axes, panel)
-            axes.set_title(_words(title), pad=6 + 72 * _SECOND * bool(panel.x.second))
-            _dress(axes, panel, joined=self._joined(row, column), beside=self._beside(i))
-            drawn.append(axes)
-            if image is not None and (not shared or i == len(panels) - 1):
-                self._bar(image, panel, (x + width + 0.15, y, heights[row]), whole, tall)
-        self._share(drawn)
+            axes.set_position((x / whole, y / tall, width / whole, heights[row] / tall))
+            axes.yaxis.set_label_coords(-(lefts[column] - 0.18) / width, 0.5)
+            if images[i] is not None and (not one or i == len(drawn) - 1):
+                room = ((x + width + 0.15) / whole, y / tall, 0.14 / whole, heights[row] / tall)
+                self._bar(images[i], panels[i], room)
         if lines:
-            handles = list(legend.values())
             self.made.legend(
-                handles, [_words(name) for name in legend], loc="upper left", ncols=across, fontsize=9,
+                list(legend.values()), [_words(name) for name in legend], loc="upper left", ncols=across, fontsize=9,
                 bbox_to_anchor=((lefts[0] - 0.06) / whole, 1.0 - 0.03 / tall), borderaxespad=0.0, columnspacing=1.4,
             )  # fmt: skip
 
-    def _bar(self, image: Any, panel: Panel, place: tuple[float, float, float], whole: float, tall: float) -> None:
-        x, y, height = place
-        room = self.made.add_axes((x / whole, y / tall, 0.14 / whole, height / tall))
-        item = _maps(panel)[0]
+    def _bar(self, image: Any, panel: Panel, place: tuple[float, float, float, float]) -> None:
+        room, item = self.made.add_axes(place), _maps(panel)[0]
         ends = {"extend": "max"} if isinstance(item, TriangleField) else {}
         self.made.colorbar(image, cax=room, label=_bar_label(item), **ends)
         room.grid(visible=False)
@@ -224,11 +234,11 @@ class _Sheet:
     def _share(self, drawn: Sequence[Any]) -> None:
         """Give panels with the same axes the same range."""
         for c in range(self.columns):
-            column = list(range(c, len(drawn), self.columns))
+            column = list(self._column(c))
             if len(column) > 1 and all(self._joined(i // self.columns, c) for i in column[:-1]):
                 _span("x", [drawn[i] for i in column])
         for r in range(self.rows):
-            row = list(range(r * self.columns, min((r + 1) * self.columns, len(drawn))))
+            row = list(self._row(r))
             if len(row) > 1 and all(self._beside(i) for i in row[1:]) and not self.panels[row[0]][0].equal:
                 _span("y", [drawn[i] for i in row])
 
@@ -262,9 +272,12 @@ def _lines(axis: Axis) -> int:
     return max((name.count("\n") + 1 for name in axis.categories), default=1)
 
 
-def _category_room(axes: Sequence[Axis]) -> float:
-    longest = max((len(name) for axis in axes for name in axis.categories), default=0)
-    return max(0.0, 0.075 * longest - 0.3)
+def _longest(axis: Any) -> int:
+    """Letters of the longest number at an axis."""
+    low, high = sorted(axis.get_view_interval())
+    places = [place for place in axis.get_majorticklocs() if low <= place <= high]
+    texts = axis.get_major_formatter().format_ticks(places)
+    return max((len(re.sub(r"\$|\\[a-z]+|[{}^]", "", text)) for text in texts), default=0)
 
 
 def _legend_entries(panels: Sequence[Panel]) -> dict[str, Any]:
@@ -320,7 +333,6 @@ def _dress(axes: Any, panel: Panel, *, joined: bool, beside: bool) -> None:
         top = axes.secondary_xaxis("top")
         top.set_xticks(places, texts)
         top.set_xlabel(_titled(panel.x.second.label, panel.x.second.unit))
-    _marks(axes, panel)
 
 
 def _marks(axes: Any, panel: Panel) -> None:
@@ -343,7 +355,14 @@ def _marks(axes: Any, panel: Panel) -> None:
             else ((1.0, mark.at), (-2, 2), {"xycoords": ("axes fraction", "data"), "ha": "right"})
         )  # fmt: skip
         axes.annotate(
-            _words(mark.label), where, xytext=shift, textcoords="offset points", fontsize=8, color="0.35", **more
+            _words(mark.label),
+            where,
+            xytext=shift,
+            textcoords="offset points",
+            fontsize=8,
+            color="0.35",
+            bbox={"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.4},
+            **more,
         )
 
 

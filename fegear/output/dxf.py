@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.geometry.curves import Arc, Line
-from fegear.output.outline import gear_outline, tooth_outline, turned
+from fegear.geometry.outline import gear_outline, tooth_outline, turned
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,11 +9,11 @@ from fegear.engine.colours import look
 #: Okabe and Ito's palette, and lighter shades of it on dark ground.
 LIGHT = {
     "blue": "#0072B2", "orange": "#E69F00", "green": "#009E73", "red": "#D55E00", "purple": "#CC79A7",
-    "sky": "#56B4E9", "ink": "#1C2430", "grey": "#8A94A3", "grid": "#E3E8EE", "paper": "#FFFFFF",
+    "sky": "#56B4E9", "ink": "#1C2430", "grey": "#8A94A3", "grid": "#E3E8EE", "paper": "#FFFFFF", "white": "#FEFEFE",
 }  # fmt: skip
 DARK = {
     "blue": "#4FA8E0", "orange": "#F0B429", "green": "#2FC79A", "red": "#F07C38", "purple": "#DC96BF",
-    "sky": "#8FD0F5", "ink": "#E6EAF0", "grey": "#94A0B0", "grid": "#2F3946", "paper": "#161B22",
+    "sky": "#8FD0F5", "ink": "#E6EAF0", "grey": "#94A0B0", "grid": "#2F3946", "paper": "#161B22", "white": "#FEFEFE",
 }  # fmt: skip
 #: From the lowest to the highest of an ordered family: both ends stand out from the ground.
 _LIGHT_RAMP = ("#BDDF26", "#5EC962", "#21918C", "#31688E", "#443983", "#440154")

@@ -9,17 +9,20 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.case.design import DesignPart
+from fegear.engine.figure import Axis, Curve, Figure, Panel, View, Zone
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
 from fegear.errors import InputError
 from fegear.models.neglected_effects import design_remarks, neglected_in_design
 from fegear.models.pair_inputs import gear_name, pair_inputs
 from fegear.results import forecasts
-from fegear.results.loaded_pair import loaded_pair, needs_pair
+from fegear.results.loaded_pair import BASE_PITCH, drawn_loads, loaded_pair, needs_pair
 from fegear.results.root_stress_history import table_names
 from fegear.results.transmission_error import HARMONICS, POSITIONS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
@@ -224,7 +227,8 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
         "slope": loading.ramp.slope, "exponent": loading.ramp.exponent or 0, "centre": loading.centre,
     }  # fmt: skip
     data = ReliefData(pair, loading, load, designed, found, ground, te, curves)
-    return Outcome(data, tuple(tables), tuple(values), settings, _remarks(scene, name, designed, te))
+    figures = _figures(name, data, relief_tables, [gear_name(scene, name, member) for member in found])
+    return Outcome(data, tuple(tables), tuple(values), settings, _remarks(scene, name, designed, te), figures)
 
 
 def _harris_table(name: str, curves: dict[str, Loaded]) -> Table:
@@ -283,6 +287,80 @@ def _remarks(scene: Scene, name: str, designed: Engagement, te: dict[str, Transm
     effects, tolerance = scene.case.effects, scene.case.accuracy.tolerance
     neglected = neglected_in_design(pair_inputs(scene, name), designed, te["designed"].load, tolerance)
     return (*remarks, *design_remarks(name, neglected, effects, tolerance))
+
+
+def _figures(name: str, data: ReliefData, tables: Sequence[Table], gears: Sequence[str]) -> tuple[Figure, ...]:
+    return _relief_figure(name, data, tables, gears), _candidates_figure(name, data), _harris_figure(name, data)
+
+
+def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: Sequence[str]) -> Figure:
+    """Reliefs of both gears (`tables` and `gears` of driver and driven) and the loads that they were designed for."""
+    x, reliefs, loads = Axis("roll angle", "deg"), [], []
+    for member, table, gear in zip(data.tables, tables, gears, strict=True):
+        shown = {column.name: np.asarray(column.shown, dtype=float) for column in table.columns}
+        roll = shown["roll_angle"]
+        curves = [Curve(roll, shown["relief"], "designed", "designed", shown.get("relief_error"), markers=False)]
+        if "relief_diagonal" in shown:
+            curves.append(Curve(roll, shown["relief_diagonal"], "diagonal only", "diagonal only", markers=False))
+        for shape, ground in data.ground.items():
+            label = f"{shape} tip relief"
+            removal = getattr(ground, member).removal(table["roll_angle"]) * 1e6
+            curves.append(Curve(roll, removal, label, label, markers=False))
+        loaded = roll[shown["load"] > 0.0]
+        zone = Zone("x", float(loaded.min()), float(loaded.max()))
+        reliefs.append(Panel(x, Axis("material to remove", "um"), tuple(curves), (zone,), f"{member}: gear {gear}"))
+        load = Curve(roll, shown["load"], "load of the design", "grey", dash="solid", markers=False)
+        loads.append(Panel(x, Axis("load", "N", zero=True), (load,), (zone,), height=0.6))
+    return Figure(
+        f"relief_{name}",
+        f"Profile relief of {name}",
+        f"Pair {name}: relief of both gears for {data.load:.5g} N over the active profile, and the load of the tooth. "
+        "Shaded: the design zone, where the tooth is loaded at the design load. Ground reliefs are at the tips only; a "
+        "constant over the whole flank makes no difference.",
+        (*reliefs, *loads),
+        columns=2,
+    )
+
+
+def _candidates_figure(name: str, data: ReliefData) -> Figure:
+    curves = []
+    for label, curve in data.curves.items():
+        i = int(np.argmin(np.abs(curve.load - data.load)))
+        te = (curve.transmission_error[:, i] - data.te[label].mean) * 1e6
+        left = data.te[label].peak_to_peak * 1e6
+        told = f"{left:.3g} µm" if left > 1e-6 else "0"
+        curves.append(Curve(curve.x * 1e3, te, f"{label}: {told} peak to peak", label, markers=False))
+    caption = f"Pair {name}: what each relief leaves of the transmission error at the design load, {data.load:.5g} N."
+    if "diagonal only" in data.te:
+        caption += (
+            " Diagonal only: relief designed without the neighbours' loads (Mark, Eq. 5.4), on teeth that do deflect "
+            "each other."
+        )
+    return Figure(
+        f"relief_candidates_{name}",
+        f"Transmission error with and without relief, {name}",
+        caption,
+        (Panel(BASE_PITCH, Axis("transmission error less its mean", "um"), tuple(curves)),),
+    )
+
+
+def _harris_figure(name: str, data: ReliefData) -> Figure:
+    views = []
+    order = sorted(data.curves, key=lambda label: label == "diagonal only")
+    for label in order:
+        curve = data.curves[label]
+        loads = [float(w) for w in curve.load]
+        curves = tuple(
+            Curve(curve.x * 1e3, curve.transmission_error[:, i] * 1e6, text, role)
+            for i, text, role in drawn_loads(loads, data.load, "design")
+        )
+        views.append(View(label, (Panel(BASE_PITCH, Axis("transmission error", "um", zero=True), curves),)))
+    return Figure(
+        f"harris_map_{name}",
+        f"Harris map of {name}",
+        f"Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief.",
+        views=tuple(views),
+    )
 
 
 RELIEF = Stage(

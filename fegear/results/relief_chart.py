@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Curve, Figure, HeatMap, Mark, Panel, View
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage, Task
 from fegear.results import forecasts
@@ -116,7 +117,8 @@ def _run_chart(scene: Scene, name: str, done: Done, progress: Progress) -> Outco
     left = float(getattr(best, part.metric)[-1])
     values.append(Value(f"{name}.optimum_{part.metric}", left, "um", None, "left at the largest load"))
     settings = {"shape": asked.shape, "metric": part.metric, "evaluations": best.evaluations}
-    return Outcome(ReliefChartData(pair, chart, best, delta), tables, tuple(values), settings)
+    data = ReliefChartData(pair, chart, best, delta)
+    return Outcome(data, tables, tuple(values), settings, figures=_chart_figures(name, data))
 
 
 @dataclass(frozen=True)
@@ -161,7 +163,53 @@ def _run_robustness(scene: Scene, name: str, done: Done, progress: Progress) -> 
         ),
         f"Robustness of the reliefs of {name}",
     )
-    return Outcome(RobustnessData(pair, found), (table,), tuple(values), {"metric": part.metric})
+    figure = _robustness_figure(name, found, part.metric)
+    return Outcome(RobustnessData(pair, found), (table,), tuple(values), {"metric": part.metric}, figures=(figure,))
+
+
+def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
+    """A_e over amount and length for every load with the best length; none without enough candidates."""
+    chart = data.chart
+    if chart.amounts.size < 2 or chart.lengths.size < 3:
+        return ()
+    best, views = chart.optimum_lengths(), []
+    for i, load in enumerate(chart.loads):
+        inside = (best[:, i] > chart.lengths[0]) & (best[:, i] < chart.lengths[-1])
+        length = np.where(inside, best[:, i], np.nan)
+        items = (
+            HeatMap(chart.lengths, chart.amounts * 1e6, chart.effective_error[:, :, i] * 1e6,
+                    "effective transmission error A_{e}", "um"),
+            Curve(length, chart.amounts * 1e6, "length of least A_{e}", "over map", width=2.2, markers=False),
+        )  # fmt: skip
+        axes = Axis("length of tip relief (1: tip to HPSTC)"), Axis("amount at both tips", "um")
+        word = " (nominal)" if float(load) == data.pair.nominal else ""
+        views.append(View(f"{load:.5g} N{word}", (Panel(*axes, items, (Mark("y", data.delta * 1e6, "Δ"),)),)))
+    figure = Figure(
+        f"relief_chart_{name}",
+        f"Chart of tip reliefs of {name}",
+        f"Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length with the "
+        f"least A_e for each amount. Dotted: Δ = {data.delta * 1e6:.4g} µm, the largest transmission error without "
+        f"relief at {data.pair.nominal:.5g} N.",
+        views=tuple(views),
+    )
+    return (figure,)
+
+
+def _robustness_figure(name: str, found: dict[str, Robustness], metric: str) -> Figure:
+    curves = []
+    for label, r in found.items():
+        order = np.argsort(r.load_factors)
+        for values, width in ((r.values.max(axis=(1, 2)), 1.8), (r.values.min(axis=(1, 2)), 0.8)):
+            curves.append(
+                Curve(r.load_factors[order], values[order] * 1e6, label, label, width=width, markers=width > 1)
+            )
+    what = "peak-to-peak" if metric == "peak_to_peak" else "effective"
+    return Figure(
+        f"robustness_{name}",
+        f"Robustness of the reliefs of {name}",
+        f"Pair {name}: worst (marked) and least (thin) of all combinations of spacing error and relief tolerance.",
+        (Panel(Axis("load over design load"), Axis(f"{what} transmission error", "um", zero=True), tuple(curves)),),
+    )
 
 
 RELIEF_CHART = Stage(

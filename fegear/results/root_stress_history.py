@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
 from fegear.errors import InputError
 from fegear.models.pair_checks import check_relief
 from fegear.models.pair_inputs import MEMBERS, gear_name
 from fegear.results import forecasts
-from fegear.results.loaded_pair import EFFECTS, needs_pair, spur_pairs
+from fegear.results.loaded_pair import EFFECTS, needs_pair, path_ends, spur_pairs
 from fegear.results.transmission_error import POSITIONS
 
 if TYPE_CHECKING:
@@ -130,7 +131,27 @@ def _present(data: RootStressData, inputs: RootStressInputs) -> Outcome:
                 "largest less smallest stress below the loaded flank over the mesh",
             ),
         ]  # fmt: skip
-    return Outcome(data, tuple(tables), tuple(values))
+    figures = (_figure(name, data, inputs.gears),)
+    return Outcome(data, tuple(tables), tuple(values), figures=figures)
+
+
+def _figure(name: str, data: RootStressData, gears: Mapping[Member, str]) -> Figure:
+    pair, stress = data.pair, data.stress
+    i, curves = pair.loads.index(pair.nominal), []
+    for member, s in stress.items():
+        tension, error, compression = (v[:, i] * 1e-6 for v in (s.tension, s.tension_error, s.compression))
+        label = f"{member} {gears[member]}"
+        curves.append(Curve(s.x * 1e3, tension, f"{label}, tension", member, error))
+        curves.append(Curve(s.x * 1e3, compression, f"{label}, compression", f"{member} compression", width=1.2))
+    largest = " and ".join(f"{s.tension[:, i].max() * 1e-6:.4g} MPa ({member})" for member, s in stress.items())
+    x = Axis("position of the tooth's contact on the line of action", "mm")
+    return Figure(
+        f"root_stress_history_{name}",
+        f"Root stress through the mesh, {name}",
+        f"Pair {name} at {pair.nominal:.5g} N: fillet stress of one tooth, its own load's and its neighbours' "
+        f"added. Dotted: ends of the path of contact. Largest tension {largest}.",
+        (Panel(x, Axis("largest root stress", "MPa"), tuple(curves), (*path_ends(pair), Mark("y", 0.0))),),
+    )
 
 
 ROOT_STRESS_HISTORY = Stage(

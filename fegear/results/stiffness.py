@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.figure import (
+    Axis,
+    Curve,
+    DeferredFigure,
+    Figure,
+    Mark,
+    Panel,
+    Scale,
+)
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Forecast, Stage, Subject, Task
+from fegear.engine.stage import Forecast, Stage, Task
 from fegear.errors import InputError, RangeError
 from fegear.models.assumed import bore_remarks
 from fegear.models.tooth_influence import solution_settings
+from fegear.results.drawn_gear import deformed_figure, tooth_figure
 from fegear.results.gear_solution import needs_solution
 
 if TYPE_CHECKING:
@@ -25,6 +36,10 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+#: Line load of the deformed gear's picture when the case names none [N/m].
+_USUAL_LINE_LOAD = 100e3
+#: Angle of the fillet's tangent with the tooth's centre line at which ISO 6336-3 looks [deg].
+_ISO_TANGENT = 30.0
 #: Half-width of the contact in modules when the case gives neither a width nor a load.
 USUAL_HALF_WIDTH = 0.02
 #: Wider contacts than this [modules] are refused where a case gives them: the flank is too short to hold them.
@@ -230,12 +245,83 @@ def _present(table: StiffnessTable, asked: StiffnessInputs) -> Outcome:
         _values(name, asked.gear, table),
         solution_settings(table.influence),
         _remarks(asked, table),
+        (
+            DeferredFigure(
+                f"tooth_{name}",
+                f"Tooth, tool and mesh of gear {name}",
+                partial(tooth_figure, name, asked.gear, table.influence.fine.mesh),
+            ),
+            *_figures(name, table),
+        ),
     )
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
     positions = len(scene.case.stiffness.radii or ()) or scene.case.stiffness.positions
     return Forecast({"positions": positions}, _SECONDS_OF_TABLE + _SECONDS_PER_POSITION * positions)
+
+
+_COMPLIANCE_AXIS = Axis("compliance", "um.mm/N")
+
+
+def _roll_axis(gear: Gear, roll: Array) -> Axis:
+    """Roll angle of the load, with the radius that belongs to it on the far side."""
+    room = 0.05 * float(np.ptp(roll))
+    shown = np.linspace(max(float(roll.min()) - room, 0.0), float(roll.max()) + room, 200)
+    radius = gear.base_radius * 1e3 * np.hypot(1.0, np.deg2rad(shown))
+    return Axis("roll angle of the load", "deg", second=Scale("load radius", "mm", shown, radius))
+
+
+def _pitch_mark(gear: Gear, roll: Array) -> tuple[Mark, ...]:
+    at = float(np.rad2deg(np.sqrt(max((gear.pitch_radius / gear.base_radius) ** 2 - 1.0, 0.0))))
+    return (Mark("x", at, "pitch point"),) if roll.min() <= at <= roll.max() else ()
+
+
+def _figures(name: str, t: StiffnessTable) -> tuple[Figure, ...]:
+    gear, order = t.influence.gear, np.argsort(t.roll_angle)
+    roll = np.rad2deg(t.roll_angle[order])
+    x, marks = _roll_axis(gear, roll), _pitch_mark(gear, roll)
+
+    def curve(values: Array, error: str, label: str, role: str, scale: float) -> Curve:
+        return Curve(roll, values[order] * scale, label, role, t.errors[error][order] * scale)
+
+    compliance, stress = 1e9, 1e-3
+    width = f"{t.half_width.min() * 1e3:.4g}"
+    if t.half_width.max() > 1.0001 * t.half_width.min():
+        width += f" to {t.half_width.max() * 1e3:.4g}"
+    i = int(np.argmax(t.root_tension))
+    worst = float(np.max(np.abs(t.errors["c_self"] / t.c_self)))
+    return (
+        Figure(
+            f"compliance_{name}",
+            f"Compliance of gear {name}",
+            f"Gear {name}: deflection per line load of the loaded tooth and of its neighbours at the same radius, "
+            f"whole ring, contact half-width {width} mm. Bands: estimated error, for c_0 at most {worst:.1e} of it.",
+            (
+                Panel(x, _COMPLIANCE_AXIS, (
+                    curve(t.c_self, "c_self", "c_{0}, loaded tooth", "loaded tooth", compliance),
+                ), marks),
+                Panel(replace(x, second=None), _COMPLIANCE_AXIS, (
+                    curve(t.c_next, "c_neighbour", "c_{+1}, next tooth", "next tooth", compliance),
+                    curve(t.c_prev, "c_neighbour", "c_{−1}, previous tooth", "previous tooth", compliance),
+                ), marks),
+            ),
+        ),
+        Figure(
+            f"root_stress_{name}",
+            f"Root stress of gear {name}",
+            f"Gear {name}: largest tangential fillet stress per line load. At its largest the tension sits at radius "
+            f"{t.root_tension_radius[i] * 1e3:.5g} mm, where the fillet's tangent makes "
+            f"{np.rad2deg(t.root_tension_angle[i]):.1f} deg with the tooth's centre line (ISO 6336-3 looks at 30 deg).",
+            (
+                Panel(x, Axis("largest root stress per line load", "MPa.mm/N", zero=True), (
+                    curve(t.root_tension, "root_tension", "tension, fillet below the loaded flank", "tension", stress),
+                    curve(-t.root_compression, "root_compression", "compression, other fillet (magnitude)",
+                          "compression", stress),
+                ), marks),
+            ),
+        ),
+    )  # fmt: skip
 
 
 STIFFNESS = Stage(
@@ -291,15 +377,62 @@ class FilletCurves:
     radius: float
 
 
-def _worst_load(_asked: Subject, upstream: Upstream, _work: Work) -> FilletCurves:
+@dataclass(frozen=True)
+class FilletInputs:
+    """What the curves read: the gear's name and the line load of the picture of the deformed gear [N/m]."""
+
+    line_load: float = field(compare=False)
+    name: str = field(compare=False)
+
+    @classmethod
+    def of(cls, scene: Scene, name: str) -> FilletInputs:
+        """As `Stage.inputs`."""
+        return cls(scene.case.stiffness.load or _USUAL_LINE_LOAD, name)
+
+
+def _worst_load(_asked: FilletInputs, upstream: Upstream, _work: Work) -> FilletCurves:
     (table,) = upstream.values()
     return FilletCurves(table, float(table.radius[int(np.argmax(table.root_tension))]))
 
 
-def _present_curves(found: FilletCurves, asked: Subject) -> Outcome:
+def _present_curves(found: FilletCurves, asked: FilletInputs) -> Outcome:
     name, radius = asked.name, found.radius
     title = f"Root stress along the fillets of gear {name}, load at radius {radius * 1e3:.6g} mm"
-    return Outcome(found, (Table(f"root_stress_{name}", _curve_columns(found.table.influence, radius), title),))
+    influence = found.table.influence
+    table = Table(f"root_stress_{name}", _curve_columns(influence, radius), title)
+    figures: tuple[Figure | DeferredFigure, ...] = (
+        _fillet_figure(name, radius, table),
+        DeferredFigure(
+            f"deformed_{name}", f"Deformed gear {name}", partial(deformed_figure, name, influence, asked.line_load)
+        ),
+    )
+    return Outcome(found, (table,), figures=figures)
+
+
+def _fillet_figure(name: str, radius: float, table: Table) -> Figure:
+    panels = []
+    columns = {column.name: column.shown for column in table.columns}
+    for side, title in (("tension", "Fillet below the loaded flank"), ("compression", "Fillet of the other flank")):
+        here = columns["side"] == side
+        arc, tangent = (np.asarray(columns[key][here], dtype=float) for key in ("arc", "tangent_angle"))
+        marks = [Mark("y", 0.0)]
+        if tangent.min() < _ISO_TANGENT < tangent.max():
+            marks.append(Mark("x", float(np.interp(-_ISO_TANGENT, -tangent, arc)), "30° tangent"))
+        curves = tuple(
+            Curve(arc, np.asarray(columns[key][here], dtype=float), role, role, markers=False)
+            for key, role in (
+                ("stress", "loaded tooth"), ("stress_next", "next tooth"), ("stress_prev", "previous tooth")
+            )
+        )  # fmt: skip
+        axes = Axis("arc length from the root land", "mm"), Axis("tangential stress per line load", "MPa.mm/N")
+        panels.append(Panel(*axes, curves, tuple(marks), title))
+    return Figure(
+        f"fillet_{name}",
+        f"Stress along the fillets of gear {name}",
+        f"Gear {name}: tangential stress along both fillets with the load at radius {radius * 1e3:.6g} mm.",
+        tuple(panels),
+        columns=2,
+    )
 
 
 ROOT_STRESS = Stage(
@@ -308,7 +441,7 @@ ROOT_STRESS = Stage(
     results=("root-stress",),
     subjects=_gear,
     needs=lambda _scene, name: (Task("stiffness", name),),
-    inputs=Subject.of,
+    inputs=FilletInputs.of,
     compute=_worst_load,
     present=_present_curves,
     forecast=lambda _scene, _name: Forecast({}, 0.01),

@@ -10,8 +10,8 @@ import pytest
 from scipy.interpolate import BSpline
 
 from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.geometry.outline import gear_outline, tooth_outline
 from fegear.output.dxf import CHORD_TOLERANCE, write_dxf
-from fegear.output.outline import gear_outline, tooth_outline
 
 GEARS = {
     "plain": Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3e-3, 15e-3),

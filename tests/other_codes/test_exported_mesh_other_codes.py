@@ -16,10 +16,11 @@ from fegear.errors import MissingLibraryError
 from fegear.fem import MeshSettings
 from fegear.fem.field import gear_field
 from fegear.fem.gear import solve_gear
+from fegear.fem.loaded_gear import loaded_gear, nodal_fields
 from fegear.fem.sector import mesh_sector
+from fegear.fem.whole_gear import whole_gear
 from fegear.geometry import BasicRack, Gear, Tooth
-from fegear.output.mesh_export import loaded_gear, nodal_fields, write_meshes
-from fegear.output.whole_gear import whole_gear
+from fegear.output.mesh_export import write_meshes
 
 GEAR = Gear(Tooth(17, BasicRack(1.0, 1.25, 0.25), profile_shift=0.2), 3.175e-3, 9e-3, 25.4e-3)
 COARSE = MeshSettings().scaled(2.0)

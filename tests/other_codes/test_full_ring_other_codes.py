@@ -16,8 +16,8 @@ from fegear.fem.ring import close_ring
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import MeshSettings
 from fegear.fem.trace import loaded_flank
+from fegear.fem.whole_gear import whole_gear
 from fegear.geometry import BasicRack, Tooth
-from fegear.output.whole_gear import whole_gear
 
 _spec = importlib.util.spec_from_file_location("textbook_elements", Path(__file__).with_name("textbook_elements.py"))
 textbook = importlib.util.module_from_spec(_spec)

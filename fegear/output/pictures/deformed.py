@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fegear.fem.whole_gear import WholeGear
     from fegear.geometry import Gear
-    from fegear.output.whole_gear import WholeGear
 
     Array = NDArray[np.float64]
 

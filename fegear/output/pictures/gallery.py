@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from fegear.engine.figure import DeferredFigure
 from fegear.engine.stage import Task
 from fegear.errors import MissingLibraryError
+from fegear.fem.mesh_files import write_mesh_file
 from fegear.output.draw_png import draw_pictures
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from fegear.engine.figure import Figure
+    from fegear.engine.figure import Figure, MeshField
     from fegear.engine.run import Results
     from fegear.fem import StiffnessTable
     from fegear.output.pictures.style import Picture
@@ -48,9 +51,9 @@ def _stiffness(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
 
 
 def _root_stress(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
+    from fegear.fem.loaded_gear import loaded_gear, nodal_fields
     from fegear.fem.mesh import GENERATED
     from fegear.fem.mesh_files import write_mesh_file
-    from fegear.output.mesh_export import loaded_gear, nodal_fields
     from fegear.output.pictures.deformed import draw_deformed
     from fegear.output.pictures.stiffness import draw_fillet
 
@@ -243,7 +246,15 @@ DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
 def draw_figure(figure: Figure | DeferredFigure, folder: Path) -> Iterator[Picture]:
     """Draw one figure, describing it first where that was put off."""
     made = figure.make() if isinstance(figure, DeferredFigure) else figure
+    if made.field is not None:
+        write_field(made.field, folder.parent / "fields")
     yield from draw_pictures(made, folder)
+
+
+def write_field(field: MeshField, folder: Path) -> None:
+    """Write ``<name>.vtu`` for ParaView."""
+    folder.mkdir(exist_ok=True)
+    write_mesh_file(folder / f"{field.name}.vtu", np.asarray(field.points), field.triangles, {}, field.values)
 
 
 def draw_all(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.output.outline import tooth_outline, turned
+from fegear.geometry.outline import tooth_outline, turned
 from fegear.output.pictures.style import BLUE, ORANGE, RED, SKY, Picture, figure, in_house_style, save
 
 if TYPE_CHECKING:

@@ -53,3 +53,22 @@ def gear_outline(gear: Gear, tolerance: float = 1e-4) -> Array:
     one = tooth_outline(gear.tooth, tolerance)[:, :-1] * gear.module
     pitch = 2.0 * math.pi / gear.teeth
     return np.hstack([turned(one, k * pitch) for k in range(gear.teeth)])
+
+
+def rack_tooth(tooth: Tooth) -> Array:
+    """Outline of the tool's tooth [modules], shape (2, N): along the rack, and above the gear's pitch line."""
+    rack, shift = tooth.rack, tooth.generating_shift
+    alpha, rho = rack.pressure_angle, rack.tip_radius
+    top = np.array([[math.pi / 4 + rack.addendum * math.tan(alpha)], [shift + rack.addendum]])
+    beta = np.linspace(math.pi / 2 - alpha, 0.0, 25)
+    centre = rack.tip_centre_offset, shift - rack.tip_centre_depth
+    rounding = np.stack([centre[0] + rho * np.sin(beta), centre[1] - rho * np.cos(beta)])
+    right = np.hstack([top, rounding])
+    return np.hstack([right, right[:, ::-1] * np.array([[-1.0], [1.0]])])
+
+
+def rack_in_gear(tooth: Tooth, rolled: float) -> Array:
+    """The tool in the gear's frame after the gear has rolled by an angle [rad], in the space right of the tooth."""
+    u, v = rack_tooth(tooth)
+    placed = np.stack([u + tooth.pitch_radius * rolled, v + tooth.pitch_radius])
+    return turned(placed, math.pi / tooth.teeth - rolled)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
-from fegear.output.outline import turned
+from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,6 +44,14 @@ class WholeGear:
     triangles: Index
     boundaries: Mapping[str, Index]
     sector_nodes: Index
+
+    @property
+    def outline(self) -> Index:
+        """Edges that only one triangle has (vertex, middle, vertex), shape (3, n)."""
+        t = self.triangles
+        edges = np.hstack([t[[a, b, c]] for a, b, c in ((0, 3, 1), (1, 4, 2), (2, 5, 0))])
+        _, first, count = np.unique(edges[1], return_index=True, return_counts=True)
+        return edges[:, first[count == 1]]
 
     def node_set(self, name: str) -> Index:
         """Nodes of a boundary, each once, in ascending order."""
