@@ -29,6 +29,10 @@ _FEW = 15
 _LEVEL = 1e-3
 #: Half the height of the axis of a level curve, as a share of its size.
 _LEVEL_HEIGHT = 0.05
+#: Marks of an axis of whole numbers.
+_MOST_WHOLE = 20
+#: Share of an axis that a word beside a mark takes.
+_ROOM_OF_WORD = 0.045
 #: Share of the axis that neighbouring bars of one place take.
 _BAR_ROOM = 0.8
 
@@ -168,6 +172,8 @@ class HeatMap(_Item):
         Neutral value and half the width of a scale of two colours; one scale from dark to light without.
     numbers : bool
         Whether every tile bears its number.
+    limits : (float, float), optional
+        Ends of the scale of colours, where several maps have one; else those of the values.
     """
 
     x: ArrayLike
@@ -177,6 +183,7 @@ class HeatMap(_Item):
     unit: str = ""
     centre: tuple[float, float] | None = None
     numbers: bool = False
+    limits: tuple[float, float] | None = None
     ARRAYS: ClassVar[tuple[str, ...]] = ("x", "y", "z")
 
     @property
@@ -184,6 +191,8 @@ class HeatMap(_Item):
         """Ends of its scale of colours."""
         if self.centre:
             return self.centre[0] - self.centre[1], self.centre[0] + self.centre[1]
+        if self.limits:
+            return self.limits
         found = np.asarray(self.z)[np.isfinite(self.z)]
         return (float(found.min()), float(found.max())) if found.size else (0.0, 1.0)
 
@@ -372,6 +381,43 @@ class Panel:
         if np.ptp(shown) >= _LEVEL * size or size == 0.0:
             return None
         return middle - _LEVEL_HEIGHT * size, middle + _LEVEL_HEIGHT * size
+
+    def extent(self, which: Which) -> tuple[float, float]:
+        """Ends of what is drawn along an axis, or of the axis where it says them."""
+        axis = self.x if which == "x" else self.y
+        if axis.limits:
+            return axis.limits
+        drawn = [getattr(item, which) for item in self.items if hasattr(item, which)]
+        found = np.concatenate([np.zeros(int(axis.zero)), *(np.ravel(values) for values in drawn)])
+        found = found[np.isfinite(found)]
+        return (float(found.min()), float(found.max())) if found.size else (0.0, 1.0)
+
+    def whole_step(self, which: Which) -> int:
+        """Step between the marks of an axis of whole numbers."""
+        low, high = self.extent(which)
+        return max(1, math.ceil((high - low) / _MOST_WHOLE))
+
+    def written(self, mark: Mark | Zone) -> str:
+        """Word of a mark; none where it would lie on that of an earlier one."""
+        if isinstance(mark, Zone):
+            return ""
+        low, high = self.extent(mark.axis)
+        placed: list[float] = []
+        for one in self.marks:
+            if isinstance(one, Zone) or one.axis != mark.axis or not one.label:
+                continue
+            free = all(abs(one.at - other) >= _ROOM_OF_WORD * (high - low) for other in placed)
+            if one is mark:
+                return mark.label if free else ""
+            placed += [one.at] if free else []
+        return ""
+
+    @property
+    def foot(self) -> float:
+        """Where stems stand: at zero, or below the shortest on a logarithmic scale."""
+        if not self.y.log:
+            return 0.0
+        return 0.5 * min((float(np.min(i.y)) for i in self.items if isinstance(i, Stems) and np.size(i.y)), default=0.0)
 
     def bars(self) -> Iterator[tuple[Bars, Array, Array, float]]:
         """Every row of bars with the places of their middles, their feet and their width."""

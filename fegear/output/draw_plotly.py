@@ -26,6 +26,7 @@ from fegear.engine.figure import (
     Panel,
     Points,
     Stems,
+    Which,
 )
 from fegear.output.report.numbers import pretty_unit
 from fegear.output.shades import DARK, DIVERGING, LIGHT, SEQUENTIAL, shade
@@ -43,7 +44,6 @@ _LEFT, _RIGHT, _BOTTOM, _TOP = 74, 24, 56, 34
 _SECOND, _LEGEND_LINE, _MENU = 44, 21, 46
 _BESIDE = 4
 _TILE = 26
-_MOST_WHOLE = 20
 _DASHES = {"dashdot": "dashdot", "dot": "dot", "steps": "solid"}
 
 
@@ -219,7 +219,7 @@ def _points(panel: Panel, item: Points) -> list[Spec]:
 
 
 def _stems(panel: Panel, item: Stems) -> list[Spec]:
-    drop = {"type": "data", "symmetric": False, "array": [0], "arrayminus": typed(0.999999 * np.asarray(item.y))}
+    drop = {"type": "data", "symmetric": False, "array": [0], "arrayminus": typed(np.asarray(item.y) - panel.foot)}
     (trace,) = _points(panel, Points(item.x, item.y, item.name, item.role, notes=item.notes))
     zeros = typed(np.zeros(np.size(item.y)))
     return [trace | {"error_y": drop | {"array": zeros, "width": 0, "thickness": 1, "color": shade(item.role).light}}]
@@ -320,6 +320,10 @@ def _axes(made: Spec, panel: Panel, name: str, domain: tuple[float, float], *, j
     unit = pretty_unit(panel.x.unit)
     x["unifiedhovertitle"] = {"text": f"{rich(panel.x.label)} %{{x}} {rich(unit)}".rstrip()}
     y = _axis(panel.y) | {"anchor": f"x{name}", "domain": list(domain)}
+    both: tuple[tuple[Which, Axis, Spec], ...] = (("x", panel.x, x), ("y", panel.y, y))
+    for which, axis, made_of in both:
+        if axis.whole:
+            made_of |= {"tick0": 0, "dtick": panel.whole_step(which)}
     if joined:
         x["matches"] = "x"
     if panel.limits:
@@ -341,8 +345,6 @@ def _axis(axis: Axis) -> Spec:
         made["range"] = [float(np.log10(end)) if axis.log else end for end in axis.limits]
     if axis.zero:
         made["rangemode"] = "tozero"
-    if axis.whole:
-        made |= {"tickformat": "d", "nticks": _MOST_WHOLE}
     if axis.hidden:
         made |= {"visible": False, "fixedrange": True}
     return made
@@ -372,7 +374,7 @@ def _marks(made: Spec, panel: Panel, name: str) -> None:
             made["shapes"].append(shape | look_of)
             continue
         made["shapes"].append(shape | {"type": "line", "line": {"color": LIGHT["grey"], "width": 1.2, "dash": "dot"}})
-        if mark.label:
+        if panel.written(mark):
             log = panel.x.log if along == "x" else panel.y.log
             made["annotations"].append({
                 "text": rich(mark.label), f"{along}ref": f"{along}{name}", f"{across}ref": f"{across}{name} domain",

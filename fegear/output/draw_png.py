@@ -24,6 +24,7 @@ from fegear.engine.figure import (
     Surface,
     TriangleField,
     View,
+    Which,
     few,
 )
 from fegear.output.report.numbers import pretty_unit
@@ -41,8 +42,6 @@ _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
 _ALONE, _STACKED = 3.4, 2.3
 _LEFT, _RIGHT, _BOTTOM, _NARROW = 0.45, 0.25, 0.55, 0.22
 _TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
-#: Marks of an axis of whole numbers.
-_MOST_WHOLE = 20
 #: Inches of a legend's letter and of its line before the words.
 _LETTER, _HANDLE = 0.078, 0.55
 _DASHES = {
@@ -305,13 +304,14 @@ def _legend_entries(panels: Sequence[Panel]) -> dict[str, Any]:
     return found
 
 
-def _dress(axes: Any, panel: Panel, *, joined: bool, beside: bool) -> None:
-    """Axes: titles, scales, ranges, marks."""
-    _axis(axes, panel.x, "x", "" if joined else _titled(panel.x.label, panel.x.unit))
-    _axis(axes, panel.y, "y", "" if beside else _titled(panel.y.label, panel.y.unit))
-    if panel.equal:
-        axes.set_aspect("equal")
-        axes.grid(visible=False)
+def _ranges(axes: Any, panel: Panel) -> None:
+    """Ranges of both axes, and whole numbers at those that have no others."""
+    sides: tuple[tuple[Which, Axis], ...] = (("x", panel.x), ("y", panel.y))
+    for which, axis in sides:
+        if axis.whole:
+            from matplotlib.ticker import MultipleLocator
+
+            getattr(axes, f"{which}axis").set_major_locator(MultipleLocator(panel.whole_step(which)))
     if panel.limits:
         axes.set_ylim(*panel.limits)
     elif panel.y.zero:
@@ -320,6 +320,16 @@ def _dress(axes: Any, panel: Panel, *, joined: bool, beside: bool) -> None:
         axes.set_xlim(*panel.x.limits)
     elif panel.x.zero:
         axes.set_xlim(left=0.0)
+
+
+def _dress(axes: Any, panel: Panel, *, joined: bool, beside: bool) -> None:
+    """Axes: titles, scales, ranges, marks."""
+    _axis(axes, panel.x, "x", "" if joined else _titled(panel.x.label, panel.x.unit))
+    _axis(axes, panel.y, "y", "" if beside else _titled(panel.y.label, panel.y.unit))
+    if panel.equal:
+        axes.set_aspect("equal")
+        axes.grid(visible=False)
+    _ranges(axes, panel)
     if joined:
         axes.tick_params(labelbottom=False)
     if beside:
@@ -337,19 +347,15 @@ def _dress(axes: Any, panel: Panel, *, joined: bool, beside: bool) -> None:
 
 def _marks(axes: Any, panel: Panel) -> None:
     grey = shade("grey").light
-    placed: list[float] = []
     for mark in panel.marks:
         line, span = (axes.axvline, axes.axvspan) if mark.axis == "x" else (axes.axhline, axes.axhspan)
         if not isinstance(mark, Mark):
             span(mark.low, mark.high, color="0.5", alpha=0.12, lw=0, zorder=0)
             continue
         line(mark.at, color=grey, lw=1.0, ls=":")
-        if not mark.label:
+        word = panel.written(mark)
+        if not word:
             continue
-        low, high = axes.get_ylim() if mark.axis == "y" else axes.get_xlim()
-        if any(abs(mark.at - other) < 0.045 * abs(high - low) for other in placed):
-            continue
-        placed.append(mark.at)
         where, shift, more = (
             ((mark.at, 1.0), (3, -9), {"xycoords": ("data", "axes fraction")}) if mark.axis == "x"
             else ((1.0, mark.at), (-2, 2), {"xycoords": ("axes fraction", "data"), "ha": "right"})
@@ -370,10 +376,6 @@ def _axis(axes: Any, axis: Axis, which: str, title: str) -> None:
     getattr(axes, f"set_{which}label")(title)
     if axis.categories:
         getattr(axes, f"set_{which}ticks")(range(len(axis.categories)), [_words(name) for name in axis.categories])
-    if axis.whole:
-        from matplotlib.ticker import MaxNLocator
-
-        getattr(axes, f"{which}axis").set_major_locator(MaxNLocator(_MOST_WHOLE, integer=True))
     if axis.hidden:
         getattr(axes, f"{which}axis").set_visible(False)
         axes.spines["left" if which == "y" else "bottom"].set_visible(False)
@@ -394,12 +396,12 @@ def _fill(axes: Any, panel: Panel) -> Any:
         error = {} if bars.error is None else {"yerr": bars.error, "error_kw": {"lw": 1.0}}
         axes.bar(x, bars.y, width, foot, color=colour, **error)
     for item in panel.items:
-        found = _DRAWN[type(item)](axes, item) if type(item) in _DRAWN else None
+        found = _DRAWN[type(item)](axes, panel, item) if type(item) in _DRAWN else None
         image = found if found is not None else image
     return image
 
 
-def _curve(axes: Any, item: Curve) -> None:
+def _curve(axes: Any, _panel: Panel, item: Curve) -> None:
     style, colour = look(item.role), shade(item.role).light
     x, y = np.asarray(item.x), np.asarray(item.y)
     axes.plot(
@@ -414,7 +416,7 @@ def _curve(axes: Any, item: Curve) -> None:
         axes.fill_between(x, y, color=colour, alpha=0.25, lw=0)
 
 
-def _points(axes: Any, item: Points) -> Any:
+def _points(axes: Any, _panel: Panel, item: Points) -> Any:
     symbol = _SYMBOLS[item.symbol or look(item.role).symbol]
     if item.shade is not None:
         shaded = np.asarray(item.shade)
@@ -444,14 +446,13 @@ def _write_notes(axes: Any, item: Points) -> None:
         )  # fmt: skip
 
 
-def _stems(axes: Any, item: Stems) -> None:
+def _stems(axes: Any, panel: Panel, item: Stems) -> None:
     style, colour = look(item.role), shade(item.role).light
-    low = float(np.min(item.y)) if axes.get_yscale() == "log" else 0.0
-    axes.vlines(item.x, 0.5 * low, item.y, color=colour, lw=1.0)
+    axes.vlines(item.x, panel.foot, item.y, color=colour, lw=1.0)
     axes.plot(item.x, item.y, ls="", marker=_SYMBOLS[style.symbol], color=colour, ms=4)
 
 
-def _heat(axes: Any, item: HeatMap) -> Any:
+def _heat(axes: Any, _panel: Panel, item: HeatMap) -> Any:
     from matplotlib.colors import LinearSegmentedColormap
 
     low, high = item.ends
@@ -472,14 +473,14 @@ def _heat(axes: Any, item: HeatMap) -> Any:
     return image
 
 
-def _field(axes: Any, item: TriangleField) -> Any:
+def _field(axes: Any, _panel: Panel, item: TriangleField) -> Any:
     x, y = np.asarray(item.points)
     return axes.tripcolor(
         x, y, item.triangles.T, item.values, shading="gouraud", cmap=SEQUENTIAL, vmin=0.0, vmax=item.top
     )
 
 
-_DRAWN: dict[type, Callable[[Any, Any], Any]] = {
+_DRAWN: dict[type, Callable[[Any, Panel, Any], Any]] = {
     Curve: _curve,
     Points: _points,
     Stems: _stems,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Need, Stage, Task
 from fegear.errors import FegearError, InputError
@@ -205,7 +206,35 @@ def _run(scene: Scene, _subject: str, done: Done, progress: Work) -> Outcome:
                 Value(f"design_chart.least_factor_{a:g}", float(row[k]), "", None, f"at {a:g} Delta"),
             ]
     settings: dict[str, object] = {"points": len(points), "speeds": int(scene.case.dynamics.speed_values.size)}
-    return Outcome(chart, (table,), tuple(values), settings, failures)
+    return Outcome(chart, (table,), tuple(values), settings, failures, _figures(chart))
+
+
+def _figures(chart: DesignChartData) -> tuple[Figure, ...]:
+    """Largest dynamic factor and A_e over the length of relief for every amount."""
+    if chart.lengths.size < 2:
+        return ()
+    factor, error = (
+        tuple(
+            Curve(chart.lengths, row, f"{amount:.4g} Δ", f"series:{k}", markers=True)
+            for k, (amount, row) in enumerate(zip(chart.amounts, rows, strict=True))
+        )
+        for rows in (chart.dynamic_factor, chart.effective_error * 1e6)
+    )
+    length = Axis("length of relief L_{n}")
+    plain = Mark("y", chart.unmodified, "unmodified")
+    return (
+        Figure(
+            "design_chart",
+            "Design chart of tip relief",
+            "Largest dynamic factor over the speeds, and effective error, against the length of tip relief (1 from the "
+            f"tip to the highest point of single contact), by amount over Δ = {chart.delta * 1e6:.4g} µm.",
+            (
+                Panel(length, Axis("largest dynamic factor"), factor, (plain,)),
+                Panel(length, Axis("effective error A_{e}", "um", zero=True), error),
+            ),
+            columns=2,
+        ),
+    )
 
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Curve, Figure, Panel, Points
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage, Task
 from fegear.errors import InputError
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
     from fegear.models.train import GearTrain
 
     Array = NDArray[np.float64]
+
+
+_RPM = 30.0 / np.pi
 
 
 @dataclass(frozen=True)
@@ -163,7 +167,8 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
             f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
             "dynamic factor is that of the mesh force."
         )
-    return Outcome(DynamicFactorData(chart, data.speed_of), (table,), tuple(values), {}, tuple(remarks))
+    figures = (_figure(name, chart, data.speed_of),) if chart.speeds.size > 1 else ()
+    return Outcome(DynamicFactorData(chart, data.speed_of), (table,), tuple(values), {}, tuple(remarks), figures)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -173,6 +178,34 @@ def _check(scene: Scene, name: str) -> None:
             f"train.mesh.{name}.backlash", "(given)", "has a meaning only with effects.contact_loss = true",
             "switch the effect on, or leave the backlash out",
         )  # fmt: skip
+
+
+def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
+    """Dynamic factor over speed, and the share of the time without contact where there is any."""
+    speed, x = chart.speeds * _RPM, Axis(f"speed of {speed_of}", "rpm")
+    items: list[Curve | Points] = [
+        Curve(speed, chart.dynamic_factor, "tooth force", "own force"),
+        Curve(speed, chart.mesh_force_factor, "mesh force", "mesh force", width=1.2),
+    ]
+    odd = np.array([kind != "periodic" for kind in chart.kinds])
+    if odd.any():
+        notes = tuple(kind for kind in chart.kinds if kind != "periodic")
+        items.append(
+            Points(speed[odd], chart.dynamic_factor[odd], "motion that does not repeat", "red", notes=notes, size=7)
+        )
+    panels = [Panel(x, Axis("largest over mean force"), tuple(items), height=1.3)]
+    shares = (("no contact", "no contact", chart.apart), ("on the back flanks", "back flanks", chart.behind))
+    lost = tuple(Curve(speed, 100.0 * share, label, role) for label, role, share in shares if share.any())
+    if lost:
+        panels.append(Panel(x, Axis("time", "%", zero=True), lost, height=0.5))
+    worst, where = chart.worst
+    return Figure(
+        f"dynamic_factor_{name}",
+        f"Dynamic factor of mesh {name}",
+        f"Mesh {name}: largest force on one tooth pair (dynamic factor) and largest mesh force, both over the mean "
+        f"mesh force. Largest dynamic factor {worst:.4g} at {where * _RPM:.6g} rpm.",
+        tuple(panels),
+    )
 
 
 MOTION = Stage(

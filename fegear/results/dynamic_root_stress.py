@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Curve, Figure, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage, Task
 from fegear.errors import InputError
@@ -136,7 +137,24 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
                   f"gear {gear}, without the other meshes, contact at x = {force.x[worst] * 1e3:.5g} mm")
         )  # fmt: skip
         progress((number + 1) / 2)
-    return Outcome(DynamicRootStress(data, static, stress), tuple(tables), tuple(values))
+    made = DynamicRootStress(data, static, stress)
+    return Outcome(made, tuple(tables), tuple(values), figures=(_figure(made),))
+
+
+def _figure(data: DynamicRootStress) -> Figure:
+    name, x, curves = data.force.train.names[data.force.mesh], data.force.force.x * 1e3, []
+    for member, stress in data.stress.items():
+        curves.append(Curve(x, stress * 1e-6, f"{member}, dynamic", member, dash="solid"))
+        curves.append(Curve(x, data.static[member] * 1e-6, f"{member}, quasi-static", member, dash="dash", width=1.2))
+    axes = (
+        Axis("place of the tooth pair on the line of action", "mm"), Axis("largest root tension", "MPa", zero=True)
+    )  # fmt: skip
+    return Figure(
+        f"dynamic_root_stress_{name}",
+        f"Dynamic root stress of mesh {name}",
+        f"Mesh {name}: root stress of one tooth of either gear through its engagement, with and without vibration.",
+        (Panel(*axes, tuple(curves)),),
+    )
 
 
 DYNAMIC_ROOT_STRESS = Stage(

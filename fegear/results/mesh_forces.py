@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel, Points, Stems
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
 from fegear.errors import InputError
@@ -35,6 +36,13 @@ _LINES = 256
 _LOOKED_AT = 101
 #: How near to the ends of the path the last positions are, in base pitches.
 _INSIDE = 1e-9
+
+
+#: Lines weaker than these shares of the strongest are not drawn in spectrum and waterfall.
+_WEAKEST, _WEAKEST_OVER_SPEED = 1e-5, 1e-2
+#: Force that is none [N].
+_NO_FORCE = 1e-12
+_RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -110,7 +118,8 @@ def _run_spectrum(scene: Scene, name: str, done: Done, _progress: Progress) -> O
         tables.append(_waterfall_table(name, i, waterfall, data))
     settings: dict[str, object] = {"harmonics": part.harmonics, "speed": part.one_speed}
     remarks = pull_remarks(data, i, [part.one_speed / data.speed_ratio], part.harmonics)
-    return Outcome(SpectrumData(data, i, found, waterfall), tuple(tables), values, settings, remarks)
+    made = SpectrumData(data, i, found, waterfall)
+    return Outcome(made, tuple(tables), values, settings, remarks, _spectrum_figures(made))
 
 
 def _lines(found: MeshForceSpectrum, data: GearTrain) -> tuple[Column, ...]:
@@ -278,7 +287,65 @@ def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outc
         )
         remarks = (*remarks, told)
     settings: dict[str, object] = {"harmonics": summed_harmonics(scene, data), "speed": part.one_speed}
-    return Outcome(ToothForceData(data, i, force, looked_at), (table,), tuple(values), settings, remarks)
+    made = ToothForceData(data, i, force, looked_at)
+    return Outcome(made, (table,), tuple(values), settings, remarks, (_tooth_force_figure(made),))
+
+
+def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
+    train, found = data.train, data.spectrum
+    name, amplitudes = train.names[data.mesh], found.amplitudes[data.mesh, :, :, 0]
+    lines = []
+    for j, other in enumerate(train.names):
+        shown = amplitudes[j] > max(_WEAKEST * float(amplitudes.max()), _NO_FORCE)
+        lines.append(
+            Stems(found.frequencies[j, shown, 0] * 1e-3, amplitudes[j, shown], f"from mesh {other}", f"series:{j}",
+                  tuple(f"harmonic {n:.6g}" for n in found.orders[shown]))
+        )  # fmt: skip
+    force, rpm = Axis("mesh force, 0-peak", "N", log=True), float(found.speeds[0]) * train.speed_ratio * _RPM
+    spectrum = Figure(
+        f"mesh_force_spectrum_{name}",
+        f"Spectrum of the force in mesh {name}",
+        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: harmonics by the mesh that excites them.",
+        (Panel(Axis("frequency", "kHz"), force, tuple(lines)),),
+    )
+    over = data.waterfall
+    if over is None:
+        return (spectrum,)
+    size = over.amplitudes[data.mesh]
+    strong = size > max(_WEAKEST_OVER_SPEED * float(size.max()), _NO_FORCE)
+    speed = np.broadcast_to(over.speeds * train.speed_ratio * _RPM, size.shape)[strong]
+    points = Points(
+        over.frequencies[strong] * 1e-3, speed, shade=size[strong], shade_label="mesh force, 0-peak [N]", size=4.5,
+        notes=tuple(f"{force:.4g} N" for force in size[strong]),
+    )  # fmt: skip
+    waterfall = Figure(
+        f"mesh_force_waterfall_{name}",
+        f"Waterfall of the force in mesh {name}",
+        f"Mesh {name}: lines of the mesh force over speed, down to a hundredth of the strongest.",
+        (Panel(Axis("frequency", "kHz"), Axis(f"speed of {train.speed_of}", "rpm"), (points,)),),
+    )
+    return spectrum, waterfall
+
+
+def _tooth_force_figure(data: ToothForceData) -> Figure:
+    force, names = data.force, data.train.names
+    name, x, place = names[data.mesh], force.x * 1e3, Axis("place of the tooth pair on the line of action", "mm")
+    top = [Curve(x, force.static, "static", "static"), Curve(x, force.total, "static and own increment", "own force")]
+    if len(names) > 1:
+        top.append(Curve(x, force.total + force.cross.sum(axis=0), "with the other meshes", "with other meshes"))
+    parts = {j: force.own if j == data.mesh else force.cross[j] for j in range(len(names))}
+    below = [Curve(x, part, f"from mesh {names[j]}", f"series:{j + 2}") for j, part in parts.items()]
+    mean = Mark("y", float(data.train.forces[data.mesh]), "mean mesh force")
+    return Figure(
+        f"tooth_force_{name}",
+        f"Force on one tooth pair of mesh {name}",
+        f"Mesh {name}: force on one tooth pair from first to last contact; the level line is the mean mesh force. "
+        "Below: what the vibration adds, by the mesh that excites it.",
+        (
+            Panel(place, Axis("tooth force", "N", zero=True), tuple(top), (mean,), height=1.2),
+            Panel(place, Axis("increment", "N"), tuple(below), height=0.8),
+        ),
+    )
 
 
 MESH_FORCE_SPECTRUM = Stage(

@@ -172,13 +172,13 @@ def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
     chart = data.chart
     if chart.amounts.size < 2 or chart.lengths.size < 3:
         return ()
-    best, views = chart.optimum_lengths(), []
+    best, error, views = chart.optimum_lengths(), chart.effective_error * 1e6, []
     for i, load in enumerate(chart.loads):
         inside = (best[:, i] > chart.lengths[0]) & (best[:, i] < chart.lengths[-1])
         length = np.where(inside, best[:, i], np.nan)
         items = (
-            HeatMap(chart.lengths, chart.amounts * 1e6, chart.effective_error[:, :, i] * 1e6,
-                    "effective transmission error A_{e}", "um"),
+            HeatMap(chart.lengths, chart.amounts * 1e6, error[:, :, i],
+                    "effective transmission error A_{e}", "um", limits=(float(error.min()), float(error.max()))),
             Curve(length, chart.amounts * 1e6, "length of least A_{e}", "over map", width=2.2, markers=False),
         )  # fmt: skip
         axes = Axis("length of tip relief (1: tip to HPSTC)"), Axis("amount at both tips", "um")

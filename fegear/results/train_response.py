@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.figure import Axis, Bars, Curve, Figure, Mark, Panel, Points
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage
 from fegear.results import forecasts
@@ -20,6 +21,11 @@ if TYPE_CHECKING:
     from fegear.dynamics.modes import Campbell, Modes
     from fegear.engine.stage import Done, Progress
     from fegear.models.train import GearTrain
+
+
+_RPM = 30.0 / math.pi
+#: A share of energy below this is none.
+_ROUND_OFF = 1e-6
 
 
 @dataclass(frozen=True)
@@ -86,7 +92,8 @@ def _run_modes(scene: Scene, _subject: str, done: Done, _progress: Progress) -> 
     values = tuple(
         Value(f"natural_frequency_{k}", float(found.frequencies[k]), "Hz", None, "undamped") for k in count[1:]
     )
-    return Outcome(ModesData(data, found, diagram), tuple(tables), values)
+    made = ModesData(data, found, diagram)
+    return Outcome(made, tuple(tables), values, figures=_modes_figures(made))
 
 
 def _run_increments(scene: Scene, _subject: str, done: Done, _progress: Progress) -> Outcome:
@@ -113,7 +120,84 @@ def _run_increments(scene: Scene, _subject: str, done: Done, _progress: Progress
                 )
             )
     table = Table("dynamic_increments", tuple(columns), "Dynamic increment functions")
-    return Outcome(IncrementsData(data, frequencies, np.asarray(found, dtype=np.complex128)), (table,), tuple(values))
+    made = IncrementsData(data, frequencies, np.asarray(found, dtype=np.complex128))
+    return Outcome(made, (table,), tuple(values), figures=(_increments_figure(made),))
+
+
+def _modes_figures(data: ModesData) -> tuple[Figure, ...]:
+    """Where each mode deforms, and where harmonics of the meshes meet the modes; the rigid motion is not drawn."""
+    frequencies, energy = data.modes.frequencies[1:], data.modes.mesh_energy[1:]
+    if not frequencies.size:
+        return ()
+    place, shafts = np.arange(frequencies.size), 1.0 - energy.sum(axis=1)
+    bars = [Bars(place, energy[:, m], f"mesh {name}", f"series:{m}") for m, name in enumerate(data.train.names)]
+    if shafts.max() > _ROUND_OFF:
+        bars.append(Bars(place, shafts, "shafts", "grey"))
+    x = Axis(
+        "mode and its natural frequency", categories=tuple(f"{k + 1}\n{f:.5g} Hz" for k, f in enumerate(frequencies))
+    )
+    modes = Figure(
+        "natural_modes", "Natural modes",
+        "Where each mode of the train deforms: share of its strain energy in the meshes and in the shafts.",
+        (Panel(x, Axis("share of strain energy", limits=(0.0, 1.0)), tuple(bars), stacked=True),),
+    )  # fmt: skip
+    if data.campbell is None or data.campbell.speeds.size < 2:
+        return (modes,)
+    return modes, _campbell_figure(data.train, data.campbell), *_critical_figure(data.train, data.campbell)
+
+
+def _campbell_figure(train: GearTrain, diagram: Campbell) -> Figure:
+    speed, lines = diagram.speeds * train.speed_ratio * _RPM, []
+    for m, name in enumerate(train.names):
+        for h in range(diagram.lines.shape[1]):
+            label = f"mesh {name}, harmonics 1 to {diagram.lines.shape[1]}"
+            lines.append(Curve(speed, diagram.lines[m, h] * 1e-3, label, f"series:{m}", width=1.4, markers=False))
+    marks = tuple(Mark("y", f * 1e-3, f"mode {k + 1}: {f:.0f} Hz") for k, f in enumerate(diagram.natural))
+    return Figure(
+        "campbell", "Campbell diagram",
+        "Where harmonics of the mesh frequencies (sloping) meet undamped natural frequencies (level).",
+        (Panel(
+            Axis(f"speed of {train.speed_of}", "rpm", limits=(float(speed.min()), float(speed.max()))),
+            Axis("frequency", "kHz", limits=(0.0, 1.25e-3 * float(diagram.natural.max()))), tuple(lines), marks,
+        ),),
+    )  # fmt: skip
+
+
+def _critical_figure(train: GearTrain, diagram: Campbell) -> tuple[Figure, ...]:
+    points = []
+    for m, name in enumerate(train.names):
+        line, mode = np.indices(diagram.critical[m].shape)
+        speed = diagram.critical[m] * train.speed_ratio * _RPM
+        known = np.isfinite(speed) & (speed > 0.0)
+        notes = tuple(f"mode {k + 1}" for k in mode[known])
+        points.append(Points(speed[known], line[known] + 1, f"mesh {name}", f"series:{m}", size=8, notes=notes))
+    if not any(np.size(row.x) for row in points):
+        return ()
+    axes = Axis(f"speed of {train.speed_of}", "rpm", log=True), Axis("harmonic of the mesh frequency", whole=True)
+    return (Figure(
+        "critical_speeds", "Critical speeds",
+        "Speeds at which a harmonic of a mesh frequency meets a natural frequency.", (Panel(*axes, tuple(points)),),
+    ),)  # fmt: skip
+
+
+def _increments_figure(data: IncrementsData) -> Figure:
+    names = data.train.names
+    panels = tuple(
+        Panel(
+            Axis("frequency", "Hz", log=True), Axis(f"|Q| of mesh {first}", log=True),
+            tuple(
+                Curve(data.frequencies, np.abs(data.increments[i, j]), f"error of mesh {second}", f"series:{j}")
+                for j, second in enumerate(names)
+            ),
+        )
+        for i, first in enumerate(names)
+    )  # fmt: skip
+    return Figure(
+        "dynamic_increments", "Dynamic increment functions",
+        "Dynamic increment functions: how much the force of one mesh, over its stiffness, differs from the "
+        "quasi-static one for a static transmission error of its own or of another mesh.",
+        panels,
+    )  # fmt: skip
 
 
 NATURAL_MODES = Stage(

@@ -22,7 +22,7 @@ from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
 from fegear.errors import MissingLibraryError
-from fegear.output.pictures import deformed, tooth
+from fegear.geometry import outline
 from fegear.output.report import write_report
 from fegear.output.report.blocks import value_cells
 from fegear.output.write import write_results
@@ -193,16 +193,16 @@ def test_the_tool_envelops_the_tooth(made):
     shape = results.scene.gears["a"].tooth
     fillet = shape.fillet.points(np.linspace(shape.fillet.start, shape.fillet.end, 40))
     # Over all rolling positions the tool comes to within its own drawing's resolution of the fillet, never inside it.
-    corner = np.hstack([tooth.rack_in_gear(shape, phi)[:, 1:-1] for phi in np.linspace(-0.25, 0.25, 801)])
+    corner = np.hstack([outline.rack_in_gear(shape, phi)[:, 1:-1] for phi in np.linspace(-0.25, 0.25, 801)])
     distance = np.hypot(fillet[0][:, None] - corner[0], fillet[1][:, None] - corner[1]).min(axis=1)
     assert distance.max() < 0.02
 
 
 def test_a_picture_that_cannot_be_drawn_is_a_remark_not_a_failure(made, tmp_path, monkeypatch):
-    def missing():
+    def missing(*_arguments):
         raise MissingLibraryError("the deformed gear cannot be drawn; run: apt-get install libegl1")
 
-    monkeypatch.setattr(deformed, "offscreen_pyvista", missing)
+    monkeypatch.setattr("fegear.fem.loaded_gear.loaded_gear", missing)
     remarks = write_results(made[0], tmp_path, Silence())
     assert remarks[-1] == "the deformed gear cannot be drawn; run: apt-get install libegl1."
     assert re.search("apt-get install libegl1", (tmp_path / "report.html").read_text(encoding="utf-8"))
