@@ -15,6 +15,7 @@ from fegear.errors import InputError
 from fegear.fem.elasticity import assemble
 from fegear.fem.field import _nodal_stress
 from fegear.fem.mesh import SectorMesh, with_middle_nodes
+from fegear.fem.ring import close_ring
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import MeshSettings
 from fegear.geometry import BasicRack, Tooth
@@ -26,7 +27,8 @@ textbook = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(textbook)
 
 NU = 0.3
-INNER, OUTER, HALF = 1.0, 2.0, 0.5
+INNER, OUTER, TEETH = 1.0, 2.0, 6
+HALF = math.pi / TEETH
 
 
 def _sector(n, edges):
@@ -54,17 +56,19 @@ def _sector(n, edges):
             chord = second - first
             bends[name] = np.stack([tangent[:, :-1] - chord, chord - tangent[:, 1:]], axis=1)
     points, six, named = with_middle_nodes(vertices, triangles, chains, middles)
-    return SectorMesh(points, six, named, 6, bends=bends if edges == "cubic" else {})
+    return SectorMesh(points, six, named, TEETH, bends=bends if edges == "cubic" else {})
 
 
-def _along(mesh, name, order):
-    """Where the nodes along a boundary's edges lie, shape (2, order + 1, edges)."""
+def _rim(mesh, name, order, s):
+    """Points and tangents of a boundary's edges at s, shape (2, s, edges) each."""
     first, second, middle = (mesh.points[:, nodes] for nodes in mesh.edges[name])
     sag = middle - 0.5 * (first + second)
     bend = mesh.bends[name] if order > 2 and name in mesh.bends else np.stack([4 * sag, 4 * sag], axis=1)
-    s = np.linspace(0.0, 1.0, order + 1)[:, None]
+    s = s[:, None]
     first, second, one, other = (x[:, None] for x in (first, second, bend[:, 0], bend[:, 1]))
-    return (1 - s) * first + s * second + s * (1 - s) * ((1 - s) * one + s * other)
+    leaves = (1 - s) * one + s * other
+    points = (1 - s) * first + s * second + s * (1 - s) * leaves
+    return points, second - first + (1 - 2 * s) * leaves + s * (1 - s) * (other - one)
 
 
 def _error_inside(mesh, order, field):
@@ -76,7 +80,7 @@ def _error_inside(mesh, order, field):
     u = np.zeros(elasticity.size)
     held = np.unique(np.concatenate([along.ravel() for along in elasticity.edge_dofs.values()]))
     for name, along in elasticity.edge_dofs.items():
-        u[along] = field(*_along(mesh, name, order))
+        u[along] = field(*_rim(mesh, name, order, np.linspace(0.0, 1.0, order + 1))[0])
     free = np.setdiff1d(np.arange(elasticity.size), held)
     u[free] = splu(whole[free][:, free]).solve(-whole[free][:, held] @ u[held])
     vertices = np.arange(mesh.vertex_count)
@@ -106,6 +110,49 @@ def test_observed_order_on_straight_and_curved_meshes(order, edges):
     coarse, fine = (_error_inside(_sector(n, edges), order, field) for n in ((8, 16) if order < 4 else (6, 12)))
     assert math.log2(coarse / fine) > order + 0.5
     assert fine < {2: 5e-5, 3: 5e-6, 4: 1e-7}[order]
+
+
+def _lame_error(mesh, order):
+    """Root mean square error at the vertices of a ring held inside under a uniform tension of one outside."""
+    elasticity = assemble(mesh, NU, "strain", order)
+    x, w = np.polynomial.legendre.leggauss(8)
+    x, w = 0.5 * (x + 1.0), 0.5 * w
+    shape = np.vander(x, order + 1, increasing=True) @ np.linalg.inv(
+        np.vander(np.linspace(0.0, 1.0, order + 1), increasing=True)
+    )
+    points, tangents = _rim(mesh, "flank", order, x)
+    force = points / np.hypot(*points) * np.hypot(*tangents)
+    dofs, loads = elasticity.edge_dofs["flank"], np.zeros(elasticity.size)
+    np.add.at(loads, dofs, np.einsum("qi,cqn,q->cin", shape, force, w))
+    loaded = np.unique(dofs)
+    ring = close_ring(mesh, elasticity, loaded, TEETH // 2, expandable=True)
+    sectors = list(range(-TEETH // 2, TEETH // 2))
+    response = ring.field(loaded, loads[loaded, None], sectors)
+    vertices = np.arange(mesh.vertex_count)
+    u = sum(response[k][:, 0] for k in sectors)[elasticity.node_dofs[:, vertices]]
+    # u_r = a (r - INNER^2 / r) with sigma_rr(OUTER) = 1 in plane strain (Timoshenko and Goodier, art. 28).
+    lam, mu = NU / ((1 + NU) * (1 - 2 * NU)), 0.5 / (1 + NU)
+    place = mesh.points[:, vertices]
+    square = np.sum(place**2, axis=0)
+    exact = place * (1.0 - INNER**2 / square) / (2 * (lam + mu) + 2 * mu * INNER**2 / OUTER**2)
+    return np.sqrt(np.mean((u - exact) ** 2) / np.mean(exact**2))
+
+
+@pytest.mark.parametrize(
+    ("order", "edges", "least", "most"),
+    [
+        (2, "straight", 1.7, 2.3),
+        (2, "quadratic", 3.0, 4.5),
+        (3, "cubic", 3.4, 4.5),
+        (4, "straight", 1.7, 2.3),
+        (4, "quadratic", 3.6, 4.4),
+        (4, "cubic", 5.0, 6.5),
+    ],
+)
+def test_observed_order_on_lame_s_ring_is_that_of_elements_and_edges(order, edges, least, most):
+    """Chords cost all but the second order, parabolas the fifth: why elements of fourth order have cubic edges."""
+    coarse, fine = (_lame_error(_sector(n, edges), order) for n in (4, 8))
+    assert least < math.log2(coarse / fine) < most
 
 
 def _exact_matrix(mesh, order, element, digits, points):
