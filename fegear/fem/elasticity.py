@@ -42,6 +42,8 @@ class SectorElasticity:
         Where the elements lie [modules].
     edge_dofs : dict of str to ndarray of int, shape (2, order + 1, edges)
         Unknowns (x and y) of the nodes along each boundary edge, from its first to its second vertex.
+    edge_places : dict of str to ndarray, shape (2, 3 or 4, edges)
+        Evenly spaced nodes of each boundary edge's own curve, quadratic or cubic, in that direction [modules].
     node_dofs : ndarray of int, shape (2, N)
         Unknowns at the mesh's points (vertices; middle nodes too where the order is 2, else -1).
     order, size : int
@@ -53,6 +55,7 @@ class SectorElasticity:
     inside: int
     centres: Array
     edge_dofs: dict[str, Index]
+    edge_places: dict[str, Array]
     node_dofs: Index
     order: int
     size: int
@@ -99,6 +102,7 @@ def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -
             name: 2 * elements.nodes_along(edges) + np.array([0, 1])[:, None, None]
             for name, edges in mesh.edges.items()
         },
+        edge_places={name: elements.places_along(edges) + elements.tip for name, edges in mesh.edges.items()},
         node_dofs=np.where(points < 0, -1, 2 * points + np.array([[0], [1]])),
         order=order,
         size=2 * int(elements.dofs.N),

@@ -42,6 +42,8 @@ class SectorElements:
         Which elements have curved edges.
     edge_of_point : ndarray of int, shape (N,)
         The grid's number of the edge whose middle node a point of the mesh is; -1 at vertices.
+    tip : ndarray, shape (2, 1, 1)
+        The grid's origin in the gear's coordinates [modules].
     """
 
     order: int
@@ -49,6 +51,7 @@ class SectorElements:
     dofs: Any
     curved: NDArray[np.bool_]
     edge_of_point: Index
+    tip: Array
 
     @property
     def element_nodes(self) -> Index:
@@ -65,8 +68,15 @@ class SectorElements:
 
     def nodes_along(self, edges: Index) -> Index:
         """Nodes of edges (first vertex, second vertex, middle node) in that direction, shape (order + 1, edges)."""
+        return self._along(self.dofs, edges)
+
+    def places_along(self, edges: Index) -> Array:
+        """Evenly spaced nodes of the edges' own curves, shape (2, 3 or 4, edges), the tip at y = 0 [modules]."""
+        return np.asarray(self.grid.doflocs[:, self._along(self.grid.dofs, edges)])
+
+    def _along(self, dofs: Any, edges: Index) -> Index:
         first, second, middle = edges
-        inside = self.dofs.facet_dofs[:, self.edge_of_point[middle]]
+        inside = dofs.facet_dofs[:, self.edge_of_point[middle]]
         return np.concatenate([first[None], np.where(first < second, inside, inside[::-1]), second[None]])
 
     def straight(self) -> tuple[Array, Array, Array, Array]:
@@ -149,7 +159,8 @@ def sector_elements(mesh: SectorMesh, order: int) -> SectorElements:
     from skfem import Dofs, ElementTriP2, ElementTriP3, MeshTri1
 
     # Coordinates centred on the tooth keep the digits of small elements far from the gear's axis.
-    points = mesh.points - np.array([[0.0], [float(mesh.points[1].max())]])
+    tip = np.array([[0.0], [float(mesh.points[1].max())]])
+    points = mesh.points - tip
     vertices = points[:, : mesh.vertex_count]
     rank = np.argsort(mesh.triangles[:3], axis=0)
     corners = np.take_along_axis(mesh.triangles[:3], rank, axis=0)
@@ -168,7 +179,7 @@ def sector_elements(mesh: SectorMesh, order: int) -> SectorElements:
     grid.doflocs = np.hstack([vertices, inner])
     off = np.maximum(np.abs(sag), 0.25 * np.abs(lean).max(axis=1)).max(axis=0)
     curved = (off > _STRAIGHT * np.abs(chord).max(axis=0))[grid.t2f].any(axis=0)
-    return SectorElements(order, grid, Dofs(grid, _element(order)), curved, edge_of_point)
+    return SectorElements(order, grid, Dofs(grid, _element(order)), curved, edge_of_point, tip[:, :, None])
 
 
 def _element(order: int) -> Any:

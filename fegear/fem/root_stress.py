@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.trace import lagrange_slope, quadratic_edge
+from fegear.fem.trace import lagrange, lagrange_slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -72,15 +72,11 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
     order = np.argsort(np.hypot(*mesh.points[:, edges[2]]))
     edges = np.where(upward, edges, edges[[1, 0, 2]])[:, order]
     dofs = np.where(upward, dofs, dofs[:, ::-1])[:, :, order]
-    position, tangent = quadratic_edge(mesh.points[:, edges], xi)  # (2, n, q)
-    if p > 2 and name in mesh.bends:
-        bends = np.where(upward, mesh.bends[name], mesh.bends[name][:, ::-1])[:, :, order]
-        first, second, middle = (mesh.points[:, nodes] for nodes in edges)
-        bends = bends - 4.0 * (middle - 0.5 * (first + second))[:, None]
-        shape = np.array([(1 - xi) ** 2 * xi, (1 - xi) * xi**2])
-        slope = np.array([(1 - xi) * (1 - 3 * xi), xi * (2 - 3 * xi)])
-        position = position + np.einsum("cen,eq->cnq", bends, shape)
-        tangent = tangent + np.einsum("cen,eq->cnq", bends, slope)
+    places = elasticity.edge_places[name]
+    places = np.where(upward, places, places[:, ::-1])[:, :, order]
+    curve = places.shape[1] - 1
+    position = np.einsum("cin,iq->cnq", places, lagrange(curve, xi))
+    tangent = np.einsum("cin,iq->cnq", places, lagrange_slope(curve, xi))
     speed = np.hypot(*tangent)
     slopes = lagrange_slope(p, xi)  # (p + 1, q)
     n, q = speed.shape
