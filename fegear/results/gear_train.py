@@ -16,6 +16,8 @@ from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, loaded_pair
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fegear.case.reading import Scene
     from fegear.dynamics.excitation import MeshExcitation
     from fegear.engine.stage import Done, Progress
@@ -31,9 +33,10 @@ def needs_train(_scene: Scene, _subject: str) -> tuple[Task, ...]:
     return (Task("gear-train"),)
 
 
-def gear_train(done: Done) -> GearTrain:
-    """What this stage left."""
-    return cast("GearTrain", done[Task("gear-train")].data)
+def gear_train(upstream: Mapping[Task, object]) -> GearTrain:
+    """What this stage computed."""
+    found = upstream[Task("gear-train")]
+    return cast("GearTrain", getattr(found, "data", found))
 
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:

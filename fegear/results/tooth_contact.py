@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,17 +15,59 @@ from fegear.results import forecasts
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
-    from fegear.engine.stage import Done, Progress
+    from fegear.engine.stage import Upstream, Work
     from fegear.helical.bearing import Bearing
     from fegear.helical.contact import PairContact, ToothContact
+    from fegear.helical.pair import HelicalPair
+    from fegear.helical.predesign import Predesign
 
 
 @dataclass(frozen=True, slots=True)
 class ToothContactData:
-    """What the stage hands to pictures: the analysis, and contact ellipses where load and surfaces give them."""
+    """The analysis of a pair.
+
+    Parameters
+    ----------
+    contact : ToothContact
+    bearing : Bearing or None
+        Contact ellipses, where load and surfaces give them.
+    design : Predesign or None
+        Modification that absorbs linear errors, where the case asks for it.
+    no_ellipses : str
+        Why there are none although a load is given.
+    """
 
     contact: ToothContact
     bearing: Bearing | None
+    design: Predesign | None = None
+    no_ellipses: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ToothContactInputs:
+    """What the analysis of a pair depends on.
+
+    Parameters
+    ----------
+    pair : HelicalPair
+    positions : int
+        Pinion angles over a cycle.
+    absorb : bool
+        Whether a modification is designed that absorbs linear errors.
+    load : float or None
+        Normal to the flanks [N].
+    modulus : float
+        Contact modulus [Pa].
+    name : str
+        Of the pair.
+    """
+
+    pair: HelicalPair
+    positions: int
+    absorb: bool
+    load: float | None
+    modulus: float
+    name: str = field(compare=False)
 
 
 def _pairs(scene: Scene) -> tuple[str, ...]:
@@ -136,8 +178,8 @@ def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
     edges = {k: s for k, s in share.items() if k != "surface"}
     remarks = []
     if edges:
-        told = ", ".join(f"{k} {s:.0%}" for k, s in sorted(edges.items(), key=lambda item: -item[1]))
-        remarks.append(f"Pair {name}: contact is on an edge over part of the cycle: {told}.")
+        shares = ", ".join(f"{k} {s:.0%}" for k, s in sorted(edges.items(), key=lambda item: -item[1]))
+        remarks.append(f"Pair {name}: contact is on an edge over part of the cycle: {shares}.")
     if any("circle" in k or "tangent" in k for k in edges):
         remarks.append(f"Pair {name}: contact reaches the end of the involute near the root: the fillet would be hit.")
     for member, hit in zip(("pinion", "gear"), t.pair.interferes, strict=True):
@@ -154,38 +196,53 @@ def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
     return tuple(remarks)
 
 
-def _run(scene: Scene, name: str, _done: Done, _progress: Progress) -> Outcome:
+def _inputs(scene: Scene, name: str) -> ToothContactInputs:
+    part, asked = scene.case.pair[name], scene.case.tooth_contact
+    a, b = (scene.case.gear[gear].material.build().plane_modulus("strain") for gear in (part.driver, part.driven))
+    absorb = part.modification is not None and part.modification.absorb
+    return ToothContactInputs(
+        scene.helical_pairs[name], asked.positions, absorb, asked.load, 1.0 / (1.0 / a + 1.0 / b), name
+    )
+
+
+def _compute(asked: ToothContactInputs, _upstream: Upstream, _work: Work) -> ToothContactData:
     from fegear.helical.bearing import bearing_contact
     from fegear.helical.contact import tooth_contact
     from fegear.helical.predesign import absorb_linear_error
 
-    pair, part, asked = scene.helical_pairs[name], scene.case.pair[name], scene.case.tooth_contact
-    values: tuple[Value, ...] = ()
-    settings: dict[str, object] = {"positions": asked.positions}
-    if part.modification is not None and part.modification.absorb:
+    pair, design, bearing, problem = asked.pair, None, None, ""
+    if asked.absorb:
         try:
             design = absorb_linear_error(pair)
         except InputError as error:
-            raise at(f"pair.{name}.modification", error) from None
+            raise at(f"pair.{asked.name}.modification", error) from None
         pair = design.pair
-        arm = pair.pinion.base_radius * np.cos(pair.pinion.base_helix_angle)
-        end = design.crown * arm * (0.5 * pair.pinion.face_width) ** 2
-        values = (
+    contact = tooth_contact(pair, asked.positions)
+    if asked.load is not None:
+        try:
+            bearing = bearing_contact(pair, contact.mesh, asked.load, asked.modulus)
+        except InputError as error:
+            problem = f"{error.rule}; {error.remedy}"
+    return ToothContactData(contact, bearing, design, problem)
+
+
+def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
+    name, contact, design = asked.name, data.contact, data.design
+    values, remarks = _values(name, contact), _remarks(name, contact)
+    if design is not None:
+        pinion = design.pair.pinion
+        arm = pinion.base_radius * np.cos(pinion.base_helix_angle)
+        end = design.crown * arm * (0.5 * pinion.face_width) ** 2
+        values += (
             Value(f"{name}.crown", end, "um", None, "material to remove at each end of the face, along the normal"),
             Value(f"{name}.predesigned_te", design.peak_to_peak, "arcsec", None, "parabolic error it is designed for"),
         )
-    contact = tooth_contact(pair, asked.positions)
-    bearing, remarks = None, _remarks(name, contact)
+    settings: dict[str, object] = {"positions": asked.positions}
     if asked.load is not None:
-        a, b = scene.case.gear[part.driver].material.build(), scene.case.gear[part.driven].material.build()
-        modulus = 1.0 / (1.0 / a.plane_modulus("strain") + 1.0 / b.plane_modulus("strain"))
-        settings |= {"load": asked.load, "contact_modulus": modulus}
-        try:
-            bearing = bearing_contact(pair, contact.mesh, asked.load, modulus)
-        except InputError as error:
-            remarks += (f"Pair {name}: no contact ellipses: {error.rule}; {error.remedy}.",)
-    data = ToothContactData(contact, bearing)
-    return Outcome(data, _tables(name, contact, bearing), _values(name, contact) + values, settings, remarks)
+        settings |= {"load": asked.load, "contact_modulus": asked.modulus}
+    if data.no_ellipses:
+        remarks += (f"Pair {name}: no contact ellipses: {data.no_ellipses}.",)
+    return Outcome(data, _tables(name, contact, data.bearing), values, settings, remarks)
 
 
 TOOTH_CONTACT = Stage(
@@ -193,7 +250,9 @@ TOOTH_CONTACT = Stage(
     title="Tooth contact analysis",
     results=("tooth-contact",),
     subjects=_pairs,
-    run=_run,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     check=_check,
     effects=("misalignment",),
     forecast=forecasts.tooth_contact,

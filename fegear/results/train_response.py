@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.dynamics.modes import Campbell, Modes
-    from fegear.engine.stage import Done, Progress
+    from fegear.engine.stage import Upstream, Work
     from fegear.models.train import GearTrain
 
 
@@ -46,12 +46,30 @@ class IncrementsData:
     increments: NDArray[np.complex128]
 
 
-def _run_modes(scene: Scene, _subject: str, done: Done, _progress: Progress) -> Outcome:
+@dataclass(frozen=True)
+class SpeedsInputs:
+    """Speeds of a Campbell diagram [rad/s of the body that speeds refer to], and how many harmonics it shows."""
+
+    speeds: NDArray[np.float64]
+    lines: int
+
+
+def _speeds(scene: Scene, _subject: str) -> SpeedsInputs:
+    part = scene.case.dynamics
+    return SpeedsInputs(part.speed_values, part.lines)
+
+
+def _modes(asked: SpeedsInputs, upstream: Upstream, _work: Work) -> ModesData:
     from fegear.dynamics.modes import campbell, modes
 
-    data = gear_train(done)
-    part, train = scene.case.dynamics, data.train
-    found = modes(train)
+    data = gear_train(upstream)
+    speeds = asked.speeds / data.speed_ratio
+    return ModesData(data, modes(data.train), campbell(data.train, speeds, asked.lines) if speeds.size else None)
+
+
+def _present_modes(known: ModesData, asked: SpeedsInputs) -> Outcome:
+    data, found, diagram = known.train, known.modes, known.campbell
+    train = data.train
     count = np.arange(found.frequencies.size)
     columns = [
         Column("mode", count, "", "0 is the rigid-body motion"),
@@ -66,13 +84,11 @@ def _run_modes(scene: Scene, _subject: str, done: Done, _progress: Progress) -> 
         for body in train.bodies
     ]
     tables = [Table("natural_modes", tuple(columns), "Natural frequencies and mode shapes")]
-    speeds, diagram = part.speed_values / data.speed_ratio, None
-    if speeds.size:
-        diagram = campbell(train, speeds, part.lines)
+    if diagram is not None:
         rows = [
             (mesh, line, mode, diagram.critical[m, line - 1, mode - 1] * data.speed_ratio)
             for m, mesh in enumerate(data.names)
-            for line in range(1, part.lines + 1)
+            for line in range(1, asked.lines + 1)
             for mode in range(1, found.frequencies.size)
         ]
         tables.append(
@@ -92,16 +108,26 @@ def _run_modes(scene: Scene, _subject: str, done: Done, _progress: Progress) -> 
     values = tuple(
         Value(f"natural_frequency_{k}", float(found.frequencies[k]), "Hz", None, "undamped") for k in count[1:]
     )
-    made = ModesData(data, found, diagram)
-    return Outcome(made, tuple(tables), values, figures=_modes_figures(made))
+    return Outcome(known, tuple(tables), values, figures=_modes_figures(known))
 
 
-def _run_increments(scene: Scene, _subject: str, done: Done, _progress: Progress) -> Outcome:
+@dataclass(frozen=True)
+class FrequencyInputs:
+    """Frequencies of the static transmission error [Hz]."""
+
+    frequencies: NDArray[np.float64]
+
+
+def _increments(asked: FrequencyInputs, upstream: Upstream, _work: Work) -> IncrementsData:
     from fegear.dynamics.increments import dynamic_increments
 
-    data = gear_train(done)
-    frequencies = scene.case.dynamics.frequencies.array
-    found = dynamic_increments(data.train, 2.0 * math.pi * frequencies)
+    data = gear_train(upstream)
+    found = dynamic_increments(data.train, 2.0 * math.pi * asked.frequencies)
+    return IncrementsData(data, asked.frequencies, np.asarray(found, dtype=np.complex128))
+
+
+def _present_increments(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
+    data, frequencies, found = known.train, known.frequencies, known.increments
     columns = [Column("frequency", frequencies, "Hz", "of the static transmission error")]
     values = []
     for i, first in enumerate(data.names):
@@ -120,8 +146,7 @@ def _run_increments(scene: Scene, _subject: str, done: Done, _progress: Progress
                 )
             )
     table = Table("dynamic_increments", tuple(columns), "Dynamic increment functions")
-    made = IncrementsData(data, frequencies, np.asarray(found, dtype=np.complex128))
-    return Outcome(made, (table,), tuple(values), figures=(_increments_figure(made),))
+    return Outcome(known, (table,), tuple(values), figures=(_increments_figure(known),))
 
 
 def _modes_figures(data: ModesData) -> tuple[Figure, ...]:
@@ -205,8 +230,10 @@ NATURAL_MODES = Stage(
     title="Natural frequencies and Campbell diagram",
     results=("natural-modes", "campbell"),
     subjects=the_train,
-    run=_run_modes,
     needs=needs_train,
+    inputs=_speeds,
+    compute=_modes,
+    present=_present_modes,
     forecast=lambda _scene, _subject: forecasts.constant(0.005),
 )
 
@@ -215,7 +242,9 @@ DYNAMIC_INCREMENTS = Stage(
     title="Dynamic increment functions",
     results=("dynamic-increments",),
     subjects=the_train,
-    run=_run_increments,
     needs=needs_train,
+    inputs=lambda scene, _subject: FrequencyInputs(scene.case.dynamics.frequencies.array),
+    compute=_increments,
+    present=_present_increments,
     forecast=forecasts.dynamic_increments,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,10 +22,11 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.case.transmissibility import MeshStiffnessPart
+    from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel
     from fegear.dynamics.mesh_parameters import MeshParameters
     from fegear.dynamics.modal_indices import ModeTable, RankedMode
     from fegear.dynamics.transmissibility import ReducedTransmissibility, Transmissibility
-    from fegear.engine.stage import Done, Progress
+    from fegear.engine.stage import Upstream, Work
 
 #: Heads of a load distribution file and the factors to SI.
 _DISTRIBUTION = {"z [mm]": 1e-3, "load [N/mm]": 1e3, "deflection [um]": 1e-6}
@@ -114,34 +115,66 @@ def _response_table(name: str, response: Transmissibility | ReducedTransmissibil
     return Table(f"transmissibility_{name}", tuple(columns), f"Force transmissibility of pair {name}")
 
 
-def _run(scene: Scene, name: str, _done: Done, _progress: Progress) -> Outcome:
+@dataclass(frozen=True, slots=True)
+class TransmissibilityInputs:
+    """What modes and transmissibility of a pair depend on.
+
+    Parameters
+    ----------
+    model : HelicalPairModel or ReducedPairModel
+    mesh : MeshParameters
+    ratios : ndarray, shape (F,)
+        Frequencies over sqrt(K_M/m_eq).
+    damping_ratio : float
+    name : str
+        Of the pair.
+    """
+
+    model: HelicalPairModel | ReducedPairModel
+    mesh: MeshParameters
+    ratios: NDArray[np.float64]
+    damping_ratio: float
+    name: str = field(compare=False)
+
+
+def _inputs(scene: Scene, name: str) -> TransmissibilityInputs:
+    part = scene.case.transmissibility[name]
+    mesh = _mesh(scene, name, part.mesh)
+    model = part.build(mesh, f"transmissibility.{name}")
+    ratios = np.linspace(part.lambda_from, part.lambda_to, part.frequencies)
+    return TransmissibilityInputs(model, mesh, ratios, part.damping_ratio, name)
+
+
+def _compute(asked: TransmissibilityInputs, _upstream: Upstream, _work: Work) -> TransmissibilityData:
     from fegear.dynamics.helical_pair import HelicalPairModel
     from fegear.dynamics.modal_indices import mode_table, rank_modes
     from fegear.dynamics.transmissibility import reduced_transmissibility, transmissibility
 
-    part = scene.case.transmissibility[name]
-    mesh = _mesh(scene, name, part.mesh)
-    model = part.build(mesh, f"transmissibility.{name}")
-    modes, ranking = mode_table(model), rank_modes(model)
-    frequency = model.natural_frequency * np.linspace(part.lambda_from, part.lambda_to, part.frequencies)
+    model = asked.model
+    frequency = model.natural_frequency * asked.ratios
+    response: Transmissibility | ReducedTransmissibility
     try:
-        response: Transmissibility | ReducedTransmissibility
         if isinstance(model, HelicalPairModel):
             response = transmissibility(model, frequency)
         else:
             response = reduced_transmissibility(model, frequency)
     except InputError as error:
-        raise at(f"transmissibility.{name}", error) from None
+        raise at(f"transmissibility.{asked.name}", error) from None
+    return TransmissibilityData(asked.mesh, mode_table(model), rank_modes(model), response)
+
+
+def _present(data: TransmissibilityData, asked: TransmissibilityInputs) -> Outcome:
+    name, mesh = asked.name, data.mesh
+    omega = asked.model.natural_frequency / (2.0 * math.pi)
     values = (
-        Value(f"{name}.omega", model.natural_frequency / (2.0 * math.pi), "Hz", 0.0, "sqrt(K_M/m_eq)"),
+        Value(f"{name}.omega", omega, "Hz", 0.0, "sqrt(K_M/m_eq)"),
         Value(f"{name}.mesh_stiffness", mesh.stiffness, "N/um", 0.0, "K_M"),
         Value(f"{name}.kappa", mesh.kappa, "", 0.0, "axial centre of the mesh stiffness over half the face"),
         Value(f"{name}.mu", mesh.mu, "", 0.0, "rotary mesh stiffness"),
     )
-    data = TransmissibilityData(mesh, modes, ranking, response)
-    tables = (_mode_table(name, modes, ranking), _response_table(name, response))
-    settings = {"damping_ratio": part.damping_ratio, "frequencies": part.frequencies}
-    remarks = tuple(f"Pair {name}: {remark}." for remark in modes.remarks)
+    tables = (_mode_table(name, data.modes, data.ranking), _response_table(name, data.response))
+    settings = {"damping_ratio": asked.damping_ratio, "frequencies": asked.ratios.size}
+    remarks = tuple(f"Pair {name}: {remark}." for remark in data.modes.remarks)
     return Outcome(data, tables, values, settings, remarks)
 
 
@@ -150,6 +183,8 @@ TRANSMISSIBILITY = Stage(
     title="Force transmissibility",
     results=("transmissibility",),
     subjects=lambda scene: tuple(scene.case.transmissibility),
-    run=_run,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     forecast=forecasts.transmissibility,
 )
