@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.fem.settings import MeshSettings
+    from fegear.solution_cache import SolutionCache
 
     Array = NDArray[np.float64]
 
@@ -102,6 +103,7 @@ def root_stress_study(
     position: Sequence[float],
     settings: MeshSettings,
     progress: Callable[[float], None] | None = None,
+    cache: SolutionCache | None = None,
 ) -> list[VariantStress]:
     """Root stress of every gear by finite elements (no neighbours, no second mesh) and by every formula."""
     from fegear.fem import solve_gear
@@ -114,7 +116,7 @@ def root_stress_study(
         if gear is not None:
             radii = load_radii(gear, position)
             try:
-                known = solve_gear(gear, settings, reach=0, estimate_error=False)
+                known = solve_gear(gear, settings, reach=0, estimate_error=False, cache=cache)
             except FegearError as error:
                 gear, reason = None, f"no finite elements: {error}"
             else:

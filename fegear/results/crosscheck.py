@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Stage, Task
-from fegear.models.settings import mesh_settings
-from fegear.models.tooth_mesh import own_sector_mesh
 from fegear.results import forecasts
+from fegear.results.gear_solution import needs_solution, solution_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,9 +19,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
-    from fegear.contact.crosscheck import ComplianceAnswers, RootStressAnswers
-    from fegear.engine.stage import Done, Progress
-    from fegear.fem import GearInfluence, StiffnessTable
+    from fegear.contact.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
+    from fegear.engine.stage import Upstream, Work
+    from fegear.fem import StiffnessTable
+    from fegear.formulas.iso6336_stiffness import Stiffness
+    from fegear.formulas.outcome import Outcome as Answer
     from fegear.geometry import Gear, GearPair
 
     Array = NDArray[np.float64]
@@ -55,12 +57,62 @@ _REMARKS = (
 
 
 @dataclass(frozen=True, slots=True)
-class CrosscheckData:
-    """Names of the gears and pairs whose tables the outcome holds, and the pairs' line load [N/m]."""
+class PairCheck:
+    """One pair whose compliance is compared.
 
-    gears: tuple[str, ...]
-    pairs: tuple[str, ...]
-    line_load: Mapping[str, float]
+    Parameters
+    ----------
+    pair : GearPair
+    gears : tuple of str
+        Names of driver and driven.
+    positions : int
+        Over the path of contact.
+    line_load : float
+        [N/m].
+    chosen : bool
+        Whether the line load had to be chosen.
+    """
+
+    pair: GearPair
+    gears: tuple[str, str]
+    positions: int
+    line_load: float
+    chosen: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CrosscheckInputs:
+    """Gears and pairs that are compared, by name."""
+
+    gears: Mapping[str, Gear]
+    pairs: Mapping[str, PairCheck]
+
+
+@dataclass(frozen=True, slots=True)
+class GearAnswers:
+    """Closed forms of a gear beside its finite elements."""
+
+    table: StiffnessTable
+    root_stress: Mapping[str, RootStressAnswers]
+    compliance: Mapping[str, ComplianceAnswers]
+    contact_zone: Array
+
+
+@dataclass(frozen=True, slots=True)
+class PairAnswers:
+    """Closed forms of a pair beside its finite elements; ISO's stiffness or the reason why there is none."""
+
+    reference: PairReference
+    compliance: Mapping[str, ComplianceAnswers]
+    iso: Answer[Stiffness]
+
+
+@dataclass(frozen=True, slots=True)
+class CrosscheckData:
+    """Everything that is compared, by the names of gears and pairs."""
+
+    gears: Mapping[str, GearAnswers]
+    pairs: Mapping[str, PairAnswers]
 
 
 def _gears(scene: Scene) -> tuple[str, ...]:
@@ -159,10 +211,8 @@ def _compliance_table(
     return table, _extremes(f"{name}.compliance", ratio.reshape(times, count), tuple(answers))
 
 
-def _gear_compliance(name: str, gear: Gear, fe: StiffnessTable) -> tuple[Table, tuple[Value, ...]]:
-    from fegear.contact.crosscheck import contact_zone, tooth_compliance_answers
-
-    zone = contact_zone(gear, fe.radius, fe.half_width)
+def _gear_compliance(name: str, gear: Gear, found: GearAnswers) -> tuple[Table, tuple[Value, ...]]:
+    fe, zone = found.table, found.contact_zone
     first = (
         Column("radius", fe.radius, "mm", "radius of the contact point"),
         Column("roll_angle", fe.roll_angle, "deg", "roll angle of the contact point"),
@@ -172,43 +222,25 @@ def _gear_compliance(name: str, gear: Gear, fe: StiffnessTable) -> tuple[Table, 
         Column("compliance_fe_error", fe.errors["c_self"], _COMPLIANCE, "estimated error of FE"),
         Column("contact_zone", zone, _COMPLIANCE, "half-plane approach that was taken off from FE"),
     )
-    answers = tooth_compliance_answers(gear, fe.radius)
     parts = ("bending", "shear", "axial", "foundation")
     what = f"Compliance of one tooth of gear {name} without its contact, plane {gear.plane_assumption}"
-    return _compliance_table(name, what, first, reference, answers, parts)
+    return _compliance_table(name, what, first, reference, found.compliance, parts)
 
 
-def _line_load(scene: Scene, name: str, pair: GearPair) -> tuple[float, str]:
-    """Line load of a pair [N/m], and a remark where it had to be chosen."""
-    if scene.case.stiffness.load is not None:
-        return scene.case.stiffness.load, ""
-    force = scene.case.pair[name].normal_load(pair)
-    if force is not None:
-        return force / min(pair.driver.face_width, pair.driven.face_width), ""
-    return USUAL_LINE_LOAD, (
-        f"Pair {name}: no load was given; its contact is that of {USUAL_LINE_LOAD * 1e-3:.6g} N/mm."
-    )
+def _pair_check(scene: Scene, name: str) -> PairCheck:
+    pair, part, stiffness = scene.pairs[name], scene.case.pair[name], scene.case.stiffness
+    force = part.normal_load(pair)
+    line_load, chosen = stiffness.load, False
+    if line_load is None:
+        chosen = force is None
+        width = min(pair.driver.face_width, pair.driven.face_width)
+        line_load = USUAL_LINE_LOAD if force is None else force / width
+    return PairCheck(pair, (part.driver, part.driven), stiffness.positions, line_load, chosen)
 
 
-def _influence(scene: Scene, name: str, done: Done) -> GearInfluence:
-    task = Task("stiffness", name)
-    if task in done:
-        return cast("StiffnessTable", done[task].data).influence
-    from fegear.fem import solve_gear
-
-    settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
-    return solve_gear(scene.gears[name], settings, estimate_error=False, mesh=mesh)
-
-
-def _pair(scene: Scene, name: str, done: Done, w: float) -> tuple[Table, tuple[Value, ...], str]:
+def _pair_table(name: str, check: PairCheck, found: PairAnswers) -> tuple[Table, tuple[Value, ...], str]:
     """Table and values of a pair, and what is to be remarked about ISO's c'; empty if nothing."""
-    from fegear.contact.crosscheck import pair_compliance_answers, pair_reference
-    from fegear.formulas.iso6336_stiffness import pair_stiffness
-    from fegear.formulas.outcome import attempt
-
-    pair, part = scene.pairs[name], scene.case.pair[name]
-    x = np.linspace(pair.x_start, pair.x_end, scene.case.stiffness.positions)
-    fe = pair_reference(pair, _influence(scene, part.driver, done), _influence(scene, part.driven, done), x, w)
+    fe, w = found.reference, check.line_load
     first = (Column("x", fe.x, "mm", "contact point from the pitch point, positive toward the driver's tip"),)
     reference = (
         Column("compliance_fe", fe.total, _COMPLIANCE, "FE, one tooth pair with its contact"),
@@ -216,16 +248,15 @@ def _pair(scene: Scene, name: str, done: Done, w: float) -> tuple[Table, tuple[V
         Column("driven_fe", fe.driven, _COMPLIANCE, "FE, the driven tooth with its side of the contact"),
         Column("contact_half_width", fe.half_width, "mm", "Hertz's half-width under the line load"),
     )
-    answers = pair_compliance_answers(pair, fe.x, w)
     what = f"Compliance of one tooth pair of pair {name} under {w * 1e-3:.6g} N/mm"
-    table, values = _compliance_table(name, what, first, reference, answers, ("driver", "driven", "contact"))
+    parts = ("driver", "driven", "contact")
+    table, values = _compliance_table(name, what, first, reference, found.compliance, parts)
     greatest = float(1.0 / fe.total.min())
     unit = "N/(mm.um)"
     own = Value(f"{name}.single_stiffness_fe", greatest, unit, None, "greatest stiffness of one tooth pair by FE")
-    answer = attempt(lambda: pair_stiffness(pair, w))
-    iso = answer.value
+    iso = found.iso.value
     if iso is None:
-        return table, (*values, own), f"Pair {name}: ISO 6336-1 gives no c': {answer.reason}"
+        return table, (*values, own), f"Pair {name}: ISO 6336-1 gives no c': {found.iso.reason}"
     extra = (
         *values,
         own,
@@ -247,32 +278,67 @@ def _sources() -> Table:
     return Table("crosscheck_sources", tuple(columns), "The closed forms and what each compares")
 
 
-def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
-    from fegear.contact.crosscheck import root_stress_answers
+def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
+    gears = {name: scene.gears[name] for name in _gears(scene)}
+    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in _pairs(scene)})
 
+
+def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
+    mates = [gear for name in _pairs(scene) for gear in (scene.case.pair[name].driver, scene.case.pair[name].driven)]
+    return (*(Task("stiffness", name) for name in _gears(scene)), *needs_solution(*mates))
+
+
+def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> CrosscheckData:
+    from fegear.contact.crosscheck import (
+        contact_zone,
+        pair_compliance_answers,
+        pair_reference,
+        root_stress_answers,
+        tooth_compliance_answers,
+    )
+    from fegear.formulas.iso6336_stiffness import pair_stiffness
+    from fegear.formulas.outcome import attempt
+
+    gears, pairs, count = {}, {}, len(asked.gears) + len(asked.pairs)
+    for name, gear in asked.gears.items():
+        fe: StiffnessTable = upstream[Task("stiffness", name)]
+        gears[name] = GearAnswers(
+            fe, root_stress_answers(gear.tooth, fe.radius / gear.module), tooth_compliance_answers(gear, fe.radius),
+            contact_zone(gear, fe.radius, fe.half_width),
+        )  # fmt: skip
+        work.progress(len(gears) / count)
+    for name, check in asked.pairs.items():
+        pair, w = check.pair, check.line_load
+        x = np.linspace(pair.x_start, pair.x_end, check.positions)
+        driver, driven = (solution_of(upstream, gear) for gear in check.gears)
+        fe_pair = pair_reference(pair, driver, driven, x, w)
+        iso = attempt(partial(pair_stiffness, pair, w))
+        pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso)
+        work.progress((len(gears) + len(pairs)) / count)
+    return CrosscheckData(gears, pairs)
+
+
+def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
     tables, values, remarks = [_sources()], [], list(_REMARKS)
-    gears, pairs = _gears(scene), _pairs(scene)
-    loads = {}
-    for number, name in enumerate(gears, start=1):
-        gear, fe = scene.gears[name], cast("StiffnessTable", done[Task("stiffness", name)].data)
-        found = [
-            _root_stress_table(name, gear, fe, root_stress_answers(gear.tooth, fe.radius / gear.module)),
-            _gear_compliance(name, gear, fe),
-        ]
+    for name, gear in asked.gears.items():
+        answers = data.gears[name]
+        found = (
+            _root_stress_table(name, gear, answers.table, answers.root_stress), _gear_compliance(name, gear, answers)
+        )  # fmt: skip
         tables += [table for table, _ in found]
         values += [value for _, some in found for value in some]
-        progress(number / (len(gears) + len(pairs)))
-    for name in pairs:
-        loads[name], remark = _line_load(scene, name, scene.pairs[name])
-        remarks += [remark] if remark else []
-        table, some, remark = _pair(scene, name, done, loads[name])
+    for name, check in asked.pairs.items():
+        if check.chosen:
+            load = f"{check.line_load * 1e-3:.6g} N/mm"
+            remarks.append(f"Pair {name}: no load was given; its contact is that of {load}.")
+        table, some, remark = _pair_table(name, check, data.pairs[name])
         remarks += [remark] if remark else []
         tables.append(table)
         values += some
     for table in tables[1:]:
         silent = {str(f): str(r) for f, r in zip(table["formula"], table["reason"], strict=True) if r}
         remarks += [f"{table.title}: {f} is out of its range at some positions: {r}" for f, r in silent.items()]
-    return Outcome(CrosscheckData(gears, pairs, loads), tuple(tables), tuple(values), {}, tuple(remarks))
+    return Outcome(data, tuple(tables), tuple(values), {}, tuple(remarks))
 
 
 CROSSCHECK = Stage(
@@ -280,7 +346,9 @@ CROSSCHECK = Stage(
     title="Closed forms against finite elements",
     results=("crosscheck",),
     subjects=lambda scene: (_WHOLE,) if scene.gears else (),
-    run=_run,
-    needs=lambda scene, _subject: tuple(Task("stiffness", name) for name in _gears(scene)),
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     forecast=forecasts.crosscheck,
 )

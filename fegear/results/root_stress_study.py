@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.study import StudyPart
     from fegear.contact.root_stress_study import VariantStress
-    from fegear.engine.stage import Done, Progress
+    from fegear.engine.stage import Upstream, Work
+    from fegear.fem.settings import MeshSettings
+    from fegear.geometry import Gear
 
 
 def _gear(scene: Scene) -> str:
@@ -48,7 +50,7 @@ def _check(scene: Scene, _subject: str) -> None:
             )
 
 
-def _table(found: list[VariantStress], names: tuple[str, ...], module: float) -> Table:
+def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: float) -> Table:
     from fegear.contact.root_stress_study import verdict
 
     rows = []
@@ -116,32 +118,54 @@ def _values(table: Table, names: tuple[str, ...]) -> tuple[Value, ...]:
     return tuple(values)
 
 
-def _run(scene: Scene, _subject: str, _done: Done, progress: Progress) -> Outcome:
-    from fegear.contact.root_stress_study import root_stress_study, variants
-    from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
+@dataclass(frozen=True)
+class StudyInputs:
+    """What the study depends on.
 
-    study, base = _study(scene), scene.gears[_gear(scene)]
-    tooth, settings = base.tooth, mesh_settings(scene.case.accuracy)
+    Parameters
+    ----------
+    base : Gear
+        The gear that is varied.
+    study : StudyPart
+    settings : MeshSettings
+    """
+
+    base: Gear
+    study: StudyPart
+    settings: MeshSettings
+
+
+def _inputs(scene: Scene, _subject: str) -> StudyInputs:
+    return StudyInputs(scene.gears[_gear(scene)], _study(scene), mesh_settings(scene.case.accuracy))
+
+
+def _compute(asked: StudyInputs, _upstream: Upstream, work: Work) -> tuple[VariantStress, ...]:
+    from fegear.contact.root_stress_study import root_stress_study, variants
+
+    study, tooth = asked.study, asked.base.tooth
     gears = variants(
-        base,
+        asked.base,
         study.teeth or [tooth.teeth],
         study.profile_shift or [tooth.profile_shift],
         study.rack_tip_radius or [tooth.rack.tip_radius],
     )
-    found = root_stress_study(gears, study.load_position, settings, progress)
-    names = tuple(ROOT_STRESS_SOURCES)
+    return tuple(root_stress_study(gears, study.load_position, asked.settings, work.progress, work.cache))
+
+
+def _present(found: tuple[VariantStress, ...], asked: StudyInputs) -> Outcome:
+    from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
+
+    base, names = asked.base, tuple(ROOT_STRESS_SOURCES)
     table = _table(found, names, base.module)
-    told = (
+    about = (
         "Study of root stress: one tooth of the whole ring under one load normal to its flank, no friction; FE is the "
         "largest tangential stress of the fillet below the load, radial compression included; ratio of bore to root "
         f"radius {base.bore_radius / base.root_radius:.4g} in all gears. A stress per line load is the same in plane "
         "stress and plane strain."
     )
-    remarks = (
-        told,
-        *(f"{s.name} ({s.citation}): {s.compared}." for s in ROOT_STRESS_SOURCES.values()),
-    )
-    return Outcome(found, (table,), _values(table, names), {**asdict(settings), "gears": len(gears)}, remarks)
+    remarks = (about, *(f"{s.name} ({s.citation}): {s.compared}." for s in ROOT_STRESS_SOURCES.values()))
+    settings = {**asdict(asked.settings), "gears": len(found)}
+    return Outcome(found, (table,), _values(table, names), settings, remarks)
 
 
 ROOT_STRESS_STUDY = Stage(
@@ -149,7 +173,9 @@ ROOT_STRESS_STUDY = Stage(
     title="Root-stress formulas against finite elements over many gears",
     results=("root-stress-study",),
     subjects=lambda scene: ("",) if scene.gears else (),
-    run=_run,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     check=_check,
     forecast=forecasts.root_stress_study,
 )
