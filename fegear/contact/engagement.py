@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.load_sharing import SharedLoad, share_load
+from fegear.contact.load_sharing import SharedLoad, pair_tangent, share_load
 from fegear.contact.meshing import Contacts, Meshing
 from fegear.geometry.relief import UNMODIFIED, Relief
 from fegear.tally import note
@@ -86,16 +86,29 @@ class Loaded:
         return np.where(self.loads > 0.0, u, 0.0)
 
     @cached_property
+    def pair_tangent(self) -> Array:
+        """Local stiffness dW_j/dzeta of each pair, shape (n, P, L) [N/m]; zero where it is unloaded.
+
+        Mark's K_Sj (A.8): the sum over j' of the inverse of the pairs' tangent compliances, of those in contact. Unlike
+        a share of the mesh stiffness it knows that a pair which a relief holds back gives way no less than the others.
+        """
+        return pair_tangent(self.grid.matrices.tangent(self.loads), self.loads > 0.0)
+
+    @property
     def local_stiffness(self) -> Array:
         """Local mesh stiffness dW/dzeta of the pairs in contact, shape (P, L) [N/m]."""
-        tangent = self.grid.matrices.tangent(self.loads)
-        active = self.loads > 0.0
-        n = active.shape[0]
-        both = active[:, None] & active[None, :]
-        t = np.where(both, tangent, np.eye(n)[:, :, None, None])
-        right = active.astype(float)
-        solution = np.linalg.solve(np.moveaxis(t, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1)[..., None])[..., 0]
-        return np.asarray(solution.sum(axis=-1))
+        return np.asarray(self.pair_tangent.sum(axis=0))
+
+    @property
+    def corner_bears(self) -> Array:
+        """Whether a loaded pair touches at a tip corner or so near to one that it is narrower, bool, shape (P, L)."""
+        contacts, tilt = self.grid.contacts, self.grid.matrices.tilt
+        at_corner = np.broadcast_to((contacts.gap > 0.0)[:, :, None], self.loads.shape)
+        if tilt is not None:
+            # the Hertzian width grows with the square root of the load; see `edge_law`
+            width = np.sqrt(self.loads / self.grid.matrices.reference_load)
+            at_corner = at_corner | (tilt[:, :, None] > -width)
+        return np.asarray(((self.loads > 0.0) & at_corner).any(axis=0))
 
 
 @dataclass(frozen=True)
@@ -128,6 +141,20 @@ class Engagement:
     def meshing(self) -> Meshing:
         """Finds the contacts."""
         return Meshing(self.pair, self.corner_contact)
+
+    def unmodified(self) -> Engagement:
+        """The same pair with perfect involutes at equal distances."""
+        none = np.empty(0)
+        return replace(
+            self, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED, driver_spacing=none, driven_spacing=none
+        )
+
+    def reversed(self) -> Engagement:
+        """The same gears with driver and driven exchanged; x changes sign."""
+        return Engagement(
+            self.compliance.reversed(), self.driven_relief, self.driver_relief, self.driven_spacing,
+            self.driver_spacing, self.corner_contact,
+        )  # fmt: skip
 
     def grid(self, x: ArrayLike) -> RollGrid:
         """Evaluate contacts and compliances at roll positions, shape (P,) [m], brought into one base pitch."""

@@ -72,6 +72,14 @@ def few_positions(engagements: Sequence[Engagement]) -> Array:
     return np.unique(np.concatenate([spread, first.meshing.reduced(beside)]))
 
 
+def corners_bear(engagement: Engagement, load: float) -> bool:
+    """Whether a tip corner carries load anywhere under a load [N], in any of the base pitches of spacing errors."""
+    if not engagement.corner_contact:
+        return False
+    grid = engagement.grid(few_positions([engagement]))
+    return any(bool(engagement.solve(grid, [load], cycle).corner_bears.any()) for cycle in range(engagement.cycles))
+
+
 def changes(
     engagement: Engagement,
     others: Mapping[str, Engagement],

@@ -155,6 +155,31 @@ def share_load(
     return SharedLoad(loads, nearest + z.reshape(positions, cases) * total, steps)
 
 
+def pair_tangent(tangent: ArrayLike, active: ArrayLike) -> Array:
+    """Slope dW_j/dzeta of each pair's load over the transmission error, the loaded pairs staying the same.
+
+    Differentiating u_j + e_j = zeta of the loaded pairs leaves a linear system, sum_j' (du_j/dW_j') dW_j'/dzeta = 1.
+
+    Parameters
+    ----------
+    tangent : array_like, shape (n, n, ...)
+        du_j/dW_j' at the loads [m/N].
+    active : array_like of bool, shape (n, ...)
+        Which pairs carry load.
+
+    Returns
+    -------
+    ndarray, shape (n, ...)
+        [N/m], zero for unloaded pairs.
+    """
+    on = np.asarray(active, dtype=bool)
+    identity = np.eye(on.shape[0]).reshape(*(on.shape[0],) * 2, *(1,) * (on.ndim - 1))
+    system = np.where(on[:, None] & on[None, :], np.asarray(tangent, dtype=float), identity)
+    right = np.moveaxis(on.astype(float), 0, -1)[..., None]
+    slopes = np.linalg.solve(np.moveaxis(system, (0, 1), (-2, -1)), right)[..., 0]
+    return np.ascontiguousarray(np.moveaxis(slopes, -1, 0))
+
+
 @dataclass(frozen=True, slots=True)
 class _Problem:
     """B complementarity problems in shares; arrays of shape (n, B), coupling (n, n, B) or None when there is none."""

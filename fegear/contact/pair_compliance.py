@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -118,6 +118,10 @@ class PairCompliance:
     def contact_modulus(self) -> float:
         """E* [Pa], 1/E* = sum of (1 - nu^2)/E in plane strain, of 1/E in plane stress: Hertzian line contact."""
         return 1.0 / (1.0 / self.pair.driver.plane_modulus + 1.0 / self.pair.driven.plane_modulus)
+
+    def reversed(self) -> PairCompliance:
+        """The same gears with driver and driven exchanged."""
+        return replace(self, pair=self.pair.reversed(), driver=self.driven, driven=self.driver)
 
     def source(self, member: Member) -> GearCompliance:
         """Driver's or driven's."""

@@ -57,7 +57,7 @@ class MeshExcitation:
     first_slot : int
         The first slot's positions run from this many base pitches past the pitch point.
     slotted : bool
-        Whether slots are tooth pairs at their places, and not one spring for the whole gear pair.
+        Whether every tooth pair stands alone, so that it is a spring whether it bears or not.
     parting : bool
         Whether teeth part where their spring would pull; otherwise the gear pair is linear.
     """
@@ -125,7 +125,7 @@ class MeshExcitation:
     def at_mean_load(
         cls, stiffness: Periodic, error: Periodic, load: float, shares: tuple[Periodic, ...] = ()
     ) -> MeshExcitation:
-        """A gear pair linearised about its mean load, from any load sharing (coupled teeth included).
+        """A gear pair as one spring that is linear about its mean load, from any load sharing.
 
         Parameters
         ----------
@@ -136,7 +136,8 @@ class MeshExcitation:
         load : float
             The mean load [N]; contact is lost where the mesh force falls to zero.
         shares : tuple of Periodic
-            Share of the load that each tooth pair in reach carries; they sum to one. One spring without them.
+            For teeth without modifications that deflect in proportion to their load: the share of the load that each
+            tooth pair in reach carries; they sum to one. Any other teeth need their own tangents, see `about_load`.
         """
         # Of perfect flanks that deflect in proportion to the load nothing is left but round-off.
         deflection = float(np.abs(error(np.linspace(0.0, 1.0, 33))).max())
@@ -146,40 +147,55 @@ class MeshExcitation:
         parts = tuple(combine((share, stiffness), lambda q, k: q * k, tolerance=1e-10) for share in shares)
         return cls(parts, (separation,) * len(parts))
 
-    def never_parting(self, load: float, tolerance: float = 1e-9) -> MeshExcitation:
-        """The same gear pair linear about a mean load [N]: teeth that bear under it stay in contact, and share as then.
+    @classmethod
+    def about_load(
+        cls, stiffness: tuple[Periodic, ...], separation: tuple[Periodic, ...], first_slot: int
+    ) -> MeshExcitation:
+        """Tooth pairs that share one load, each linear about its part of it, from any load sharing.
 
-        The stiffness still varies with the phase. Without load all teeth bear.
+        A pair of load W_j and local stiffness K_Sj = dW_j/dzeta at the transmission error zeta is the spring K_Sj that
+        comes to bear at zeta - W_j / K_Sj: it carries W_j at rest, and K_Sj times what the gears approach beyond.
+
+        Parameters
+        ----------
+        stiffness : tuple of Periodic
+            K_Sj of each tooth pair in reach [N/m]; zero where it carries nothing.
+        separation : tuple of Periodic
+            zeta - W_j / K_Sj [m]; any value where it carries nothing.
+        first_slot : int
+            The first pair's positions run from this many base pitches past the pitch point.
         """
-        if len(self.stiffness) == 1 or not load > 0.0:
+        return cls(stiffness, separation, first_slot=first_slot)
+
+    def never_parting(self, load: float) -> MeshExcitation:
+        """The same gear pair linear about a mean load [N]: springs that bear under it stay, the others are not there.
+
+        The stiffness still varies with the phase. Without load all teeth bear; springs about a load bear under it.
+        """
+        if not self.slotted or not load > 0.0:
             return replace(self, parting=False)
         parts = (*self.stiffness, *self.separation)
         pitches = math.lcm(*(part.pitches for part in parts))
-        kinks = self.contact_changes(load)
-        cuts = np.unique(np.concatenate([*(part.breaks_over(pitches) for part in parts), np.array([*kinks])]))
+        cuts = np.concatenate([*(part.breaks_over(pitches) for part in parts), self.contact_changes(load)])
 
-        def fit(function: Callable[[Array], Array]) -> Periodic:
-            return Periodic.fit(lambda s: function(s * pitches), cuts / pitches, tolerance=tolerance, pitches=pitches)
+        def bearing(j: int) -> Periodic:
+            k, m = self.stiffness[j], self.separation[j]
 
-        def push(j: int, s: Array) -> Array:
-            return np.maximum(self.stiffness[j](s) * (self.approach(load, s) - self.separation[j](s)), 0.0)
+            def stiffness(s: Array) -> Array:  # of one piece, which bears as a whole or not at all
+                middle = float(np.mean(s)) * pitches
+                return k(s * pitches) * float(self.approach(load, middle) > m(middle))
 
-        def bearing(s: Array) -> Array:
-            return np.sum([np.where(push(j, s) > 0.0, k(s), 0.0) for j, k in enumerate(self.stiffness)], axis=0)
+            return Periodic.fit(stiffness, np.unique(cuts) / pitches, pitches=pitches)
 
-        def carried(j: int) -> Periodic:
-            return fit(lambda s: push(j, s) / load * bearing(s))
-
-        # Perfect flanks have a separation of zero: beside the deflection it can be fitted even then.
-        usual = load * self.mean_compliance()
-        separation = fit(lambda s: usual + self.approach(load, s) - load / bearing(s)).plus(-usual)
-        count = len(self.stiffness)
-        stiffness = tuple(carried(j) for j in range(count))
-        return replace(self, stiffness=stiffness, separation=(separation,) * count, parting=False)
+        return replace(self, stiffness=tuple(bearing(j) for j in range(len(self.stiffness))), parting=False)
 
     def at_phase(self, phase: float) -> MeshExcitation:
         """The same gear pair at another phase at time zero [base pitches]."""
         return replace(self, phase=phase)
+
+    def widened(self, ratio: float) -> MeshExcitation:
+        """Teeth so many times as wide, under a load so many times as large."""
+        return replace(self, stiffness=tuple(k.scaled(ratio) for k in self.stiffness))
 
     def total_stiffness(self) -> Periodic:
         """Stiffness of all slots in contact together [N/m]."""

@@ -81,8 +81,9 @@ def with_friction(
     coefficient: Callable[[Array, Array, Array], Array],
     *,
     tolerance: float = 1e-7,
+    a_drives: bool = True,
 ) -> MeshExcitation:
-    """Add tooth friction to a gear pair whose body `a` drives.
+    """Add tooth friction to a gear pair.
 
     The friction force is the coefficient times the elastic tooth force at every instant; the coefficient itself is
     taken at the nominal speed and the static tooth load.
@@ -90,7 +91,8 @@ def with_friction(
     Parameters
     ----------
     excitation : MeshExcitation
-        A gear pair in tooth-pair slots (`from_tooth_pair`): friction needs to know where each contact is.
+        A gear pair in tooth-pair slots (`from_tooth_pair`): friction needs to know where each contact is. Its positions
+        count toward the tip of the gear that drives.
     mesh : Mesh
         The gear pair in the train.
     base_pitch, pressure_angle : float
@@ -101,6 +103,8 @@ def with_friction(
         Friction coefficient from sliding speed [m/s], sum of rolling speeds [m/s] and static tooth force [N], arrays.
     tolerance : float
         Accuracy of the fitted torques beside the largest.
+    a_drives : bool
+        Whether the mesh's body `a` drives, and not body `b` (`train_mesh.a_drives` tells).
 
     Raises
     ------
@@ -112,8 +116,11 @@ def with_friction(
             "friction", "one spring per gear pair", "needs tooth pairs, each at its place on the line of action"
         )
     speed = mesh_frequency * base_pitch  # of the contact along the line of action
-    reach_a, reach_b = (abs(r) * math.tan(pressure_angle) for r in (mesh.radius_a, mesh.radius_b))
-    sense_a, sense_b = math.copysign(1.0, mesh.radius_a), -math.copysign(1.0, mesh.radius_b)
+    radii = (mesh.radius_a, mesh.radius_b) if a_drives else (mesh.radius_b, mesh.radius_a)
+    radius_1, radius_2 = (abs(r) for r in radii)  # of the gear that drives, of the driven one
+    reach_1, reach_2 = (r * math.tan(pressure_angle) for r in (radius_1, radius_2))
+    # the gears approach as the driver turns forward and the driven gear back
+    sense_1, sense_2 = math.copysign(1.0, radii[0]), -math.copysign(1.0, radii[1])
     kinks = tuple(excitation.contact_changes(load)) if load > 0.0 else ()
     parts = (*excitation.stiffness, *excitation.separation)
     pitches = math.lcm(*(part.pitches for part in parts))
@@ -126,19 +133,22 @@ def with_friction(
             known[key] = excitation.approach(load, phase)
         return np.maximum(excitation.stiffness[j](phase) * (known[key] - excitation.separation[j](phase)), 0.0)
 
-    def torque(j: int, phase: Array, *, a: bool) -> Array:
+    def torque(j: int, phase: Array, *, driver: bool) -> Array:
         x = (phase - np.floor(phase) + excitation.first_slot + j) * base_pitch
-        arm_a, arm_b = reach_a + x, reach_b - x
-        v_a, v_b = speed / abs(mesh.radius_a) * arm_a, speed / abs(mesh.radius_b) * arm_b
+        arm_1, arm_2 = reach_1 + x, reach_2 - x
+        v_1, v_2 = speed / radius_1 * arm_1, speed / radius_2 * arm_2
         bears = np.where(excitation.stiffness[j](phase) > 0.0, 1.0, 0.0)
-        mu = coefficient(np.abs(v_a - v_b), v_a + v_b, static_force(j, phase)) * bears
-        slip = np.sign(v_a - v_b)
-        return -slip * mu * arm_a * sense_a if a else slip * mu * arm_b * sense_b
+        mu = coefficient(np.abs(v_1 - v_2), v_1 + v_2, static_force(j, phase)) * bears
+        slip = np.sign(v_1 - v_2)
+        return -slip * mu * arm_1 * sense_1 if driver else slip * mu * arm_2 * sense_2
 
-    def fitted(j: int, *, a: bool) -> Periodic:
+    def fitted(j: int, *, driver: bool) -> Periodic:
         return Periodic.fit(
-            lambda s: torque(j, s * pitches, a=a), cuts, tolerance=tolerance, pitches=pitches, shortest=SHORTEST
-        )
+            lambda s: torque(j, s * pitches, driver=driver), cuts, tolerance=tolerance, pitches=pitches,
+            shortest=SHORTEST,
+        )  # fmt: skip
 
     slots = range(len(excitation.stiffness))
-    return replace(excitation, friction=tuple((fitted(j, a=True), fitted(j, a=False)) for j in slots))
+    return replace(
+        excitation, friction=tuple((fitted(j, driver=a_drives), fitted(j, driver=not a_drives)) for j in slots)
+    )

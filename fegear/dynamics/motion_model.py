@@ -83,7 +83,13 @@ class MotionModel:
 
 
 def friction_loss_torque(model: MotionModel) -> Array:
-    """Torque that makes up for the mean tooth friction under static tooth loads [N m], shape (size,)."""
+    """Torque that makes up for the mean tooth friction under static tooth loads [N m], shape (size,).
+
+    Raises
+    ------
+    InputError
+        If the friction of a gear pair would drive the train: it was made for the other body driving.
+    """
     train = model.train
     extra = np.zeros(train.size)
     loss = 0.0
@@ -92,10 +98,17 @@ def friction_loss_torque(model: MotionModel) -> Array:
             continue
         s = (np.arange(512) + 0.5) / 512
         error = excitation.approach(model.static[m], s)
+        ratio_a, ratio_b = train.ratios[train.dof[mesh.a]], train.ratios[train.dof[mesh.b]]
+        own = 0.0
         for k, e, (on_a, on_b) in zip(excitation.stiffness, excitation.separation, excitation.friction, strict=True):
             force = np.maximum(k(s) * (error - e(s)), 0.0)
-            ratio_a, ratio_b = train.ratios[train.dof[mesh.a]], train.ratios[train.dof[mesh.b]]
-            loss += float(np.mean(force * (ratio_a * on_a(s) + ratio_b * on_b(s))))
+            own += float(np.mean(force * (ratio_a * on_a(s) + ratio_b * on_b(s))))
+        if own > 0.0:
+            raise InputError(
+                f"mesh.{mesh.name}.friction", f"{own:.6g} W per rad/s", "feeds power into the train: the torques make "
+                "the other body drive", "give with_friction the side that train_mesh.a_drives tells",
+            )  # fmt: skip
+        loss += own
     if loss != 0.0:
         body = model.loss_taken_by or train.torques[-1].body
         if body not in train.dof:

@@ -38,8 +38,8 @@ class MeshForceSpectrum:
     frequencies : ndarray, shape (meshes, harmonics, speeds)
         n times the mesh frequency of the mesh that excites [Hz].
     coefficients : ndarray, shape (meshes, meshes, harmonics, speeds)
-        Complex Fourier coefficient [N] of the force in mesh i that the static transmission error of mesh j excites;
-        its amplitude (0-peak) is twice the modulus.
+        Complex Fourier coefficient [N] of the force in mesh i that the static transmission error of mesh j excites, in
+        time from the moment that the phases hold for; its amplitude (0-peak) is twice the modulus.
     static : ndarray, shape (meshes,)
         Mean mesh forces [N].
     """
@@ -70,6 +70,7 @@ def mesh_force_spectrum(
     static: ArrayLike | None = None,
     *,
     rotational: bool = False,
+    phases: ArrayLike = 0.0,
 ) -> MeshForceSpectrum:
     """Forces in every mesh from the static transmission error of every mesh, at every speed.
 
@@ -88,6 +89,8 @@ def mesh_force_spectrum(
         Mean mesh forces [N]; by default those of the train's torques.
     rotational : bool
         Whether to add the harmonics between those of the mesh frequency, which spacing errors cause.
+    phases : array_like, shape () or (meshes,)
+        Phase of each mesh at time zero [its base pitches].
     """
     from fegear.dynamics.matrices import static_forces
 
@@ -98,6 +101,7 @@ def mesh_force_spectrum(
     step = math.lcm(*(error.pitches for error in errors)) if rotational else 1
     n = np.arange(1, harmonics * step + 1)
     mesh = train.mesh_frequencies(speed)
+    ahead = np.broadcast_to(np.asarray(phases, dtype=float), (count,))
     present = np.array([n * error.pitches % step == 0 for error in errors])
     frequencies = np.empty((count, n.size, speed.size))
     coefficients = np.zeros((count, count, n.size, speed.size), dtype=complex)
@@ -106,7 +110,8 @@ def mesh_force_spectrum(
         frequencies[j] = n[:, None] * mesh[j][None, :] / step
         own = present[j]
         q = dynamic_increments(train, 2.0 * math.pi * frequencies[j, own])
-        coefficients[:, j, own] = stiffness * q[:, j] * error.fourier(n[own] * error.pitches // step)[:, None]
+        alpha = error.fourier(n[own] * error.pitches // step) * np.exp(2j * math.pi * n[own] * ahead[j] / step)
+        coefficients[:, j, own] = stiffness * q[:, j] * alpha[:, None]
     mean = static_forces(train) if static is None else np.array(static, dtype=float)
     orders = n / step
     for array in (speed, orders, present, frequencies, coefficients, mean):

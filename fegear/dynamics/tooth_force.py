@@ -45,7 +45,7 @@ class ToothForce:
     own : ndarray, shape (n,)
         Increment from the static transmission error of this mesh [N] (5.14).
     cross : ndarray, shape (meshes, n)
-        Increments from the other meshes at zero relative phase [N] (5.15); zero for this mesh itself.
+        Increments from the other meshes at the phases given [N] (5.15); zero for this mesh itself.
     cross_peak : ndarray, shape (meshes,)
         Largest modulus of the increment from each other mesh over the engagement and over all relative phases [N].
     """
@@ -102,6 +102,7 @@ def tooth_force(
     number: int = 0,
     harmonics: int = 256,
     other_phases: int = 64,
+    phases: ArrayLike = 0.0,
 ) -> ToothForce:
     """Force on one tooth pair of mesh `mesh` over its engagement.
 
@@ -114,8 +115,9 @@ def tooth_force(
     speed : float
         Speed of the first body [rad/s].
     x, stiffness, modification : array_like, shape (n,)
-        Positions of the tooth pair [m], its local stiffness there [N/m] (Appendix A), and the profile modification
-        of both teeth [m], positive for material removed.
+        Positions of the tooth pair [m]; its local stiffness K_Sj = dW_j/dzeta there [N/m] (Appendix A), zero where it
+        carries nothing; the transmission error at which a spring so stiff begins to carry [m]: for a pair that stands
+        alone the profile modification of both teeth, positive for material removed.
     base_pitch : float
         Base pitch of this mesh [m].
     number : int
@@ -124,6 +126,8 @@ def tooth_force(
         Harmonics of the mesh frequency that are summed, with the rotational ones below where teeth are uneven.
     other_phases : int
         Relative phases of the other meshes tried for `cross_peak`.
+    phases : array_like, shape () or (meshes,)
+        Phase of each mesh at one and the same moment [its base pitches]; only differences between meshes matter.
     """
     place, k, m = (np.array(v, dtype=float) for v in (x, stiffness, modification))
     if not place.shape == k.shape == m.shape or place.ndim != 1:
@@ -137,13 +141,15 @@ def tooth_force(
     static = k * (exact - m)
     smooth = errors[mesh].mean + dynamic_error(train, errors, mesh, mesh, speed, phase, harmonics)
     own = k * (smooth - exact)
+    at_once = np.broadcast_to(np.asarray(phases, dtype=float), (len(errors),))
+    since = time - at_once[mesh] / float(frequency[mesh])  # from the moment that the phases hold for
     cross = np.zeros((len(errors), place.size))
     peak = np.zeros(len(errors))
     for j in range(len(errors)):
         if j == mesh:
             continue
         n, terms = _terms(train, errors, mesh, j, speed, harmonics)
-        other = time * (float(frequency[j]) / errors[j].pitches)
+        other = (at_once[j] + since * float(frequency[j])) / errors[j].pitches
         all_phases = np.zeros((place.size, other_phases))
         for start in range(0, n.size, _BLOCK):
             part = slice(start, start + _BLOCK)

@@ -46,23 +46,21 @@ def excitations_at(scene: Scene, data: GearTrain, speed: float) -> tuple[MeshExc
 
     effects = scene.case.effects
     found = []
-    for m, mesh in enumerate(data.train.meshes):
-        excitation, error = data.excitations[m], data.errors[m]
+    frequencies = data.train.mesh_frequencies(speed)
+    for mesh, one, frequency in zip(data.train.meshes, data.meshes, frequencies, strict=True):
+        excitation = one.excitation
         if not effects.parametric:
             # Mark's (2.9b): constant stiffness, all fluctuation in the transmission error
-            flat = MeshExcitation.from_mesh(Periodic.constant(mesh.stiffness), error.plus(-error.mean))
+            flat = MeshExcitation.from_mesh(Periodic.constant(mesh.stiffness), one.error.plus(-one.error.mean))
             found.append(replace(flat, phase=excitation.phase, parting=effects.contact_loss))
             continue
-        force = float(data.forces[m])
         if not effects.contact_loss:
-            excitation = excitation.never_parting(force)
+            excitation = excitation.never_parting(one.force)
         if effects.friction:
-            pair = data.pairs[m]
-            width = min(pair.driver.face_width, pair.driven.face_width)
+            width = min(one.pair.driver.face_width, one.pair.driven.face_width)
             excitation = with_friction(
-                excitation, mesh, pair.base_pitch, pair.working_pressure_angle,
-                float(data.train.mesh_frequencies(speed)[m]), force,
-                _coefficient(scene.case.dynamics.friction, width),
+                excitation, mesh, one.pair.base_pitch, one.pair.working_pressure_angle, float(frequency), one.force,
+                _coefficient(scene.case.dynamics.friction, width), a_drives=one.a_drives,
             )  # fmt: skip
         found.append(excitation)
     return tuple(found)

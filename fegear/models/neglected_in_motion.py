@@ -93,7 +93,9 @@ def contact_loss_changes(scene: Scene, data: GearTrain, states: Sequence[SteadyS
     """
     least = [min(float(s.smallest[m] / data.forces[m]) for m in _loaded(data)) for s in states]
     worst = int(np.argmin(least))
-    if least[worst] >= 0.0 and not (scene.case.effects.parametric and any(_held_apart(e) for e in data.excitations)):
+    if least[worst] >= 0.0 and not (
+        scene.case.effects.parametric and any(_held_apart(m.excitation) for m in data.meshes)
+    ):
         return []
     return _changes(with_effects(scene, contact_loss=True), data, states[worst])
 
@@ -101,7 +103,7 @@ def contact_loss_changes(scene: Scene, data: GearTrain, states: Sequence[SteadyS
 def friction_changes(scene: Scene, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
     """What tooth friction changes at the speed of the largest dynamic factor."""
     effects = scene.case.effects
-    if not effects.parametric or not all(e.slotted for e in data.excitations):
+    if not effects.parametric or not all(mesh.excitation.slotted for mesh in data.meshes):
         return []  # lumped teeth have no place at which they slide
     # A motion that does not repeat takes long to find, and friction would have to be told from its wandering.
     steady = [s for s in states if s.kind == "periodic"]

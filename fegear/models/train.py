@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.case.names import nearest
 from fegear.dynamics.matrices import static_forces
 from fegear.dynamics.train import (
@@ -25,14 +27,12 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
     from fegear.case.train import BodyPart, ShaftPart, TrainPart
-    from fegear.dynamics.excitation import MeshExcitation
     from fegear.dynamics.periodic import Periodic
-    from fegear.geometry import GearPair
+    from fegear.dynamics.train_mesh import TrainMesh
 
     Array = NDArray[np.float64]
 
@@ -50,14 +50,8 @@ class GearTrain:
     ----------
     train : Train
         With mean mesh stiffnesses.
-    pairs : tuple of GearPair
-        Geometry of each mesh.
-    excitations : tuple of MeshExcitation
-        One-sided springs of each mesh.
-    errors : tuple of Periodic
-        Static transmission error under the mean force of each mesh [m].
-    forces : ndarray, shape (meshes,)
-        Mean mesh forces [N].
+    meshes : tuple of TrainMesh
+        Each gear pair as it runs, its springs, its static transmission error and its mean force.
     speed_ratio : float
         Speed of the body that speeds refer to over that of the first body.
     speed_of : str
@@ -65,12 +59,24 @@ class GearTrain:
     """
 
     train: Train
-    pairs: tuple[GearPair, ...]
-    excitations: tuple[MeshExcitation, ...]
-    errors: tuple[Periodic, ...]
-    forces: Array
+    meshes: tuple[TrainMesh, ...]
     speed_ratio: float
     speed_of: str
+
+    @property
+    def errors(self) -> tuple[Periodic, ...]:
+        """Static transmission error of each mesh under its mean force [m]."""
+        return tuple(mesh.error for mesh in self.meshes)
+
+    @property
+    def forces(self) -> Array:
+        """Mean mesh forces, shape (meshes,) [N]."""
+        return np.array([mesh.force for mesh in self.meshes])
+
+    @property
+    def phases(self) -> tuple[float, ...]:
+        """Phase of each mesh at time zero [its base pitches]."""
+        return tuple(mesh.excitation.phase for mesh in self.meshes)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -61,9 +61,9 @@ def chart_trial(trial: Trial) -> dict[str, float]:
     """Compute one point: largest dynamic factor over the case's speeds, where, and A_e of the static error."""
     from fegear.dynamics.charts import speed_chart
     from fegear.dynamics.excitation import effective_error
+    from fegear.dynamics.mesh_excitation import mesh_excitation
     from fegear.dynamics.motion_model import MotionModel
     from fegear.geometry.relief import CombinedRelief, normalised_tip_relief
-    from fegear.models.mesh_excitation import mesh_excitation
 
     scene, i = trial.scene, trial.mesh
     part, pair = scene.case.dynamics, trial.engagement.pair
@@ -77,10 +77,10 @@ def chart_trial(trial: Trial) -> dict[str, float]:
             driver_relief=normalised_tip_relief(pair, "driver", amount, trial.length, shape),
             driven_relief=normalised_tip_relief(pair, "driven", amount, trial.length, shape),
         )
-    force = float(trial.train.forces[i])
-    found = mesh_excitation(engagement, force)
-    by_mesh = dict(zip(trial.train.names, trial.train.excitations, strict=True))
-    by_mesh[trial.train.names[i]] = replace(found, phase=trial.train.excitations[i].phase)
+    mesh = trial.train.meshes[i]
+    found = mesh_excitation(engagement if mesh.a_drives else engagement.reversed(), mesh.force)
+    by_mesh = {name: one.excitation for name, one in zip(trial.train.names, trial.train.meshes, strict=True)}
+    by_mesh[trial.train.names[i]] = replace(found, phase=mesh.excitation.phase)
     data = assemble(scene, by_mesh)
     speeds = part.speed_values / data.speed_ratio
     model = MotionModel(data.train, excitations_at(scene, data, float(speeds[-1])), 1.0)
@@ -101,7 +101,8 @@ def trial_content(trial: Trial) -> object:
     plain = case.model_dump(include={"gear", "pair", "train", "effects", "accuracy"})
     dynamics = case.dynamics.model_dump()
     chart = dynamics.pop("chart")
-    springs = [(f.breaks, f.coefficients) for e in trial.train.excitations for f in (*e.stiffness, *e.separation)]
+    excitations = [mesh.excitation for mesh in trial.train.meshes]
+    springs = [(f.breaks, f.coefficients) for e in excitations for f in (*e.stiffness, *e.separation)]
     return (
         plain,
         dynamics,

@@ -68,7 +68,7 @@ def _neighbours(scene: Scene, data: ToothForceData, source: FiniteElementComplia
     for k in range(-source.reach, source.reach + 1):
         if k:
             # k base pitches ahead at the same moment: it was at the pitch point that much earlier
-            ahead = force.x + k * train.pairs[data.mesh].base_pitch
+            ahead = force.x + k * train.meshes[data.mesh].pair.base_pitch
             harmonics = summed_harmonics(scene, train)
             around[k] = force_at(train, data.mesh, part.one_speed, ahead, harmonics, data.number - k, other_phases=1)
     return around
@@ -101,7 +101,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
 
     data = cast("ToothForceData", done[Task("tooth-force", name)].data)
     pair_name = train_part(scene).pair_of(name)
-    pair, force = scene.pairs[pair_name], data.force
+    mesh, force = data.train.meshes[data.mesh], data.force
     static: dict[Member, Array] = {}
     stress: dict[Member, Array] = {}
     tables, values, prefix = [], [], f"{pair_name}_"
@@ -110,11 +110,11 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
         gear = gear_name(scene, pair_name, member)
         source = finite_element_compliance(cast("GearInfluence", done[Task("gear-solution", gear)].data))
         around = _neighbours(scene, data, source)
-        kernels = _kernels(source, pair, member, around)
+        kernels = _kernels(source, mesh.pair, mesh.role(member), around)
         stress[member] = root_stress({k: f.total + f.cross.sum(axis=0) for k, f in around.items()}, kernels)
         static[member] = root_stress({k: f.static for k, f in around.items()}, kernels)
         alone = root_stress({k: f.total for k, f in around.items()}, kernels)
-        error = _own_error(source, pair, member, force)
+        error = _own_error(source, mesh.pair, mesh.role(member), force)
         tables.append(
             Table(
                 f"root_stress_history_{name}_{labels[member].removeprefix(prefix)}",

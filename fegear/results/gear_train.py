@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.dynamics.matrices import static_forces
+from fegear.dynamics.train_mesh import TrainMesh, a_drives
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Stage, Task
 from fegear.models.pair_checks import check_relief
@@ -55,32 +56,36 @@ def assemble(scene: Scene, excitations: dict[str, MeshExcitation]) -> GearTrain:
     """Put excitations, by mesh, into the train."""
     part = train_part(scene)
     train = build_train(scene, {name: 1.0 / found.mean_compliance() for name, found in excitations.items()})
-    forces = static_forces(train)
-    errors = tuple(
-        found.transmission_error(max(float(force), 0.0), tolerance=1e-9)
-        for found, force in zip(excitations.values(), forces, strict=True)
-    )
+    meshes = []
+    for (name, found), force, forward in zip(excitations.items(), static_forces(train), a_drives(train), strict=True):
+        pair = scene.pairs[part.pair_of(name)]
+        meshes.append(TrainMesh.under(pair if forward else pair.reversed(), found, float(force), a_drives=forward))
     speed_of = scene.case.dynamics.speed_of or train.bodies[0].name
-    ratio = abs(float(train.ratios[train.dof[speed_of]]))
-    pairs = tuple(scene.pairs[part.pair_of(name)] for name in part.mesh)
-    return GearTrain(train, pairs, tuple(excitations.values()), errors, forces, ratio, speed_of)
+    return GearTrain(train, tuple(meshes), abs(float(train.ratios[train.dof[speed_of]])), speed_of)
 
 
 def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
-    from fegear.models.mesh_excitation import mesh_excitation, stands_alone, unmodified
+    from fegear.dynamics.mesh_excitation import mesh_excitation
 
-    part = train_part(scene)
-    forces = static_forces(build_train(scene))
+    part, train = train_part(scene), build_train(scene)
+    forces, forward = static_forces(train), a_drives(train)
     excitations: dict[str, MeshExcitation] = {}
     remarks: list[str] = []
     for number, (name, mesh) in enumerate(part.mesh.items()):
         loaded = loaded_pair(done, part.loaded_pair_of(name))
         width = mesh.like.width_ratio if mesh.like else 1.0
-        found = mesh_excitation(loaded.engagement, abs(float(forces[number])) / width or loaded.nominal)
-        if mesh.like:
-            found = unmodified(found, width)
-        excitations[name] = replace(found, phase=mesh.phase)
-        if not stands_alone(loaded.engagement):
+        engagement = loaded.engagement.unmodified() if mesh.like else loaded.engagement
+        found = mesh_excitation(
+            engagement if forward[number] else engagement.reversed(),
+            abs(float(forces[number])) / width or loaded.nominal,
+        )
+        excitations[name] = replace(found.widened(width), phase=mesh.phase)
+        if not forward[number]:
+            remarks.append(
+                f"Mesh {name}: the torques make {mesh.driven} drive {mesh.driver}, so x counts toward the tip of the "
+                f"gear of {mesh.driven}."
+            )
+        if not found.slotted:
             remarks.append(f"Mesh {name}: coupled teeth and contacts off the path are linear about the mean load.")
         if mesh.like is None and loaded.engagement.cycles > 1:
             remarks.append(

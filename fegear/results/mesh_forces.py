@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -96,8 +96,9 @@ def _run_spectrum(scene: Scene, name: str, done: Done, _progress: Progress) -> O
     data, part = gear_train(done), scene.case.dynamics
     i = data.train.mesh_index(name)
     found = mesh_force_spectrum(
-        data.train, data.errors, [part.one_speed / data.speed_ratio], part.harmonics, rotational=True
-    )
+        data.train, data.errors, [part.one_speed / data.speed_ratio], part.harmonics, rotational=True,
+        phases=data.phases,
+    )  # fmt: skip
     amplitude = found.amplitudes[i, :, :, 0]
     table = Table(
         f"mesh_force_spectrum_{name}",
@@ -153,25 +154,25 @@ def summed_harmonics(scene: Scene, data: GearTrain) -> int:
 
 def heaviest_pair(data: GearTrain, i: int) -> int:
     """Number of the tooth pair that carries the largest static force; 0 where all teeth are alike."""
-    from fegear.models.mesh_excitation import tooth_pair_at
+    from fegear.dynamics.mesh_excitation import tooth_pair_at
 
-    error, pair = data.errors[i], data.pairs[i]
+    error, pair = data.meshes[i].error, data.meshes[i].pair
     if error.pitches == 1:
         return 0
     x = np.linspace(pair.x_start, pair.x_end, _LOOKED_AT)
     largest = []
     for number in range(error.pitches):
-        k, m = tooth_pair_at(data.excitations[i], x, pair.base_pitch, number)
+        k, m = tooth_pair_at(data.meshes[i].excitation, x, pair.base_pitch, number)
         largest.append(float(np.max(k * (error(x / pair.base_pitch + number) - m))))
     return int(np.argmax(largest))
 
 
 def positions(data: GearTrain, i: int, count: int, number: int = 0) -> Array:
     """Places of one tooth pair: evenly over its path, and on either side of every jump [m]."""
-    pair, found = data.pairs[i], data.excitations[i]
+    pair, found = data.meshes[i].pair, data.meshes[i].excitation
     pitch = pair.base_pitch
     low, high = pair.x_start + _INSIDE * pitch, pair.x_end - _INSIDE * pitch
-    functions = (data.errors[i], *found.stiffness)
+    functions = (data.meshes[i].error, *found.stiffness)
     cuts = np.concatenate([(f.breaks + j) * f.pitches - number % f.pitches for f in functions for j in range(-4, 5)])
     near = np.unique(cuts[(cuts * pitch > low) & (cuts * pitch < high)])
     beside = np.sort(np.concatenate([near - 1e-7, near + 1e-7])) * pitch
@@ -181,8 +182,8 @@ def positions(data: GearTrain, i: int, count: int, number: int = 0) -> Array:
 
 def _jumps(data: GearTrain, i: int, x: Array, number: int) -> Array:
     """Places beside true corners of the transmission error; ends of fitted pieces are none."""
-    pitch = data.pairs[i].base_pitch
-    slope = data.errors[i].slope(x / pitch + number)
+    pitch = data.meshes[i].pair.base_pitch
+    slope = data.meshes[i].error.slope(x / pitch + number)
     near = np.abs(np.diff(x)) < 3e-7 * pitch
     kink = near & (np.abs(np.diff(slope)) > 1e-3 * np.max(np.abs(slope), initial=1e-30))
     keep = np.zeros(x.size, dtype=bool)
@@ -199,19 +200,18 @@ def force_history(data: GearTrain, i: int, speed: float, count: int, harmonics: 
 def force_at(
     data: GearTrain, i: int, speed: float, x: Array, harmonics: int, number: int = 0, other_phases: int = 64
 ) -> ToothForce:
-    """Force on tooth pair `number` at places x [m]; zero off the path of contact."""
+    """Force on tooth pair `number` at places x [m], others at the case's phases; zero off the path of contact."""
+    from fegear.dynamics.mesh_excitation import tooth_pair_at
     from fegear.dynamics.tooth_force import tooth_force
-    from fegear.models.mesh_excitation import tooth_pair_at
 
-    pitch = data.pairs[i].base_pitch
-    k, m = tooth_pair_at(data.excitations[i], x, pitch, number)
-    found = tooth_force(
-        data.train, data.errors, i, speed / data.speed_ratio, x, k, m, pitch,
-        number=number, harmonics=harmonics, other_phases=other_phases,
+    pitch = data.meshes[i].pair.base_pitch
+    k, m = tooth_pair_at(data.meshes[i].excitation, x, pitch, number)
+    # linear about the mean load: a tooth pair that its modification holds apart at rest is no spring
+    k = np.where(data.meshes[i].error(x / pitch + number) > m, k, 0.0)
+    return tooth_force(
+        data.train, data.errors, i, speed / data.speed_ratio, x, k, m, pitch, number=number, harmonics=harmonics,
+        other_phases=other_phases, phases=data.phases,
     )  # fmt: skip
-    # a tooth pair that its modification holds apart is not pulled
-    static = np.maximum(found.static, 0.0)
-    return replace(found, static=static, own=np.maximum(found.total, 0.0) - static)
 
 
 def mesh_force_range(data: GearTrain, i: int, speed: float, harmonics: int) -> tuple[float, float]:
@@ -261,7 +261,7 @@ def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outc
             Column("static", force.static, "N", "static part"),
             Column("own_increment", force.own, "N", "from this mesh's transmission error"),
             *(
-                Column(f"increment_from_{other}", force.cross[j], "N", "from the other mesh, at zero relative phase")
+                Column(f"increment_from_{other}", force.cross[j], "N", "from the other mesh, at the case's phases")
                 for j, other in enumerate(data.names)
                 if j != i
             ),
@@ -280,9 +280,10 @@ def _run_force(scene: Scene, name: str, done: Done, _progress: Progress) -> Outc
         ),
     ]  # fmt: skip
     remarks = pull_remarks(data, i, [part.one_speed / data.speed_ratio], part.harmonics)
-    if data.errors[i].pitches > 1:
+    uneven = data.meshes[i].error.pitches
+    if uneven > 1:
         told = (
-            f"Mesh {name}: teeth stand unevenly; of the {data.errors[i].pitches} tooth pairs that meet, the force is "
+            f"Mesh {name}: teeth stand unevenly; of the {uneven} tooth pairs that meet, the force is "
             f"that on number {looked_at}, which carries most at rest (number 0 is at the pitch point at phase zero)."
         )
         remarks = (*remarks, told)

@@ -46,12 +46,6 @@ class ReliefChartData:
     delta: float
 
 
-def _unmodified(engagement: Engagement) -> Engagement:
-    from fegear.contact import Engagement
-
-    return Engagement(engagement.compliance, corner_contact=engagement.corner_contact)
-
-
 def _delta(engagement: Engagement, load: float) -> float:
     """Largest transmission error of the unmodified pair [m]: Welbourn's Delta for contact ratios between 1 and 2."""
     from fegear.contact import transmission_error
@@ -59,14 +53,14 @@ def _delta(engagement: Engagement, load: float) -> float:
 
     if 1.0 <= engagement.pair.contact_ratio < 2.0:
         return welbourn_amount(engagement, load)
-    return float(transmission_error(_unmodified(engagement), load, 12).values.max())
+    return float(transmission_error(engagement.unmodified(), load, 12).values.max())
 
 
 def _run_chart(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     from fegear.design import optimise_tip_relief, relief_chart
 
     pair, part = loaded_pair(done, name), design_part(scene)
-    asked, e = part.chart, _unmodified(loaded_pair(done, name).engagement)
+    asked, e = part.chart, loaded_pair(done, name).engagement.unmodified()
     loads = np.array(asked.loads or pair.loads)
     delta = _delta(e, pair.nominal)
     amounts = np.array(asked.amounts) if asked.amounts else delta * np.linspace(0.1, 1.6, 16)

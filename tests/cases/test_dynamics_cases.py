@@ -100,6 +100,95 @@ def test_static_part_of_the_dynamic_root_stress_is_the_quasi_static_history(coup
         assert (a["stress_error [MPa]"] < 0.02 * quasi.max()).all()
 
 
+@pytest.mark.parametrize(("case", "result"), [("four_square_dynamics", "dynamic-root-stress")])
+def test_phases_of_meshes_reach_tooth_forces_and_root_stress(case, result):
+    """A half base pitch turns the slave gears' odd harmonics round; waiting turns both meshes' phases on together."""
+
+    def found(one, two):
+        phases = (f"train.mesh.I.phase={one}", f"train.mesh.II.phase={two}")
+        tables, _, _ = run(case, f"results=['tooth-force', '{result}']", *phases)
+        force = tables["tooth_force_I"]
+        stress = next(table for name, table in tables.items() if name.startswith("root_stress_history_I"))
+        return force["force_with_others [N]"] - force["force [N]"], stress["stress [MPa]"]
+
+    rest, turned, later = found(0.0, 0.0), found(0.0, 0.5), found(0.28, 0.35)  # 28 and 35 teeth, a hundredth of a turn
+    whole = found(0.0, -2.0)
+    for k in range(2):
+        largest = np.abs(rest[k]).max()
+        np.testing.assert_allclose(later[k], rest[k], atol=1e-7 * largest)
+        np.testing.assert_allclose(whole[k], rest[k], atol=1e-7 * largest)
+    assert np.abs(turned[0] - rest[0]).max() > 1.5 * np.abs(rest[0]).max()
+    assert np.abs(turned[1] - rest[1]).max() > 0.01 * np.abs(rest[1]).max()
+
+
+def test_the_side_that_drives_follows_from_the_torques():
+    """Friction with a pair named the wrong way round: the same motion and forces, and it is told."""
+    common = ("results=['dynamic-factor', 'tooth-force']", "dynamics.speeds=['2000 rpm']")
+    swapped = (
+        "pair.first.driver=wheel_1", "pair.first.driven=pinion_1", "pair.first.torque='201.904762 N*m'",
+        "train.mesh.first.driver=wheel_1", "train.mesh.first.driven=pinion_1",
+    )  # fmt: skip
+    _, right, results = run("two_stage_gearbox", *common)
+    _, wrong, told = run("two_stage_gearbox", *common, *swapped)
+    assert {name: wrong[name] for name in right} == pytest.approx(right, rel=1e-9)
+    assert not any("drive" in remark for remark in results.remarks)
+    assert any("make pinion_1 drive wheel_1" in remark for remark in told.remarks)
+
+
+LIKE = """
+title = "Two meshes with the same teeth"
+results = ["gear-train"]
+[gear.a]
+teeth = 28
+module = "3 mm"
+bore_radius = "11 mm"
+face_width = "20 mm"
+relief = { tip = { amount = "15 um", normalised_length = 1.0 } }
+[pair.I]
+driver = "a"
+driven = "a"
+load = "7000 N"
+compliance = { source = "weber-banaschek" }
+[train]
+torque = { first = "276.269635 N*m" }
+balance = "last"
+[train.body]
+first = { inertia = "0.01 kg*m^2" }
+middle = { inertia = "0.01 kg*m^2" }
+last = { inertia = "0.01 kg*m^2" }
+[train.mesh.I]
+driver = "first"
+driven = "middle"
+[train.mesh.II]
+pair = "I"
+driver = "middle"
+driven = "last"
+like = { pair = "I", width_ratio = 2.0 }
+[dynamics]
+speed = "1000 rpm"
+[effects]
+relief = true
+hertz = "load-dependent"
+corner_contact = true
+"""
+
+
+def test_a_mesh_like_another_is_one_without_modification(tmp_path):
+    """Corners bear here: what load sharing itself gives for unmodified teeth under half the load of twice the width."""
+    path = tmp_path / "like.toml"
+    path.write_text(LIKE)
+    values, plain = ({}, {})
+    for into, overrides in ((values, ()), (plain, ("results=['transmission-error']", "effects.relief=false",
+                                                   "pair.I.load='3500 N'"))):  # fmt: skip
+        scene = read_scene(path, overrides)
+        into.update({v.name: v.shown for v in run_plan(scene, make_plan(scene, STAGES)).values})
+    assert values["II.mean_force"] == pytest.approx(7000.0, rel=1e-6)
+    assert values["II.static_te_peak_to_peak"] == pytest.approx(plain["I.te_peak_to_peak"], rel=1e-3)
+    assert values["I.static_te_peak_to_peak"] != pytest.approx(plain["I.te_peak_to_peak"], rel=0.1)
+    # the mean of 1/K is above 1 over the mean of K
+    assert 0.9 < values["II.mean_stiffness"] / (2.0 * plain["I.local_stiffness_mean"]) < 1.0
+
+
 def pitch_mm():
     return 2 * math.pi * 44.45 * math.cos(math.radians(20.0)) / 28
 

@@ -1,6 +1,7 @@
 """Tooth friction: the two formulas of TM-100180, the torques they make, and the losses that follow."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from fegear.dynamics.lin_model import FourInertia
 from fegear.dynamics.motion_model import MotionModel, friction_loss_torque
 from fegear.dynamics.periodic import Periodic
 from fegear.dynamics.steady_state import steady_state
+from fegear.dynamics.train import Mesh
+from fegear.dynamics.train_mesh import a_drives
 from fegear.errors import InputError, RangeError
 
 INCH, POUND = 0.0254, 4.4482216152605
@@ -122,3 +125,74 @@ def test_real_coefficients_run():
         with_friction(
             MeshExcitation.from_mesh(Periodic.constant(3e8)), found.meshes[0], PITCH, ANGLE, frequency, FORCE, laws[0]
         )
+
+
+def vectors(mesh, a_drives, x, turn_a):
+    """Torques on both bodies per newton across the flanks at x from the pitch point toward the driver's tip.
+
+    Gear a at the origin and gear b beside it, velocities as cross products, friction against the sliding.
+    """
+    ra, rb = abs(mesh.radius_a), abs(mesh.radius_b)
+    centre = np.array([(ra + rb) / math.cos(ANGLE), 0.0])
+    pitch = np.array([ra / math.cos(ANGLE), 0.0])
+    turn_b = -turn_a * ra / rb
+
+    def across(w, v):
+        return w * np.array([-v[1], v[0]])
+
+    # the driver pushes the driven gear away from itself and the way that both move at the pitch point
+    away = math.sin(ANGLE) if a_drives else -math.sin(ANGLE)
+    push = np.array([away, math.copysign(math.cos(ANGLE), turn_a)])
+    point = pitch + x * push
+    normal_on_b = push if a_drives else -push
+    sliding = across(turn_a, point) - across(turn_b, point - centre)
+    sliding -= (sliding @ push) * push
+    rub_b = sliding / np.linalg.norm(sliding)  # a drags b along
+
+    def torque(arm, force):
+        return arm[0] * force[1] - arm[1] * force[0]
+
+    normal = torque(point, -normal_on_b), torque(point - centre, normal_on_b)
+    return normal, (torque(point, -rub_b), torque(point - centre, rub_b))
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 2.75])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("a_drives", [True, False])
+def test_either_body_may_drive(a_drives, sign, ratio):
+    """Against plane vectors, for gears of any ratio, both senses of rotation, and either body driving."""
+    mesh = Mesh("g", "a", "b", sign * BASE, sign * ratio * BASE, 28, round(28 * ratio), 3e8)
+    found = with_friction(plain(1.4), mesh, PITCH, ANGLE, 500.0, FORCE, lambda *_: 0.05, a_drives=a_drives)
+    # the gears approach as body a turns with its radius, or body b: whoever drives turns that way
+    turn_a = sign * 100.0 if a_drives else -sign * 100.0
+    power = 0.0
+    for j, pair in enumerate(found.friction):
+        for s in (0.05, 0.31, 0.77, 0.94):
+            x = (s + found.first_slot + j) * PITCH
+            if not found.stiffness[j](s) > 0.0:
+                continue
+            normal, rub = vectors(mesh, a_drives, x, turn_a)
+            assert normal == pytest.approx((-mesh.radius_a, -mesh.radius_b), rel=1e-9)
+            got = [float(f(s)) for f in pair]
+            np.testing.assert_allclose(got, 0.05 * np.array(rub), rtol=1e-6)
+            power += got[0] * turn_a - got[1] * turn_a / ratio
+    assert power < 0.0
+
+
+def test_friction_made_for_the_wrong_driver_is_refused():
+    """A friction that feeds power into the train has the driver wrong."""
+    right = train()
+    meshes = tuple(replace(m, radius_a=-m.radius_a, radius_b=-m.radius_b) for m in right.meshes)
+    turned = replace(right, torques=tuple(replace(t, value=-t.value) for t in right.torques), meshes=meshes)
+    assert (a_drives(right), a_drives(turned)) == ((True,), (False,))
+    frequency = float(turned.mesh_frequencies(300.0)[0])
+    for drives in (True, False):
+        found = with_friction(
+            plain(), turned.meshes[0], PITCH, ANGLE, frequency, FORCE, lambda *_: 0.05, a_drives=drives
+        )
+        model = MotionModel(turned, (found,), 300.0)
+        if drives:
+            with pytest.raises(InputError, match="feeds power into the train"):
+                friction_loss_torque(model)
+        else:
+            assert friction_loss_torque(model)[3] > 0.0  # the load, which drives now, gives more

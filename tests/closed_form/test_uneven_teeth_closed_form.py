@@ -11,6 +11,7 @@ from fegear.contact.engagement import Engagement
 from fegear.contact.pair_compliance import PairCompliance
 from fegear.contact.transmission_error import revolution
 from fegear.dynamics.excitation import MeshExcitation
+from fegear.dynamics.mesh_excitation import mesh_excitation, tooth_pair_at
 from fegear.dynamics.modes import modes
 from fegear.dynamics.motion_model import MotionModel
 from fegear.dynamics.periodic import Periodic
@@ -20,7 +21,6 @@ from fegear.dynamics.tooth_force import dynamic_error
 from fegear.dynamics.train import Body, Damper, Mesh, Torque, Train
 from fegear.errors import InputError, RangeError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
-from fegear.models.mesh_excitation import mesh_excitation, tooth_pair_at
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3, 25.4e-3)
 PAIR = GearPair(GEAR, GEAR)

@@ -1,4 +1,4 @@
-"""From a loaded pair of the scene to what its teeth do to the train: one-sided springs over the path of contact."""
+"""From a loaded gear pair to what its teeth do to the train: one-sided springs over the path of contact."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.left_out import corners_bear
+from fegear.contact.transmission_error import contact_changes
 from fegear.dynamics.excitation import MeshExcitation
 from fegear.dynamics.periodic import Periodic
+from fegear.errors import RangeError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
-    from fegear.contact import Engagement, RollGrid
+    from fegear.contact import Engagement, Loaded, RollGrid
 
     Array = NDArray[np.float64]
 
@@ -28,17 +29,18 @@ FIT_SHARED = 1e-7
 SHORTEST = 2e-4
 
 
-def stands_alone(engagement: Engagement) -> bool:
-    """Whether every tooth pair is a spring of its own: no coupling of neighbours and no contact off the path."""
-    return not (engagement.corner_contact or engagement.compliance.coupling)
+def stands_alone(engagement: Engagement, load: float) -> bool:
+    """Whether every tooth pair is a spring of its own: no coupling of neighbours, no corner bears under the load."""
+    return not (engagement.compliance.coupling or corners_bear(engagement, load))
 
 
 def mesh_excitation(engagement: Engagement, load: float) -> MeshExcitation:
     """One-sided springs of a gear pair.
 
     Tooth pairs that stand alone are springs over the whole path; their contact deflection is linear about the full load
-    on one pair, as in NASA TM-89901. Coupled tooth pairs are linearised about the mean load that they share. With
-    spacing errors every tooth pair that meets has its own separation (and share), until the same teeth meet again.
+    on one pair, as in NASA TM-89901. Where teeth are coupled, or a tip corner bears under the mean load, every pair is
+    linear about what it carries of the mean load, with its own local stiffness dW_j/dzeta. With spacing errors every
+    tooth pair that meets has its own separation (and local stiffness), until the same teeth meet again.
 
     Parameters
     ----------
@@ -46,9 +48,9 @@ def mesh_excitation(engagement: Engagement, load: float) -> MeshExcitation:
     load : float
         Mean mesh force [N].
     """
-    if not stands_alone(engagement):
+    if not stands_alone(engagement, load):
         return _shared(engagement, load)
-    return _uneven(_separate(engagement, load), engagement)
+    return _uneven(_separate(replace(engagement, corner_contact=False), load), engagement)
 
 
 def _uneven(even: MeshExcitation, engagement: Engagement) -> MeshExcitation:
@@ -64,12 +66,6 @@ def _uneven(even: MeshExcitation, engagement: Engagement) -> MeshExcitation:
     slots = enumerate(even.separation, even.first_slot)
     uneven = (Periodic.joined([m.plus(error(p - j)) for p in range(cycles)]) for j, m in slots)
     return replace(even, separation=tuple(uneven))
-
-
-def unmodified(excitation: MeshExcitation, width_ratio: float) -> MeshExcitation:
-    """The same teeth as perfect involutes, so many times as wide."""
-    none = tuple(Periodic.constant(0.0) for _ in excitation.separation)
-    return replace(excitation, stiffness=tuple(k.scaled(width_ratio) for k in excitation.stiffness), separation=none)
 
 
 def _row_of(engagement: Engagement, x: Array) -> tuple[RollGrid, NDArray[np.intp]]:
@@ -109,27 +105,28 @@ def _shared(engagement: Engagement, load: float) -> MeshExcitation:
     last = math.ceil(pair.x_end / pair.base_pitch) - 1 + extra
     grids: dict[bytes, RollGrid] = {}
     pitches = [_one_pitch(engagement, load, p, range(first, last + 1), grids) for p in range(engagement.cycles)]
-    error, stiffness, *shares = (Periodic.joined(parts) for parts in zip(*pitches, strict=True))
-    return replace(MeshExcitation.at_mean_load(stiffness, error, load, tuple(shares)), first_slot=first)
+    stiffness, separation = (
+        tuple(Periodic.joined(parts) for parts in zip(*one, strict=True)) for one in zip(*pitches, strict=True)
+    )
+    return MeshExcitation.about_load(stiffness, separation, first)
 
 
 def _one_pitch(
     engagement: Engagement, load: float, number: int, slots: range, grids: dict[bytes, RollGrid]
-) -> tuple[Periodic, ...]:
-    """Transmission error, local stiffness and shares of the slots over base pitch `number` from the pitch point.
+) -> tuple[list[Periodic], list[Periodic]]:
+    """Local stiffness and separation of the tooth pairs in the slots over base pitch `number` from the pitch point.
 
     `grids` keeps contacts and compliances, which are the same in every base pitch.
     """
-    from fegear.contact.transmission_error import contact_changes
-
     pitch = engagement.pair.base_pitch
     # load sharing counts its base pitches from the start of contact, so that this one lies in two of them
     cycles = (number,) if engagement.cycles == 1 else (number, number + 1)
     changes = [*engagement.breaks, *(x for cycle in cycles for x in contact_changes(engagement, load, cycle))]
     cuts = sorted({(b / pitch) % 1.0 for b in changes})
-    known: dict[bytes, tuple[Array, Array, Array, Array]] = {}
+    known: dict[bytes, tuple[Array, Array]] = {}
 
-    def solved(s: Array) -> tuple[Array, Array, Array, Array]:
+    def solved(s: Array) -> tuple[Array, Array]:
+        """K_Sj [N/m] and zeta - W_j / K_Sj [m] of every slot, each of shape (slots, s)."""
         key = s.tobytes()
         if key not in known:
             x = s * pitch
@@ -138,23 +135,44 @@ def _one_pitch(
             if key not in grids:
                 grids[key] = engagement.grid(x)
             state = engagement.solve(grids[key], [load], number - before)
-            share = state.loads[:, :, 0] / load
-            known[key] = (state.transmission_error[:, 0], state.local_stiffness[:, 0], share, state.pair_x)
+            known[key] = _by_slot(state, s, slots, pitch)
         return known[key]
 
-    def fit(function: Callable[[Array], Array]) -> Periodic:
-        return Periodic.fit(function, cuts, tolerance=FIT_SHARED, shortest=SHORTEST)
+    def fit(quantity: int, slot: int, scale: float) -> Periodic:
+        return Periodic.fit(
+            lambda s: solved(s)[quantity][slot], cuts, tolerance=FIT_SHARED, shortest=SHORTEST, scale=scale
+        )
 
-    def share_of(j: int) -> Callable[[Array], Array]:
-        def share(s: Array) -> Array:
-            _, _, shares, x = solved(s)
-            row = np.rint((s + j) - x[0] / pitch).astype(np.intp)
-            inside = (row >= 0) & (row < x.shape[0])
-            return np.where(inside, shares[np.clip(row, 0, x.shape[0] - 1), np.arange(s.size)], 0.0)
+    # Of perfect flanks that deflect in proportion to their load no separation is left but round-off.
+    few = (np.arange(8) + 0.5) / 8
+    deflection = float(np.max([load / solved(np.array([s]))[0].sum() for s in few]))
+    count = range(len(slots))
+    return [fit(0, slot, 0.0) for slot in count], [fit(1, slot, deflection) for slot in count]
 
-        return share
 
-    return fit(lambda s: solved(s)[0]), fit(lambda s: solved(s)[1]), *(fit(share_of(j)) for j in slots)
+def _by_slot(state: Loaded, s: Array, slots: range, pitch: float) -> tuple[Array, Array]:
+    """Local stiffness and separation of the pairs of a state in the order of the slots, (slots, positions) each.
+
+    Raises
+    ------
+    RangeError
+        If a pair carries less as the gears approach: no spring does.
+    """
+    tangent, loads, error = state.pair_tangent[:, :, 0], state.loads[:, :, 0], state.transmission_error[:, 0]
+    if np.any(tangent[loads > 0.0] <= 0.0):
+        raise RangeError(
+            "compliance", "a coupled tooth pair", "carries less load as the gears approach: it is no spring",
+            "leave out neighbour_coupling, or give the gears thicker rims",
+        )  # fmt: skip
+    apart = error - np.divide(loads, tangent, out=np.zeros_like(loads), where=loads > 0.0)
+    own = np.arange(s.size)
+    stiffness, separation = np.zeros((len(slots), s.size)), np.tile(error, (len(slots), 1))
+    for index, j in enumerate(slots):
+        row = np.rint(s + j - state.pair_x[0] / pitch).astype(np.intp)
+        inside = (row >= 0) & (row < loads.shape[0])
+        at = row[inside], own[inside]
+        stiffness[index, inside], separation[index, inside] = tangent[at], apart[at]
+    return stiffness, separation
 
 
 def tooth_pair_at(excitation: MeshExcitation, x: Array, base_pitch: float, number: int = 0) -> tuple[Array, Array]:
