@@ -47,12 +47,15 @@ class MaterialPart(Part):
 
 
 class RackPart(Part):
-    """``rack = { addendum, dedendum, tip_radius }`` in modules, or the name of an ISO 53 profile."""
+    """``rack = { addendum, dedendum, tip_radius, protuberance, ... }`` in modules, or the name of an ISO 53 profile."""
 
     profile: str | None = None
     addendum: Number | None = None
     dedendum: Number | None = None
     tip_radius: Number | Literal["full"] | None = None
+    protuberance: Number = 0.0
+    grinding_allowance: Number = 0.0
+    protuberance_angle: Angle = math.radians(10.0)
 
     @model_validator(mode="before")
     @classmethod
@@ -64,10 +67,11 @@ class RackPart(Part):
         base = BasicRack.named(self.profile or "C", pressure_angle)
         addendum = base.addendum if self.addendum is None else self.addendum
         dedendum = base.dedendum if self.dedendum is None else self.dedendum
+        more = (self.protuberance, self.grinding_allowance, self.protuberance_angle)
         if self.tip_radius == "full":
-            return BasicRack.full_fillet(addendum, dedendum, pressure_angle)
+            return BasicRack.full_fillet(addendum, dedendum, pressure_angle, *more)
         tip_radius = base.tip_radius if self.tip_radius is None else float(self.tip_radius)
-        return BasicRack(addendum, dedendum, tip_radius, pressure_angle)
+        return BasicRack(addendum, dedendum, tip_radius, pressure_angle, *more)
 
 
 class GearPart(Part):

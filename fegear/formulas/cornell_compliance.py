@@ -81,7 +81,7 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
     plane = gear.plane_assumption
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
     root = fillet_parameter(tooth, min(FOUNDATION_TANGENT, tangent_range(tooth)[1]))
-    half, foot = (float(v) for v in tooth.fillet.points(root))
+    half, foot = (float(v) for v in tooth.trochoid.points(root))
     i = beam.integrals(beam.sections(tooth, load, root, nodes), load.y)
     c, s = np.cos(load.angle), np.sin(load.angle)
     flexibility = 1.0 / gear.plane_modulus

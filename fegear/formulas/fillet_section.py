@@ -57,7 +57,7 @@ class FilletPoint:
 
 def fillet_point(tooth: Tooth, parameter: float) -> FilletPoint:
     """Point of the fillet at a parameter of `Tooth.fillet` [rad]."""
-    f = tooth.fillet
+    f = tooth.trochoid
     x, y = f.points(parameter)
     nx, ny = f.normals(parameter)
     return FilletPoint(float(x), float(y), float(fillet_radii(tooth, parameter)), math.atan2(float(ny), float(nx)))
@@ -72,7 +72,7 @@ def fillet_radii(tooth: Tooth, parameter: ArrayLike) -> NDArray[np.float64]:
         If the fillet is a sharp corner: a rack without tip radius whose corner runs on the pitch line.
     """
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        radii = -1.0 / tooth.fillet.curvatures(np.asarray(parameter, dtype=float))
+        radii = -1.0 / tooth.trochoid.curvatures(np.asarray(parameter, dtype=float))
     if not np.all(radii > SHARPEST):
         raise RangeError(
             "fillet radius",
@@ -85,7 +85,7 @@ def fillet_radii(tooth: Tooth, parameter: ArrayLike) -> NDArray[np.float64]:
 
 def tangent_range(tooth: Tooth) -> tuple[float, float]:
     """Smallest and largest tangent angle on the fillet [rad]: at the involute and at the root circle."""
-    f = tooth.fillet
+    f = tooth.trochoid
     angles = [math.atan2(float(n[1]), float(n[0])) for n in (f.normals(f.end), f.normals(f.start))]
     return angles[0], angles[1]
 
@@ -108,7 +108,7 @@ def fillet_parameter(tooth: Tooth, tangent_angle: float) -> float:
             f"{math.degrees(tangent_angle):.6g} deg",
             f"does not occur on the fillet, where it runs from {math.degrees(low):.4g} to {math.degrees(high):.4g} deg",
         )
-    f = tooth.fillet
+    f = tooth.trochoid
 
     def excess(beta: float) -> float:
         return 0.5 * math.pi - beta - float(f.rolling(beta)) - f.space_half_angle - tangent_angle
@@ -142,4 +142,4 @@ def sharpest_fillet_radius(tooth: Tooth) -> float:
 
     rho + v^2 / (cos b (r cos^2 b - v)) grows with the trochoid's parameter b, which is zero on the root circle.
     """
-    return fillet_point(tooth, tooth.fillet.start).fillet_radius
+    return fillet_point(tooth, tooth.trochoid.start).fillet_radius

@@ -65,7 +65,7 @@ def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:
     from scipy.optimize import minimize_scalar
 
     load = load_line(tooth, radius)
-    f = tooth.fillet
+    f = tooth.trochoid
 
     def stress(beta: ArrayLike) -> Array:
         x, y = f.points(beta)

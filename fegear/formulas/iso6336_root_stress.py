@@ -290,7 +290,9 @@ def nominal_root_stress(
 def rack_tooth(tooth: Tooth) -> RackTooth:
     """Return a generated spur tooth as ISO 6336-3 sees it (generating profile shift, thinning included)."""
     r = tooth.rack
-    return RackTooth(tooth.teeth, tooth.generating_shift, r.dedendum, r.tip_radius, r.pressure_angle)
+    return RackTooth(
+        tooth.teeth, tooth.generating_shift, r.dedendum, r.tip_radius, r.pressure_angle, r.residual_undercut
+    )
 
 
 def pair_root_form(pair: GearPair, member: Member) -> RootForm:

@@ -63,7 +63,7 @@ def _above_the_fillet(tooth: Tooth, apex: float) -> FilletPoint | None:
         p = fillet_point(tooth, beta)
         return math.tan(p.tangent_angle) * 2.0 * (apex - p.height) - p.half_thickness
 
-    end, steps = tooth.fillet.end, 200
+    end, steps = tooth.trochoid.end, 200
     last = 0.5 * math.pi - 1e-6
     for i in range(1, steps):
         beta = end + (last - end) * i / steps

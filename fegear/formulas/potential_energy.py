@@ -41,7 +41,7 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
     """
     tooth, nu, e = gear.tooth, gear.material.poisson_ratio, gear.material.young_modulus
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
-    i = beam.integrals(beam.sections(tooth, load, tooth.fillet.start, nodes), load.y)
+    i = beam.integrals(beam.sections(tooth, load, tooth.trochoid.start, nodes), load.y)
     c, s = np.cos(load.angle), np.sin(load.angle)
     flexibility = 1.0 / gear.plane_modulus
     moment = c * c * i.bending_2 - 2.0 * c * s * load.x * i.bending_1 + (s * load.x) ** 2 * i.bending_0

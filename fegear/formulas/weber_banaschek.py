@@ -66,7 +66,7 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
     k = coefficients(gear.material.poisson_ratio, gear.plane_assumption)
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
     half, foot = beam.root_circle_chord(tooth)
-    i = beam.integrals(beam.sections(tooth, load, tooth.fillet.start, nodes), load.apex)
+    i = beam.integrals(beam.sections(tooth, load, tooth.trochoid.start, nodes), load.apex)
     c2, s2 = np.cos(load.angle) ** 2, np.sin(load.angle) ** 2
     arm = (load.apex - foot) / (2.0 * half)
     return ToothCompliance(

@@ -25,6 +25,12 @@ class BasicRack:
         rho_fP, radius of the tool's tip rounding [modules]; it generates the trochoidal fillet.
     pressure_angle : float
         alpha_P [rad].
+    protuberance : float
+        pr, by which the tool's tip stands out of its flank, normal to it [modules].
+    grinding_allowance : float
+        q, stock that is ground off the flanks, but not out of the root [modules]; at most the protuberance.
+    protuberance_angle : float
+        Pressure angle of the protuberance's flank [rad], from 1 deg to 1 deg below the pressure angle.
 
     Raises
     ------
@@ -36,10 +42,13 @@ class BasicRack:
     dedendum: float = 1.25
     tip_radius: float = 0.25
     pressure_angle: float = math.radians(20.0)
+    protuberance: float = 0.0
+    grinding_allowance: float = 0.0
+    protuberance_angle: float = math.radians(10.0)
 
     def __post_init__(self) -> None:
         """Refuse profiles that no tool can have."""
-        for name in ("addendum", "dedendum", "tip_radius", "pressure_angle"):
+        for name in self.__slots__:
             if not math.isfinite(getattr(self, name)):
                 raise GeometryError(f"rack.{name}", getattr(self, name), "must be finite")
         if not math.radians(5.0) <= self.pressure_angle <= math.radians(45.0):
@@ -52,6 +61,7 @@ class BasicRack:
             raise GeometryError("rack.dedendum", self.dedendum, "must be positive (in modules)", "1.25 is usual")
         if self.tip_radius < 0.0:
             raise GeometryError("rack.tip_radius", self.tip_radius, "must not be negative", "0.25 or 0.38 is usual")
+        self._check_protuberance()
         if self.tip_centre_offset < -1e-12:
             fits = self.full_fillet_radius
             if fits <= 0.0:
@@ -71,6 +81,33 @@ class BasicRack:
         if self.tip_radius > self.dedendum:
             raise GeometryError("rack.tip_radius", self.tip_radius, "must not exceed the dedendum")
 
+    def _check_protuberance(self) -> None:
+        for name in ("protuberance", "grinding_allowance"):
+            if getattr(self, name) < 0.0:
+                raise GeometryError(f"rack.{name}", getattr(self, name), "must not be negative")
+        if self.grinding_allowance > self.protuberance:
+            raise GeometryError(
+                "rack.grinding_allowance",
+                self.grinding_allowance,
+                f"is more than the protuberance of {self.protuberance:.6g} modules: grinding would leave a step",
+                "give a protuberance at least as large",
+            )
+        if self.protuberance == 0.0:
+            return
+        degrees = math.degrees(self.protuberance_angle)
+        if not 1.0 - 1e-9 <= degrees <= math.degrees(self.pressure_angle) - 1.0 + 1e-9:
+            raise GeometryError(
+                "rack.protuberance_angle",
+                f"{degrees:.6g} deg",
+                "must lie between 1 deg and 1 deg below the pressure angle",
+                '"10 deg" is usual',
+            )
+        if self.residual_undercut >= self.tip_radius:
+            raise GeometryError(
+                "rack.protuberance", self.protuberance, f"leaves more than the tip radius of {self.tip_radius:.6g}",
+                "lower the protuberance or raise the tip radius",
+            )  # fmt: skip
+
     @classmethod
     def named(cls, name: str, pressure_angle: float = math.radians(20.0)) -> BasicRack:
         """Return the ISO 53 profile A, B, C or D (also "ISO 53 A")."""
@@ -81,23 +118,38 @@ class BasicRack:
 
     @classmethod
     def full_fillet(
-        cls, addendum: float = 1.0, dedendum: float = 1.25, pressure_angle: float = math.radians(20.0)
+        cls,
+        addendum: float = 1.0,
+        dedendum: float = 1.25,
+        pressure_angle: float = math.radians(20.0),
+        protuberance: float = 0.0,
+        grinding_allowance: float = 0.0,
+        protuberance_angle: float = math.radians(10.0),
     ) -> BasicRack:
         """Return the rack whose tip is one arc: the largest tip radius that fits."""
-        probe = cls(addendum, dedendum, 0.0, pressure_angle)
-        return cls(addendum, dedendum, probe.full_fillet_radius, pressure_angle)
+        plain = cls(addendum, dedendum, 0.0, pressure_angle).full_fillet_radius
+        cut = protuberance - grinding_allowance
+        radius = plain + max(cut, 0.0) / (1.0 - math.sin(pressure_angle))
+        return cls(addendum, dedendum, radius, pressure_angle, protuberance, grinding_allowance, protuberance_angle)
+
+    @property
+    def residual_undercut(self) -> float:
+        """s_pr = pr - q, by which the root is cut deeper than the finished flank [modules] (ISO 6336-3, 6.2)."""
+        return self.protuberance - self.grinding_allowance
 
     @property
     def full_fillet_radius(self) -> float:
         """Largest tip radius that fits between the rack's flanks [modules]."""
         a = self.pressure_angle
-        return (math.pi / 4 - self.dedendum * math.tan(a)) * math.cos(a) / (1.0 - math.sin(a))
+        room = math.pi / 4 - self.dedendum * math.tan(a) + self.residual_undercut / math.cos(a)
+        return room * math.cos(a) / (1.0 - math.sin(a))
 
     @property
     def tip_centre_offset(self) -> float:
         """Distance of the tip rounding's centre from the rack tooth's centre line [modules], 0 for a full fillet."""
         a = self.pressure_angle
-        return math.pi / 4 - self.dedendum * math.tan(a) - self.tip_radius * (1.0 - math.sin(a)) / math.cos(a)
+        flank = math.pi / 4 - self.dedendum * math.tan(a) + self.residual_undercut / math.cos(a)
+        return flank - self.tip_radius * (1.0 - math.sin(a)) / math.cos(a)
 
     @property
     def tip_centre_depth(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.errors import GeometryError
 from fegear.geometry.curves import Arc, Curve, Involute, Line, Trochoid
+from fegear.geometry.fillet import ProtuberanceFillet, RackFlankLine, meeting, protuberance_fillet
 from fegear.geometry.involute import inv, polar_angle, roll_of_polar_angle
 from fegear.geometry.rack import BasicRack
 
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 
 #: Half the thickness of the thinnest neck that undercut may leave [modules].
 _THINNEST_NECK = 0.02
-#: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.
-_SLIGHT_UNDERCUT = 1e-4
 #: A rack tip as sharp as this [modules] needs as much room below the pitch line to leave a fillet.
 _SMALLEST_FILLET = 1e-6
 
@@ -242,6 +241,7 @@ class Tooth:
 
     # ---- where fillet and involute meet -----------------------------------------------------------------------
     def _full_trochoid(self) -> Trochoid:
+        angle = self.rack.protuberance_angle if self.rack.residual_undercut > 0.0 else self.rack.pressure_angle
         return Trochoid(
             pitch_radius=self.pitch_radius,
             rounding=self.rack.tip_radius,
@@ -249,56 +249,31 @@ class Tooth:
             centre_height=self.generating_shift - self.rack.tip_centre_depth,
             space_half_angle=math.pi / self.teeth,
             start=0.0,
-            end=math.pi / 2 - self.rack.pressure_angle,
+            end=math.pi / 2 - angle,
         )
 
     @cached_property
-    def _tangent_roll(self) -> float:
-        """Roll angle at which the rack's straight flank ends on the line of action; negative means undercut."""
-        alpha = self.rack.pressure_angle
-        height = self.generating_shift - self.rack.tip_centre_depth - self.rack.tip_radius * math.sin(alpha)
-        return math.tan(alpha) + height / (self.base_radius * math.sin(alpha))
+    def _flank_line(self) -> RackFlankLine:
+        return RackFlankLine(self.rack.pressure_angle, self.pitch_radius, 0.25 * math.pi, self.generating_shift)
 
     @property
     def undercut(self) -> bool:
-        """Whether the rack's tip cuts away part of the involute."""
-        return self._tangent_roll < 0.0
+        """Whether the rack's tip, or its protuberance, cuts away part of the involute."""
+        return self.rack.residual_undercut > 0.0 or self._flank_line.tangent_roll(self.rack) < 0.0
 
     @cached_property
-    def _junction(self) -> tuple[float, float]:
-        """Trochoid parameter and roll angle where fillet and involute meet."""
-        fillet = self._full_trochoid()
-        if not self.undercut:
-            return fillet.end, self._tangent_roll
-        from scipy.optimize import brentq
-
-        def radius(beta: float) -> float:
-            return float(np.hypot(*fillet.points(beta)))
-
-        def outside(beta: float) -> float:
-            x, y = fillet.points(beta)
-            t = math.sqrt(max(math.hypot(x, y) ** 2 / self.base_radius**2 - 1.0, 0.0))
-            return float(np.arctan2(x, y) - (self.base_half_angle - polar_angle(t)))
-
-        slight = -self._tangent_roll
-        if slight < _SLIGHT_UNDERCUT:
-            # The trochoid leaves the involute's other branch at the roll angle -slight along its tangent and meets this
-            # branch where 2 x^3 + 3 x^2 = 1, x = roll / slight; the angles themselves, slight^3, drown in round-off.
-            roll = 0.5 * slight
-            target = float(self.radius_of_roll(roll))
-            below = radius(fillet.start) < target < radius(fillet.end)
-            return (brentq(lambda b: radius(b) - target, 0.0, fillet.end) if below else fillet.end), roll
-        # The trochoid's radius grows with beta; below the base circle there is no involute to meet.
-        low = fillet.start
-        if radius(low) < self.base_radius:
-            low = brentq(lambda b: radius(b) - self.base_radius, low, fillet.end, xtol=1e-15, rtol=1e-15)
-        beta = fillet.end if outside(low) >= 0.0 else brentq(outside, low, fillet.end, xtol=1e-15, rtol=9e-16)
-        return beta, float(self.roll(max(radius(beta), self.base_radius)))
+    def _root(self) -> tuple[Trochoid | ProtuberanceFillet, float]:
+        """The fillet, and the roll angle of the involute at its end."""
+        whole = self._full_trochoid()
+        if self.rack.residual_undercut > 0.0:
+            return protuberance_fillet(whole, self.rack, self._flank_line, self.tip_radius)
+        end, roll = meeting(whole, self._flank_line, self._flank_line.tangent_roll(self.rack))
+        return replace(whole, end=end), roll
 
     @cached_property
     def form_radius(self) -> float:
         """r_Ff, where the involute starts on the generated flank [modules]."""
-        return float(self.radius_of_roll(self._junction[1]))
+        return float(self.radius_of_roll(self._root[1]))
 
     # ---- where the involute ends ---------------------------------------------------------------------------------
     @cached_property
@@ -318,21 +293,18 @@ class Tooth:
     def involute(self) -> Involute:
         """The usable right flank, from form circle to tip (or its rounding, chamfer)."""
         end = float(self.roll(self.involute_tip_radius))
-        return Involute(self.base_radius, self.base_half_angle, self._junction[1], end)
+        return Involute(self.base_radius, self.base_half_angle, self._root[1], end)
 
-    @cached_property
-    def fillet(self) -> Trochoid:
+    @property
+    def fillet(self) -> Trochoid | ProtuberanceFillet:
         """The right fillet, from the root circle to the involute."""
-        whole = self._full_trochoid()
-        return Trochoid(
-            whole.pitch_radius,
-            whole.rounding,
-            whole.centre_offset,
-            whole.centre_height,
-            whole.space_half_angle,
-            0.0,
-            self._junction[0],
-        )
+        return self._root[0]
+
+    @property
+    def trochoid(self) -> Trochoid:
+        """The part of the right fillet that the rack's tip rounding cuts: all of it without protuberance."""
+        fillet = self.fillet
+        return fillet.trochoid if isinstance(fillet, ProtuberanceFillet) else fillet
 
     @cached_property
     def root_land(self) -> Arc | None:

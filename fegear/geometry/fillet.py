@@ -1,0 +1,228 @@
+"""The fillet of a generated tooth: what the rack's tip rounding and its protuberance leave, and where the flank starts.
+
+A rack without protuberance leaves a trochoid that meets the flank smoothly or, with undercut, in a corner. A rack with
+protuberance (ISO 6336-3, 6.2, and ISO 53) cuts deeper than the finished flank by s_pr, its protuberance less the stock
+that grinding takes; its protuberance flank, straight under an angle of its own, generates a second involute that goes
+on where the trochoid ends. Whatever is deepest inside the tooth is its outline.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import GeometryError
+from fegear.geometry.curves import Involute, Trochoid
+from fegear.geometry.involute import inv, polar_angle
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.geometry.rack import BasicRack
+
+    Array = NDArray[np.float64]
+
+#: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.
+_SLIGHT_UNDERCUT = 1e-4
+
+
+@dataclass(frozen=True, slots=True)
+class ProtuberanceFillet:
+    """A trochoid and the involute that the protuberance flank generates, as one curve.
+
+    The parameter is the trochoid's beta [rad] up to its end and goes on with the involute's roll angle.
+
+    Parameters
+    ----------
+    trochoid : Trochoid
+    involute : Involute
+        Of the base circle that belongs to the protuberance angle.
+    """
+
+    trochoid: Trochoid
+    involute: Involute
+
+    @property
+    def start(self) -> float:
+        """Zero, on the root circle."""
+        return self.trochoid.start
+
+    @property
+    def end(self) -> float:
+        """Where the fillet meets the flank."""
+        return self.trochoid.end + self.involute.end - self.involute.start
+
+    def _of_either(self, name: str, parameter: ArrayLike) -> Array:
+        u = np.asarray(parameter, dtype=float)
+        low = getattr(self.trochoid, name)(np.minimum(u, self.trochoid.end))
+        roll = self.involute.start + np.maximum(u - self.trochoid.end, 0.0)
+        return np.where(u <= self.trochoid.end, low, getattr(self.involute, name)(roll))
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """Points [modules], shape (2, N)."""
+        return self._of_either("points", parameter)
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """Unit normals out of the material, shape (2, N)."""
+        return self._of_either("normals", parameter)
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """Curvature [1/modules]; it jumps where the involute begins."""
+        return self._of_either("curvatures", parameter)
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """Arc length per parameter [modules]."""
+        return self._of_either("speed", parameter)
+
+
+@dataclass(frozen=True, slots=True)
+class RackFlankLine:
+    """The involute that one straight flank of a rack generates on a gear, before anything else cuts it.
+
+    Parameters
+    ----------
+    pressure_angle : float
+        Of the straight flank [rad].
+    pitch_radius : float
+        [modules].
+    half_space : float
+        Half the width of the rack's tooth on the reference line, along this flank [modules].
+    shift : float
+        Generating profile shift [modules].
+    """
+
+    pressure_angle: float
+    pitch_radius: float
+    half_space: float
+    shift: float
+
+    @property
+    def base_radius(self) -> float:
+        """Of the involute [modules]."""
+        return self.pitch_radius * math.cos(self.pressure_angle)
+
+    @property
+    def half_angle(self) -> float:
+        """Half the tooth's angle between its two such involutes on their base circle [rad]."""
+        half = 0.5 * math.pi - self.half_space + self.shift * math.tan(self.pressure_angle)
+        return half / self.pitch_radius + float(inv(self.pressure_angle))
+
+    def tangent_roll(self, rack: BasicRack) -> float:
+        """Roll angle at which the flank ends on the line of action at the tip rounding; negative means undercut."""
+        alpha = self.pressure_angle
+        height = self.shift - rack.tip_centre_depth - rack.tip_radius * math.sin(alpha)
+        return math.tan(alpha) + height / (self.base_radius * math.sin(alpha))
+
+    def roll(self, radius: float) -> float:
+        """Roll angle [rad] at a radius [modules], zero inside the base circle."""
+        return math.sqrt(max((radius - self.base_radius) * (radius + self.base_radius), 0.0)) / self.base_radius
+
+    def polar(self, radius: float) -> float:
+        """Angle from the tooth's centre line [rad] at a radius [modules]."""
+        return self.half_angle - float(polar_angle(self.roll(radius)))
+
+
+def meeting(trochoid: Trochoid, flank: RackFlankLine, tangent_roll: float) -> tuple[float, float]:
+    """Trochoid parameter and roll angle where a trochoid and the involute of the flank that it runs into meet.
+
+    Parameters
+    ----------
+    trochoid : Trochoid
+        Up to where the rounding of the rack's tip ends.
+    flank : RackFlankLine
+    tangent_roll : float
+        See `RackFlankLine.tangent_roll`; without undercut the curves touch at the trochoid's end.
+    """
+    from scipy.optimize import brentq
+
+    if tangent_roll >= 0.0:
+        return trochoid.end, tangent_roll
+
+    def radius(beta: float) -> float:
+        return float(np.hypot(*trochoid.points(beta)))
+
+    slight = -tangent_roll
+    if slight < _SLIGHT_UNDERCUT:
+        # The trochoid leaves the involute's other branch at the roll angle -slight along its tangent and meets this
+        # branch where 2 x^3 + 3 x^2 = 1, x = roll / slight; the angles themselves, slight^3, drown in round-off.
+        roll = 0.5 * slight
+        target = flank.base_radius * math.hypot(1.0, roll)
+        below = radius(trochoid.start) < target < radius(trochoid.end)
+        return (brentq(lambda b: radius(b) - target, 0.0, trochoid.end) if below else trochoid.end), roll
+    # The trochoid's radius grows with beta; below the base circle there is no involute to meet.
+    low = trochoid.start
+    if radius(low) < flank.base_radius:
+        low = brentq(lambda b: radius(b) - flank.base_radius, low, trochoid.end, xtol=1e-15, rtol=1e-15)
+    clear = _outside(trochoid, flank, low) >= 0.0
+    beta = (
+        trochoid.end
+        if clear
+        else brentq(lambda b: _outside(trochoid, flank, b), low, trochoid.end, xtol=1e-15, rtol=9e-16)
+    )
+    return beta, flank.roll(radius(beta))
+
+
+def _outside(trochoid: Trochoid, flank: RackFlankLine, beta: float) -> float:
+    """Angle [rad] by which a point of the trochoid lies outside the flank; negative where it is cut into it."""
+    x, y = trochoid.points(beta)
+    return float(np.arctan2(x, y)) - flank.polar(math.hypot(float(x), float(y)))
+
+
+def protuberance_fillet(
+    trochoid: Trochoid, rack: BasicRack, flank: RackFlankLine, tip_radius: float
+) -> tuple[Trochoid | ProtuberanceFillet, float]:
+    """Fillet that a rack with protuberance leaves under the finished flank, and the flank's roll angle at its end.
+
+    Parameters
+    ----------
+    trochoid : Trochoid
+        Up to the protuberance flank.
+    rack : BasicRack
+    flank : RackFlankLine
+        The finished flank.
+    tip_radius : float
+        The flank must be met below it [modules].
+
+    Raises
+    ------
+    GeometryError
+        If the protuberance takes away the whole flank.
+    """
+    from scipy.optimize import brentq
+
+    half_space = rack.tip_centre_offset + rack.tip_radius / math.cos(rack.protuberance_angle)
+    half_space += rack.tip_centre_depth * math.tan(rack.protuberance_angle)
+    second = RackFlankLine(rack.protuberance_angle, flank.pitch_radius, half_space, flank.shift)
+    beta, roll = meeting(trochoid, second, second.tangent_roll(rack))
+    at = float(np.hypot(*trochoid.points(beta)))
+
+    def spare(radius: float) -> float:
+        """How far the protuberance's involute still lies inside the finished flank [rad]."""
+        return flank.polar(radius) - second.polar(radius)
+
+    if at >= flank.base_radius and _outside(trochoid, flank, beta) >= 0.0:
+        # The rounding itself comes out of the flank: from where it is cut deepest, up to there.
+        looked = np.append(np.linspace(0.0, beta, 400)[::-1], 0.5 * math.pi - flank.pressure_angle)
+        cut = max((b for b in looked if b < beta and _outside(trochoid, flank, b) < 0.0), default=None)
+        if cut is None:  # a protuberance lost in round-off
+            plain = replace(trochoid, end=0.5 * math.pi - flank.pressure_angle)
+            end, along = meeting(plain, flank, flank.tangent_roll(rack))
+            return replace(trochoid, end=end), along
+        end = brentq(lambda b: _outside(trochoid, flank, b), cut, beta, xtol=1e-15, rtol=9e-16)
+        return replace(trochoid, end=end), flank.roll(float(np.hypot(*trochoid.points(end))))
+    low = max(at, flank.base_radius, second.base_radius)
+    if spare(tip_radius) >= 0.0 or spare(low) <= 0.0:
+        raise GeometryError(
+            "rack.protuberance",
+            rack.protuberance,
+            "takes away the whole flank"
+            if spare(tip_radius) >= 0.0
+            else "does not reach the flank above its base circle",
+            "lower it, or raise the protuberance angle",
+        )
+    meets = brentq(spare, low, tip_radius, xtol=1e-15, rtol=9e-16)
+    involute = Involute(second.base_radius, second.half_angle, roll, second.roll(meets))
+    return ProtuberanceFillet(replace(trochoid, end=beta), involute), flank.roll(meets)
