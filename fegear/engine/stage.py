@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
+    from fegear.engine.citation import Citation, Cites
     from fegear.engine.executor import Executor
     from fegear.engine.outcome import Outcome
     from fegear.solution_cache import SolutionCache
@@ -122,6 +123,10 @@ def _fine(_scene: Scene, _subject: str) -> None:
     return None
 
 
+def _uncited(_scene: Scene, _subject: str) -> tuple[Citation, ...]:
+    return ()
+
+
 def _unknown(_scene: Scene, _subject: str) -> Forecast:
     return Forecast()
 
@@ -160,6 +165,8 @@ class Stage:
         Effects that must be on; a scene that leaves them off is refused with the remedy.
     forecast : callable
         ``forecast(scene, subject)`` -> `Forecast`, for ``fegear plan``.
+    cites : callable
+        ``cites(scene, subject)`` -> what the result rests on.
     """
 
     name: str
@@ -172,6 +179,7 @@ class Stage:
     effects: tuple[str, ...] = ()
     requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown
+    cites: Cites = _uncited
     inputs: Callable[[Scene, str], Any] | None = None
     compute: Callable[[Any, Upstream, Work], Any] | None = None
     present: Callable[[Any, Any], Outcome] | None = None

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Need, Stage, Task
+from fegear.engine.stage import Forecast, Need, Stage, Task
 from fegear.errors import FegearError, InputError
 from fegear.models.motion import excitations_at
 from fegear.models.train import train_part
@@ -242,6 +243,16 @@ def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     return (Task("gear-train"), Task("loaded-pair", train_part(scene).loaded_pair_of(_mesh(scene))))
 
 
+def _forecast(scene: Scene, _subject: str) -> Forecast:
+    """A motion over the speeds for each point of the chart."""
+    part = scene.case.dynamics
+    if part.chart is None:
+        return Forecast()
+    points = 1 + len(part.chart.amounts) * len(part.chart.lengths)
+    speeds = int(part.speed_values.size)
+    return Forecast({"points": points, "speeds": speeds}, points * (0.1 + speeds * forecasts.seconds_per_speed(scene)))
+
+
 DESIGN_CHART = Stage(
     name="design-chart",
     title="Design chart of tip relief",
@@ -255,5 +266,6 @@ DESIGN_CHART = Stage(
         Need("contact_loss", "reliefs are chosen for the forces at which teeth part"),
         Need("parametric", "relief acts on single tooth pairs, and without it all are one spring"),
     ),
-    forecast=forecasts.design_chart,
+    cites=citing(Citation("lin-townsend-oswald", "design charts of tip relief by dynamic factor")),
+    forecast=_forecast,
 )

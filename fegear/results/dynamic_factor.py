@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Panel, Points
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task
 from fegear.errors import InputError
 from fegear.models.motion import in_time, motion_model
 from fegear.models.neglected_in_motion import motion_remarks
@@ -19,6 +20,8 @@ from fegear.results.gear_train import gear_train, needs_train, the_train
 from fegear.results.mesh_forces import force_history, mesh_force_range, meshes, needs_speeds, pull_remarks
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
@@ -208,6 +211,26 @@ def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
     )
 
 
+def _motion_forecast(scene: Scene, _subject: str) -> Forecast:
+    """One steady motion for each speed; one that does not repeat takes ten times as long, which nobody foresees."""
+    speeds = int(scene.case.dynamics.speed_values.size)
+    settings = {"speeds": speeds, "periods": forecasts.periods(scene), "tolerance": scene.case.dynamics.tolerance}
+    left_out = sum(not scene.case.effects.is_on(effect) for effect in ("contact_loss", "friction"))
+    return Forecast(settings, forecasts.seconds_per_speed(scene) * speeds + 0.1 * left_out)
+
+
+def _factor_forecast(scene: Scene, _name: str) -> Forecast:
+    """Read from the motion, or the linearised train at each speed."""
+    speeds = int(scene.case.dynamics.speed_values.size)
+    return Forecast({"speeds": speeds}, 0.005 if in_time(scene) else 0.02 * speeds)
+
+
+def _motion_sources(scene: Scene, _subject: str) -> Iterator[Citation]:
+    yield Citation("lin-huston-coy", "contact, its loss, and contact on the back flanks", "Eqs. 19 to 24")
+    if scene.case.effects.friction:
+        yield Citation("lin-huston-coy", "tooth friction", "Eqs. 17 and 18")
+
+
 MOTION = Stage(
     name="motion",
     title="Motion over the speeds",
@@ -217,7 +240,8 @@ MOTION = Stage(
     needs=needs_train,
     check=check_motion,
     effects=("contact_loss", "friction", "parametric"),
-    forecast=forecasts.motion,
+    cites=_motion_sources,
+    forecast=_motion_forecast,
 )
 
 DYNAMIC_FACTOR = Stage(
@@ -229,5 +253,6 @@ DYNAMIC_FACTOR = Stage(
     needs=lambda scene, name: (*needs_train(scene, name), *((Task("motion"),) if in_time(scene) else ())),
     check=_check,
     effects=("contact_loss", "friction", "parametric"),
-    forecast=forecasts.dynamic_factor,
+    cites=citing(Citation("lin-townsend-oswald", "dynamic factor over speed")),
+    forecast=_factor_forecast,
 )

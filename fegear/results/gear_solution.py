@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, cast
 
+from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.models.settings import mesh_settings
@@ -15,6 +16,7 @@ from fegear.models.tooth_influence import (
     solve_influence_functions,
 )
 from fegear.results import forecasts
+from fegear.results.sources import RING
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -61,5 +63,6 @@ GEAR_SOLUTION = Stage(
     inputs=gear_to_solve,
     compute=_compute,
     present=_present,
+    cites=citing(*RING),
     forecast=_forecast,
 )

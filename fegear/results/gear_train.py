@@ -9,8 +9,9 @@ import numpy as np
 
 from fegear.dynamics.matrices import static_forces
 from fegear.dynamics.train_mesh import TrainMesh, a_drives
+from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task
 from fegear.models.pair_checks import check_relief
 from fegear.models.train import GearTrain, build_train, check_train, train_part
 from fegear.results import forecasts
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.dynamics.excitation import MeshExcitation
     from fegear.engine.stage import Done, Progress
+
+
+#: One mesh as springs [s]: tooth pairs that stand alone, and pairs that share.
+_ALONE, _SHARED = 0.05, 0.6
 
 
 def the_train(scene: Scene) -> tuple[str, ...]:
@@ -106,6 +111,20 @@ def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome
     return Outcome(data, (), tuple(values), {"inertia": settings}, tuple(remarks))
 
 
+def _forecast(scene: Scene, _subject: str) -> Forecast:
+    """Springs of every mesh."""
+    effects, count = scene.case.effects, len(scene.case.train.mesh) if scene.case.train else 0
+    each = _SHARED if effects.corner_contact or effects.neighbour_coupling else _ALONE
+    return forecasts.constant(each * count)
+
+
+#: What every result of a train rests on.
+TRAIN_SOURCES = citing(
+    Citation("mark", "gear train of rotors, shafts and meshes", "section 2"),
+    Citation("lin-huston-coy", "four-inertia model, damping", "Eqs. 1 to 4 and 16"),
+)
+
+
 GEAR_TRAIN = Stage(
     name="gear-train",
     title="Gear train",
@@ -115,5 +134,6 @@ GEAR_TRAIN = Stage(
     needs=_needs,
     check=_check,
     effects=EFFECTS,
-    forecast=forecasts.gear_train,
+    cites=TRAIN_SOURCES,
+    forecast=_forecast,
 )

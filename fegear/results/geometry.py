@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.geometry import interference
 from fegear.geometry.span import span, span_teeth
+from fegear.results.sources import INVOLUTE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -88,5 +90,6 @@ GEOMETRY = Stage(
     inputs=lambda scene, _subject: Drawing(scene.gears, scene.pairs),
     compute=lambda drawing, _upstream, _work: drawing,
     present=_present,
+    cites=citing(INVOLUTE, Citation("iso-53", "standard basic racks", "Table 1")),
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
 )

@@ -7,16 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage, Subject
+from fegear.engine.stage import Forecast, Stage, Subject
 from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, LINE_OF_ACTION, drawn_loads, needs_pair, path_ends, spur_pairs
+from fegear.results.sources import HERTZ
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
     from fegear.contact import PairHistory
     from fegear.engine.stage import Upstream, Work
     from fegear.models.loaded_pair import LoadedPair
@@ -24,6 +27,10 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _POSITIONS = 200
+
+
+#: One engagement followed over its path [s], and what corners off the path add to it.
+_HISTORY, _HISTORY_CORNERS = 0.006, 0.02
 
 
 @dataclass(frozen=True)
@@ -139,6 +146,14 @@ def _figure(name: str, data: LoadSharingData, load_error: Array | None) -> Figur
     )
 
 
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """One history for each engagement."""
+    each = _HISTORY + (_HISTORY_CORNERS if scene.case.effects.corner_contact else 0.0)
+    return Forecast(
+        {"positions": 200, "loads": forecasts.loads(scene, name)}, each * forecasts.engagements(scene, name)
+    )
+
+
 LOAD_SHARING = Stage(
     name="load-sharing",
     title="Load sharing",
@@ -150,5 +165,6 @@ LOAD_SHARING = Stage(
     present=_present,
     check=check_relief,
     effects=EFFECTS,
-    forecast=forecasts.load_sharing,
+    cites=citing(Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ),
+    forecast=_forecast,
 )

@@ -7,20 +7,21 @@ from typing import TYPE_CHECKING, cast
 
 from fegear.engine.figure import Axis, Mark, few, ramp
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task
 from fegear.models.loaded_pair import LoadedPair, build_loaded_pair, compliance_sources
 from fegear.models.neglected_effects import Neglected, neglected_effects, neglected_remarks
 from fegear.models.pair_checks import check_pair
 from fegear.models.pair_inputs import pair_inputs
-from fegear.results import forecasts
 from fegear.results.gear_solution import needs_solution, solution_of
+from fegear.results.sources import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact.left_out import Answer
+    from fegear.engine.citation import Citation
     from fegear.engine.stage import Upstream, Work
     from fegear.models.pair_inputs import PairInputs
 
@@ -144,6 +145,22 @@ def _present(data: LoadedPairData, inputs: LoadedPairInputs) -> Outcome:
     return Outcome(data, (), (), settings, tuple(dict.fromkeys((*asked.assumed, *neglected))))
 
 
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """Tables over the flank, from the influence functions of both gears or from closed forms."""
+    source = scene.case.pair[name].compliance.source
+    return Forecast({"compliance": source}, 0.1 if source == "fe" else 0.06)
+
+
+def _cites(scene: Scene, name: str) -> Iterator[Citation]:
+    source = scene.case.pair[name].compliance.source
+    if source == "fe":
+        yield from RING
+    yield from CLOSED_FORM_COMPLIANCES.get(source, ())
+    if scene.case.effects.hertz != "none":
+        yield HERTZ
+        yield PATCH
+
+
 LOADED_PAIR = Stage(
     name="loaded-pair",
     title="Compliances of a loaded pair",
@@ -155,5 +172,6 @@ LOADED_PAIR = Stage(
     present=_present,
     check=check_pair,
     effects=EFFECTS,
-    forecast=forecasts.loaded_pair,
+    cites=_cites,
+    forecast=_forecast,
 )

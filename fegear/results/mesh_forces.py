@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel, Points, Stems
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
 from fegear.models.neglected_effects import percent
 from fegear.models.train import train_part
@@ -349,6 +350,21 @@ def _tooth_force_figure(data: ToothForceData) -> Figure:
     )
 
 
+def _spectrum_forecast(scene: Scene, _name: str) -> Forecast:
+    """Harmonics at the one speed, and over all speeds."""
+    part, (meshes, bodies) = scene.case.dynamics, forecasts.sizes(scene)
+    over = part.speed_values.size * min(part.harmonics, 64)
+    seconds = 0.1 + 2e-6 * (over + part.harmonics) * meshes * bodies
+    return Forecast({"harmonics": part.harmonics, "speeds": int(part.speed_values.size)}, seconds)
+
+
+def _force_forecast(scene: Scene, _name: str) -> Forecast:
+    """At least 256 harmonics at one speed."""
+    part = scene.case.dynamics
+    harmonics = max(part.harmonics, 256)
+    return Forecast({"harmonics": harmonics, "positions": part.positions}, 0.06 * harmonics / 256)
+
+
 MESH_FORCE_SPECTRUM = Stage(
     name="mesh-force-spectrum",
     title="Mesh force spectra",
@@ -357,7 +373,8 @@ MESH_FORCE_SPECTRUM = Stage(
     run=_run_spectrum,
     needs=needs_train,
     check=needs_one_speed,
-    forecast=forecasts.mesh_force_spectrum,
+    cites=citing(Citation("mark", "spectra of the mesh force", "Eqs. 3.1 to 3.11")),
+    forecast=_spectrum_forecast,
 )
 
 TOOTH_FORCE = Stage(
@@ -368,5 +385,6 @@ TOOTH_FORCE = Stage(
     run=_run_force,
     needs=needs_train,
     check=needs_one_speed,
-    forecast=forecasts.tooth_force,
+    cites=citing(Citation("mark", "force on a single tooth pair", "Eqs. 3.23 to 3.29")),
+    forecast=_force_forecast,
 )

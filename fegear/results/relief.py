@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.case.design import DesignPart
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Panel, View, Zone
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
 from fegear.models.neglected_effects import design_remarks, neglected_in_design
 from fegear.models.pair_inputs import gear_name, pair_inputs
@@ -363,6 +364,13 @@ def _harris_figure(name: str, data: ReliefData) -> Figure:
     )
 
 
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """Reliefs to grind, fitted by repeated load sharing."""
+    design = scene.case.design
+    grind = len(design.grind) if design else 2
+    return forecasts.constant(0.1 + 0.3 * grind * (1.3 if forecasts.engagements(scene, name) > 1 else 1.0))
+
+
 RELIEF = Stage(
     name="relief",
     title="Relief for least excitation",
@@ -371,5 +379,10 @@ RELIEF = Stage(
     run=_run,
     needs=needs_pair,
     effects=DESIGN_EFFECTS,
-    forecast=forecasts.relief,
+    cites=citing(
+        Citation("mark", "relief that leaves no transmission error at the design load", "Eqs. 4.6 to 4.16, 5.4"),
+        Citation("lin-townsend-oswald", "linear and parabolic tip relief"),
+        Citation("harris", "Harris maps"),
+    ),
+    forecast=_forecast,
 )

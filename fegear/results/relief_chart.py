@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, HeatMap, Mark, Panel, View
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage, Task
+from fegear.engine.stage import Forecast, Stage, Task
 from fegear.results import forecasts
 from fegear.results.loaded_pair import loaded_pair, needs_pair
 from fegear.results.relief import DESIGN_EFFECTS, ReliefData, design_pairs, design_part
@@ -206,6 +207,30 @@ def _robustness_figure(name: str, found: dict[str, Robustness], metric: str) -> 
     )
 
 
+def _chart_forecast(scene: Scene, name: str) -> Forecast:
+    """Candidates of the chart, and the optimiser."""
+    chart = scene.case.design.chart if scene.case.design else None
+    amounts = len((chart and chart.amounts) or ()) or 16
+    lengths = len((chart and chart.lengths) or ()) or 26
+    loads = len((chart and chart.loads) or ()) or forecasts.loads(scene, name)
+    corners = 3.0 if scene.case.effects.corner_contact else 1.0
+    return Forecast(
+        {"candidates": amounts * lengths, "loads": loads}, corners * (0.3 + 1e-4 * amounts * lengths * loads)
+    )
+
+
+def _robustness_forecast(scene: Scene, _name: str) -> Forecast:
+    """Every deviation with every other, for each candidate."""
+    part = scene.case.design.robustness if scene.case.design else None
+    count = len(part.load_factors) * len(part.spacing_errors) * len(part.relief_errors) if part else 15
+    return Forecast({"deviations": count}, 0.005 + 5e-4 * count)
+
+
+_CITES = citing(
+    Citation("lin-townsend-oswald", "charts of tip relief, normalised length and amount, effective error A_e")
+)
+
+
 RELIEF_CHART = Stage(
     name="relief-chart",
     title="Chart of tip reliefs",
@@ -214,7 +239,8 @@ RELIEF_CHART = Stage(
     run=_run_chart,
     needs=needs_pair,
     effects=DESIGN_EFFECTS,
-    forecast=forecasts.relief_chart,
+    cites=_CITES,
+    forecast=_chart_forecast,
 )
 
 
@@ -226,5 +252,6 @@ ROBUSTNESS = Stage(
     run=_run_robustness,
     needs=lambda scene, name: (*needs_pair(scene, name), Task("relief", name)),
     effects=DESIGN_EFFECTS,
-    forecast=forecasts.robustness,
+    cites=_CITES,
+    forecast=_robustness_forecast,
 )

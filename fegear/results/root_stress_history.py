@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
 from fegear.models.pair_checks import check_relief
 from fegear.models.pair_inputs import MEMBERS, gear_name
 from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, needs_pair, path_ends, spur_pairs
+from fegear.results.sources import RING
 from fegear.results.transmission_error import POSITIONS
 
 if TYPE_CHECKING:
@@ -154,6 +156,12 @@ def _figure(name: str, data: RootStressData, gears: Mapping[Member, str]) -> Fig
     )
 
 
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """Kernels of both gears over the path, and those of their neighbours."""
+    seconds = 0.25 if scene.case.effects.corner_contact else 0.12
+    return forecasts.constant(seconds if scene.case.effects.neighbour_coupling else 0.3 * seconds)
+
+
 ROOT_STRESS_HISTORY = Stage(
     name="root-stress-history",
     title="Root stress through the mesh",
@@ -165,5 +173,8 @@ ROOT_STRESS_HISTORY = Stage(
     present=_present,
     check=_check,
     effects=EFFECTS,
-    forecast=forecasts.root_stress_history,
+    cites=citing(
+        *RING, Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")
+    ),
+    forecast=_forecast,
 )

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.case.names import nearest
+from fegear.engine.citation import citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
-from fegear.models.settings import mesh_settings
+from fegear.models.settings import mesh_settings, seconds_of_gear
 from fegear.results import forecasts
+from fegear.results.sources import RING, ROOT_STRESS_FORMULAS
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -168,6 +171,15 @@ def _present(found: tuple[VariantStress, ...], asked: StudyInputs) -> Outcome:
     return Outcome(found, (table,), _values(table, names), settings, remarks)
 
 
+def _forecast(scene: Scene, _subject: str) -> Forecast:
+    """One gear without neighbours and without its error for each combination."""
+    study, settings = scene.case.study, mesh_settings(scene.case.accuracy)
+    if study is None:
+        return Forecast()
+    count = math.prod(len(values or [0]) for values in (study.teeth, study.profile_shift, study.rack_tip_radius))
+    return Forecast({"gears": count, **asdict(settings)}, forecasts.LIBRARIES + 0.3 * count * seconds_of_gear(settings))
+
+
 ROOT_STRESS_STUDY = Stage(
     name="root-stress-study",
     title="Root-stress formulas against finite elements over many gears",
@@ -177,5 +189,6 @@ ROOT_STRESS_STUDY = Stage(
     compute=_compute,
     present=_present,
     check=_check,
-    forecast=forecasts.root_stress_study,
+    cites=citing(*ROOT_STRESS_FORMULAS, *RING),
+    forecast=_forecast,
 )

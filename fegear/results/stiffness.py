@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import (
     Axis,
     Curve,
@@ -24,6 +25,7 @@ from fegear.models.assumed import bore_remarks
 from fegear.models.tooth_influence import solution_settings
 from fegear.results.drawn_gear import deformed_figure, tooth_figure
 from fegear.results.gear_solution import needs_solution
+from fegear.results.sources import HERTZ, PATCH, RING
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -334,6 +336,7 @@ STIFFNESS = Stage(
     compute=_compute,
     present=_present,
     check=_check,
+    cites=citing(*RING, PATCH, HERTZ),
     forecast=_forecast,
 )
 
@@ -444,5 +447,6 @@ ROOT_STRESS = Stage(
     inputs=FilletInputs.of,
     compute=_worst_load,
     present=_present_curves,
+    cites=citing(*RING, Citation("iso-6336-3", "the 30 degree tangent that the place is compared with", "clause 6")),
     forecast=lambda _scene, _name: Forecast({}, 0.01),
 )

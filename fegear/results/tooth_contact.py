@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.case.part import at
+from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
-from fegear.results import forecasts
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -245,6 +245,12 @@ def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
     return Outcome(data, _tables(name, contact, data.bearing), values, settings, remarks)
 
 
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """Contacts at every angle, and their extremes."""
+    positions = scene.case.tooth_contact.positions
+    return Forecast({"positions": positions}, 0.1 + 6e-4 * positions)
+
+
 TOOTH_CONTACT = Stage(
     name="tooth-contact",
     title="Tooth contact analysis",
@@ -255,5 +261,9 @@ TOOTH_CONTACT = Stage(
     present=_present,
     check=_check,
     effects=("misalignment",),
-    forecast=forecasts.tooth_contact,
+    cites=citing(
+        Citation("litvin", "surfaces, tooth contact analysis, edge contact", "Appendices 1 to 5"),
+        Citation("johnson", "contact ellipses"),
+    ),
+    forecast=_forecast,
 )

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Bars, Curve, Figure, Mark, Panel, Points
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Forecast, Stage
 from fegear.results import forecasts
-from fegear.results.gear_train import gear_train, needs_train, the_train
+from fegear.results.gear_train import TRAIN_SOURCES, gear_train, needs_train, the_train
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -225,6 +226,12 @@ def _increments_figure(data: IncrementsData) -> Figure:
     )  # fmt: skip
 
 
+def _increments_forecast(scene: Scene, _subject: str) -> Forecast:
+    """One small solution for each frequency and pair of meshes."""
+    count, (meshes, bodies) = scene.case.dynamics.frequencies.count, forecasts.sizes(scene)
+    return Forecast({"frequencies": count}, 0.005 + 1.3e-6 * count * meshes**2 * bodies)
+
+
 NATURAL_MODES = Stage(
     name="natural-modes",
     title="Natural frequencies and Campbell diagram",
@@ -234,6 +241,7 @@ NATURAL_MODES = Stage(
     inputs=_speeds,
     compute=_modes,
     present=_present_modes,
+    cites=TRAIN_SOURCES,
     forecast=lambda _scene, _subject: forecasts.constant(0.005),
 )
 
@@ -246,5 +254,6 @@ DYNAMIC_INCREMENTS = Stage(
     inputs=lambda scene, _subject: FrequencyInputs(scene.case.dynamics.frequencies.array),
     compute=_increments,
     present=_present_increments,
-    forecast=forecasts.dynamic_increments,
+    cites=citing(Citation("mark", "transmission-error dynamic increment functions", "Eqs. 2.57 to 2.66")),
+    forecast=_increments_forecast,
 )

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.case.part import at
+from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
-from fegear.results import forecasts
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -178,6 +178,12 @@ def _present(data: TransmissibilityData, asked: TransmissibilityInputs) -> Outco
     return Outcome(data, tables, values, settings, remarks)
 
 
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """One response for each frequency."""
+    count = scene.case.transmissibility[name].frequencies
+    return Forecast({"frequencies": count}, 0.005 + 1e-5 * count)
+
+
 TRANSMISSIBILITY = Stage(
     name="transmissibility",
     title="Force transmissibility",
@@ -186,5 +192,8 @@ TRANSMISSIBILITY = Stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
-    forecast=forecasts.transmissibility,
+    cites=citing(
+        Citation("blankenship-singh", "stiffness, transmissibility and modal indices", "Eqs. 2 to 30 and 37 to 39")
+    ),
+    forecast=_forecast,
 )

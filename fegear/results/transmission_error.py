@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel, Stems
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Stage, Subject
+from fegear.engine.stage import Forecast, Stage, Subject
 from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
 from fegear.results.loaded_pair import BASE_PITCH, EFFECTS, drawn_loads, needs_pair, spur_pairs
@@ -17,6 +18,7 @@ from fegear.results.loaded_pair import BASE_PITCH, EFFECTS, drawn_loads, needs_p
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.case.reading import Scene
     from fegear.contact import FourierSeries, Loaded, TransmissionError
     from fegear.contact.error_by_shift import TransmissionErrorShift
     from fegear.engine.stage import Upstream, Work
@@ -31,6 +33,10 @@ POSITIONS = 200
 _BARS = 16
 #: Largest number of base pitches over which rotational harmonics of spacing errors are computed.
 _MOST_CYCLES = 10_000
+
+
+#: One engagement solved over a base pitch [s], and what corners off the path add to it.
+_ERROR, _ERROR_CORNERS = 0.015, 0.1
 
 
 @dataclass(frozen=True)
@@ -273,6 +279,15 @@ def _figures(name: str, data: TransmissionErrorData, errors: Array | None) -> tu
     return over_pitch, harmonics, rotational
 
 
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """One quadrature for each load, and the errors of the nominal one."""
+    each = _ERROR + (_ERROR_CORNERS if scene.case.effects.corner_contact else 0.0)
+    seconds = each * (forecasts.loads(scene, name) + 0.5)
+    if scene.case.effects.spacing_errors:
+        seconds += 0.03
+    return Forecast({"loads": forecasts.loads(scene, name), "harmonics": 64}, seconds)
+
+
 TRANSMISSION_ERROR = Stage(
     name="transmission-error",
     title="Transmission error",
@@ -284,5 +299,10 @@ TRANSMISSION_ERROR = Stage(
     present=_present,
     check=check_relief,
     effects=EFFECTS,
-    forecast=forecasts.transmission_error,
+    cites=citing(
+        Citation("mark", "static transmission error, its Fourier series and the mean compliance", "1.1 to 1.11, A.11"),
+        Citation("lin-townsend-oswald", "effective error A_e"),
+        Citation("harris", "transmission error over the mesh cycle for a family of loads"),
+    ),
+    forecast=_forecast,
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import fegear
+from fegear.engine.citation import bibliography
 from fegear.engine.figure import Figure
 from fegear.output.report.accuracy import accuracy_blocks
 from fegear.output.report.blocks import (
@@ -21,7 +22,6 @@ from fegear.output.report.blocks import (
     Still,
     Values,
 )
-from fegear.output.report.citations import bibliography, citations
 from fegear.output.report.page import Page, Section, write_page
 from fegear.output.report.plots import figures
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from fegear.engine.citation import Citation
     from fegear.engine.outcome import Outcome
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
@@ -65,10 +66,15 @@ def _values(results: Results) -> tuple[Block, ...]:
     return tuple(blocks)
 
 
+def _citations(results: Results, task: Task) -> tuple[Citation, ...]:
+    step = next((step for step in results.plan.steps if step.task == task), None)
+    return tuple(dict.fromkeys(step.stage.cites(results.scene, task.subject))) if step else ()
+
+
 def _sources(results: Results, task: Task) -> tuple[Block, ...]:
     works = bibliography()
     told = [
-        f"{works[c.key].short}{f', {c.where}' if c.where else ''}: {c.what}" for c in citations(results, task)
+        f"{works[c.key].short}{f', {c.where}' if c.where else ''}: {c.what}" for c in _citations(results, task)
     ]  # fmt: skip
     return (Folded("Sources of these results", (Notes(told, "sources"),)),) if told else ()
 
@@ -118,7 +124,7 @@ def _plan(results: Results) -> tuple[Block, ...]:
 
 def _references(results: Results) -> tuple[Block, ...]:
     works = bibliography()
-    cited = {c.key for task in results.outcomes for c in citations(results, task)}
+    cited = {c.key for task in results.outcomes for c in _citations(results, task)}
     return (
         Notes([work.full for key, work in works.items() if key in cited], "references"),
         Paragraph(f"To cite fegear itself: fegear {fegear.__version__}, a workbench for gear teeth, BSD 3-clause."),
