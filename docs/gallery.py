@@ -17,11 +17,11 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from fegear.engine.citation import bibliography
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from pygments.formatters import HtmlFormatter
 
+from fegear.engine.citation import bibliography
 from fegear.plain import code_version, content_key
 
 ROOT = Path(__file__).resolve().parents[1]
