@@ -4,48 +4,52 @@ Q_ij(w) is the dynamic increment of the transmission error of gear pair i per un
 pair j: W_i = Q_ij zeta_j / C_i (W. D. Mark, transfer function method, Eqs. 2.58 to 2.60, for any number of meshes).
 
 Formed as Mark writes them, R (H_11 + H_21) - 1, they lose all digits at low frequency, where the train turns as a
-rigid body: Q_II falls like w or w^2 while its two terms stay at one. Here the angles are divided by the speed ratios,
-which turns the train into an electrical network: every elastic element joins two nodes, and only inertia and dampers
-to ground leak out. Nodes are eliminated one by one (star to mesh) with the leaks kept apart from the links, so that
-no leak is ever lost beside a stiffness (the idea of Grassmann, Taksar and Heyman for Markov chains). Two right-hand
-sides are solved together and the better one is taken entry by entry:
+rigid body: Q_II falls like w or w^2 while its two terms stay at one. Here the train is an electrical network
+(`network`) whose nodes are eliminated one by one towards gear pair j, with the leaks (inertia, dampers to ground) kept
+apart from the links (`star_mesh`; the idea of Grassmann, Taksar and Heyman for Markov chains). What is left is
+Q_jj = -D(mesh j removed)/D, and on the way back the forces of the other pairs follow as products. Long trains and
+single loops cost and store as much as they have bodies.
 
-- *from above* (fast): the teeth push at mesh j with k zeta; good where inertia keeps the train still;
-- *from below* (slow): the train is cut at mesh j and one side turned against the other without strain, their centre of
-  leakage at rest; only leaks act on the difference, so that small results come from small numbers. This is
-  Q_ii = -D(mesh i removed)/D in another form.
+Every number carries a bound of its round-off (`rounded`). Frequencies in doubt are solved again in longer floats, those
+of trains with loops or slipping dampers, if need be, in other orders, from gear pair i to j (forces are reciprocal) and
+from the equations as they stand (`direct`); the best is taken entry by entry.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.matrices import Element, elements
+from fegear.dynamics.direct import lags_by_pivots
+from fegear.dynamics.network import Network
+from fegear.dynamics.star_mesh import RESONANCE, respond
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.dynamics.train import Train
 
-    Array = NDArray[np.float64]
+    Reals = NDArray[np.floating]
     ComplexArray = NDArray[np.complexfloating]
 
-#: What is left of the last pivot beside its terms when a frequency counts as an undamped resonance.
-RESONANCE = 1e-12
-#: Estimated relative round-off beyond which a frequency is solved again with longer floats.
-DOUBTFUL = 1e-12
-#: Frequencies solved together, so that the arrays stay in the cache.
-BLOCK = 1024
+#: Estimated relative round-off beyond which a frequency is solved again.
+DOUBTFUL = 1e-13
+#: Memory that the elimination may take [bytes]; frequencies are solved in blocks that fit.
+MEMORY = 16 * 2**20
+#: Fewest and most frequencies of a block.
+BLOCK = 16, 2048
+#: Other orders of elimination that are tried for frequencies in doubt.
+ORDERS = 5
 
 
-def dynamic_increments(train: Train, omega: ArrayLike) -> ComplexArray:
+def dynamic_increments(train: Train, omega: ArrayLike, sources: Sequence[int] | None = None) -> ComplexArray:
     """Dynamic increment functions of every ordered pair of meshes.
 
     Parameters
@@ -54,10 +58,12 @@ def dynamic_increments(train: Train, omega: ArrayLike) -> ComplexArray:
         The gear train; its meshes carry their mean stiffness 1/C.
     omega : array_like, shape (...)
         Angular frequency [rad/s], zero included (the static limit); negative values give the complex conjugate.
+    sources : sequence of int, optional
+        Meshes j whose transmission error is looked at; all by default.
 
     Returns
     -------
-    ndarray, shape (meshes, meshes, ...)
+    ndarray, shape (meshes, sources, ...)
         Q[i, j]: from the static transmission error of mesh j to C_i times the force of mesh i.
 
     Raises
@@ -69,293 +75,137 @@ def dynamic_increments(train: Train, omega: ArrayLike) -> ComplexArray:
     flat = np.abs(w).ravel()
     if not np.all(np.isfinite(flat)):
         raise RangeError("frequency", "nan or inf", "must be finite")
-    network = _Network.of(train)
     count = len(train.meshes)
-    found = np.empty((count, count, flat.size), dtype=complex)
-    for start in range(0, flat.size, BLOCK):
-        part = slice(start, start + BLOCK)
-        q, doubt = network.increments(flat[part])
-        weak = np.any(doubt > DOUBTFUL * np.abs(q), axis=(0, 1))
-        if np.any(weak):
-            q[:, :, weak] = network.careful(flat[part][weak], q[:, :, weak], doubt[:, :, weak])
-        found[:, :, part] = q
+    chosen = range(count) if sources is None else sources
+    found = np.empty((count, len(chosen), flat.size), dtype=complex)
+    solver = _Solver.of(train)
+    for column, mesh in enumerate(chosen):
+        for places in (np.flatnonzero(flat > 0.0), np.flatnonzero(flat == 0.0)):
+            for part in solver.blocks(places):
+                found[:, column, part] = solver.column(flat[part], mesh)
     negative = (w < 0.0).ravel()
     found[:, :, negative] = np.conj(found[:, :, negative])
-    return found.reshape((count, count, *w.shape))
-
-
-def _spanning_sides(size: int, links: Sequence[Element], weights: Array, cut: int) -> NDArray[np.bool_]:
-    """Nodes on the `a` side of link `cut`, when it is cut out of the stiffest spanning tree that holds it."""
-    order = [cut, *(int(k) for k in np.argsort(-weights, kind="stable") if k != cut)]
-    label = list(range(size))
-    tree: list[Element] = []
-    for k in order:
-        link = links[k]
-        if label[link.a] != label[link.b]:
-            old, new = label[link.b], label[link.a]
-            label = [new if value == old else value for value in label]
-            if k != cut:
-                tree.append(link)
-    side = np.zeros(size, dtype=bool)
-    side[links[cut].a] = True
-    grown = True
-    while grown:
-        grown = False
-        for link in tree:
-            if side[link.a] != side[link.b]:
-                side[[link.a, link.b]] = True
-                grown = True
-    return side
+    return found.reshape((count, len(chosen), *w.shape))
 
 
 @dataclass(frozen=True)
-class _Network:
-    """The train as a network of admittances in the angles divided by the speed ratios.
+class _Column:
+    """Q[i] for one mesh that excites, with its doubt, shape (meshes, frequencies), and where there is none."""
 
-    `ends`: the two nodes of each link; `turns`: what its two nodes add to its approach; `excess`: their sum, zero
-    when the link follows the rigid-body motion.
-    """
+    q: ComplexArray
+    doubt: Reals
+    resonance: NDArray[np.bool_]
+
+    def weak(self) -> NDArray[np.bool_]:
+        """Frequencies at which an entry is in doubt."""
+        return np.asarray(self.resonance | np.any(self.doubt > DOUBTFUL * np.abs(self.q), axis=0))
+
+    def improved(self, places: NDArray[np.bool_], other: _Column) -> _Column:
+        """With what another solution knows better at some frequencies; a resonance is one that both find."""
+        q, doubt, resonance = np.array(self.q), np.array(self.doubt), np.array(self.resonance)
+        closer = (other.doubt < doubt[:, places]) | (resonance[places] & ~other.resonance)
+        q[:, places] = np.where(closer, other.q, q[:, places])
+        doubt[:, places] = np.where(closer, other.doubt, doubt[:, places])
+        resonance[places] &= other.resonance
+        return _Column(q, doubt, resonance)
+
+
+@dataclass(frozen=True)
+class _Solver:
+    """A train's network in plain and in long floats, with the parts of it that do not depend on frequency."""
 
     train: Train
-    links: tuple[Element, ...]
-    leaks: tuple[Element, ...]
-    turns: Array
-    excess: Array
-    sides: NDArray[np.bool_]
+    plain: Network
+    long: Network
+    orders: dict[tuple[int, int], list[tuple[int, tuple[int, ...]]]]
 
     @classmethod
-    def of(cls, train: Train) -> _Network:
-        parts = elements(train)
-        links = tuple(part for part in parts if part.b >= 0)
-        leaks = tuple(part for part in parts if part.b < 0)
-        ratio = train.ratios
-        turns = np.array([[p.radius_a * ratio[p.a], p.radius_b * ratio[p.b]] for p in links]).reshape(-1, 2)
-        geared = np.array([p.geared for p in links], dtype=bool)
-        turns[geared, 1] = -turns[geared, 0]
-        excess = np.where(geared, 0.0, turns.sum(axis=1))
-        stiffness = np.array([p.stiffness for p in links])
-        # a tree is chosen by stiffness: dampers close it only where no spring can
-        weights = stiffness * turns[:, 0] ** 2 if links else stiffness
-        sides = np.array([_spanning_sides(train.size, links, weights, m) for m in range(len(train.meshes))])
-        return cls(train, links, leaks, turns, excess, sides.reshape(-1, train.size))
+    def of(cls, train: Train) -> _Solver:
+        return cls(train, Network.of(train), Network.of(train, np.longdouble), {})
 
-    def careful(self, w: Array, q: ComplexArray, doubt: Array) -> ComplexArray:
-        """Improve increments in doubt: longest floats there are, every node in turn as the root, the best of each.
+    def blocks(self, places: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
+        """Frequencies in blocks that keep within `MEMORY`."""
+        links = sum(len(others) for _, others in self._order(0)) if self.train.meshes else 0
+        each = 24 * (3 * self.plain.size + 3 * links + 2 * len(self.plain.slips) * self.plain.size)
+        size = min(max(MEMORY // each, BLOCK[0]), BLOCK[1])
+        for start in range(0, places.size, size):
+            yield places[start : start + size]
 
-        What cancels is a small force beside larger ones that balance; it is exact when summed from the side of the
-        train where nothing larger flows, and which side that is depends on the root of the elimination.
-        """
-        long = w.astype(np.longdouble)
-        for root in range(self.train.size):
-            other, other_doubt = self.increments(long, root)
-            better = other_doubt < doubt
-            q, doubt = np.where(better, other, q), np.where(better, other_doubt, doubt)
-        return q
+    def _order(self, mesh: int, variant: int = 0) -> list[tuple[int, tuple[int, ...]]]:
+        if (mesh, variant) not in self.orders:
+            self.orders[mesh, variant] = self.plain.order(mesh, variant)
+        return self.orders[mesh, variant]
 
-    def _ground(self) -> int:
-        """The node with the most damping to ground, or the heaviest one."""
-        held = np.zeros(self.train.size)
-        for part in self.leaks:
-            held[part.a] += part.damping * self.train.ratios[part.a] ** 2
-        return int(np.argmax(held if held.any() else self.train.inertia * self.train.ratios**2))
-
-    def _rank(self, root: int) -> NDArray[np.intp]:
-        """Order of elimination: nodes far from the root first."""
-        distance = np.full(self.train.size, self.train.size)
-        distance[root] = 0
-        for _ in range(self.train.size):
-            for link in self.links:
-                near = min(distance[link.a], distance[link.b]) + 1
-                distance[link.a], distance[link.b] = min(distance[link.a], near), min(distance[link.b], near)
-        rank = np.empty(self.train.size, dtype=np.intp)
-        rank[np.argsort(-distance, kind="stable")] = np.arange(self.train.size)
-        return rank
-
-    def increments(self, w: NDArray[np.floating], root: int = -1) -> tuple[ComplexArray, Array]:
-        """Q[i, j, frequency] and an estimate of its round-off, in the precision of `w`."""
-        kind = np.result_type(w.dtype, np.complex64)
-        size, meshes = self.train.size, len(self.train.meshes)
-        yq = [link.stiffness + 1j * w * link.damping for link in self.links]
-        Y = np.zeros((w.size, size, size), dtype=kind)
-        leak = np.zeros((w.size, size), dtype=kind)
-        leak += -np.square(w)[:, None] * self.train.inertia * self.train.ratios**2
-        for part in self.leaks:
-            leak[:, part.a] += 1j * w * part.damping * self.train.ratios[part.a] ** 2
-        for link, y, turn, over in zip(self.links, yq, self.turns, self.excess, strict=True):
-            Y[:, link.a, link.b] -= y * turn[0] * turn[1]
-            Y[:, link.b, link.a] -= y * turn[0] * turn[1]
-            leak[:, link.a] += y * turn[0] * over
-            leak[:, link.b] += y * turn[1] * over
-        rhs, total, start = self._right_hand_sides(w, yq, leak)
-        lag, doubt = _eliminate(Y, leak, rhs, total, w, self._rank(self._ground() if root < 0 else root))
-
-        found = np.empty((meshes, meshes, w.size), dtype=kind)
-        error = np.empty((meshes, meshes, w.size))
-        for i in range(meshes):
-            a, b, turn = self.links[i].a, self.links[i].b, self.turns[i, 0]
-            for j in range(meshes):
-                own = 1.0 if i == j else 0.0
-                above = turn * lag[:, a, b, j] - own
-                crossing = np.zeros(w.size, dtype=kind)
-                if i != j and self.sides[j, a] != self.sides[j, b]:
-                    crossing = turn * (start[:, j, a] - start[:, j, b])
-                k = meshes + j
-                below = turn * lag[:, a, b, k] + crossing
-                # the one whose terms are smaller has the smaller round-off
-                doubt_above = abs(turn) * doubt[:, a, b, j] + own
-                doubt_below = abs(turn) * doubt[:, a, b, k] + np.abs(crossing)
-                best = np.where(doubt_below <= doubt_above, below, above)
-                stiffness_i, stiffness_j = self.links[i].stiffness, self.links[j].stiffness
-                scale = (yq[i] / stiffness_i) * (stiffness_j / yq[j])
-                found[i, j] = best * scale
-                error[i, j] = np.finfo(w.dtype).eps * np.minimum(doubt_below, doubt_above) * np.abs(scale)
-        return found, error
-
-    def _right_hand_sides(
-        self, w: NDArray[np.floating], yq: list[ComplexArray], leak: ComplexArray
-    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Columns from above, then from below; what each column sums to; and the strain-free turns of the cut train."""
-        size, meshes = self.train.size, len(self.train.meshes)
-        rhs = np.zeros((w.size, size, 2 * meshes), dtype=leak.dtype)
-        start = np.zeros((w.size, meshes, size), dtype=leak.dtype)
-        inertia = -np.square(w)[:, None] * self.train.inertia * self.train.ratios**2
-        slips = self._slipping(w)
-        for j in range(meshes):
-            link, turn = self.links[j], self.turns[j]
-            rhs[:, link.a, j] += yq[j] * turn[0]
-            rhs[:, link.b, j] += yq[j] * turn[1]
-            side = self.sides[j]
-            near, far = leak[:, side].sum(axis=1), leak[:, ~side].sum(axis=1)
-            both = near + far
-            still = both == 0.0
-            scale = np.where(still, 1.0, both * turn[0])
-            start[:, j, side] = np.where(still, 0.5 / turn[0], far / scale)[:, None]
-            start[:, j, ~side] = np.where(still, -0.5 / turn[0], -near / scale)[:, None]
-            k = meshes + j
-            rhs[:, :, k] = -inertia * start[:, j]
-            heavy = inertia[:, side].sum(axis=1), inertia[:, ~side].sum(axis=1)
-            for y, row in slips:
-                # the slip is formed from the *other* leaks: its own part cancels exactly, and would leave only noise
-                on, off = row[side].sum(), row[~side].sum()
-                slip = on * heavy[1] - off * heavy[0]
-                for y2, row2 in slips:
-                    slip = slip + y2 * row2.sum() * (on * row2[~side].sum() - off * row2[side].sum())
-                rhs[:, :, k] -= (y * slip / scale)[:, None] * row
-            for n, other in enumerate(self.links):
-                if n == j or not other.geared or side[other.a] == side[other.b]:
-                    continue
-                # another path across the cut, strained by the turn
-                force = yq[n] * self.turns[n, 0] ** 2 * (start[:, j, other.a] - start[:, j, other.b])
-                rhs[:, other.a, k] -= force
-                rhs[:, other.b, k] += force
-        return rhs, np.zeros((w.size, 2 * meshes), dtype=leak.dtype), start
-
-    def _slipping(self, w: NDArray[np.floating]) -> list[tuple[ComplexArray, Array]]:
-        """Dampers that the rigid-body motion works: admittance, and slip per turn of each node."""
-        found = []
-        for link, turn in zip(self.links, self.turns, strict=True):
-            if not link.geared:
-                row = np.zeros(self.train.size)
-                row[link.a], row[link.b] = turn
-                found.append((1j * w * link.damping, row))
-        for part in self.leaks:
-            row = np.zeros(self.train.size)
-            row[part.a] = self.train.ratios[part.a]
-            found.append((1j * w * part.damping, row))
-        return found
-
-
-def _eliminate(
-    Y: ComplexArray,
-    leak: ComplexArray,
-    rhs: ComplexArray,
-    total: ComplexArray,
-    w: NDArray[np.floating],
-    rank: NDArray[np.intp],
-) -> tuple[ComplexArray, Array]:
-    """Solve (diag(leak + sum Y) - Y) q = rhs for every frequency, leaks and sums kept apart from the links.
-
-    `total` is the exact sum of each right-hand side over the nodes. The last node takes what is left of it or its own
-    entry, whichever lost less to cancellation. Returned are the differences q_a - q_b, formed from what pulls at each
-    node and never by subtraction, shape (frequencies, size, size, columns), and the size of the terms they came from.
-    """
-    frequencies, size, _ = Y.shape
-    row = np.arange(frequencies)
-    left = np.broadcast_to(np.arange(size), (frequencies, size)).copy()
-    bound, rhs_bound, total_bound = np.abs(leak), np.abs(rhs), np.abs(total)
-    steps = []
-    for _ in range(size - 1):
-        pivot = leak + Y.sum(axis=2)
-        terms = bound + np.abs(Y).sum(axis=2)
-        quality = np.abs(pivot) / np.where(terms == 0.0, 1.0, terms)
-        # in the given order, unless a node is near a resonance of its own
-        chosen = np.argmax(np.where(quality >= 0.5, 1.0 + size - rank[left], quality), axis=1)
-        keep = np.argsort(np.arange(left.shape[1])[None, :] == chosen[:, None], axis=1, kind="stable")[:, :-1]
-        S = pivot[row, chosen]
-        S = np.where(S == 0.0, np.maximum(1e-16 * terms[row, chosen], np.finfo(float).tiny), S)
-        y = Y[row[:, None], chosen[:, None], keep]
-        b = rhs[row, chosen]
-        leak_p, bound_p = leak[row, chosen], bound[row, chosen]
-        steps.append(
-            (
-                left[row, chosen],
-                np.take_along_axis(left, keep, axis=1),
-                y,
-                b,
-                leak_p,
-                S,
-                rhs_bound[row, chosen],
-                bound_p,
+    def column(self, w: Reals, mesh: int) -> ComplexArray:
+        """Q[i, mesh] at frequencies that are all positive or all zero, shape (meshes, frequencies)."""
+        found = self._solve(self.plain, w, mesh)
+        weak = found.weak()
+        if np.any(weak):
+            found = found.improved(weak, self._careful(w[weak].astype(np.longdouble), mesh))
+        if np.any(found.resonance):
+            where = float(w[found.resonance][0]) / (2.0 * math.pi)
+            raise RangeError(
+                "frequency",
+                f"{where:.9g} Hz",
+                "is a natural frequency of the train without damping: the response has no bound",
+                "give the train damping or leave this frequency out",
             )
-        )
-        part = y / S[:, None]
-        Y = Y[row[:, None, None], keep[:, :, None], keep[:, None, :]] + part[:, :, None] * y[:, None, :]
-        index = np.arange(keep.shape[1])
-        Y[:, index, index] = 0.0
-        leak = np.take_along_axis(leak, keep, axis=1) + part * leak_p[:, None]
-        bound = np.take_along_axis(bound, keep, axis=1) + np.abs(part) * bound_p[:, None]
-        b_bound = rhs_bound[row, chosen]
-        rhs = rhs[row[:, None], keep] + part[:, :, None] * b[:, None, :]
-        rhs_bound = rhs_bound[row[:, None], keep] + np.abs(part)[:, :, None] * b_bound[:, None, :]
-        total = total - b * (leak_p / S)[:, None]
-        total_bound = total_bound + b_bound * np.abs(leak_p / S)[:, None]
-        left = np.take_along_axis(left, keep, axis=1)
-    q = np.zeros((frequencies, size, rhs.shape[2]), dtype=rhs.dtype)
-    last, limit = leak[:, 0], bound[:, 0]
-    resonant = (np.abs(last) < RESONANCE * limit) & (w > 0.0)
-    if np.any(resonant):
-        where = float(w[resonant][0]) / (2.0 * math.pi)
-        raise RangeError(
-            "frequency",
-            f"{where:.9g} Hz",
-            "is a natural frequency of the train without damping: the response has no bound",
-            "give the train damping or leave this frequency out",
-        )
-    own = total_bound <= rhs_bound[:, 0]
-    load = np.where(own, total, rhs[:, 0])
-    floor = np.where(last == 0.0, 1.0, last)[:, None]
-    held = np.where(last == 0.0, 0.0, 1.0)[:, None]
-    q[row, left[:, 0]] = held * load / floor
-    # sizes of the terms behind each result: round-off times these bounds its error
-    behind = np.zeros(q.shape, dtype=bound.dtype)
-    behind[row, left[:, 0]] = held * np.where(own, total_bound, rhs_bound[:, 0]) / np.abs(floor)
-    lag = np.zeros((frequencies, size, size, rhs.shape[2]), dtype=rhs.dtype)
-    doubt = np.zeros(lag.shape, dtype=bound.dtype)
-    for node, others, y, b, leak_p, S, b_bound, leak_bound in reversed(steps):
-        known, known_behind = q[row[:, None], others], behind[row[:, None], others]
-        pair = row[:, None, None], others[:, :, None], others[:, None, :]
-        size_y, size_S = np.abs(y), np.abs(S)[:, None]
-        value = (b + np.einsum("fa,fam->fm", y, known)) / S[:, None]
-        value_behind = (b_bound + np.einsum("fa,fam->fm", size_y, known_behind)) / size_S
-        # the difference to each node known already: from what pulls at this one, or by subtraction
-        pull = b[:, None, :] - leak_p[:, None, None] * known
-        pull = (pull + np.einsum("fb,fbam->fam", y, lag[pair])) / S[:, None, None]
-        pull_behind = b_bound[:, None, :] + leak_bound[:, None, None] * known_behind
-        pull_behind = (pull_behind + np.einsum("fb,fbam->fam", size_y, doubt[pair])) / size_S[:, :, None]
-        plain_behind = value_behind[:, None, :] + known_behind
-        across = np.where(pull_behind <= plain_behind, pull, value[:, None, :] - known)
-        least = np.minimum(pull_behind, plain_behind)
-        lag[row[:, None], node[:, None], others], lag[row[:, None], others, node[:, None]] = across, -across
-        doubt[row[:, None], node[:, None], others] = doubt[row[:, None], others, node[:, None]] = least
-        q[row, node], behind[row, node] = value, value_behind
-    return lag, doubt
+        return found.q
+
+    def _careful(self, w: Reals, mesh: int) -> _Column:
+        """Longer floats, then other orders of elimination, the way from i to j, and pivots; the best of each."""
+        best = self._solve(self.long, w, mesh)
+        if self.plain.branches_only or not np.all(w > 0.0):
+            return best
+        tries: list[Callable[[Reals], _Column]] = [
+            partial(self._solve, self.long, mesh=mesh, variant=order) for order in range(1, ORDERS + 1)
+        ]
+        tries += [partial(self._back, i=i, mesh=mesh) for i in range(len(self.train.meshes)) if i != mesh]
+        tries.append(partial(self._by_pivots, mesh=mesh))
+        for attempt in tries:
+            left = best.weak()
+            if not np.any(left):
+                break
+            best = best.improved(left, attempt(w[left]))
+        return best
+
+    def _back(self, w: Reals, i: int, mesh: int) -> _Column:
+        """Entry i of a column by the way from mesh i to the one that excites: their forces are the same."""
+        back = self._solve(self.long, w, i)
+        scale = self._scale(w, i, mesh) / self._scale(w, mesh, i)
+        q, doubt = np.zeros_like(back.q), np.full(back.doubt.shape, np.inf)
+        q[i], doubt[i] = back.q[mesh] * scale, back.doubt[mesh] * np.abs(scale)
+        return _Column(q, doubt, back.resonance)
+
+    def _scale(self, w: Reals, i: int, j: int) -> ComplexArray:
+        """From the difference of approach at mesh i per force at mesh j to Q_ij: k_j (1 + i w c_i / k_i)."""
+        one, other = self.train.meshes[i], self.train.meshes[j]
+        return np.asarray(other.stiffness * (1.0 + 1j * w * (one.damping / one.stiffness)))
+
+    def _solve(self, network: Network, w: Reals, mesh: int, variant: int = 0) -> _Column:
+        count, eps = len(self.train.meshes), float(np.finfo(w.dtype).eps)
+        q = np.zeros((count, w.size), dtype=complex)
+        doubt = np.zeros((count, w.size))
+        link = network.links[mesh]
+        if link.a == link.b:
+            # rigid shafts join the two gears: the teeth take all of the error
+            q[mesh] = -1.0
+            return _Column(q, doubt, np.zeros(w.size, dtype=bool))
+        response = respond(network, w, mesh, self._order(mesh, variant))
+        q[mesh], doubt[mesh] = response.own.value, eps * response.own.error
+        for i, lag in response.lags.items():
+            scale = self._scale(w, i, mesh)
+            q[i], doubt[i] = lag.value * scale, eps * lag.error * np.abs(scale)
+        return _Column(q, doubt, response.resonance)
+
+    def _by_pivots(self, w: Reals, mesh: int) -> _Column:
+        """Increments as Mark writes them, R H - 1, from the equations as they stand."""
+        lags = lags_by_pivots(self.long, w.astype(np.longdouble), mesh)
+        scales = [self._scale(w, i, mesh) for i in range(len(lags))]
+        q = np.stack([lag.value * scale for lag, scale in zip(lags, scales, strict=True)])
+        error = np.stack([lag.error * np.abs(scale) for lag, scale in zip(lags, scales, strict=True)])
+        q[mesh] -= 1.0
+        error[mesh] += 1.0
+        resonance = RESONANCE * error[mesh] >= 1.0 + np.abs(q[mesh])
+        doubt = (np.finfo(w.dtype).eps * error).astype(float)
+        return _Column(q.astype(complex), doubt, np.asarray(resonance))

@@ -109,9 +109,9 @@ def mesh_force_spectrum(
     for j, error in enumerate(errors):
         frequencies[j] = n[:, None] * mesh[j][None, :] / step
         own = present[j]
-        q = dynamic_increments(train, 2.0 * math.pi * frequencies[j, own])
+        q = dynamic_increments(train, 2.0 * math.pi * frequencies[j, own], [j])
         alpha = error.fourier(n[own] * error.pitches // step) * np.exp(2j * math.pi * n[own] * ahead[j] / step)
-        coefficients[:, j, own] = stiffness * q[:, j] * alpha[:, None]
+        coefficients[:, j, own] = stiffness * q[:, 0] * alpha[:, None]
     mean = static_forces(train) if static is None else np.array(static, dtype=float)
     orders = n / step
     for array in (speed, orders, present, frequencies, coefficients, mean):

@@ -85,7 +85,7 @@ def _terms(
     """Harmonic numbers and complex coefficients of `dynamic_error`."""
     n = np.arange(1, harmonics * errors[j].pitches + 1)
     omega = 2.0 * math.pi * n * float(train.mesh_frequencies(speed)[j]) / errors[j].pitches
-    transfer = dynamic_increments(train, omega)[i, j]
+    transfer = dynamic_increments(train, omega, [j])[i, 0]
     return n, (1.0 + transfer if i == j else transfer) * errors[j].fourier(n)
 
 

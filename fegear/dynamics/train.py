@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -10,151 +11,34 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.dynamics.part_formulas import disc_inertia, mesh_damping, shaft_damping, shaft_stiffness
+from fegear.dynamics.parts import Body, Damper, Mesh, Shaft, Torque
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
 
-#: Largest mismatch of the speed ratios around a closed loop, and of base radii against tooth numbers.
-RATIO_TOLERANCE = 1e-6
+__all__ = [
+    "Body",
+    "Damper",
+    "Mesh",
+    "Shaft",
+    "Torque",
+    "Train",
+    "disc_inertia",
+    "joined_bodies",
+    "joined_inertias",
+    "mesh_damping",
+    "shaft_damping",
+    "shaft_stiffness",
+]
+
 #: Largest unbalanced torque, as a share of the torques applied.
 TORQUE_TOLERANCE = 1e-6
-
-
-def _positive(key: str, value: float, *, infinite: bool = False, zero: bool = False) -> None:
-    if math.isnan(value) or value < 0.0 or (value == 0.0 and not zero) or (math.isinf(value) and not infinite):
-        raise InputError(key, value, "must be " + ("zero or positive" if zero else "positive and finite"))
-
-
-@dataclass(frozen=True, slots=True)
-class Body:
-    """A rigid body that turns about a fixed axis.
-
-    Parameters
-    ----------
-    name : str
-        Name that shafts, gear pairs, dampers and torques refer to.
-    inertia : float
-        Mass moment of inertia about the axis [kg m^2].
-    """
-
-    name: str
-    inertia: float
-
-    def __post_init__(self) -> None:
-        _positive(f"body.{self.name}.inertia", self.inertia)
-
-
-@dataclass(frozen=True, slots=True)
-class Shaft:
-    """A shaft that couples the rotation of two bodies on one axis.
-
-    Parameters
-    ----------
-    name, a, b : str
-        Its name and the two bodies.
-    stiffness : float
-        Torsional stiffness [N m/rad]; infinity joins the two bodies into one.
-    damping : float
-        Viscous damping [N m s/rad].
-    """
-
-    name: str
-    a: str
-    b: str
-    stiffness: float
-    damping: float = 0.0
-
-    def __post_init__(self) -> None:
-        key = f"shaft.{self.name}"
-        if self.stiffness == 0.0:
-            raise InputError(
-                f"{key}.stiffness",
-                0.0,
-                "couples nothing",
-                "leave the shaft out, or make it a damper between the bodies",
-            )
-        _positive(f"{key}.stiffness", self.stiffness, infinite=True)
-        _positive(f"{key}.damping", self.damping, zero=True)
-
-
-@dataclass(frozen=True, slots=True)
-class Mesh:
-    """A gear pair in mesh between two bodies.
-
-    The teeth approach each other by ``radius_a theta_a + radius_b theta_b``; the signs of the radii say which senses
-    of rotation close the loaded flanks (an external pair whose bodies share one sense of rotation has equal signs).
-
-    Parameters
-    ----------
-    name, a, b : str
-        Its name and the two bodies.
-    radius_a, radius_b : float
-        Signed base radii [m].
-    teeth_a, teeth_b : int
-        Numbers of teeth.
-    stiffness : float
-        Mean mesh stiffness along the line of action [N/m].
-    damping : float
-        Mesh damping on the rate of approach [N s/m].
-    backlash : float
-        Backlash along the line of action [m]; infinity means that the back flanks never touch.
-    """
-
-    name: str
-    a: str
-    b: str
-    radius_a: float
-    radius_b: float
-    teeth_a: int
-    teeth_b: int
-    stiffness: float
-    damping: float = 0.0
-    backlash: float = math.inf
-
-    def __post_init__(self) -> None:
-        key = f"mesh.{self.name}"
-        _positive(f"{key}.radius_a", abs(self.radius_a))
-        _positive(f"{key}.radius_b", abs(self.radius_b))
-        _positive(f"{key}.stiffness", self.stiffness)
-        _positive(f"{key}.damping", self.damping, zero=True)
-        _positive(f"{key}.backlash", self.backlash, infinite=True, zero=True)
-        for side, teeth in (("a", self.teeth_a), ("b", self.teeth_b)):
-            if teeth < 1:
-                raise InputError(f"{key}.teeth_{side}", teeth, "must be a whole number of at least 1")
-        ratio = abs(self.radius_a / self.radius_b) * self.teeth_b / self.teeth_a
-        if abs(ratio - 1.0) > RATIO_TOLERANCE:
-            raise InputError(
-                key,
-                f"base radii {abs(self.radius_a):.6g} m and {abs(self.radius_b):.6g} m",
-                f"must be in the ratio of the tooth numbers {self.teeth_a} and {self.teeth_b}",
-            )
-
-
-@dataclass(frozen=True, slots=True)
-class Damper:
-    """A viscous damper between two bodies, or from one body to the ground (``b`` is None); damping in N m s/rad."""
-
-    a: str
-    b: str | None
-    damping: float
-
-    def __post_init__(self) -> None:
-        _positive(f"damper.{self.a}.{self.b or 'ground'}.damping", self.damping, zero=True)
-
-
-@dataclass(frozen=True, slots=True)
-class Torque:
-    """A constant torque on a body [N m], positive in the sense of its rotation angle."""
-
-    body: str
-    value: float
-
-    def __post_init__(self) -> None:
-        if not math.isfinite(self.value):
-            raise InputError(f"torque.{self.body}", self.value, "must be finite")
 
 
 @dataclass(frozen=True)
@@ -183,9 +67,8 @@ class Train:
         if not self.bodies:
             raise InputError("train.bodies", 0, "must name at least one body")
         for kind, parts in (("body", self.bodies), ("shaft", self.shafts), ("mesh", self.meshes)):
-            names = [part.name for part in parts]
-            for name in names:
-                if names.count(name) > 1:
+            for name, count in Counter(part.name for part in parts).items():
+                if count > 1:
                     raise InputError(f"train.{kind}", name, "is used twice", "give each its own name")
         self._check_references()
         if not self.meshes and not self.shafts and len(self.bodies) > 1:
@@ -221,15 +104,9 @@ class Train:
     @cached_property
     def dof(self) -> dict[str, int]:
         """Degree of freedom of each body; bodies joined by rigid shafts share one."""
-        group = {body.name: index for index, body in enumerate(self.bodies)}
-        for shaft in self.shafts:
-            if math.isinf(shaft.stiffness):
-                old, new = group[shaft.b], group[shaft.a]
-                group = {name: (new if value == old else value) for name, value in group.items()}
-        order = {value: index for index, value in enumerate(dict.fromkeys(group.values()))}
-        return {name: order[value] for name, value in group.items()}
+        return joined_bodies(self.bodies, self.shafts)
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of degrees of freedom."""
         return max(self.dof.values()) + 1
@@ -262,28 +139,23 @@ class Train:
         for mesh in self.meshes:
             sign = -1 if mesh.radius_a * mesh.radius_b > 0.0 else 1
             links.append((mesh.name, self.dof[mesh.a], self.dof[mesh.b], Fraction(sign * mesh.teeth_a, mesh.teeth_b)))
+        at: list[list[tuple[str, int, Fraction]]] = [[] for _ in range(self.size)]
+        for name, a, b, ratio in links:
+            at[a].append((name, b, ratio))
+            at[b].append((name, a, 1 / ratio))
         ratios: dict[int, Fraction] = {0: Fraction(1)}
-        waiting = links
-        while waiting:
-            rest = []
-            for link in waiting:
-                name, a, b, ratio = link
-                if a in ratios and b in ratios:
-                    if ratios[b] != ratios[a] * ratio:
-                        around = float(ratios[a] * ratio / ratios[b])
-                        raise InputError(
-                            name, f"{around:.6g}", "is the speed ratio around the loop that it closes: the loop locks",
-                            "make the ratios around the loop multiply to 1 (mind the signs of the base radii)",
-                        )  # fmt: skip
-                elif a in ratios:
+        reached = [0]
+        for a in reached:
+            for name, b, ratio in at[a]:
+                if b not in ratios:
                     ratios[b] = ratios[a] * ratio
-                elif b in ratios:
-                    ratios[a] = ratios[b] / ratio
-                else:
-                    rest.append(link)
-            if len(rest) == len(waiting):
-                break
-            waiting = rest
+                    reached.append(b)
+                elif ratios[b] != ratios[a] * ratio:
+                    raise InputError(
+                        name, f"{float(ratios[a] * ratio / ratios[b]):.6g}",
+                        "is the speed ratio around the loop that it closes: the loop locks",
+                        "make the ratios around the loop multiply to 1 (mind the signs of the base radii)",
+                    )  # fmt: skip
         if len(ratios) < self.size:
             lost = [body.name for body in self.bodies if self.dof[body.name] not in ratios]
             raise InputError(
@@ -327,41 +199,35 @@ class Train:
         raise InputError("mesh", name, "is no gear pair of this train")
 
 
+def joined_bodies(bodies: Sequence[Body], shafts: Iterable[Shaft]) -> dict[str, int]:
+    """Number of the degree of freedom of each body, by name; rigid shafts give their bodies the same one."""
+    root = {body.name: body.name for body in bodies}
+
+    def find(name: str) -> str:
+        while root[name] != name:
+            root[name] = root[root[name]]
+            name = root[name]
+        return name
+
+    for shaft in shafts:
+        if math.isinf(shaft.stiffness):
+            root[find(shaft.b)] = find(shaft.a)
+    order: dict[str, int] = {}
+    return {body.name: order.setdefault(find(body.name), len(order)) for body in bodies}
+
+
+def joined_inertias(bodies: Sequence[Body], shafts: Iterable[Shaft]) -> dict[str, float]:
+    """Inertia that turns with each body [kg m^2], by name: its own and those that rigid shafts join to it.
+
+    Damping ratios of shafts and gear pairs (TM-100180, 14 to 16) refer to these.
+    """
+    number = joined_bodies(bodies, shafts)
+    total = dict.fromkeys(number.values(), 0.0)
+    for body in bodies:
+        total[number[body.name]] += body.inertia
+    return {name: total[index] for name, index in number.items()}
+
+
 def _readonly(array: Array) -> Array:
     array.flags.writeable = False
     return array
-
-
-def disc_inertia(radius: float, width: float, density: float, bore_radius: float = 0.0) -> float:
-    """Inertia of a solid or bored disc [kg m^2]: pi rho b (R^4 - r^4) / 2."""
-    _positive("radius", radius)
-    _positive("width", width)
-    _positive("density", density)
-    _positive("bore_radius", bore_radius, zero=True)
-    if bore_radius >= radius:
-        raise InputError("bore_radius", bore_radius, f"must be smaller than the radius {radius:g} m")
-    return math.pi * density * width * (radius**4 - bore_radius**4) / 2.0
-
-
-def shaft_stiffness(length: float, diameter: float, shear_modulus: float, bore_diameter: float = 0.0) -> float:
-    """Torsional stiffness of a round shaft [N m/rad]: J G / l with J = pi D^4/32 (TM-100180, 12 and 13)."""
-    _positive("length", length)
-    _positive("diameter", diameter)
-    _positive("shear_modulus", shear_modulus)
-    _positive("bore_diameter", bore_diameter, zero=True)
-    if bore_diameter >= diameter:
-        raise InputError("bore_diameter", bore_diameter, f"must be smaller than the diameter {diameter:g} m")
-    return math.pi * (diameter**4 - bore_diameter**4) / 32.0 * shear_modulus / length
-
-
-def shaft_damping(ratio: float, stiffness: float, inertia_a: float, inertia_b: float) -> float:
-    """Shaft damping from a damping ratio: 2 zeta sqrt(K / (1/J_a + 1/J_b)) (TM-100180, 14 and 15) [N m s/rad]."""
-    return 2.0 * ratio * math.sqrt(stiffness / (1.0 / inertia_a + 1.0 / inertia_b))
-
-
-def mesh_damping(
-    ratio: float, stiffness: float, radius_a: float, radius_b: float, inertia_a: float, inertia_b: float
-) -> float:
-    """Mesh damping from a damping ratio (TM-100180, 16, repaired) [N s/m]."""
-    mass = inertia_a * inertia_b / (radius_a**2 * inertia_b + radius_b**2 * inertia_a)
-    return 2.0 * ratio * math.sqrt(stiffness * mass)

@@ -18,6 +18,7 @@ from fegear.dynamics.train import (
     Torque,
     Train,
     disc_inertia,
+    joined_inertias,
     mesh_damping,
     shaft_damping,
     shaft_stiffness,
@@ -163,7 +164,8 @@ def build_train(scene: Scene, stiffness: Mapping[str, float] | None = None) -> T
     """
     part = train_part(scene)
     bodies = tuple(_body(scene, name, body) for name, body in part.body.items())
-    inertias = {body.name: body.inertia for body in bodies}
+    rigid = [Shaft(name, shaft.a, shaft.b, math.inf) for name, shaft in part.shaft.items() if shaft.rigid]
+    inertias = joined_inertias(bodies, rigid)
     shafts = tuple(_shaft(name, shaft, inertias) for name, shaft in part.shaft.items())
     meshes = []
     for name, mesh in part.mesh.items():

@@ -8,9 +8,20 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fegear.dynamics.increments import dynamic_increments
+from fegear.dynamics.lin_model import FourInertia
 from fegear.dynamics.matrices import damping_matrix, mass_matrix, static_forces, stiffness_matrix
 from fegear.dynamics.modes import damped_eigenvalues, modes
-from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train
+from fegear.dynamics.train import (
+    Body,
+    Damper,
+    Mesh,
+    Shaft,
+    Torque,
+    Train,
+    joined_inertias,
+    mesh_damping,
+    shaft_damping,
+)
 
 
 def powers(low, high):
@@ -128,3 +139,61 @@ def test_matrices_are_those_of_a_passive_system(train):
     assert (np.diff(found.frequencies) >= 0.0).all()
     assert (found.mesh_energy >= 0.0).all()
     assert (found.mesh_energy.sum(axis=1) <= 1.0 + 1e-9).all()
+
+
+@st.composite
+def stiff_rows(draw):
+    """Rows of bodies on shafts, some of them rigid, with gear pairs between: inertias, kinds, damping ratio."""
+    n = draw(st.integers(3, 7))
+    inertias = [10.0 ** draw(st.floats(-5.0, 0.0)) for _ in range(n)]
+    kinds = [draw(st.sampled_from(["rigid", "elastic", "gears"])) for _ in range(n - 2)]
+    kinds.insert(draw(st.integers(0, n - 2)), "gears")
+    return inertias, kinds, draw(st.floats(0.01, 0.5))
+
+
+def row(inertias, kinds, ratio, stiffness):
+    """The row with this stiffness for rigid shafts; damping ratios refer to the bodies that rigid shafts join."""
+    bodies = tuple(Body(str(i), j) for i, j in enumerate(inertias))
+    rigid = [Shaft(f"s{i}", str(i), str(i + 1), math.inf) for i, kind in enumerate(kinds) if kind == "rigid"]
+    joined = joined_inertias(bodies, rigid)
+    shafts, meshes = [], []
+    for i, kind in enumerate(kinds):
+        a, b = str(i), str(i + 1)
+        if kind == "gears":
+            c = mesh_damping(ratio, 3e8, 0.04, 0.05, joined[a], joined[b])
+            meshes.append(Mesh(f"m{i}", a, b, 0.04, 0.05, 40, 50, 3e8, c))
+        else:
+            k = 1e5 if kind == "elastic" else stiffness
+            c = shaft_damping(ratio, k, joined[a], joined[b]) if kind == "elastic" else 0.0
+            shafts.append(Shaft(f"s{i}", a, b, k, c))
+    return Train(bodies, tuple(shafts), tuple(meshes))
+
+
+@given(stiff_rows())
+def test_rigid_shafts_are_the_limit_of_ever_stiffer_ones(drawn):
+    """Increments, natural frequencies and damped eigenvalues; and the same as one body of the joined inertia."""
+    inertias, kinds, ratio = drawn
+    rigid = row(inertias, kinds, ratio, math.inf)
+    omega = 2.0 * np.pi * np.array([1e-2, 10.0, 1e3])
+    exact = dynamic_increments(rigid, omega)
+    errors = [
+        float(np.max(np.abs(dynamic_increments(row(inertias, kinds, ratio, k), omega) / exact - 1.0)))
+        for k in (1e14, 1e16)
+    ]
+    assert errors[1] <= 2e-2 * errors[0] + 1e-12
+    assert errors[0] < 1e-4
+    # by hand: bodies with rigid shafts between them as one
+    heads = [0, *(i + 1 for i, kind in enumerate(kinds) if kind != "rigid")]
+    sums = [sum(inertias[a:b]) for a, b in zip(heads, [*heads[1:], len(inertias)], strict=True)]
+    one = row(sums, [kind for kind in kinds if kind != "rigid"], ratio, math.inf)
+    assert dynamic_increments(one, omega) == pytest.approx(exact, rel=1e-12)
+    assert modes(one).frequencies == pytest.approx(modes(rigid).frequencies, rel=1e-12)
+    assert np.abs(damped_eigenvalues(one)) == pytest.approx(np.abs(damped_eigenvalues(rigid)), rel=1e-9)
+
+
+@given(powers(-5.0, 0.0), powers(-5.0, 0.0), powers(-5.0, 0.0), powers(-5.0, 0.0), st.floats(0.01, 0.9))
+def test_a_damping_ratio_is_that_of_the_mode_when_shafts_are_rigid(motor, gear_1, gear_2, load, ratio):
+    """Motor, gear, gear and load on rigid shafts swing as one oscillator, with the damping ratio that was asked for."""
+    system = FourInertia(motor, gear_1, gear_2, load, math.inf, math.inf, 0.04, 0.05, 40, 50, 1000.0, 0.05, ratio)
+    swinging = damped_eigenvalues(system.train(3e8))[-1]
+    assert -swinging.real / abs(swinging) == pytest.approx(ratio, rel=1e-9)

@@ -1,11 +1,14 @@
 """What a train refuses, how it merges and counts, its matrices, modes and Campbell diagram."""
 
 import math
+import tomllib
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from fegear.case.reading import build_scene
 from fegear.dynamics.matrices import damping_matrix, mass_matrix, static_forces, stiffness_matrix
 from fegear.dynamics.modes import campbell, damped_eigenvalues, modes
 from fegear.dynamics.train import (
@@ -21,6 +24,7 @@ from fegear.dynamics.train import (
     shaft_stiffness,
 )
 from fegear.errors import InputError, RangeError
+from fegear.models.train import build_train
 
 
 def mesh(name="m", a="a", b="b", ra=0.05, rb=0.1, za=20, zb=40, k=1e8, **more):
@@ -163,3 +167,15 @@ def test_parts_from_dimensions():
         disc_inertia(0.1, 0.02, 7850.0, 0.1)
     with pytest.raises(InputError, match="smaller than the diameter"):
         shaft_stiffness(0.1, 0.02, 80e9, 0.02)
+
+
+def test_rigid_shafts_of_a_case_join_bodies_in_damping_ratios():
+    """Motor and load on rigid shafts: one oscillator, damped by the ratio that the case asks of its gear pair."""
+    case = tomllib.loads((Path(__file__).parents[2] / "cases" / "lin_dynamic_factor.toml").read_text())
+    for shaft in case["train"]["shaft"].values():
+        for key in set(shaft) - {"a", "b"}:
+            del shaft[key]
+        shaft["rigid"] = True
+    (mesh,) = case["train"]["mesh"].values()
+    swinging = damped_eigenvalues(build_train(build_scene(case, "rigid", Path())))[-1]
+    assert -swinging.real / abs(swinging) == pytest.approx(mesh["damping_ratio"], rel=1e-9)

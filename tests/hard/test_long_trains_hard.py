@@ -1,0 +1,243 @@
+"""Long trains: as exact as short ones, in time and memory that grow with their length and no faster."""
+
+import math
+import tracemalloc
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fegear.dynamics import increments
+from fegear.dynamics.increments import dynamic_increments
+from fegear.dynamics.matrices import elements
+from fegear.dynamics.network import Network
+from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Train
+from fegear.errors import RangeError
+
+
+def row_of_bodies(count, meshes, *, zeta=0.01, seed=0, spread=0.5, powers=(4.0, 6.0)):
+    """Bodies in a row, gear pairs spread evenly among shafts of `powers` decades of stiffness."""
+    rng = np.random.default_rng(seed)
+    bodies = tuple(Body(f"b{i}", 1e-3 * 10 ** rng.uniform(-spread, spread)) for i in range(count))
+    at = {int((m + 0.5) * (count - 1) / meshes) for m in range(meshes)}
+    shafts, pairs = [], []
+    for i in range(count - 1):
+        ends = f"b{i}", f"b{i + 1}"
+        k = 10 ** rng.uniform(*powers)
+        if i in at:
+            c = 2.0 * zeta * math.sqrt(3e8 * 0.2)
+            pairs.append(Mesh(f"m{i}", *ends, 0.04, 0.05 * (-1) ** i, 40, 50, 3e8, c))
+        else:
+            shafts.append(Shaft(f"s{i}", *ends, k, 2.0 * zeta * math.sqrt(k * 1e-3)))
+    return Train(bodies, tuple(shafts), tuple(pairs))
+
+
+def exact_in_a_row(train, omega, digits=40):
+    """Q of every mesh from the equations of a row of bodies, solved as a band of three in many digits."""
+    with mpmath.workdps(digits):
+        n, w, mp = train.size, mpmath.mpf(omega), mpmath.mpf
+        main = [-w * w * mp(float(j)) for j in train.inertia]
+        side = [mp(0)] * (n - 1)
+        rows = [None] * len(train.meshes)
+        for e in elements(train):
+            y = mp(e.stiffness) + mpmath.mpc(0, 1) * w * mp(e.damping)
+            ra, rb = mp(e.radius_a), mp(e.radius_b)
+            assert e.b == e.a + 1
+            main[e.a] += y * ra * ra
+            main[e.b] += y * rb * rb
+            side[e.a] += y * ra * rb
+            if e.mesh >= 0:
+                rows[e.mesh] = (e.a, ra, rb, y, mp(e.stiffness))
+        pivots, factors = [main[0]], []
+        for i in range(n - 1):
+            factors.append(side[i] / pivots[i])
+            pivots.append(main[i + 1] - factors[i] * side[i])
+        q = np.empty((len(rows), len(rows)), dtype=complex)
+        for j, (at, ra, rb, _, k) in enumerate(rows):
+            x = [mp(0)] * n
+            x[at], x[at + 1] = ra * k, rb * k
+            for i in range(n - 1):
+                x[i + 1] -= factors[i] * x[i]
+            x[n - 1] /= pivots[n - 1]
+            for i in range(n - 2, -1, -1):
+                x[i] = x[i] / pivots[i] - factors[i] * x[i + 1]
+            for i, (to, ta, tb, y, own) in enumerate(rows):
+                q[i, j] = complex((ta * x[to] + tb * x[to + 1]) * y / own - (1 if i == j else 0))
+        return q
+
+
+@pytest.mark.parametrize(
+    ("count", "meshes", "zeta", "powers"),
+    [
+        (200, 1, 0.01, (4.0, 6.0)),
+        (200, 1, 0.0, (4.0, 6.0)),
+        (60, 12, 0.0, (4.0, 6.0)),
+        (60, 12, 0.01, (1.0, 14.0)),
+    ],
+    ids=["damped", "undamped", "many meshes", "soft and stiff"],
+)
+def test_increments_of_long_trains_keep_all_digits(count, meshes, zeta, powers):
+    """Every entry within 1e-12 of its exact value, from rigid-body motion through all the modes to beyond them."""
+    train = row_of_bodies(count, meshes, zeta=zeta, powers=powers)
+    omega = 2.0 * math.pi * np.array([1e-6, 0.1, 31.0, 137.0, 999.0, 2718.0, 1e5])
+    found = dynamic_increments(train, omega)
+    for n, w in enumerate(omega):
+        exact = exact_in_a_row(train, w)
+        # far beyond a train's modes what reaches from end to end underflows
+        error = np.abs(found[:, :, n] - exact) / np.maximum(np.abs(exact), 1e-250)
+        assert error.max() < 1e-12, (w, error.max())
+
+
+def exact(train, omega, digits=40):
+    """Q of every mesh from A H = U and W = (g H - zeta)/C of any train, in many digits."""
+    with mpmath.workdps(digits):
+        mp, w, n, m = mpmath.mpf, mpmath.mpf(float(omega)), train.size, len(train.meshes)
+        A, G = mpmath.matrix(n, n), mpmath.matrix(m, n)
+        for i in range(n):
+            A[i, i] = -w * w * mp(float(train.inertia[i]))
+        for e in elements(train):
+            y = mpmath.mpc(mp(e.stiffness), w * mp(e.damping))
+            ends = [(e.a, mp(e.radius_a))] + ([(e.b, mp(e.radius_b))] if e.b >= 0 else [])
+            for p, rp in ends:
+                if e.mesh >= 0:
+                    G[e.mesh, p] = rp
+                for q, rq in ends:
+                    A[p, q] += y * rp * rq
+        found = np.empty((m, m), dtype=complex)
+        for j, source in enumerate(train.meshes):
+            h = mpmath.lu_solve(A, G[j, :].T * mp(source.stiffness))
+            for i, mesh in enumerate(train.meshes):
+                lag = 1 + mpmath.mpc(0, w * mp(mesh.damping) / mp(mesh.stiffness))
+                found[i, j] = complex((G[i, :] * h)[0] * lag - (1 if i == j else 0))
+        return found
+
+
+def ring(count, closed, k=1.0):
+    """Equal discs in a row, or in a ring, with shafts of unit stiffness and one gear pair in the middle."""
+    bodies = tuple(Body(str(i), 1.0) for i in range(count))
+    middle = (count - 1) // 2
+    shafts = [Shaft(f"s{i}", str(i), str(i + 1), k) for i in range(count - 1) if i != middle]
+    if closed:
+        shafts.append(Shaft("back", str(count - 1), "0", k))
+    return Train(bodies, tuple(shafts), (Mesh("g", str(middle), str(middle + 1), 1.0, -1.0, 20, 20, k),))
+
+
+@pytest.mark.parametrize("closed", [False, True], ids=["row", "ring"])
+@pytest.mark.parametrize("count", [8, 10, 20])
+def test_partial_resonances_cost_no_digits(count, closed):
+    """Equal discs at w^2 = k/J: a disc on its shaft swings at its own frequency, its pivot is exactly zero.
+
+    Natural frequencies of the whole are elsewhere: at w^2 = 2 - 2 cos(pi n/count), or cos(2 pi n/count) for the ring.
+    """
+    train = ring(count, closed)
+    omega = np.array([1.0, 1.0 + 1e-9, 1.0 - 1e-5, 1.3])
+    found = dynamic_increments(train, omega)
+    for n, w in enumerate(omega):
+        assert found[0, 0, n] == pytest.approx(exact(train, w)[0, 0], rel=1e-12)
+
+
+@pytest.mark.parametrize("closed", [False, True], ids=["row", "ring"])
+def test_resonances_of_long_trains_without_damping_are_refused(closed):
+    train = ring(24 if closed else 21, closed)
+    with pytest.raises(RangeError, match="natural frequency of the train without damping"):
+        dynamic_increments(train, [0.7, 1.0])
+    beside = 1.0 + 1e-9
+    assert dynamic_increments(train, beside)[0, 0] == pytest.approx(exact(train, beside)[0, 0], rel=1e-6)
+
+
+def test_a_mode_that_leaves_the_gear_pair_alone_is_no_resonance_of_it():
+    """24 equal discs at w^2 = k/J: the pair in the middle turns as one in that mode."""
+    train = ring(24, closed=False)
+    assert dynamic_increments(train, 1.0)[0, 0] == pytest.approx(exact(train, 1.0 + 1e-13)[0, 0], abs=1e-11)
+
+
+@st.composite
+def tangled(draw):
+    """Small trains with loops of shafts, several slipping dampers, very light gears and very stiff shafts."""
+    n = draw(st.integers(3, 7))
+    decades = st.floats(-12.0, 0.0)
+    bodies = tuple(Body(str(i), 10.0 ** draw(decades)) for i in range(n))
+    shafts, meshes = [], []
+    for i in range(1, n):
+        other = draw(st.integers(max(0, i - 2), i - 1))
+        if i == 1 or draw(st.booleans()):
+            za, zb = draw(st.sampled_from([(16, 64), (64, 16), (32, 32)]))
+            meshes.append(Mesh(f"m{i}", str(other), str(i), za / 1024, zb / 1024, za, zb,
+                               10.0 ** draw(st.floats(6.0, 9.5)), draw(st.sampled_from([0.0, 10.0, 1e3]))))  # fmt: skip
+        else:
+            k = 10.0 ** draw(st.floats(1.0, 14.0))
+            shafts.append(Shaft(f"s{i}", str(other), str(i), k, draw(st.sampled_from([0.0, 0.1]))))
+    speeds = Train(bodies, tuple(shafts), tuple(meshes)).exact_ratios
+    pairs = [(a, b) for a in range(n) for b in range(a) if speeds[a] == speeds[b]]
+    if pairs:
+        for number, (a, b) in enumerate(draw(st.lists(st.sampled_from(pairs), max_size=2))):
+            shafts.append(Shaft(f"loop{number}", str(a), str(b), 10.0 ** draw(st.floats(2.0, 7.0)), 0.1))
+    any_two = st.lists(st.integers(0, n - 1), min_size=2, max_size=2, unique=True)
+    slips = tuple(
+        Damper(str(a), str(b), 10.0 ** draw(st.floats(-3.0, 2.0))) for a, b in draw(st.lists(any_two, max_size=3))
+    )
+    ground = tuple(Damper(str(i), None, 10.0 ** draw(st.floats(-4.0, 2.0))) for i in range(n) if draw(st.booleans()))
+    return Train(bodies, tuple(shafts), tuple(meshes), slips + ground)
+
+
+@given(tangled(), st.floats(-6.0, 6.0))
+def test_increments_of_tangled_trains_equal_forty_digits(train, power):
+    """Every entry, as far as the numbers of the train themselves hold: near a resonance their last place counts."""
+    omega = 2.0 * math.pi * 10.0**power
+    wanted = exact(train, omega)
+    found = dynamic_increments(train, omega)
+    moved = np.abs(exact(train, omega * (1.0 + 1e-9)) - wanted) * 1e9
+    assert (np.abs(found - wanted) <= 1e-12 * np.abs(wanted) + 1e-14 * moved).all()
+
+
+# ---- growth ---------------------------------------------------------------------------------------------------------
+def peak_memory(train, frequencies):
+    """Largest memory in use on the way [bytes], beside what is handed back."""
+    omega = 2.0 * math.pi * np.logspace(1, 4, frequencies)
+    tracemalloc.start()
+    try:
+        q = dynamic_increments(train, omega)
+        return tracemalloc.get_traced_memory()[1] - q.nbytes
+    finally:
+        tracemalloc.stop()
+
+
+def test_memory_is_bounded_whatever_the_train_and_the_frequencies():
+    """Blocks are sized to memory: 200 bodies took 4 GB, and 60 bodies with 30 gear pairs more than there was."""
+    assert peak_memory(row_of_bodies(200, 1), 500) < 50e6
+    assert peak_memory(row_of_bodies(200, 1), 2000) < 50e6
+    assert peak_memory(row_of_bodies(30, 10), 250) < 50e6
+
+
+def test_elimination_fills_nothing_in_on_rows_and_one_link_a_node_on_loops():
+    """The work and the memory are the links at each node when its turn comes: one on a row, two on a loop."""
+    row = row_of_bodies(200, 30)
+    for mesh in (0, 15, 29):
+        steps = Network.of(row).order(mesh)
+        assert sorted(node for node, _ in steps) == sorted(set(range(200)) - set(row_ends(row, mesh)))
+        assert all(len(others) == 1 for _, others in steps)
+    assert all(len(others) <= 2 for _, others in Network.of(ring(200, closed=True)).order(0))
+
+
+def row_ends(train, mesh):
+    return train.dof[train.meshes[mesh].a], train.dof[train.meshes[mesh].b]
+
+
+def test_blocks_leave_no_trace(monkeypatch):
+    """One frequency at a time, in blocks of sixteen or all at once: the same to the last places."""
+    train = row_of_bodies(40, 3, zeta=0.0, seed=3)
+    omega = 2.0 * math.pi * np.logspace(1, 4, 40)
+    whole = dynamic_increments(train, omega)
+    monkeypatch.setattr(increments, "MEMORY", 1)
+    parts = dynamic_increments(train, omega)
+    single = np.stack([dynamic_increments(train, w) for w in omega], axis=-1)
+    assert parts == pytest.approx(whole, rel=1e-13)
+    assert single == pytest.approx(whole, rel=1e-13)
+
+
+def test_one_source_is_a_column_of_all():
+    train = row_of_bodies(30, 5)
+    omega = np.array([0.0, 300.0, -300.0, 4e4])
+    assert dynamic_increments(train, omega, [3, 1]) == pytest.approx(dynamic_increments(train, omega)[:, [3, 1]])
