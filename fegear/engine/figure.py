@@ -488,6 +488,8 @@ class Figure:
         In place of `panels`, where there is a choice; all have the same number of panels.
     columns : int
         How many panels paper has side by side.
+    most_views : int
+        How many views paper has at most, evenly chosen.
     field : MeshField, optional
         What it shows a part of.
     """
@@ -498,6 +500,7 @@ class Figure:
     panels: tuple[Panel, ...] = ()
     views: tuple[View, ...] = ()
     columns: int = 1
+    most_views: int = 4
     field: MeshField | None = None
 
     def __post_init__(self) -> None:

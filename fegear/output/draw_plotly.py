@@ -274,6 +274,10 @@ def _layout(figure: Figure, members: list[list[int]], count: int, names: int) ->
                    "traceorder": "normal"},
         "shapes": [], "annotations": [], "meta": {"names": names, "inner": inner, "beside": _BESIDE},
     }  # fmt: skip
+    if any(
+        isinstance(i, HeatMap) and not np.isfinite(np.asarray(i.z)).all() for p in figure.all_panels for i in p.items
+    ):
+        made["plot_bgcolor"] = f"{LIGHT['grey']}66"
     upper = 1.0
     for number, panel in enumerate(panels, start=1):
         lower = max(0.0, upper - heights[number - 1] / inner)

@@ -35,8 +35,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 DPI = 150
-#: Views that paper has side by side.
-_MOST_VIEWS = 4
+#: Logarithmic axes that span less have plain numbers.
+_FEW_DECADES = 100.0
+#: So many views stand two by two, others three abreast.
+_SQUARE = 4
 #: Inches: a panel alone, panels above each other, and around them.
 _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
 _ALONE, _STACKED = 3.4, 2.3
@@ -92,7 +94,7 @@ def draw_pictures(figure: Figure, folder: Path, kind: str = "png") -> Iterator[P
         yield Picture(path, view.label, figure.caption)
     if not alone:
         path = folder / f"{figure.key}.{kind}"
-        chosen = few(len(figure.views), most=_MOST_VIEWS)
+        chosen = few(len(figure.views), most=figure.most_views)
         _draw(figure, tuple(figure.views[i] for i in chosen), path)
         yield Picture(path, figure.title, figure.caption)
 
@@ -117,7 +119,7 @@ def _draw(figure: Figure, views: tuple[View, ...], path: Path) -> None:
         for view in views
         for panel in view.panels
     ]
-    columns = figure.columns if len(views) == 1 else min(len(views), 2 if len(views) == _MOST_VIEWS else 3)
+    columns = figure.columns if len(views) == 1 else min(len(views), 2 if len(views) == _SQUARE else 3)
     with rc_context(_SETTINGS):
         made = Canvas()
         FigureCanvasAgg(made)
@@ -306,12 +308,18 @@ def _legend_entries(panels: Sequence[Panel]) -> dict[str, Any]:
 
 def _ranges(axes: Any, panel: Panel) -> None:
     """Ranges of both axes, and whole numbers at those that have no others."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
+
     sides: tuple[tuple[Which, Axis], ...] = (("x", panel.x), ("y", panel.y))
     for which, axis in sides:
         if axis.whole:
-            from matplotlib.ticker import MultipleLocator
-
             getattr(axes, f"{which}axis").set_major_locator(MultipleLocator(panel.whole_step(which)))
+        low, high = panel.extent(which)
+        if axis.log and low > 0.0 and high < _FEW_DECADES * low:
+            here = getattr(axes, f"{which}axis")
+            here.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0)))
+            here.set_major_formatter(FuncFormatter(lambda value, _place: f"{value:g}"))
+            here.set_minor_formatter(NullFormatter())
     if panel.limits:
         axes.set_ylim(*panel.limits)
     elif panel.y.zero:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.case.names import nearest
 from fegear.engine.citation import citing
+from fegear.engine.figure import Axis, Curve, Figure, HeatMap, Mark, Panel, Points, View
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
@@ -18,12 +19,24 @@ from fegear.results import forecasts
 from fegear.results.sources import RING, ROOT_STRESS_FORMULAS
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fegear.case.reading import Scene
     from fegear.case.study import StudyPart
     from fegear.contact.root_stress_study import VariantStress
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.settings import MeshSettings
     from fegear.geometry import Gear
+
+    Array = NDArray[np.float64]
+
+
+_KEYS = ("teeth", "profile_shift", "rack_tip_radius", "load_position")
+#: Ratios beyond 1 -+ this have the full colour; height of a row of tiles; steps and end of the histogram.
+_FULL, _TILE, _BIN, _WIDEST = 0.4, 0.1, 0.05, 2.0
+#: Formulas stand so far apart beside each other over the number of teeth.
+_APART = 1.025
+_RATIO = "root stress, formula / FE"
 
 
 def _gear(scene: Scene) -> str:
@@ -168,7 +181,84 @@ def _present(found: tuple[VariantStress, ...], asked: StudyInputs) -> Outcome:
     )
     remarks = (about, *(f"{s.name} ({s.citation}): {s.compared}." for s in ROOT_STRESS_SOURCES.values()))
     settings = {**asdict(asked.settings), "gears": len(found)}
-    return Outcome(found, (table,), _values(table, names), settings, remarks)
+    return Outcome(found, (table,), _values(table, names), settings, remarks, _figures(table, names))
+
+
+def _figures(table: Table, names: tuple[str, ...]) -> tuple[Figure, ...]:
+    ratio = np.asarray(table["ratio_to_fe"], dtype=float)
+    found = _tiles(table, names, ratio), _scatter(table, names, ratio)
+    return (*found, _histogram(table, names, ratio)) if np.isfinite(ratio).any() else found
+
+
+def _tiles(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
+    """A tile for every gear, load position and formula."""
+    keys = [np.asarray(table[key], dtype=float) for key in _KEYS[:3]]
+    gears = list(dict.fromkeys(zip(*keys, strict=True)))
+    positions = list(dict.fromkeys(float(p) for p in table["load_position"]))
+    labels = tuple(f"{z:.0f} | {x:+.2g} | {r:.2g}" for z, x, r in gears)
+    shares = tuple(f"{p:g}" for p in positions)
+    edges = np.flatnonzero(np.diff([z for z, *_ in gears]))
+    marks = tuple(Mark("y", len(gears) - 1.5 - int(edge)) for edge in edges)
+    axes = (
+        Axis("load: share of roll angle, start 0, end 1", categories=shares),
+        Axis("teeth | profile shift | rack tip radius in modules", categories=labels[::-1]),
+    )
+    tiles = ratio.reshape(len(gears), len(names), len(positions))
+    across, down = np.arange(len(positions)), np.arange(len(gears))[::-1]
+    views = tuple(
+        View(name, (Panel(
+            *axes, (HeatMap(across, down, tiles[:, i], _RATIO, centre=(1.0, _FULL), numbers=True),),
+            marks, height=_TILE * len(gears),
+        ),))
+        for i, name in enumerate(names)
+    )  # fmt: skip
+    return Figure(
+        "root_stress_study",
+        "Where each root-stress formula is high, low or breaks down",
+        "Root stress of one tooth under a load normal to the flank, formula over finite elements: white agrees, orange "
+        "is high (safe), blue is low, × on grey breaks down (the table says why, point by point).",
+        views=views,
+        most_views=len(views),
+    )
+
+
+def _scatter(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
+    points = []
+    for number, name in enumerate(names):
+        rows = table["formula"] == name
+        told = zip(*(np.asarray(table[key], dtype=float)[rows] for key in _KEYS), strict=True)
+        notes = tuple(
+            f"{name}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load at {p:.3g}" for z, x, r, p in told
+        )
+        teeth = np.asarray(table["teeth"], dtype=float)[rows] * _APART ** (number - 0.5 * (len(names) - 1))
+        points.append(Points(teeth, ratio[rows], name, f"series:{number}", notes=notes))
+    panel = Panel(
+        Axis("number of teeth, formulas beside each other", log=True),
+        Axis("formula / FE"),
+        tuple(points),
+        (Mark("y", 1.0, "finite elements"),),
+    )
+    return Figure(
+        "root_stress_ratios",
+        "How far each root-stress formula is from the finite elements",
+        "One point for each gear and load position; 1 agrees, above 1 is safe. In the report, point at one to see "
+        "which gear it is.",
+        (panel,),
+    )
+
+
+def _histogram(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
+    edges, curves = np.arange(0.0, _WIDEST + 0.5 * _BIN, _BIN), []
+    for number, name in enumerate(names):
+        count, _ = np.histogram(ratio[(table["formula"] == name) & np.isfinite(ratio)], edges)
+        curves.append(Curve(edges, np.append(count, 0), name, f"series:{number}", dash="steps", markers=False))
+    panel = Panel(Axis("formula / FE"), Axis("points", zero=True), tuple(curves), (Mark("x", 1.0, "agreement"),))
+    return Figure(
+        "root_stress_histogram",
+        "How often each formula is how far off",
+        f"Points of the study by the ratio of formula to finite elements, in steps of {_BIN:g}.",
+        (panel,),
+    )
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:

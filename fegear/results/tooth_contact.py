@@ -12,6 +12,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
+from fegear.results.drawn_flanks import tooth_contact_figures
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -242,7 +243,8 @@ def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
         settings |= {"load": asked.load, "contact_modulus": asked.modulus}
     if data.no_ellipses:
         remarks += (f"Pair {name}: no contact ellipses: {data.no_ellipses}.",)
-    return Outcome(data, _tables(name, contact, data.bearing), values, settings, remarks)
+    figures = tooth_contact_figures(name, contact, data.bearing, asked.load)
+    return Outcome(data, _tables(name, contact, data.bearing), values, settings, remarks, figures)
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:

@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
+from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
     from fegear.dynamics.transmissibility import ReducedTransmissibility, Transmissibility
     from fegear.engine.stage import Upstream, Work
 
+#: Components of the mesh force in figures; smaller ones than this are none.
+_COMPONENTS = ("y", "z", "θ_{x}", "θ_{y}", "θ_{z}")
+_ROUND_OFF, _TINY = 1e-9, 1e-12
 #: Heads of a load distribution file and the factors to SI.
 _DISTRIBUTION = {"z [mm]": 1e-3, "load [N/mm]": 1e3, "deflection [um]": 1e-6}
 
@@ -175,7 +179,56 @@ def _present(data: TransmissibilityData, asked: TransmissibilityInputs) -> Outco
     tables = (_mode_table(name, data.modes, data.ranking), _response_table(name, data.response))
     settings = {"damping_ratio": asked.damping_ratio, "frequencies": asked.ratios.size}
     remarks = tuple(f"Pair {name}: {remark}." for remark in data.modes.remarks)
-    return Outcome(data, tables, values, settings, remarks)
+    return Outcome(data, tables, values, settings, remarks, _figures(name, data))
+
+
+def _figures(name: str, data: TransmissibilityData) -> tuple[Figure, ...]:
+    modes = data.modes
+    shown = np.flatnonzero(modes.ratio > 0.0)
+    place = np.arange(shown.size)
+    named = tuple(f"{r + 1}\n{modes.ratio[r]:.4g}" for r in shown)
+    indices = (
+        ("normal, Δ_{η}", modes.normal),
+        ("bending, Δ_{θx}", modes.bending),
+        ("coupling energy ratio", modes.coupling),
+    )
+    bars = tuple(Bars(place, values[shown], label, f"series:{k}") for k, (label, values) in enumerate(indices))
+    return (
+        Figure(
+            f"helical_modes_{name}",
+            f"Modal indices of pair {name}",
+            f"Pair {name}: which modes a transmission error along the tooth normal or a bending one excites.",
+            (Panel(Axis("mode and its Λ_{r}", categories=named), Axis("modal index"), bars),),
+        ),
+        _response_figure(name, data),
+    )
+
+
+def _response_figure(name: str, data: TransmissibilityData) -> Figure:
+    """Size of G over K_M and of R for transmission errors and forces along y, by component."""
+    response = data.response
+    external = np.asarray(getattr(response, "R", None) if hasattr(response, "R") else response.R_ii)
+    panels = []
+    for values, label in (
+        (response.G / data.mesh.stiffness, "|G_{iy}| / K_{M}, per transmission error"),
+        (external, "|R_{iy}|, per external force"),
+    ):
+        curves = []
+        for i, component in enumerate(_COMPONENTS):
+            size = np.abs(values[:, i, 0])
+            if size.max() > _ROUND_OFF:
+                curve = np.where(size > _TINY, size, np.nan)
+                curves.append(
+                    Curve(response.ratio, curve, component, f"series:{i}", width=3.4 - 0.5 * i, markers=False)
+                )
+        panels.append(Panel(Axis("Λ = ω / √(K_{M}/m_{eq})"), Axis(label, log=True), tuple(curves)))
+    return Figure(
+        f"transmissibility_{name}",
+        f"Force transmissibility of pair {name}",
+        f"Pair {name}: spectral mesh stiffness and mesh force transmissibility for a transmission error and an "
+        "external force along the plane of action; components over q = (y, z, b theta_x, a theta_y, a theta_z).",
+        tuple(panels),
+    )
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
