@@ -271,14 +271,15 @@ def test_the_command_writes_tables_pictures_and_report(tmp_path):
     assert "crosscheck_root_stress_test" in (tmp_path / "o" / "report.html").read_text("utf-8")
 
 
-def test_the_study_ends_with_one_picture(tmp_path):
+def test_the_study_ends_with_its_pictures(tmp_path):
     with pytest.raises(SystemExit):
         app([
             "run", str(CASES / "root_stress_validation.toml"), "--out", str(tmp_path / "o"),
             "--set", "study={gear='base', teeth=[20, 28], load_position=[0.5, 1.0]}",
             "--set", "gear.base.module='2 mm'",
         ])  # fmt: skip
-    assert [path.name for path in (tmp_path / "o" / "plots").iterdir()] == ["root_stress_study.png"]
+    names = {path.name for path in (tmp_path / "o" / "plots").iterdir()}
+    assert names == {"root_stress_study.png", "root_stress_ratios.png", "root_stress_histogram.png"}
     assert [path.name for path in (tmp_path / "o" / "tables").iterdir()] == ["root_stress_study.csv"]
     # The formula's pure number over the module of 2 mm is the stress per line load.
     with (tmp_path / "o" / "tables" / "root_stress_study.csv").open(encoding="utf-8") as file:
