@@ -44,6 +44,8 @@ class SectorElements:
         The grid's number of the edge whose middle node a point of the mesh is; -1 at vertices.
     tip : ndarray, shape (2, 1, 1)
         The grid's origin in the gear's coordinates [modules].
+    origin : str
+        Where the mesh came from.
     """
 
     order: int
@@ -52,6 +54,7 @@ class SectorElements:
     curved: NDArray[np.bool_]
     edge_of_point: Index
     tip: Array
+    origin: str
 
     @property
     def element_nodes(self) -> Index:
@@ -117,16 +120,7 @@ class SectorElements:
         """
         chosen = np.flatnonzero(self.curved)
         basis = self._basis(intorder=_CURVED_DEGREE, elements=chosen)
-        determinant = basis.mapping.detDF(basis.X, tind=chosen)
-        # Elements with sorted corners run either way round, but each the same way everywhere.
-        inverted = (determinant.min(axis=1) < 0.0) & (determinant.max(axis=1) > 0.0)
-        if inverted.any():
-            raise InputError(
-                "mesh",
-                "",
-                f"has {int(inverted.sum())} curved elements that are turned inside out",
-                "mesh finer near curved boundaries",
-            )
+        _refuse_inverted(basis.mapping.detDF(basis.X, tind=chosen), self.origin)
         return _gradients(basis), basis.dx
 
     def gradients_at_nodes(self) -> Array:
@@ -161,7 +155,7 @@ def sector_elements(mesh: SectorMesh, order: int) -> SectorElements:
     # Coordinates centred on the tooth keep the digits of small elements far from the gear's axis.
     tip = np.array([[0.0], [float(mesh.points[1].max())]])
     points = mesh.points - tip
-    vertices = points[:, : mesh.vertex_count]
+    vertices = np.ascontiguousarray(points[:, : mesh.vertex_count])  # scikit-fem warns of any other order
     rank = np.argsort(mesh.triangles[:3], axis=0)
     corners = np.take_along_axis(mesh.triangles[:3], rank, axis=0)
     grid = MeshTri1(vertices, corners, elem=ElementTriP2 if order == 2 else ElementTriP3, affine=False)
@@ -179,7 +173,37 @@ def sector_elements(mesh: SectorMesh, order: int) -> SectorElements:
     grid.doflocs = np.hstack([vertices, inner])
     off = np.maximum(np.abs(sag), 0.25 * np.abs(lean).max(axis=1)).max(axis=0)
     curved = (off > _STRAIGHT * np.abs(chord).max(axis=0))[grid.t2f].any(axis=0)
-    return SectorElements(order, grid, Dofs(grid, _element(order)), curved, edge_of_point, tip[:, :, None])
+    return SectorElements(order, grid, Dofs(grid, _element(order)), curved, edge_of_point, tip[:, :, None], mesh.origin)
+
+
+def check_cubic_edges(mesh: SectorMesh) -> None:
+    """Refuse a mesh some of whose elements are turned inside out by their cubic edges.
+
+    Raises
+    ------
+    InputError
+    """
+    from skfem import MappingIsoparametric
+    from skfem.quadrature import get_quadrature_tri
+
+    elements = sector_elements(mesh, order=3)
+    chosen = np.flatnonzero(elements.curved)
+    if chosen.size:
+        places = np.hstack([_element(3).doflocs.T, get_quadrature_tri(_CURVED_DEGREE)[0]])
+        mapping = MappingIsoparametric(elements.grid, elements.grid.elem())
+        _refuse_inverted(mapping.detDF(places, tind=chosen), mesh.origin)
+
+
+def _refuse_inverted(determinant: Array, origin: str) -> None:
+    """Elements with sorted corners run either way round, but each the same way everywhere."""
+    inverted = (determinant.min(axis=1) < 0.0) & (determinant.max(axis=1) > 0.0)
+    if inverted.any():
+        raise InputError(
+            "mesh",
+            origin,
+            f"has {int(inverted.sum())} curved elements that are turned inside out",
+            "mesh finer near curved boundaries",
+        )
 
 
 def _element(order: int) -> Any:

@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.errors import FegearError, InputError, MissingLibraryError
 from fegear.fem.boundary import Chain, sector_boundary
+from fegear.fem.elements import check_cubic_edges
 from fegear.fem.mesh import GENERATED, SectorMesh, with_middle_nodes
 
 if TYPE_CHECKING:
@@ -103,7 +104,10 @@ def _mesh(tooth: Tooth, bore_radius: float, settings: MeshSettings, started: flo
     for name, parts in runs.items():
         edges[name] = np.hstack([numbered[f"{name}:{i}"] for i in range(len(parts))])
     joined = {name: np.concatenate(parts, axis=2) for name, parts in bends.items()}
-    return SectorMesh(points, six, edges, tooth.teeth, GENERATED, time.perf_counter() - started, joined)
+    mesh = SectorMesh(points, six, edges, tooth.teeth, GENERATED, time.perf_counter() - started, joined)
+    if settings.order > 2:
+        check_cubic_edges(mesh)
+    return mesh
 
 
 def _bends(chain: Chain) -> NDArray[np.float64]:

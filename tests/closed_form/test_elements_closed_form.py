@@ -17,7 +17,7 @@ from fegear.fem.field import _nodal_stress
 from fegear.fem.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.ring import close_ring
 from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings
+from fegear.fem.settings import MeshSettings, settings_at
 from fegear.geometry import BasicRack, Tooth
 
 _spec = importlib.util.spec_from_file_location(
@@ -237,3 +237,23 @@ def test_cubic_elements_that_turn_inside_out_are_refused():
     wild = {"flank": mesh.bends["flank"] - 8.0 * mesh.points[:, None, mesh.edges["flank"][2]]}
     with pytest.raises(InputError, match="inside out"):
         assemble(replace(mesh, bends=wild), NU, "strain", 4)
+
+
+def test_meshes_whose_cubic_edges_turn_an_element_inside_out_are_drawn_finer():
+    """The quadratic elements of this coarse mesh are sound, a cubic one beside the small fillet was not."""
+    tooth = Tooth(98, BasicRack(1.0, 1.25, 0.04634319568115865), -0.3910548518450885)
+    coarse, cubic = (replace(settings_at(-3), order=order) for order in (2, 4))
+    quadratic, finer = (mesh_sector(tooth, 0.1 * tooth.root_radius, settings) for settings in (coarse, cubic))
+    with pytest.raises(InputError, match="inside out"):
+        assemble(quadratic, NU, "strain", 4)
+    assert finer.triangles.shape[1] > quadratic.triangles.shape[1]
+    assemble(finer, NU, "strain", 4)
+
+
+def test_scikit_fem_has_nothing_to_remark(caplog):
+    """Its remarks on the order of arrays would stand between the user's lines."""
+    tooth = Tooth(28)
+    mesh = mesh_sector(tooth, 0.1 * tooth.root_radius, MeshSettings().scaled(0.7))
+    assert mesh.vertex_count > 1000
+    assemble(mesh, NU, "strain", 4)
+    assert caplog.records == []
