@@ -170,6 +170,7 @@ def _ground_table(
     rows = [(shape, m, te[f"{shape} tip relief"], getattr(g, m)) for shape, g in ground.items() for m in members]
     p = pair.engagement.pair
     start = np.array([r.start for *_, r in rows])
+    runner_up = np.array([ground[shape].runner_up for shape, *_ in rows])
     base = np.array([p.gear(m).base_radius for _, m, *_ in rows])
     return Table(
         f"grindable_{name}",
@@ -181,6 +182,10 @@ def _ground_table(
             Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius"),
             Column("te_peak_to_peak", np.array([t.peak_to_peak for _, _, t, _ in rows]), "um", "left at design load"),
             Column("te_effective", np.array([t.effective_error for _, _, t, _ in rows]), "um", "A_e left"),
+            Column("candidates", np.array([ground[shape].candidates for shape, *_ in rows]), "", "reliefs scanned"),
+            Column("starts", np.array([ground[shape].starts for shape, *_ in rows]), "", "valleys searched to the end"),
+            Column("agreeing", np.array([ground[shape].agreeing for shape, *_ in rows]), "", "of them, within 5 %"),
+            Column("runner_up", runner_up, "um", "the least that the other valleys leave"),
         ),
         f"Tip reliefs of {name} that a shop can grind",
     )

@@ -111,7 +111,10 @@ def _run_chart(scene: Scene, name: str, done: Done, progress: Progress) -> Outco
         ]
     left = float(getattr(best, part.metric)[-1])
     values.append(Value(f"{name}.optimum_{part.metric}", left, "um", None, "left at the largest load"))
-    settings = {"shape": asked.shape, "metric": part.metric, "evaluations": best.evaluations}
+    settings = {
+        "shape": asked.shape, "metric": part.metric, "candidates": best.candidates, "evaluations": best.evaluations,
+        "starts": best.starts, "agreeing": best.agreeing,
+    }  # fmt: skip
     data = ReliefChartData(pair, chart, best, delta)
     return Outcome(data, tables, tuple(values), settings, figures=_chart_figures(name, data))
 
