@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from fegear.case.dynamics import FrictionPart
     from fegear.case.reading import Scene
     from fegear.dynamics.excitation import MeshExcitation
+    from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.motion_model import MotionModel
-    from fegear.models.train import GearTrain
 
     Array = NDArray[np.float64]
 

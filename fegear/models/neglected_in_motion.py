@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.dynamics.excitation import MeshExcitation
+    from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.steady_state import SteadyState
-    from fegear.models.train import GearTrain
 
 
 #: Separations that differ by less are the same [m].

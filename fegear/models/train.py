@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from fegear.case.names import nearest
 from fegear.dynamics.matrices import static_forces
@@ -28,12 +26,11 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
     from fegear.case.train import BodyPart, ShaftPart, TrainPart
-    from fegear.dynamics.periodic import Periodic
-    from fegear.dynamics.train_mesh import TrainMesh
 
     Array = NDArray[np.float64]
 
@@ -41,48 +38,6 @@ if TYPE_CHECKING:
 _ANY_STIFFNESS = 1e8
 #: How far a pair's load may be from the mean mesh force that the torques give.
 LOAD_AGREES = 2e-3
-
-
-@dataclass(frozen=True)
-class GearTrain:
-    """The train of a scene with what its gear pairs do to it.
-
-    Parameters
-    ----------
-    train : Train
-        With mean mesh stiffnesses.
-    meshes : tuple of TrainMesh
-        Each gear pair as it runs, its springs, its static transmission error and its mean force.
-    speed_ratio : float
-        Speed of the body that speeds refer to over that of the first body.
-    speed_of : str
-        That body.
-    """
-
-    train: Train
-    meshes: tuple[TrainMesh, ...]
-    speed_ratio: float
-    speed_of: str
-
-    @property
-    def errors(self) -> tuple[Periodic, ...]:
-        """Static transmission error of each mesh under its mean force [m]."""
-        return tuple(mesh.error for mesh in self.meshes)
-
-    @property
-    def forces(self) -> Array:
-        """Mean mesh forces, shape (meshes,) [N]."""
-        return np.array([mesh.force for mesh in self.meshes])
-
-    @property
-    def phases(self) -> tuple[float, ...]:
-        """Phase of each mesh at time zero [its base pitches]."""
-        return tuple(mesh.excitation.phase for mesh in self.meshes)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the meshes."""
-        return tuple(mesh.name for mesh in self.train.meshes)
 
 
 def train_part(scene: Scene) -> TrainPart:

@@ -18,7 +18,7 @@ from fegear.results import forecasts
 from fegear.results.dynamic_factor import check_motion
 from fegear.results.gear_train import assemble, gear_train, the_train
 from fegear.results.loaded_pair import loaded_pair
-from fegear.results.mesh_forces import needs_speeds, own_meshes
+from fegear.results.train_parts import needs_speeds, own_meshes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from fegear.case.dynamics import DesignChartPart
     from fegear.case.reading import Scene
     from fegear.contact import Engagement
+    from fegear.dynamics.gear_train import GearTrain
     from fegear.engine.stage import Done, Work
-    from fegear.models.train import GearTrain
 
     Array = NDArray[np.float64]
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.dynamics.pull import largest_pull, mesh_force_range
+from fegear.dynamics.single_tooth import force_history
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Panel, Points
 from fegear.engine.outcome import Column, Outcome, Table, Value
@@ -17,7 +19,7 @@ from fegear.models.neglected_in_motion import motion_remarks
 from fegear.models.train import train_part
 from fegear.results import forecasts
 from fegear.results.gear_train import gear_train, needs_train, the_train
-from fegear.results.mesh_forces import force_history, mesh_force_range, meshes, needs_speeds, pull_remarks
+from fegear.results.train_parts import meshes, needs_speeds, pull_remarks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,9 +28,9 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.dynamics.charts import SpeedChart
+    from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.steady_state import SteadyState
     from fegear.engine.stage import Done, Progress
-    from fegear.models.train import GearTrain
 
     Array = NDArray[np.float64]
 
@@ -164,7 +166,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     if parting:
         lost = float(chart.apart.max())
         values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "share of the time"))
-    remarks = [] if states else [*pull_remarks(data, i, speeds, part.harmonics)]
+    remarks = [] if states else [*pull_remarks(largest_pull(data, i, speeds, part.harmonics))]
     if states and not scene.case.effects.parametric:
         remarks.append(
             f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,34 +15,30 @@ from fegear.errors import InputError
 from fegear.models.pair_inputs import MEMBERS, gear_name
 from fegear.models.train import train_part
 from fegear.results import forecasts
-from fegear.results.gear_solution import needs_solution
-from fegear.results.mesh_forces import force_at, needs_one_speed, own_meshes, summed_harmonics
+from fegear.results.gear_solution import needs_solution, solution_of
 from fegear.results.root_stress_history import table_names
+from fegear.results.train_parts import needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
-    from fegear.contact.fe_compliance import FiniteElementCompliance
-    from fegear.dynamics.tooth_force import ToothForce
-    from fegear.engine.stage import Done, Progress
-    from fegear.fem import GearInfluence
-    from fegear.geometry.pair import GearPair, Member
-    from fegear.results.mesh_forces import ToothForceData
+    from fegear.dynamics.root_stress import ToothRootStress
+    from fegear.engine.stage import Upstream, Work
+    from fegear.geometry.pair import Member
+    from fegear.results.tooth_force import ToothForceData
 
     Array = NDArray[np.float64]
-
-#: Positions over the flank at which the finite elements' own error is asked for.
-_FEW = 9
 
 
 @dataclass(frozen=True)
 class DynamicRootStress:
-    """Root stress of one tooth of either gear; arrays over the positions of the force [Pa]."""
+    """Root stress of one tooth of either gear over the positions of the force."""
 
     force: ToothForceData
-    static: dict[Member, Array]
-    stress: dict[Member, Array]
+    stress: Mapping[Member, ToothRootStress]
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -59,94 +55,82 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     return (Task("tooth-force", name), *needs_solution(pair.driver, pair.driven))
 
 
-def _neighbours(scene: Scene, data: ToothForceData, source: FiniteElementCompliance) -> dict[int, ToothForce]:
-    """Forces on this tooth pair and, where teeth are coupled, on those around it at the same moment."""
-    train, force = data.train, data.force
-    around = {0: force}
-    if not scene.case.effects.neighbour_coupling:
-        return around
-    part = scene.case.dynamics
-    for k in range(-source.reach, source.reach + 1):
-        if k:
-            # k base pitches ahead at the same moment: it was at the pitch point that much earlier
-            ahead = force.x + k * train.meshes[data.mesh].pair.base_pitch
-            harmonics = summed_harmonics(scene, train)
-            around[k] = force_at(train, data.mesh, part.one_speed, ahead, harmonics, data.number - k, other_phases=1)
-    return around
+@dataclass(frozen=True)
+class DynamicRootInputs:
+    """What the dynamic root stress of a mesh depends on besides forces and influence functions.
+
+    Parameters
+    ----------
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    coupled : bool
+        Whether the loads of the teeth around count.
+    mesh : str
+    gears, labels : mapping of str to str
+        Names of the gears, and ends of the tables' names, by member.
+    """
+
+    speed: float
+    coupled: bool
+    mesh: str
+    gears: Mapping[Member, str]
+    labels: Mapping[Member, str] = field(compare=False)
 
 
-def _kernels(
-    source: FiniteElementCompliance, pair: GearPair, member: Member, around: dict[int, ToothForce]
-) -> dict[int, Array]:
-    """Stress along the fillet of the tooth looked at per unit force on each tooth around it, (points, n) [Pa/N]."""
-    width = min(pair.driver.face_width, pair.driven.face_width)
-    ahead = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
-    found = {}
-    for k, force in around.items():
-        on_path = np.clip(force.x, pair.x_start, pair.x_end)
-        found[k] = np.asarray(source.root_stress(-ahead * k, pair.radius(on_path, member), "tension")) / width
-    return found
+def _inputs(scene: Scene, name: str) -> DynamicRootInputs:
+    pair = train_part(scene).pair_of(name)
+    gears = {member: gear_name(scene, pair, member) for member in MEMBERS}
+    labels = {member: label.removeprefix(f"{pair}_") for member, label in table_names(scene, pair).items()}
+    coupled = scene.case.effects.neighbour_coupling
+    return DynamicRootInputs(scene.case.dynamics.one_speed, coupled, name, gears, labels)
 
 
-def _own_error(source: FiniteElementCompliance, pair: GearPair, member: Member, force: ToothForce) -> Array:
-    """What the finite elements leave in the stress of the tooth's own load [Pa]."""
-    x = np.linspace(pair.x_start, pair.x_end, _FEW)
-    width = min(pair.driver.face_width, pair.driven.face_width)
-    usual = source.influence.root_stress_error(0, "tension", pair.radius(x, member)) / width
-    return np.asarray(np.interp(force.x, x, usual) * np.abs(force.total))
-
-
-def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+def _compute(asked: DynamicRootInputs, upstream: Upstream, work: Work) -> DynamicRootStress:
     from fegear.contact import finite_element_compliance
-    from fegear.dynamics.tooth_force import root_stress
+    from fegear.dynamics.root_stress import forces_around, tooth_root_stress
 
-    data = cast("ToothForceData", done[Task("tooth-force", name)].data)
-    pair_name = train_part(scene).pair_of(name)
-    mesh, force = data.train.meshes[data.mesh], data.force
-    static: dict[Member, Array] = {}
-    stress: dict[Member, Array] = {}
-    tables, values, prefix = [], [], f"{pair_name}_"
-    labels = table_names(scene, pair_name)
-    for number, member in enumerate(MEMBERS):
-        gear = gear_name(scene, pair_name, member)
-        source = finite_element_compliance(cast("GearInfluence", done[Task("gear-solution", gear)].data))
-        around = _neighbours(scene, data, source)
-        kernels = _kernels(source, mesh.pair, mesh.role(member), around)
-        stress[member] = root_stress({k: f.total + f.cross.sum(axis=0) for k, f in around.items()}, kernels)
-        static[member] = root_stress({k: f.static for k, f in around.items()}, kernels)
-        alone = root_stress({k: f.total for k, f in around.items()}, kernels)
-        error = _own_error(source, mesh.pair, mesh.role(member), force)
+    data: ToothForceData = upstream[Task("tooth-force", asked.mesh)]
+    mesh, stress = data.train.meshes[data.mesh], {}
+    for member in MEMBERS:
+        source = finite_element_compliance(solution_of(upstream, asked.gears[member]))
+        reach = source.reach if asked.coupled else 0
+        around = forces_around(data.train, data.mesh, data.force, data.number, asked.speed, data.harmonics, reach)
+        stress[member] = tooth_root_stress(source, mesh.pair, mesh.role(member), around)
+        work.progress(len(stress) / len(MEMBERS))
+    return DynamicRootStress(data, stress)
+
+
+def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
+    name, force, tables, values = asked.mesh, made.force.force, [], []
+    for member, s in made.stress.items():
+        gear = asked.gears[member]
         tables.append(
             Table(
-                f"root_stress_history_{name}_{labels[member].removeprefix(prefix)}",
+                f"root_stress_history_{name}_{asked.labels[member]}",
                 (
                     Column("t", force.time, "s", "from the mesh's phase zero"),
                     Column("x", force.x, "mm", "place of the tooth's contact on the line of action"),
-                    Column(
-                        "stress", stress[member], "MPa", "largest root tension of the loaded tooth, all meshes' shares"
-                    ),
-                    Column("stress_own_mesh", alone, "MPa", "without the other meshes' share"),
-                    Column("static_stress", static[member], "MPa", "quasi-static"),
-                    Column("stress_error", error, "MPa", "what the finite elements leave in stress_own_mesh"),
+                    Column("stress", s.total, "MPa", "largest root tension of the loaded tooth, all meshes' shares"),
+                    Column("stress_own_mesh", s.own, "MPa", "without the other meshes' share"),
+                    Column("static_stress", s.static, "MPa", "quasi-static"),
+                    Column("stress_error", s.error, "MPa", "what the finite elements leave in stress_own_mesh"),
                 ),
                 f"Dynamic root stress of gear {gear} as {member}, mesh {name}",
             )
         )
-        worst = int(np.argmax(alone))
+        worst = int(np.argmax(s.own))
         values.append(
-            Value(f"{name}.{member}.largest_dynamic_root_tension", float(alone[worst]), "MPa", float(error[worst]),
+            Value(f"{name}.{member}.largest_dynamic_root_tension", float(s.own[worst]), "MPa", float(s.error[worst]),
                   f"gear {gear}, without the other meshes, contact at x = {force.x[worst] * 1e3:.5g} mm")
         )  # fmt: skip
-        progress((number + 1) / 2)
-    made = DynamicRootStress(data, static, stress)
     return Outcome(made, tuple(tables), tuple(values), figures=(_figure(made),))
 
 
 def _figure(data: DynamicRootStress) -> Figure:
     name, x, curves = data.force.train.names[data.force.mesh], data.force.force.x * 1e3, []
     for member, stress in data.stress.items():
-        curves.append(Curve(x, stress * 1e-6, f"{member}, dynamic", member, dash="solid"))
-        curves.append(Curve(x, data.static[member] * 1e-6, f"{member}, quasi-static", member, dash="dash", width=1.2))
+        curves.append(Curve(x, stress.total * 1e-6, f"{member}, dynamic", member, dash="solid"))
+        curves.append(Curve(x, stress.static * 1e-6, f"{member}, quasi-static", member, dash="dash", width=1.2))
     axes = (
         Axis("place of the tooth pair on the line of action", "mm"), Axis("largest root tension", "MPa", zero=True)
     )  # fmt: skip
@@ -168,8 +152,10 @@ DYNAMIC_ROOT_STRESS = Stage(
     title="Dynamic root stress",
     results=("dynamic-root-stress",),
     subjects=own_meshes,
-    run=_run,
     needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     check=_check,
     effects=("neighbour_coupling",),
     cites=citing(Citation("mark", "root stress of a single tooth in motion", "section 3")),

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.dynamics.gear_train import GearTrain
 from fegear.dynamics.matrices import static_forces
 from fegear.dynamics.train_mesh import TrainMesh, a_drives
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.models.pair_checks import check_relief
-from fegear.models.train import GearTrain, build_train, check_train, train_part
+from fegear.models.train import build_train, check_train, train_part
 from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, loaded_pair
 

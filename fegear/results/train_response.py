@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
+    from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.modes import Campbell, Modes
     from fegear.engine.stage import Upstream, Work
-    from fegear.models.train import GearTrain
 
 
 _RPM = 30.0 / math.pi

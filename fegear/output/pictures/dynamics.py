@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from fegear.results.design_chart import DesignChartData
     from fegear.results.dynamic_factor import DynamicFactorData
     from fegear.results.dynamic_root_stress import DynamicRootStress
-    from fegear.results.mesh_forces import SpectrumData, ToothForceData
+    from fegear.results.mesh_force_spectrum import SpectrumData
+    from fegear.results.tooth_force import ToothForceData
     from fegear.results.train_response import IncrementsData, ModesData
 
 _COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK)
@@ -180,8 +181,8 @@ def draw_root_stress(data: DynamicRootStress, path: Path) -> Picture:
     made, axes = figure()
     x = data.force.force.x * 1e3
     for (member, stress), colour in zip(data.stress.items(), (BLUE, RED), strict=True):
-        axes.plot(x, stress * 1e-6, color=colour, label=f"{member}, dynamic")
-        axes.plot(x, data.static[member] * 1e-6, "--", color=colour, lw=1.2, label=f"{member}, quasi-static")
+        axes.plot(x, stress.total * 1e-6, color=colour, label=f"{member}, dynamic")
+        axes.plot(x, stress.static * 1e-6, "--", color=colour, lw=1.2, label=f"{member}, quasi-static")
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     axes.set_xlabel("place of the tooth pair on the line of action [mm]")
     axes.set_ylabel("largest root tension [MPa]")

@@ -25,12 +25,13 @@ if TYPE_CHECKING:
     from fegear.results.dynamic_factor import DynamicFactorData
     from fegear.results.dynamic_root_stress import DynamicRootStress
     from fegear.results.load_sharing import LoadSharingData
-    from fegear.results.mesh_forces import SpectrumData, ToothForceData
+    from fegear.results.mesh_force_spectrum import SpectrumData
     from fegear.results.relief import ReliefData
     from fegear.results.relief_chart import ReliefChartData, RobustnessData
     from fegear.results.root_stress_history import RootStressData
     from fegear.results.stiffness import FilletCurves
     from fegear.results.tooth_contact import ToothContactData
+    from fegear.results.tooth_force import ToothForceData
     from fegear.results.train_response import IncrementsData, ModesData
     from fegear.results.transmissibility import TransmissibilityData
     from fegear.results.transmission_error import TransmissionErrorData

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.contact import transmission_error
+from fegear.dynamics.single_tooth import force_history
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Task
 from fegear.models.loaded_pair import build_loaded_pair
@@ -15,7 +16,6 @@ from fegear.models.neglected_effects import Neglected
 from fegear.models.pair_inputs import MEMBERS, pair_inputs
 from fegear.results.gear_train import GEAR_TRAIN
 from fegear.results.loaded_pair import LoadedPairData
-from fegear.results.mesh_forces import force_history
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.contact import TransmissionError
+    from fegear.dynamics.gear_train import GearTrain
     from fegear.models.loaded_pair import LoadedPair
-    from fegear.models.train import GearTrain
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.quantities import Quantity
     from fegear.studies.cost.sources import Source

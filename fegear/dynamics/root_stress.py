@@ -1,0 +1,119 @@
+"""Root stress of one tooth of either gear under the forces of a moving train."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.dynamics.single_tooth import force_at
+from fegear.dynamics.tooth_force import root_stress
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.contact.fe_compliance import FiniteElementCompliance
+    from fegear.dynamics.gear_train import GearTrain
+    from fegear.dynamics.tooth_force import ToothForce
+    from fegear.geometry.pair import GearPair, Member
+
+    Array = NDArray[np.float64]
+
+#: Positions over the flank at which the finite elements' own error is asked for.
+_FEW = 9
+
+
+@dataclass(frozen=True)
+class ToothRootStress:
+    """Largest root tension of one tooth, over the positions of the force on it, shape (n,) [Pa].
+
+    Parameters
+    ----------
+    total : ndarray
+        With all meshes' shares.
+    own : ndarray
+        Without the other meshes' share.
+    static : ndarray
+        Quasi-static.
+    error : ndarray
+        What the finite elements leave in `own`.
+    """
+
+    total: Array
+    own: Array
+    static: Array
+    error: Array
+
+
+def tooth_root_stress(
+    source: FiniteElementCompliance, pair: GearPair, member: Member, around: dict[int, ToothForce]
+) -> ToothRootStress:
+    """Root stress of a tooth under its own force and those on the teeth around it.
+
+    Parameters
+    ----------
+    source : FiniteElementCompliance
+        Of its gear.
+    pair : GearPair
+        As it runs.
+    member : {"driver", "driven"}
+        What the gear is as the pair runs.
+    around : mapping of int to ToothForce
+        See `forces_around`.
+    """
+    kernels = _kernels(source, pair, member, around)
+    return ToothRootStress(
+        root_stress({k: f.total + f.cross.sum(axis=0) for k, f in around.items()}, kernels),
+        root_stress({k: f.total for k, f in around.items()}, kernels),
+        root_stress({k: f.static for k, f in around.items()}, kernels),
+        _own_error(source, pair, member, around[0]),
+    )
+
+
+def forces_around(
+    train: GearTrain, mesh: int, force: ToothForce, number: int, speed: float, harmonics: int, reach: int
+) -> dict[int, ToothForce]:
+    """Forces on a tooth pair and on those around it at the same moment, by their place beside it.
+
+    Parameters
+    ----------
+    train : GearTrain
+    mesh : int
+    force : ToothForce
+        On tooth pair `number`.
+    number : int
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    harmonics : int
+    reach : int
+        How many tooth pairs on either side; 0 for the one alone.
+    """
+    around = {0: force}
+    for k in range(-reach, reach + 1):
+        if k:
+            # k base pitches ahead at the same moment: it was at the pitch point that much earlier
+            ahead = force.x + k * train.meshes[mesh].pair.base_pitch
+            around[k] = force_at(train, mesh, speed, ahead, harmonics, number - k, other_phases=1)
+    return around
+
+
+def _kernels(
+    source: FiniteElementCompliance, pair: GearPair, member: Member, around: dict[int, ToothForce]
+) -> dict[int, Array]:
+    """Stress along the fillet of the tooth looked at per unit force on each tooth around it, (points, n) [Pa/N]."""
+    width = min(pair.driver.face_width, pair.driven.face_width)
+    ahead = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
+    found = {}
+    for k, force in around.items():
+        on_path = np.clip(force.x, pair.x_start, pair.x_end)
+        found[k] = np.asarray(source.root_stress(-ahead * k, pair.radius(on_path, member), "tension")) / width
+    return found
+
+
+def _own_error(source: FiniteElementCompliance, pair: GearPair, member: Member, force: ToothForce) -> Array:
+    """What the finite elements leave in the stress of the tooth's own load [Pa]."""
+    x = np.linspace(pair.x_start, pair.x_end, _FEW)
+    width = min(pair.driver.face_width, pair.driven.face_width)
+    usual = source.influence.root_stress_error(0, "tension", pair.radius(x, member)) / width
+    return np.asarray(np.interp(force.x, x, usual) * np.abs(force.total))

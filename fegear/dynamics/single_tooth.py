@@ -1,0 +1,88 @@
+"""Force on one tooth pair of a train on its way through the mesh: which pair, at which places, at which speed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.dynamics.mesh_excitation import tooth_pair_at
+from fegear.dynamics.tooth_force import tooth_force
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.dynamics.gear_train import GearTrain
+    from fegear.dynamics.tooth_force import ToothForce
+
+    Array = NDArray[np.float64]
+
+#: Lines that tooth forces are summed from, at least.
+_LINES = 256
+#: Places over the path at which the static force of every tooth pair is looked at.
+_LOOKED_AT = 101
+#: How near to the ends of the path the last positions are, in base pitches.
+_INSIDE = 1e-9
+
+
+def summed_harmonics(data: GearTrain, harmonics: int) -> int:
+    """Mesh harmonics of a tooth force: 256 lines at least, the rotational ones among them."""
+    longest = max(error.pitches for error in data.errors)
+    return max(harmonics, -(-_LINES // longest))
+
+
+def heaviest_pair(data: GearTrain, i: int) -> int:
+    """Number of the tooth pair that carries the largest static force; 0 where all teeth are alike."""
+    error, pair = data.meshes[i].error, data.meshes[i].pair
+    if error.pitches == 1:
+        return 0
+    x = np.linspace(pair.x_start, pair.x_end, _LOOKED_AT)
+    largest = []
+    for number in range(error.pitches):
+        k, m = tooth_pair_at(data.meshes[i].excitation, x, pair.base_pitch, number)
+        largest.append(float(np.max(k * (error(x / pair.base_pitch + number) - m))))
+    return int(np.argmax(largest))
+
+
+def positions(data: GearTrain, i: int, count: int, number: int = 0) -> Array:
+    """Places of one tooth pair: evenly over its path, and on either side of every jump [m]."""
+    pair, found = data.meshes[i].pair, data.meshes[i].excitation
+    pitch = pair.base_pitch
+    low, high = pair.x_start + _INSIDE * pitch, pair.x_end - _INSIDE * pitch
+    functions = (data.meshes[i].error, *found.stiffness)
+    cuts = np.concatenate([(f.breaks + j) * f.pitches - number % f.pitches for f in functions for j in range(-4, 5)])
+    near = np.unique(cuts[(cuts * pitch > low) & (cuts * pitch < high)])
+    beside = np.sort(np.concatenate([near - 1e-7, near + 1e-7])) * pitch
+    jumps = _jumps(data, i, beside[(beside > low) & (beside < high)], number)
+    return np.unique(np.concatenate([np.linspace(low, high, count), jumps]))
+
+
+def _jumps(data: GearTrain, i: int, x: Array, number: int) -> Array:
+    """Places beside true corners of the transmission error; ends of fitted pieces are none."""
+    pitch = data.meshes[i].pair.base_pitch
+    slope = data.meshes[i].error.slope(x / pitch + number)
+    near = np.abs(np.diff(x)) < 3e-7 * pitch
+    kink = near & (np.abs(np.diff(slope)) > 1e-3 * np.max(np.abs(slope), initial=1e-30))
+    keep = np.zeros(x.size, dtype=bool)
+    keep[:-1] |= kink
+    keep[1:] |= kink
+    return x[keep]
+
+
+def force_history(data: GearTrain, i: int, speed: float, count: int, harmonics: int, number: int = 0) -> ToothForce:
+    """Force on one tooth pair of mesh `i` at a speed of the reference body [rad/s]."""
+    return force_at(data, i, speed, positions(data, i, count, number), harmonics, number)
+
+
+def force_at(
+    data: GearTrain, i: int, speed: float, x: Array, harmonics: int, number: int = 0, other_phases: int = 64
+) -> ToothForce:
+    """Force on tooth pair `number` at places x [m], others at the case's phases; zero off the path of contact."""
+    pitch = data.meshes[i].pair.base_pitch
+    k, m = tooth_pair_at(data.meshes[i].excitation, x, pitch, number)
+    # linear about the mean load: a tooth pair that its modification holds apart at rest is no spring
+    k = np.where(data.meshes[i].error(x / pitch + number) > m, k, 0.0)
+    return tooth_force(
+        data.train, data.errors, i, speed / data.speed_ratio, x, k, m, pitch, number=number, harmonics=harmonics,
+        other_phases=other_phases, phases=data.phases,
+    )  # fmt: skip

@@ -1,0 +1,187 @@
+"""Stage ``mesh-force-spectrum``: lines of the mesh forces of the linearised train, at a speed and over speeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure import Axis, Figure, Panel, Points, Stems
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.results import forecasts
+from fegear.results.gear_train import gear_train, needs_train
+from fegear.results.train_parts import RPM, meshes, needs_one_speed, pull_remarks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.case.reading import Scene
+    from fegear.dynamics.gear_train import GearTrain
+    from fegear.dynamics.pull import Pull
+    from fegear.dynamics.spectra import MeshForceSpectrum
+    from fegear.engine.stage import Upstream, Work
+
+    Array = NDArray[np.float64]
+
+#: Harmonics of the waterfall at most.
+_WATERFALL_LINES = 64
+#: Lines weaker than these shares of the strongest are not drawn in spectrum and waterfall.
+_WEAKEST, _WEAKEST_OVER_SPEED = 1e-5, 1e-2
+#: Force that is none [N].
+_NO_FORCE = 1e-12
+
+
+@dataclass(frozen=True)
+class SpectrumData:
+    """Forces in one mesh at the case's speed, over its speeds (the waterfall) where it gives a range, and its pull."""
+
+    train: GearTrain
+    mesh: int
+    spectrum: MeshForceSpectrum
+    waterfall: MeshForceSpectrum | None
+    pull: Pull | None
+
+
+@dataclass(frozen=True)
+class SpectrumInputs:
+    """What the spectra of a mesh depend on besides the train.
+
+    Parameters
+    ----------
+    mesh : str
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    speeds : ndarray
+        Of the waterfall [rad/s]; fewer than two for none.
+    harmonics : int
+    """
+
+    mesh: str
+    speed: float
+    speeds: Array
+    harmonics: int
+
+
+def _inputs(scene: Scene, name: str) -> SpectrumInputs:
+    part = scene.case.dynamics
+    return SpectrumInputs(name, part.one_speed, part.speed_values, part.harmonics)
+
+
+def _compute(asked: SpectrumInputs, upstream: Upstream, _work: Work) -> SpectrumData:
+    from fegear.dynamics.pull import largest_pull
+    from fegear.dynamics.spectra import mesh_force_spectrum
+
+    data = gear_train(upstream)
+    i, speed = data.train.mesh_index(asked.mesh), asked.speed / data.speed_ratio
+    found = mesh_force_spectrum(data.train, data.errors, [speed], asked.harmonics, rotational=True, phases=data.phases)
+    waterfall = None
+    if asked.speeds.size > 1:
+        harmonics = min(asked.harmonics, _WATERFALL_LINES)
+        waterfall = mesh_force_spectrum(data.train, data.errors, asked.speeds / data.speed_ratio, harmonics)
+    return SpectrumData(data, i, found, waterfall, largest_pull(data, i, [speed], asked.harmonics))
+
+
+def _present(made: SpectrumData, asked: SpectrumInputs) -> Outcome:
+    name, data, i, found = asked.mesh, made.train, made.mesh, made.spectrum
+    amplitude = found.amplitudes[i, :, :, 0]
+    table = Table(
+        f"mesh_force_spectrum_{name}",
+        (*_lines(found, data), Column("force", amplitude[found.present], "N", "0-peak"),
+         Column("power", found.power_lines[i, :, :, 0][found.present], "N^2", "one-sided power of the line")),
+        f"Spectrum of the force in mesh {name}",
+    )  # fmt: skip
+    values = tuple(
+        Value(f"{name}.largest_line_from_{other}", float(amplitude[j].max()), "N", None,
+              f"0-peak, harmonic {found.orders[int(amplitude[j].argmax())]:.6g}")
+        for j, other in enumerate(data.names)
+    )  # fmt: skip
+    tables = [table]
+    if made.waterfall is not None:
+        tables.append(_waterfall_table(name, i, made.waterfall, data))
+    settings: dict[str, object] = {"harmonics": asked.harmonics, "speed": asked.speed}
+    return Outcome(made, tuple(tables), values, settings, pull_remarks(made.pull), _spectrum_figures(made))
+
+
+def _lines(found: MeshForceSpectrum, data: GearTrain) -> tuple[Column, ...]:
+    """Number, excitation and frequency of the lines at the first speed; fractions are rotational harmonics."""
+    from_pair, line = np.nonzero(found.present)
+    order = found.orders[line]
+    whole = order.astype(int) if np.all(found.orders % 1.0 == 0.0) else order
+    return (
+        Column("n", whole, "", "harmonic of the mesh frequency of from_pair"),
+        Column("from_pair", np.array(data.names, dtype=str)[from_pair], "", "whose transmission error excites it"),
+        Column("frequency", found.frequencies[from_pair, line, 0], "Hz", "n times the mesh frequency"),
+    )
+
+
+def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrain) -> Table:
+    speeds = found.speeds.size
+    columns = (
+        Column("speed", np.tile(found.speeds * data.speed_ratio, found.present.sum()), "rpm", f"of {data.speed_of}"),
+        *(Column(c.name, np.repeat(c.values, speeds), c.unit, c.meaning) for c in _lines(found, data)[:2]),
+        Column("frequency", found.frequencies[found.present].ravel(), "Hz", "n times the mesh frequency"),
+        Column("force", found.amplitudes[i][found.present].ravel(), "N", "0-peak"),
+    )
+    return Table(f"mesh_force_waterfall_{name}", columns, f"Spectrum of the force in mesh {name} over speed")
+
+
+def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
+    train, found = data.train, data.spectrum
+    name, amplitudes = train.names[data.mesh], found.amplitudes[data.mesh, :, :, 0]
+    lines = []
+    for j, other in enumerate(train.names):
+        shown = amplitudes[j] > max(_WEAKEST * float(amplitudes.max()), _NO_FORCE)
+        lines.append(
+            Stems(found.frequencies[j, shown, 0] * 1e-3, amplitudes[j, shown], f"from mesh {other}", f"series:{j}",
+                  tuple(f"harmonic {n:.6g}" for n in found.orders[shown]))
+        )  # fmt: skip
+    force, rpm = Axis("mesh force, 0-peak", "N", log=True), float(found.speeds[0]) * train.speed_ratio * RPM
+    spectrum = Figure(
+        f"mesh_force_spectrum_{name}",
+        f"Spectrum of the force in mesh {name}",
+        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: harmonics by the mesh that excites them.",
+        (Panel(Axis("frequency", "kHz"), force, tuple(lines)),),
+    )
+    over = data.waterfall
+    if over is None:
+        return (spectrum,)
+    size = over.amplitudes[data.mesh]
+    strong = size > max(_WEAKEST_OVER_SPEED * float(size.max()), _NO_FORCE)
+    speed = np.broadcast_to(over.speeds * train.speed_ratio * RPM, size.shape)[strong]
+    points = Points(
+        over.frequencies[strong] * 1e-3, speed, shade=size[strong], shade_label="mesh force, 0-peak [N]", size=4.5,
+        notes=tuple(f"{force:.4g} N" for force in size[strong]),
+    )  # fmt: skip
+    waterfall = Figure(
+        f"mesh_force_waterfall_{name}",
+        f"Waterfall of the force in mesh {name}",
+        f"Mesh {name}: lines of the mesh force over speed, down to a hundredth of the strongest.",
+        (Panel(Axis("frequency", "kHz"), Axis(f"speed of {train.speed_of}", "rpm"), (points,)),),
+    )
+    return spectrum, waterfall
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """Harmonics at the one speed, and over all speeds."""
+    part, (meshes, bodies) = scene.case.dynamics, forecasts.sizes(scene)
+    over = part.speed_values.size * min(part.harmonics, 64)
+    seconds = 0.1 + 2e-6 * (over + part.harmonics) * meshes * bodies
+    return Forecast({"harmonics": part.harmonics, "speeds": int(part.speed_values.size)}, seconds)
+
+
+MESH_FORCE_SPECTRUM = Stage(
+    name="mesh-force-spectrum",
+    title="Mesh force spectra",
+    results=("mesh-force-spectrum",),
+    subjects=meshes,
+    needs=needs_train,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=needs_one_speed,
+    cites=citing(Citation("mark", "spectra of the mesh force", "Eqs. 3.1 to 3.11")),
+    forecast=_forecast,
+)

@@ -1,0 +1,169 @@
+"""Stage ``tooth-force``: force on one tooth pair of the linearised train through its engagement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.results.gear_train import gear_train, needs_train
+from fegear.results.train_parts import needs_one_speed, own_meshes, pull_remarks
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.dynamics.gear_train import GearTrain
+    from fegear.dynamics.pull import Pull
+    from fegear.dynamics.tooth_force import ToothForce
+    from fegear.engine.stage import Upstream, Work
+
+
+@dataclass(frozen=True)
+class ToothForceData:
+    """Force on one tooth pair through its engagement.
+
+    Parameters
+    ----------
+    train : GearTrain
+    mesh : int
+        Its number.
+    force : ToothForce
+    number : int
+        Of the tooth pair; 0 is at the pitch point at phase zero.
+    harmonics : int
+        That it is summed from.
+    pull : Pull or None
+        How far the mesh force falls below zero.
+    """
+
+    train: GearTrain
+    mesh: int
+    force: ToothForce
+    number: int
+    harmonics: int
+    pull: Pull | None
+
+
+@dataclass(frozen=True)
+class ToothForceInputs:
+    """What the force on a tooth pair depends on besides the train.
+
+    Parameters
+    ----------
+    mesh : str
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    positions, harmonics : int
+    """
+
+    mesh: str
+    speed: float
+    positions: int
+    harmonics: int
+
+
+def _inputs(scene: Scene, name: str) -> ToothForceInputs:
+    part = scene.case.dynamics
+    return ToothForceInputs(name, part.one_speed, part.positions, part.harmonics)
+
+
+def _compute(asked: ToothForceInputs, upstream: Upstream, _work: Work) -> ToothForceData:
+    from fegear.dynamics.pull import largest_pull
+    from fegear.dynamics.single_tooth import force_history, heaviest_pair, summed_harmonics
+
+    data = gear_train(upstream)
+    i = data.train.mesh_index(asked.mesh)
+    number, harmonics = heaviest_pair(data, i), summed_harmonics(data, asked.harmonics)
+    force = force_history(data, i, asked.speed, asked.positions, harmonics, number)
+    pull = largest_pull(data, i, [asked.speed / data.speed_ratio], asked.harmonics)
+    return ToothForceData(data, i, force, number, harmonics, pull)
+
+
+def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
+    name, data, i, force = asked.mesh, made.train, made.mesh, made.force
+    cross = force.cross.sum(axis=0)
+    table = Table(
+        f"tooth_force_{name}",
+        (
+            Column("t", force.time, "s", "from the mesh's phase zero"),
+            Column("x", force.x, "mm", "place of the tooth pair on the line of action"),
+            Column("force", force.total, "N", "on one tooth pair, without the other meshes' share"),
+            Column("force_with_others", force.total + cross, "N", "with the other meshes' share, at the case's phases"),
+            Column("static", force.static, "N", "static part"),
+            Column("own_increment", force.own, "N", "from this mesh's transmission error"),
+            *(
+                Column(f"increment_from_{other}", force.cross[j], "N", "from the other mesh, at the case's phases")
+                for j, other in enumerate(data.names)
+                if j != i
+            ),
+        ),
+        f"Force on one tooth pair of mesh {name}",
+    )
+    worst = int(np.argmax(force.total))
+    values = [
+        Value(f"{name}.largest_tooth_force", float(force.total[worst]), "N", None,
+              f"without the other meshes, at x = {force.x[worst] * 1e3:.5g} mm"),
+        Value(f"{name}.largest_static_tooth_force", float(force.static.max()), "N", None, "quasi-static"),
+        *(
+            Value(f"{name}.largest_increment_from_{other}", float(force.cross_peak[j]), "N", None,
+                  "over the engagement and all relative phases")
+            for j, other in enumerate(data.names) if j != i
+        ),
+    ]  # fmt: skip
+    remarks = pull_remarks(made.pull)
+    uneven = data.meshes[i].error.pitches
+    if uneven > 1:
+        sentence = (
+            f"Mesh {name}: teeth stand unevenly; of the {uneven} tooth pairs that meet, the force is that on number "
+            f"{made.number}, which carries most at rest (number 0 is at the pitch point at phase zero)."
+        )
+        remarks = (*remarks, sentence)
+    settings: dict[str, object] = {"harmonics": made.harmonics, "speed": asked.speed}
+    return Outcome(made, (table,), tuple(values), settings, remarks, (_tooth_force_figure(made),))
+
+
+def _tooth_force_figure(data: ToothForceData) -> Figure:
+    force, names = data.force, data.train.names
+    name, x, place = names[data.mesh], force.x * 1e3, Axis("place of the tooth pair on the line of action", "mm")
+    top = [Curve(x, force.static, "static", "static"), Curve(x, force.total, "static and own increment", "own force")]
+    if len(names) > 1:
+        top.append(Curve(x, force.total + force.cross.sum(axis=0), "with the other meshes", "with other meshes"))
+    parts = {j: force.own if j == data.mesh else force.cross[j] for j in range(len(names))}
+    below = [Curve(x, part, f"from mesh {names[j]}", f"series:{j + 2}") for j, part in parts.items()]
+    mean = Mark("y", float(data.train.forces[data.mesh]), "mean mesh force")
+    return Figure(
+        f"tooth_force_{name}",
+        f"Force on one tooth pair of mesh {name}",
+        f"Mesh {name}: force on one tooth pair from first to last contact; the level line is the mean mesh force. "
+        "Below: what the vibration adds, by the mesh that excites it.",
+        (
+            Panel(place, Axis("tooth force", "N", zero=True), tuple(top), (mean,), height=1.2),
+            Panel(place, Axis("increment", "N"), tuple(below), height=0.8),
+        ),
+    )
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """At least 256 harmonics at one speed."""
+    part = scene.case.dynamics
+    harmonics = max(part.harmonics, 256)
+    return Forecast({"harmonics": harmonics, "positions": part.positions}, 0.06 * harmonics / 256)
+
+
+TOOTH_FORCE = Stage(
+    name="tooth-force",
+    title="Force on one tooth pair",
+    results=("tooth-force",),
+    subjects=own_meshes,
+    needs=needs_train,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=needs_one_speed,
+    cites=citing(Citation("mark", "force on a single tooth pair", "Eqs. 3.23 to 3.29")),
+    forecast=_forecast,
+)
