@@ -88,6 +88,7 @@ class GearPart(Part):
     tip_radius_rounding: LengthOrZero = 0.0
     tip_chamfer: LengthOrZero = 0.0
     bore_radius: PositiveLength | None = None
+    rim_thickness: PositiveLength | None = None
     face_width: PositiveLength | None = None
     plane: Literal["strain", "stress", "auto"] = "strain"
     material: MaterialPart = Field(default_factory=MaterialPart)
@@ -129,7 +130,7 @@ class GearPart(Part):
             raise refuse("must be given once for a helical gear", remedy, key="normal_module")
         known = {
             "teeth", "pressure_angle", "tip_diameter", "face_width", "material", "helix_angle", "hand",
-            "normal_module", "normal_diametral_pitch",
+            "normal_module", "normal_diametral_pitch", "rack", "rim_thickness",
         }  # fmt: skip
         for key in sorted(self.model_fields_set - known):
             raise refuse("has no meaning for a gear with a helix_angle", f"leave out {key}", key=key)

@@ -50,6 +50,13 @@ class CompliancePart(Part):
         return self
 
 
+class IsoPart(Part):
+    """``iso_6336 = { edition = 2019, accuracy_grade = 4 }``: what ISO 6336-3 asks for beside the geometry."""
+
+    edition: Literal[2006, 2019] = 2006
+    accuracy_grade: Annotated[int, Field(ge=0, le=12)] = 6
+
+
 class PairPart(Part):
     """Two gears in mesh and the load between them."""
 
@@ -64,6 +71,7 @@ class PairPart(Part):
     misalignment: MisalignmentPart | None = None
     modification: ModificationPart | None = None
     axial_offset: Length = 0.0
+    iso_6336: IsoPart = Field(default_factory=IsoPart)
 
     @model_validator(mode="after")
     def _one_load(self) -> Self:

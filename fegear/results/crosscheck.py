@@ -12,7 +12,9 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel, Zone
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
+from fegear.models.settings import mesh_settings, seconds_of_gear
 from fegear.results import forecasts
+from fegear.results.crosscheck_iso import IsoInputs, iso_inputs, iso_table
 from fegear.results.gear_solution import needs_solution, solution_of
 from fegear.results.sources import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
 
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.contact.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
+    from fegear.contact.iso_check import RatedPair
     from fegear.engine.stage import Upstream, Work
     from fegear.fem import StiffnessTable
     from fegear.formulas.iso6336_stiffness import Stiffness
@@ -87,10 +90,11 @@ class PairCheck:
 
 @dataclass(frozen=True, slots=True)
 class CrosscheckInputs:
-    """Gears and pairs that are compared, by name."""
+    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name."""
 
     gears: Mapping[str, Gear]
     pairs: Mapping[str, PairCheck]
+    iso: Mapping[str, IsoInputs]
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +122,7 @@ class CrosscheckData:
 
     gears: Mapping[str, GearAnswers]
     pairs: Mapping[str, PairAnswers]
+    iso: Mapping[str, RatedPair]
 
 
 def _gears(scene: Scene) -> tuple[str, ...]:
@@ -285,7 +290,9 @@ def _sources() -> Table:
 
 def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
     gears = {name: scene.gears[name] for name in _gears(scene)}
-    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in _pairs(scene)})
+    pairs, settings = _pairs(scene), mesh_settings(scene.case.accuracy)
+    iso = {name: iso_inputs(scene, name, settings) for name in (*pairs, *scene.helical_pairs)}
+    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso)
 
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
@@ -301,10 +308,12 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         root_stress_answers,
         tooth_compliance_answers,
     )
+    from fegear.contact.iso_check import rated_helical_pair, rated_spur_pair
     from fegear.formulas.iso6336_stiffness import pair_stiffness
     from fegear.formulas.outcome import attempt
 
     gears, pairs, count = {}, {}, len(asked.gears) + len(asked.pairs)
+    rated: dict[str, RatedPair] = {}
     for name, gear in asked.gears.items():
         fe: StiffnessTable = upstream[Task("stiffness", name)]
         gears[name] = GearAnswers(
@@ -319,8 +328,13 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         fe_pair = pair_reference(pair, driver, driven, x, w)
         iso = attempt(partial(pair_stiffness, pair, w))
         pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso)
+        iso_asked = asked.iso[name]
+        rated[name] = rated_spur_pair(pair, (driver, driven), w, iso_asked.choice, iso_asked.rims)
         work.progress((len(gears) + len(pairs)) / count)
-    return CrosscheckData(gears, pairs)
+    for name, wanted in asked.iso.items():
+        if wanted.helical is not None and wanted.settings is not None:
+            rated[name] = rated_helical_pair(wanted.helical, wanted.choice, wanted.rims, wanted.settings, work.cache)
+    return CrosscheckData(gears, pairs, rated)
 
 
 def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
@@ -340,10 +354,16 @@ def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
         remarks += [remark] if remark else []
         tables.append(table)
         values += some
+    for name, wanted in asked.iso.items():
+        table, some, more = iso_table(name, wanted, data.iso[name])
+        remarks += more
+        tables.append(table)
+        values += some
     for table in tables[1:]:
-        silent = {str(f): str(r) for f, r in zip(table["formula"], table["reason"], strict=True) if r}
+        head = table.columns[0].name
+        silent = {str(f): str(r) for f, r in zip(table[head], table["reason"], strict=True) if r}
         remarks += [f"{table.title}: {f} is out of its range at some positions: {r}" for f, r in silent.items()]
-    figures = tuple(_figure(table) for table in tables[1:])
+    figures = tuple(_figure(table) for table in tables[1:] if "formula" in table.columns[0].name)
     return Outcome(data, tuple(tables), tuple(values), {}, tuple(remarks), figures)
 
 
@@ -389,15 +409,16 @@ def _figure(table: Table) -> Figure:
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
-    """Every closed form for every gear and pair."""
-    return forecasts.constant(0.05 + 0.08 * (len(scene.gears) + len(scene.pairs)))
+    """Every closed form for every gear and pair; helical pairs solve two virtual spur gears for each of theirs."""
+    virtual = 4 * len(scene.helical_pairs) * seconds_of_gear(mesh_settings(scene.case.accuracy))
+    return forecasts.constant(0.05 + 0.08 * (len(scene.gears) + len(scene.pairs)) + virtual)
 
 
 CROSSCHECK = Stage(
     name="crosscheck",
     title="Closed forms against finite elements",
     results=("crosscheck",),
-    subjects=lambda scene: (_WHOLE,) if scene.gears else (),
+    subjects=lambda scene: (_WHOLE,) if scene.gears or scene.helical_pairs else (),
     needs=_needs,
     inputs=_inputs,
     compute=_compute,

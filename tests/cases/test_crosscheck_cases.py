@@ -14,14 +14,17 @@ from fegear.case.reading import read_scene
 from fegear.cli import app
 from fegear.contact.crosscheck import pair_compliance_answers, root_stress_answers
 from fegear.contact.root_stress_study import root_stress_study, variants, verdict
+from fegear.contact.virtual_gears import virtual_root_stress
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.errors import InputError
 from fegear.fem.settings import MeshSettings
 from fegear.formulas import cornell_heywood as cornell
+from fegear.formulas.iso6336_rating import RatingChoice, ToothLoad, rate_helical, rate_spur
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import SOURCES
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.helical_gear import HelicalGear
 from fegear.models.settings import mesh_settings
 from fegear.results.catalogue import STAGES
 
@@ -152,6 +155,76 @@ def test_c_prime_outside_the_stated_range_is_remarked_and_where_it_has_no_value_
     _, values, results = with_mate(-0.6)
     assert "I.single_stiffness_iso" not in values
     assert any("ISO 6336-1 gives no c'" in remark and "x_1 + x_2" in remark for remark in results.remarks)
+
+
+# ---- ISO 6336's root stress of pairs --------------------------------------------------------------------------------
+def test_sigma_f0_of_a_spur_pair_has_every_factor_of_the_case(cornell_case):
+    tables, values, _ = cornell_case
+    table = tables["crosscheck_iso_6336_I"]
+    tooth = read_scene(CASES / "cornell_test_gear.toml").gears["test"].tooth
+    force = 254.33 * math.cos(math.radians(20.0)) / (25.4 / 8.0)  # F_t / (b m) [MPa]
+    assert table["form_stress"] == pytest.approx(force * table["Y_F"] * table["Y_S"], rel=1e-9)
+    assert table["sigma_f0"] == pytest.approx(table["form_stress"], rel=1e-12)
+    assert values["I.driver.sigma_f0_iso"] == table["sigma_f0"][0]
+    assert table["ratio_to_fe"] == pytest.approx(table["form_stress"] / table["root_tension_fe"], rel=1e-12)
+    assert ((table["ratio_to_fe"] > 0.8) & (table["ratio_to_fe"] < 1.2)).all()
+    # A thin rim, grade 3, edition 2019: Y_B = 1.6 ln(2.242 h_t / s_R); the rest stays 1 below a contact ratio of 2.
+    rim = 0.7 * (tooth.tip_radius - tooth.root_radius) * 25.4 / 8.0
+    found, _, _ = run(
+        "cornell_test_gear", "stiffness.radii=['44.450425 mm']", f"gear.test.rim_thickness='{rim} mm'",
+        "pair.I.iso_6336={edition=2019, accuracy_grade=3}",
+    )  # fmt: skip
+    thin = found["crosscheck_iso_6336_I"]
+    assert thin["Y_B"] == pytest.approx(1.6 * math.log(2.242 / 0.7), rel=1e-9)
+    assert thin["sigma_f0"] == pytest.approx(table["sigma_f0"] * thin["Y_B"], rel=1e-9)
+    assert (thin["f_epsilon"] == 1.0).all()
+    assert (thin["Y_DT"] == 1.0).all()
+
+
+def test_a_helical_pair_is_compared_through_its_virtual_teeth():
+    tables, values, results = run(
+        "litvin_shaft_angle", "results=['crosscheck']", "pair.I.iso_6336={edition=2019}", "pair.I.torque='500 N m'",
+        "gear.pinion.helix_angle='15 deg'", "gear.gear.helix_angle='15 deg'",
+    )  # fmt: skip
+    table = tables["crosscheck_iso_6336_I"]
+    beta, alpha = math.radians(15.0), math.radians(20.0)
+    base = math.asin(math.sin(beta) * math.cos(alpha))
+    assert table["z_n"] == pytest.approx(np.array([30, 100]) / (math.cos(base) ** 2 * math.cos(beta)), rel=1e-12)
+    overlap = min(1.6 * math.sin(beta) * 5.0 / math.pi, 1.0)
+    assert table["Y_beta"] == pytest.approx((1.0 - overlap * 15.0 / 120.0) / math.cos(beta) ** 3, rel=1e-9)
+    assert (table["f_epsilon"] < 1.0).all()
+    radius = 0.5 * 30 * 25.4 / 5.0 / math.cos(beta)
+    force = 500e3 / radius / (1.6 * 25.4) / (25.4 / 5.0)
+    assert table["form_stress"] == pytest.approx(force * table["Y_F"] * table["Y_S"], rel=1e-9)
+    factors = table["f_epsilon"] * table["Y_beta"] * table["Y_B"] * table["Y_DT"]
+    assert table["sigma_f0"] == pytest.approx(table["form_stress"] * factors, rel=1e-12)
+    assert ((table["ratio_to_fe"] > 0.85) & (table["ratio_to_fe"] < 1.15)).all()
+    assert values["I.single_stiffness_iso"] > 0.0
+    assert any("virtual spur teeth" in remark for remark in results.remarks)
+
+
+def test_without_a_helix_the_virtual_tooth_is_the_tooth():
+    rack = BasicRack(1.0, 1.25, 0.25)
+    spur = [Gear(Tooth(z, rack), 4e-3, 20e-3) for z in (25, 40)]
+    pair = GearPair(*spur)
+    choice = RatingChoice()
+    load = ToothLoad(1e5 * math.cos(rack.pressure_angle), pair.contact_ratio)
+    for member, gear in zip(("driver", "driven"), spur, strict=True):
+        straight = HelicalGear(gear.teeth, 4e-3, rack.pressure_angle, 0.0, 0.02, "spur")
+        one, other = rate_helical(straight, rack, load, choice), rate_spur(pair, member, 1e5, choice)
+        assert one.stress == pytest.approx(other.stress, rel=1e-9)
+        assert one.load_diameter == pytest.approx(other.load_diameter, rel=1e-12)
+    # Between whole numbers of teeth the finite elements follow; on them they are those of the wheel itself.
+    coarse = MeshSettings().scaled(1.6)
+    tension = {}
+    for beta, teeth in ((0.0, 25), (math.radians(9.0), 25), (0.0, 26)):
+        gear = HelicalGear(teeth, 4e-3, rack.pressure_angle, beta, 0.02, "spur" if beta == 0.0 else "left")
+        z_n = rate_helical(gear, rack, load, choice).teeth
+        tension[z_n] = virtual_root_stress(gear, rack, z_n + 1.0, coarse).tension
+    low, middle, high = tension
+    assert 25.0 == low < middle < high == 26.0
+    part = (1.0 / low - 1.0 / middle) / (1.0 / low - 1.0 / high)
+    assert tension[middle] == pytest.approx(tension[low] + part * (tension[high] - tension[low]), rel=1e-9)
 
 
 # ---- the study ------------------------------------------------------------------------------------------------------

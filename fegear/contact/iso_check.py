@@ -1,0 +1,162 @@
+"""ISO 6336's nominal root stress of both gears of a pair beside finite elements of the same (virtual) spur tooth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.virtual_gears import virtual_root_stress
+from fegear.formulas import iso6336_rating as rating
+from fegear.formulas.outcome import Outcome, attempt
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.fem import GearInfluence
+    from fegear.fem.settings import MeshSettings
+    from fegear.formulas.iso6336_stiffness import Stiffness
+    from fegear.geometry import BasicRack, GearPair
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.pair import Member
+    from fegear.solution_cache import SolutionCache
+
+
+@dataclass(frozen=True, slots=True)
+class HelicalCheck:
+    """A helical pair as ISO 6336 rates it: gears without profile shift, cut by racks in the normal section.
+
+    Parameters
+    ----------
+    gears : tuple of HelicalGear
+        Driver and driven.
+    racks : tuple of BasicRack
+    contact_ratio, overlap_ratio : float
+        epsilon_alpha, epsilon_beta.
+    line_load : float
+        F_t / b [N/m].
+    """
+
+    gears: tuple[HelicalGear, HelicalGear]
+    racks: tuple[BasicRack, BasicRack]
+    contact_ratio: float
+    overlap_ratio: float
+    line_load: float
+
+
+@dataclass(frozen=True, slots=True)
+class RatedGear:
+    """One gear: its rating or the reason why there is none, and the finite elements' largest root tension.
+
+    Parameters
+    ----------
+    rating : Outcome of RootRating
+    form_stress : float
+        F_t/(b m_n) Y_F Y_S [Pa], what a spur tooth alone carries; NaN without a rating.
+    fe : float
+        Largest root tension of the (virtual) spur tooth under the same load at the same place [Pa]; NaN without one.
+    reason : str
+        Why a number is missing; empty where none is.
+    """
+
+    rating: Outcome[rating.RootRating]
+    form_stress: float
+    fe: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class RatedPair:
+    """Driver and driven; the stiffness of helical pairs, whose spur twins have theirs in the pair's own comparison."""
+
+    gears: tuple[RatedGear, RatedGear]
+    stiffness: Outcome[Stiffness] | None = None
+
+
+def _nothing(answer: Outcome[rating.RootRating]) -> RatedGear:
+    return RatedGear(answer, math.nan, math.nan, answer.reason)
+
+
+def rated_spur_pair(
+    pair: GearPair,
+    influences: tuple[GearInfluence, GearInfluence],
+    line_load: float,
+    choice: rating.RatingChoice,
+    rims: Sequence[float | None],
+) -> RatedPair:
+    """Both gears of a spur pair.
+
+    Parameters
+    ----------
+    pair : GearPair
+    influences : (GearInfluence, GearInfluence)
+        Driver and driven.
+    line_load : float
+        Normal to the flank [N/m].
+    choice : RatingChoice
+    rims : sequence of float or None
+        Rim thickness [m]; None for a solid gear.
+    """
+    members: tuple[Member, Member] = ("driver", "driven")
+    found = []
+    for member, known, rim in zip(members, influences, rims, strict=True):
+        gear = pair.gear(member)
+        answer = attempt(partial(rating.rate_spur, pair, member, line_load, choice, rim))
+        if answer.value is None:
+            found.append(_nothing(answer))
+            continue
+        one = answer.value
+        form = line_load * math.cos(gear.tooth.rack.pressure_angle) / gear.module * one.form.Y_F * one.form.Y_S
+        at = np.array([0.5 * one.load_diameter * gear.module])
+        tension = float(known.largest_root_stress(0, "tension", at)[0][0])
+        found.append(RatedGear(answer, form, line_load * tension, ""))
+    return RatedPair((found[0], found[1]))
+
+
+def rated_helical_pair(
+    check: HelicalCheck,
+    choice: rating.RatingChoice,
+    rims: Sequence[float | None],
+    settings: MeshSettings,
+    cache: SolutionCache | None = None,
+) -> RatedPair:
+    """Both gears of a helical pair through their virtual spur teeth.
+
+    Parameters
+    ----------
+    check : HelicalCheck
+    choice : RatingChoice
+    rims : sequence of float or None
+        Rim thickness [m]; None for a solid gear.
+    settings : MeshSettings
+    cache : SolutionCache, optional
+    """
+    found = []
+    for gear, rack, rim in zip(check.gears, check.racks, rims, strict=True):
+
+        def rate(
+            gear: HelicalGear = gear, rack: BasicRack = rack, rim: float | None = rim
+        ) -> tuple[rating.RootRating, float]:
+            load = rating.ToothLoad(
+                check.line_load, rating.virtual_contact_ratio(gear, check.contact_ratio), check.overlap_ratio,
+                gear.helix_angle,
+            )  # fmt: skip
+            one = rating.rate_helical(gear, rack, load, choice, rim)
+            tension = virtual_root_stress(gear, rack, one.load_diameter, settings, cache).tension
+            normal = check.line_load / math.cos(gear.normal_pressure_angle)
+            return one, normal * tension / gear.normal_module
+
+        both = attempt(rate)
+        if both.value is None:
+            found.append(_nothing(Outcome(None, both.reason)))
+            continue
+        one, fe = both.value
+        form = check.line_load / gear.normal_module * one.form.Y_F * one.form.Y_S
+        found.append(RatedGear(Outcome(one), form, fe, ""))
+    stiffness = attempt(
+        partial(rating.helical_stiffness, check.gears, check.racks, check.contact_ratio, check.line_load)
+    )
+    return RatedPair((found[0], found[1]), stiffness)

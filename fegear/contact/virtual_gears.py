@@ -1,0 +1,76 @@
+"""Finite elements of the virtual spur gear of a helical one, whose number of teeth is not whole.
+
+The wheels with the whole numbers of teeth below and above are solved, and their root stress is interpolated in 1/z_n.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem import solve_gear
+from fegear.formulas.iso6336_root_stress import virtual_teeth
+from fegear.geometry import Gear, Tooth
+
+if TYPE_CHECKING:
+    from fegear.fem.settings import MeshSettings
+    from fegear.geometry import BasicRack
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.solution_cache import SolutionCache
+
+
+@dataclass(frozen=True, slots=True)
+class VirtualRootStress:
+    """Largest root tension of the virtual spur gear per line load normal to the flank.
+
+    Parameters
+    ----------
+    teeth : tuple of int
+        Whole numbers of teeth that were solved.
+    tension : float
+        Stress x module / line load.
+    """
+
+    teeth: tuple[int, ...]
+    tension: float
+
+
+def virtual_root_stress(
+    gear: HelicalGear,
+    rack: BasicRack,
+    load_diameter: float,
+    settings: MeshSettings,
+    cache: SolutionCache | None = None,
+) -> VirtualRootStress:
+    """Root tension of the virtual spur gear under a load at the standard's point, from finite elements.
+
+    Parameters
+    ----------
+    gear : HelicalGear
+    rack : BasicRack
+        That cuts the normal section.
+    load_diameter : float
+        d_en of the virtual gear [modules]; whole gears take the load at the same height above the pitch circle.
+    settings : MeshSettings
+    cache : SolutionCache, optional
+        Of solved teeth.
+    """
+    z_n = virtual_teeth(gear.teeth, gear.helix_angle, gear.normal_pressure_angle)
+    addendum = (gear.tip_radius - gear.pitch_radius) / gear.normal_module
+    cutter = replace(rack, pressure_angle=gear.normal_pressure_angle)
+    counts = sorted({math.floor(z_n + 1e-9), math.ceil(z_n - 1e-9)})
+    found = []
+    for z in counts:
+        tooth = Tooth(z, cutter, tip_radius=0.5 * z + addendum)
+        radius = 0.5 * (load_diameter - z_n + z)
+        wheel = Gear(tooth, 1.0, 0.5 * tooth.root_radius)
+        known = solve_gear(wheel, settings, reach=0, estimate_error=False, cache=cache)
+        found.append(float(known.largest_root_stress(0, "tension", np.array([radius]))[0][0]))
+    if len(found) == 1:
+        return VirtualRootStress(tuple(counts), found[0])
+    low, high = counts
+    part = (1.0 / low - 1.0 / z_n) / (1.0 / low - 1.0 / high)
+    return VirtualRootStress((low, high), found[0] + part * (found[1] - found[0]))

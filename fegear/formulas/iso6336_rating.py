@@ -1,0 +1,194 @@
+"""ISO 6336 of a whole pair: c', c_gamma and the nominal root stress sigma_F0 of both gears with all its factors.
+
+Helical gears are rated as the standard does, through their virtual spur teeth: z_n teeth in the normal section, loaded
+at the outer point of single pair contact of the virtual pair (ISO 6336-3, 6.2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.errors import RangeError
+from fegear.formulas import iso6336_root_stress as root
+from fegear.formulas.iso6336_stiffness import Stiffness, stiffness
+
+if TYPE_CHECKING:
+    from fegear.geometry import BasicRack, GearPair
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.pair import Member
+
+
+@dataclass(frozen=True, slots=True)
+class RatingChoice:
+    """What the standard asks for beside the geometry.
+
+    Parameters
+    ----------
+    edition : {2006, 2019}
+        Of ISO 6336-3.
+    accuracy_grade : int
+        ISO 1328 grade of the gears; Y_DT relieves deep teeth of grade 4 or better only.
+    """
+
+    edition: root.Edition = 2006
+    accuracy_grade: int = 6
+
+
+@dataclass(frozen=True, slots=True)
+class RootRating:
+    """Nominal root stress of one gear and what it is made of.
+
+    Parameters
+    ----------
+    teeth : float
+        z_n of the virtual spur gear.
+    load_diameter : float
+        d_en [modules].
+    form : RootForm
+        Section, Y_F without f_epsilon, Y_S.
+    load_distribution, helix, rim, deep_tooth : float
+        f_epsilon, Y_beta, Y_B, Y_DT.
+    stress : float
+        sigma_F0 [Pa].
+    """
+
+    teeth: float
+    load_diameter: float
+    form: root.RootForm
+    load_distribution: float
+    helix: float
+    rim: float
+    deep_tooth: float
+    stress: float
+
+
+@dataclass(frozen=True, slots=True)
+class ToothLoad:
+    """Load of a pair as ISO 6336 counts it.
+
+    Parameters
+    ----------
+    tangential : float
+        F_t per face width [N/m] at the reference circle.
+    contact_ratio : float
+        epsilon_alpha_n of the virtual pair, from 1 to below 2: beyond there is no single pair contact.
+    overlap_ratio : float
+        epsilon_beta.
+    helix_angle : float
+        beta [rad].
+    """
+
+    tangential: float
+    contact_ratio: float
+    overlap_ratio: float = 0.0
+    helix_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse contact ratios without single pair contact."""
+        if not 1.0 <= self.contact_ratio < 2.0:
+            rule = "must be between 1 and 2 for a single contact point"
+            raise RangeError("contact ratio", f"{self.contact_ratio:.4g}", rule)
+
+
+def rate(
+    gear: root.RackTooth,
+    load_diameter: float,
+    module: float,
+    load: ToothLoad,
+    choice: RatingChoice,
+    backup_ratio: float = math.inf,
+) -> RootRating:
+    """Rate one (virtual) gear.
+
+    Parameters
+    ----------
+    gear : RackTooth
+    load_diameter : float
+        d_en [modules].
+    module : float
+        m_n [m].
+    load : ToothLoad
+    choice : RatingChoice
+    backup_ratio : float
+        s_R / h_t, rim thickness over tooth height; inf for a solid gear.
+    """
+    form = root.root_form(gear, load_diameter)
+    shared = root.load_distribution_factor(load.contact_ratio, load.overlap_ratio, choice.edition)
+    helix = root.helix_factor(load.overlap_ratio, load.helix_angle, choice.edition)
+    rim = 1.0 if math.isinf(backup_ratio) else root.rim_factor(backup_ratio, 1.0)
+    deep = root.deep_tooth_factor(load.contact_ratio) if choice.accuracy_grade <= 4 else 1.0
+    stress = root.nominal_root_stress(
+        form, load.tangential, 1.0, module, helix=helix, rim=rim, deep_tooth=deep, load_distribution=shared
+    )
+    return RootRating(gear.teeth, load_diameter, form, shared, helix, rim, deep, stress)
+
+
+def rate_spur(
+    pair: GearPair, member: Member, line_load: float, choice: RatingChoice, rim_thickness: float | None = None
+) -> RootRating:
+    """Rate one gear of a spur pair under a line load [N/m] normal to the flank; rim thickness in m, None for solid."""
+    gear = pair.gear(member)
+    load = ToothLoad(line_load * math.cos(gear.tooth.rack.pressure_angle), pair.contact_ratio)
+    at = pair.x_hpstc if member == "driver" else pair.x_lpstc
+    height = gear.tip_radius - gear.root_radius
+    backup = math.inf if rim_thickness is None else rim_thickness / height
+    d_en = 2.0 * float(pair.radius(at, member)) / gear.module
+    return rate(root.rack_tooth(gear.tooth), d_en, gear.module, load, choice, backup)
+
+
+def virtual_tooth(gear: HelicalGear, rack: BasicRack) -> root.RackTooth:
+    """The virtual spur tooth of a helical gear without profile shift, cut by `rack` in its normal section."""
+    z_n = root.virtual_teeth(gear.teeth, gear.helix_angle, gear.normal_pressure_angle)
+    return root.RackTooth(z_n, 0.0, rack.dedendum, rack.tip_radius, gear.normal_pressure_angle, rack.residual_undercut)
+
+
+def virtual_contact_ratio(gear: HelicalGear, contact_ratio: float) -> float:
+    """epsilon_alpha_n = epsilon_alpha / cos^2(beta_b) (ISO 6336-3, 6.2)."""
+    return contact_ratio / math.cos(gear.base_helix_angle) ** 2
+
+
+def rate_helical(
+    gear: HelicalGear, rack: BasicRack, load: ToothLoad, choice: RatingChoice, rim_thickness: float | None = None
+) -> RootRating:
+    """Rate a helical gear through its virtual spur tooth.
+
+    Parameters
+    ----------
+    gear : HelicalGear
+        Without profile shift.
+    rack : BasicRack
+        That cuts the normal section.
+    load : ToothLoad
+    choice : RatingChoice
+    rim_thickness : float, optional
+        [m]; None for a solid gear.
+    """
+    tooth = virtual_tooth(gear, rack)
+    addendum = (gear.tip_radius - gear.pitch_radius) / gear.normal_module
+    d_en = root.outer_single_contact_diameter(tooth, tooth.teeth + 2.0 * addendum, load.contact_ratio)
+    height = (addendum + rack.dedendum) * gear.normal_module
+    backup = math.inf if rim_thickness is None else rim_thickness / height
+    return rate(tooth, d_en, gear.normal_module, load, choice, backup)
+
+
+def helical_stiffness(
+    gears: tuple[HelicalGear, HelicalGear], racks: tuple[BasicRack, BasicRack], contact_ratio: float, line_load: float
+) -> Stiffness:
+    """c' and c_gamma of a helical pair of steel gears without profile shift; the one with fewer teeth is the pinion.
+
+    Parameters
+    ----------
+    gears : (HelicalGear, HelicalGear)
+    racks : (BasicRack, BasicRack)
+    contact_ratio : float
+        Transverse contact ratio epsilon_alpha.
+    line_load : float
+        F_t / b [N/m].
+    """
+    (a, rack_a), (b, rack_b) = sorted(zip(gears, racks, strict=True), key=lambda pair: pair[0].teeth)
+    return stiffness(
+        (a.teeth, b.teeth), contact_ratio, helix_angle=a.helix_angle, dedendum=(rack_a.dedendum, rack_b.dedendum),
+        pressure_angle=a.normal_pressure_angle, specific_load=line_load,
+    )  # fmt: skip

@@ -1,0 +1,112 @@
+"""ISO 6336 part of the result ``crosscheck``: what a case asks for, and its table of factors and root stresses."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.iso_check import HelicalCheck, RatedPair
+from fegear.engine.outcome import Column, Table, Value
+from fegear.formulas.iso6336_rating import RatingChoice
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.fem.settings import MeshSettings
+
+#: Tangential load per face width of helical pairs when the case names none [N/m].
+USUAL_LINE_LOAD = 100e3
+
+
+@dataclass(frozen=True, slots=True)
+class IsoInputs:
+    """What ISO 6336 is asked for one pair; `helical` is None for spur pairs."""
+
+    names: tuple[str, str]
+    choice: RatingChoice
+    rims: tuple[float | None, float | None]
+    helical: HelicalCheck | None = None
+    settings: MeshSettings | None = None
+    chosen: bool = False
+
+
+def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
+    """Take from a scene what ISO 6336 needs of one pair."""
+    part = scene.case.pair[name]
+    names = (part.driver, part.driven)
+    choice = RatingChoice(part.iso_6336.edition, part.iso_6336.accuracy_grade)
+    rims = (scene.case.gear[names[0]].rim_thickness, scene.case.gear[names[1]].rim_thickness)
+    if name in scene.pairs:
+        return IsoInputs(names, choice, rims)
+    pair = scene.helical_pairs[name]
+    width = pair.overlap[1] - pair.overlap[0]
+    driver = pair.pinion
+    force = None if part.load is None else part.load * math.cos(driver.transverse_pressure_angle)
+    if part.torque is not None:
+        force = part.torque / driver.pitch_radius
+    load = USUAL_LINE_LOAD if force is None else force / width
+    first, second = (scene.case.gear[gear] for gear in names)
+    racks = (first.rack.build(first.pressure_angle), second.rack.build(second.pressure_angle))
+    check = HelicalCheck(
+        (pair.pinion, pair.gear), racks, pair.transverse_contact_ratio, pair.overlap_ratio, load
+    )  # fmt: skip
+    return IsoInputs(names, choice, rims, check, settings, force is None)
+
+
+def iso_table(name: str, asked: IsoInputs, found: RatedPair) -> tuple[Table, tuple[Value, ...], tuple[str, ...]]:
+    """Table, values and remarks of one pair."""
+    ratings = [gear.rating.value for gear in found.gears]
+
+    def column(head: str, unit: str, meaning: str, *path: str) -> Column:
+        values = []
+        for one in ratings:
+            value: object = one
+            for step in path:
+                value = None if value is None else getattr(value, step)
+            values.append(math.nan if value is None else value)
+        return Column(head, np.array(values, dtype=float), unit, meaning)
+
+    form, fe = (np.array([getattr(gear, key) for gear in found.gears]) for key in ("form_stress", "fe"))
+    stress = column("sigma_f0", "MPa", "nominal root stress with every factor", "stress")
+    columns = (
+        Column("gear", np.array(asked.names), "", "name of the gear"),
+        column("z_n", "", "number of teeth of the virtual spur gear", "teeth"),
+        column("Y_F", "", "form factor without f_epsilon", "form", "Y_F"),
+        column("f_epsilon", "", "load distribution, edition 2019", "load_distribution"),
+        column("Y_S", "", "stress correction factor", "form", "Y_S"),
+        column("Y_beta", "", "helix angle factor", "helix"),
+        column("Y_B", "", "rim thickness factor", "rim"),
+        column("Y_DT", "", "deep tooth factor", "deep_tooth"),
+        stress,
+        Column("form_stress", form, "MPa", "F_t/(b m_n) Y_F Y_S alone"),
+        Column("root_tension_fe", fe, "MPa", "largest root tension of the same (virtual) spur tooth by FE"),
+        Column("ratio_to_fe", form / fe, "", "form_stress over FE"),
+        Column("reason", np.array([gear.reason for gear in found.gears]), "", "why there is nothing"),
+    )
+    edition = asked.choice.edition
+    table = Table(f"crosscheck_iso_6336_{name}", columns, f"ISO 6336-3:{edition} root stress of pair {name}")
+    values = [
+        Value(f"{name}.{role}.sigma_f0_iso", one.stress, "MPa", None, f"ISO 6336-3:{edition} nominal root stress")
+        for role, one in zip(("driver", "driven"), ratings, strict=True)
+        if one is not None
+    ]
+    remarks = []
+    if asked.chosen:
+        remarks.append(f"Pair {name}: no load was given; ISO 6336 takes F_t/b = {USUAL_LINE_LOAD * 1e-3:.6g} N/mm.")
+    if found.stiffness is not None:
+        iso = found.stiffness.value
+        if iso is None:
+            remarks.append(f"Pair {name}: ISO 6336-1 gives no c': {found.stiffness.reason}")
+        else:
+            unit = "N/(mm.um)"
+            values += [
+                Value(f"{name}.single_stiffness_iso", iso.single, unit, None, "ISO 6336-1 c', solid blank"),
+                Value(f"{name}.mesh_stiffness_iso", iso.mesh_alpha, unit, None, "ISO 6336-1 c_gamma_alpha"),
+            ]
+        remarks.append(
+            f"Crosscheck of pair {name}: the helical teeth are compared through their virtual spur teeth; finite "
+            "elements are interpolated between the whole numbers of teeth beside z_n and know no helix."
+        )
+    return table, tuple(values), tuple(remarks)
