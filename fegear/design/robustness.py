@@ -79,7 +79,8 @@ def robustness(
     w, e, d = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (load_factors, spacing_errors, relief_errors))
     if (w <= 0.0).any():
         raise InputError("design.load_factors", float(w.min()), "must be positive")
-    table = bench(engagement)
+    # Peaks sit at kinks of the reliefs and where pairs part: break points at the former, many positions for the latter.
+    table = bench(engagement, waves=48, breaks=engagement.breaks)
     m = table.removal(engagement.driver_relief, engagement.driven_relief)
     second = (table.grid.contacts.number % 2 == 1).astype(float)[:, None]
     cases, loads = [], []

@@ -1,6 +1,7 @@
 """Relief design: Mark's (4.6) with neighbour coupling, and the charts of Lin, Townsend and Oswald (NASA TM-89901)."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -139,6 +140,18 @@ def test_robustness_finds_the_worst_corner(nasa):
     assert r.worst_case[1] == 3e-6
     nominal = r.values[list(r.load_factors).index(1.0), 0, list(r.relief_errors).index(0.0)]
     assert nominal == pytest.approx(r.nominal, abs=1e-15)
+
+
+def test_robustness_of_a_ground_relief_agrees_with_the_exact_evaluation(nasa):
+    """Peaks sit on kinks: between 120 roll positions the worst cases were up to 3 % low."""
+    ground = grindable(minimum_excitation(nasa, loading(nasa, 1.312), LOAD), LOAD)
+    found = robustness(ground.applied(nasa), LOAD)
+    for (i, _, k), value in np.ndenumerate(found.values):
+        deep = 1.0 + found.relief_errors[k]
+        tips = [replace(r, amount=r.amount * deep) for r in (ground.driver, ground.driven)]
+        state = replace(nasa, driver_relief=tips[0], driven_relief=tips[1])
+        exact = transmission_error(state, LOAD * found.load_factors[i], 12)
+        assert value == pytest.approx(exact.peak_to_peak, rel=0.01)
 
 
 @pytest.fixture(scope="module")
