@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.train import Body, Mesh, Shaft, Torque, Train, joined_inertias, mesh_damping, shaft_damping
+from fegear.dynamics.train import Body, Mesh, Shaft, Torque, Train, mesh_damping, shaft_damping
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ class FourInertia:
     motor, gear_1, gear_2, load : float
         Inertias [kg m^2].
     shaft_1, shaft_2 : float
-        Shaft stiffnesses [N m/rad]; infinity joins motor or load to its gear, in the damping ratios as well.
+        Shaft stiffnesses [N m/rad].
     base_radius_1, base_radius_2 : float
         Base radii [m].
     teeth_1, teeth_2 : int
@@ -34,7 +34,8 @@ class FourInertia:
     force : float
         Mean mesh force along the line of action [N].
     shaft_ratio, mesh_ratio : float
-        Damping ratios of the shafts (14, 15) and of the gear pair (16).
+        Damping ratios of the shafts (14, 15) and of the gear pair (16), for the gears' own inertias as the report
+        has it, whatever the shafts: stiff ones tend to rigid ones.
     backlash : float
         Backlash along the line of action [m].
     """
@@ -57,30 +58,26 @@ class FourInertia:
     def train(self, mesh_stiffness: float) -> Train:
         """The model as a train, for a mean mesh stiffness [N/m]."""
         r1, r2 = self.base_radius_1, self.base_radius_2
-        bodies = (
-            Body("motor", self.motor),
-            Body("gear 1", self.gear_1),
-            Body("gear 2", self.gear_2),
-            Body("load", self.load),
-        )
-        undamped = (
-            Shaft("shaft 1", "motor", "gear 1", self.shaft_1),
-            Shaft("shaft 2", "gear 2", "load", self.shaft_2),
-        )
-        inertia = joined_inertias(bodies, undamped)
+        damping = mesh_damping(self.mesh_ratio, mesh_stiffness, r1, r2, self.gear_1, self.gear_2)
 
-        def damped(shaft: Shaft) -> Shaft:
-            if math.isinf(shaft.stiffness):
-                return shaft
-            c = shaft_damping(self.shaft_ratio, shaft.stiffness, inertia[shaft.a], inertia[shaft.b])
-            return replace(shaft, damping=c)
+        def damp(stiffness: float, a: float, b: float) -> float:
+            return shaft_damping(self.shaft_ratio, stiffness, a, b) if math.isfinite(stiffness) else 0.0
 
-        damping = mesh_damping(self.mesh_ratio, mesh_stiffness, r1, r2, inertia["gear 1"], inertia["gear 2"])
         pair = Mesh(
             "pair", "gear 1", "gear 2", r1, -r2, self.teeth_1, self.teeth_2, mesh_stiffness, damping, self.backlash
         )
         return Train(
-            bodies, tuple(damped(shaft) for shaft in undamped), (pair,),
+            bodies=(
+                Body("motor", self.motor),
+                Body("gear 1", self.gear_1),
+                Body("gear 2", self.gear_2),
+                Body("load", self.load),
+            ),
+            shafts=(
+                Shaft("shaft 1", "motor", "gear 1", self.shaft_1, damp(self.shaft_1, self.motor, self.gear_1)),
+                Shaft("shaft 2", "gear 2", "load", self.shaft_2, damp(self.shaft_2, self.gear_2, self.load)),
+            ),
+            meshes=(pair,),
             torques=(Torque("motor", self.force * r1), Torque("load", -self.force * r2)),
         )  # fmt: skip
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -76,6 +77,34 @@ def damping_matrix(train: Train, *, meshes: bool = True) -> Array:
 def stiffness_matrix(train: Train, *, meshes: bool = True) -> Array:
     """Stiffness matrix [N m/rad], shape (size, size), with the mean stiffness of the gear pairs or without them."""
     return _assemble(train, [e.stiffness if meshes or e.mesh < 0 else 0.0 for e in elements(train)])
+
+
+def projected(train: Train, shapes: Array, of: Literal["stiffness", "damping"]) -> Array:
+    """Stiffness or damping matrix without the gear pairs, in coordinates whose shapes are columns of rotation angles.
+
+    Each spring and damper counts by what the shapes strain it, and zeros stay zeros: shapes that turn both of its ends
+    alike do not strain it by round-off.
+
+    Parameters
+    ----------
+    train : Train
+    shapes : ndarray, shape (size, n)
+    of : {"stiffness", "damping"}
+
+    Returns
+    -------
+    ndarray, shape (n, n)
+    """
+    parts = [part for part in elements(train) if part.mesh < 0 and getattr(part, of) > 0.0]
+    rows = np.zeros((len(parts), shapes.shape[1]))
+    for index, part in enumerate(parts):
+        one = part.radius_a * shapes[part.a]
+        other = part.radius_b * shapes[part.b] if part.b >= 0 else np.zeros_like(one)
+        row = one + other
+        row[np.abs(row) <= 8.0 * np.finfo(float).eps * np.abs(one)] = 0.0
+        rows[index] = math.sqrt(getattr(part, of)) * row
+    found: Array = rows.T @ rows
+    return found
 
 
 def static_forces(train: Train) -> Array:

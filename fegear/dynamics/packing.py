@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.matrices import damping_matrix, elements, stiffness_matrix
+from fegear.dynamics.matrices import damping_matrix, elements, projected
 from fegear.dynamics.modes import modes
 from fegear.dynamics.motion_model import friction_loss_torque
 from fegear.dynamics.periodic import Periodic
+from fegear.dynamics.segments import segment_shapes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
     from fegear.dynamics.train import Train
 
     Array = NDArray[np.float64]
+
+#: Bodies beyond which the coordinates are segments of the train and not modes: the work of a step then grows with the
+#: number of bodies and not with its square.
+LONG = 32
 
 
 @dataclass(frozen=True)
@@ -123,10 +128,10 @@ def pack(model: MotionModel) -> Packed:
     """Turn a model into arrays for the integrator."""
     train = model.train
     shape = modes(train)
-    rigid = shape.shapes[:, :1]
-    slipping = damping_matrix(train, meshes=False) @ rigid
+    basis = shape.shapes if train.size <= LONG else segment_shapes(train)
+    slipping = damping_matrix(train, meshes=False) @ basis[:, :1]
     keep_rigid = bool(np.any(np.abs(slipping) > 0.0)) and not _geared_damping(train)
-    shapes = shape.shapes if keep_rigid else shape.shapes[:, 1:]
+    shapes = basis if keep_rigid else basis[:, 1:]
     free = np.ones(shapes.shape[1], dtype=bool)
     if keep_rigid:
         free[0] = False
@@ -143,7 +148,8 @@ def pack(model: MotionModel) -> Packed:
     force = unit**2 / (time**2 * length)
     springs, degree = _spring_tables(model, length, force)
     frequency = train.mesh_frequencies(model.speed)
-    K = shapes.T @ stiffness_matrix(train, meshes=False) @ shapes * time**2
+    stiff, damped = (projected(train, shapes, of) for of in ("stiffness", "damping"))
+    K = stiff * time**2
     K[~free, :] = 0.0
     K[:, ~free] = 0.0
     mesh_of = np.array([s[0] for s in springs], dtype=np.int64)
@@ -157,7 +163,7 @@ def pack(model: MotionModel) -> Packed:
         shapes=shapes * unit,
         free=free,
         K=K,
-        C=shapes.T @ damping_matrix(train, meshes=False) @ shapes * time,
+        C=damped * time,
         f=shapes.T @ (train.torque + friction_loss_torque(model)) * time**2 / unit,
         approach=rows * unit / length,
         damping=np.array([m.damping for m in train.meshes]) * length / (force * time),

@@ -2,6 +2,7 @@
 
 import math
 import tracemalloc
+from dataclasses import replace
 
 import mpmath
 import numpy as np
@@ -9,11 +10,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.dynamics import increments
+from fegear.dynamics import increments, packing
+from fegear.dynamics.excitation import MeshExcitation
 from fegear.dynamics.increments import dynamic_increments
-from fegear.dynamics.matrices import elements
+from fegear.dynamics.matrices import damping_matrix, elements, projected, stiffness_matrix
+from fegear.dynamics.motion import simulate
+from fegear.dynamics.motion_model import MotionModel
 from fegear.dynamics.network import Network
-from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Train
+from fegear.dynamics.packing import pack
+from fegear.dynamics.periodic import Periodic
+from fegear.dynamics.segments import segment_shapes
+from fegear.dynamics.steady_state import steady_state
+from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train
 from fegear.errors import RangeError
 
 
@@ -241,3 +249,68 @@ def test_one_source_is_a_column_of_all():
     train = row_of_bodies(30, 5)
     omega = np.array([0.0, 300.0, -300.0, 4e4])
     assert dynamic_increments(train, omega, [3, 1]) == pytest.approx(dynamic_increments(train, omega)[:, [3, 1]])
+
+
+# ---- motion ---------------------------------------------------------------------------------------------------------
+def loaded(train, force=2000.0):
+    """The train with torques at both ends that press its one gear pair with this force."""
+    torque = force * train.meshes[0].radius_a
+    last = train.bodies[-1].name
+    ends = Torque(train.bodies[0].name, torque), Torque(last, -torque / train.ratios[train.dof[last]])
+    return replace(train, torques=ends)
+
+
+def shaken(train, speed, amplitude=1e-7):
+    """In motion, with mean mesh stiffness and a transmission error of one harmonic."""
+    error = Periodic.fit(lambda s: amplitude * np.cos(2.0 * np.pi * s), degree=10, tolerance=1e-13)
+    stiffness = Periodic.constant(train.meshes[0].stiffness)
+    return MotionModel(loaded(train), (MeshExcitation.from_mesh(stiffness, error),), speed)
+
+
+@pytest.mark.parametrize(
+    ("count", "ratio"),
+    [(80, 0.6), pytest.param(200, 0.3, marks=pytest.mark.long), pytest.param(200, 2.0, marks=pytest.mark.long)],
+)
+def test_motion_of_long_trains_is_that_of_forty_digits(count, ratio):
+    """Constant stiffness: the largest force is the mean and k |Q| times the transmission error's amplitude."""
+    train = row_of_bodies(count, 1)
+    speed = ratio * 2.0 * math.pi * 2000.0 / 40
+    state = steady_state(shaken(train, speed), tolerance=1e-8)
+    mesh = train.meshes[0]
+    q = exact_in_a_row(train, 40 * speed)[0, 0]
+    assert state.changes == 0
+    assert state.largest[0] == pytest.approx(2000.0 + mesh.stiffness * abs(q) * 1e-7, rel=1e-7)
+    assert state.smallest[0] == pytest.approx(2000.0 - mesh.stiffness * abs(q) * 1e-7, rel=1e-7)
+
+
+def test_coordinates_of_long_trains_are_sparse():
+    """A step in time costs what the stiffness and damping matrices hold: rows of log n entries, not of n."""
+    for count in (100, 200, 400):
+        packed = pack(shaken(row_of_bodies(count, 1), 100.0))
+        filled = np.count_nonzero((packed.K != 0.0) | (packed.C != 0.0))
+        assert filled < 2.0 * count * math.log2(count)
+
+
+def test_long_and_short_trains_move_alike(monkeypatch):
+    """The same motion in natural modes and in segments, with contact loss."""
+    train, speed = row_of_bodies(40, 1), 2.0 * math.pi * 2000.0 / 40
+    parts = 2000.0 / (train.meshes[0].stiffness * abs(dynamic_increments(train, 40 * speed)[0, 0]))
+    model = shaken(train, speed, 1.2 * parts)
+    segments = simulate(model, 12.0 * model.period, tolerance=1e-12, max_steps=2000)
+    monkeypatch.setattr(packing, "LONG", 1000)
+    modal = simulate(model, 12.0 * model.period, tolerance=1e-12, max_steps=2000)
+    assert segments.passage.changes == modal.passage.changes > 2
+    time = np.linspace(0.0, 12.0 * model.period, 200)
+    assert segments.approach(time) == pytest.approx(modal.approach(time), rel=1e-7, abs=1e-7 * 2000.0 / 3e8)
+
+
+@given(tangled())
+def test_segments_are_coordinates_of_any_train(train):
+    """Orthogonal by mass, the first the free turning; the train's springs in them give its natural frequencies."""
+    shapes = segment_shapes(train)
+    assert shapes.T @ (train.inertia[:, None] * shapes) == pytest.approx(np.eye(train.size), abs=1e-12)
+    assert shapes[:, 0] / shapes[0, 0] == pytest.approx(train.ratios, rel=1e-12)
+    plain = shapes.T @ stiffness_matrix(train, meshes=False) @ shapes
+    assert projected(train, shapes, "stiffness") == pytest.approx(plain, abs=1e-12 * np.abs(plain).max() + 1e-300)
+    damped = shapes.T @ damping_matrix(train, meshes=False) @ shapes
+    assert projected(train, shapes, "damping") == pytest.approx(damped, abs=1e-12 * np.abs(damped).max() + 1e-300)
