@@ -149,3 +149,12 @@ def welbourn_amount(engagement: Engagement, load: float, largest_spacing_error: 
     perfect = Engagement(engagement.compliance)
     at = pair.x_hpstc - 1e-9 * pair.base_pitch
     return float(perfect.solve(perfect.grid([at]), [load]).transmission_error[0, 0]) + 2.0 * largest_spacing_error
+
+
+def unit_amount(engagement: Engagement, load: float) -> float:
+    """Largest transmission error of the unmodified pair [m]: Welbourn's Delta for contact ratios between 1 and 2."""
+    from fegear.contact import transmission_error
+
+    if 1.0 <= engagement.pair.contact_ratio < 2.0:
+        return welbourn_amount(engagement, load)
+    return float(transmission_error(engagement.unmodified(), load, 12).values.max())

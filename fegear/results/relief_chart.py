@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,16 +12,19 @@ from fegear.engine.figure import Axis, Curve, Figure, HeatMap, Mark, Panel, View
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.results import forecasts
-from fegear.results.loaded_pair import loaded_pair, needs_pair
+from fegear.results.loaded_pair import needs_pair
 from fegear.results.relief import DESIGN_EFFECTS, ReliefData, design_pairs, design_part
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
+    from fegear.case.design import ChartPart, RobustnessPart
     from fegear.case.reading import Scene
-    from fegear.contact import Engagement
     from fegear.design import ReliefChart, Robustness, TipReliefPair
-    from fegear.engine.stage import Done, Progress
+    from fegear.design.charts import Metric
+    from fegear.engine.stage import Upstream, Work
     from fegear.models.loaded_pair import LoadedPair
 
     Array = NDArray[np.float64]
@@ -47,30 +50,41 @@ class ReliefChartData:
     delta: float
 
 
-def _delta(engagement: Engagement, load: float) -> float:
-    """Largest transmission error of the unmodified pair [m]: Welbourn's Delta for contact ratios between 1 and 2."""
-    from fegear.contact import transmission_error
-    from fegear.design import welbourn_amount
+@dataclass(frozen=True)
+class ChartInputs:
+    """What the chart of a pair depends on."""
 
-    if 1.0 <= engagement.pair.contact_ratio < 2.0:
-        return welbourn_amount(engagement, load)
-    return float(transmission_error(engagement.unmodified(), load, 12).values.max())
+    part: ChartPart
+    metric: Metric
+    name: str = field(compare=False)
 
 
-def _run_chart(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+def _chart_inputs(scene: Scene, name: str) -> ChartInputs:
+    part = design_part(scene)
+    return ChartInputs(part.chart, part.metric, name)
+
+
+def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> ReliefChartData:
     from fegear.design import optimise_tip_relief, relief_chart
+    from fegear.design.charts import unit_amount
 
-    pair, part = loaded_pair(done, name), design_part(scene)
-    asked, e = part.chart, loaded_pair(done, name).engagement.unmodified()
+    (found,) = upstream.values()
+    pair: LoadedPair = found.pair
+    asked, e = inputs.part, pair.engagement.unmodified()
     loads = np.array(asked.loads or pair.loads)
-    delta = _delta(e, pair.nominal)
+    delta = unit_amount(e, pair.nominal)
     amounts = np.array(asked.amounts) if asked.amounts else delta * np.linspace(0.1, 1.6, 16)
     lengths = np.array(asked.lengths) if asked.lengths else np.linspace(0.05, 1.3, 26)
     chart = relief_chart(e, np.sort(amounts), np.sort(lengths), loads, asked.shape)
-    progress(0.5)
-    best = optimise_tip_relief(e, loads, asked.shape, part.metric)
+    work.progress(0.5)
+    return ReliefChartData(pair, chart, optimise_tip_relief(e, loads, asked.shape, inputs.metric), delta)
+
+
+def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
+    name, metric, asked = inputs.name, inputs.metric, inputs.part
+    chart, best, delta = data.chart, data.best, data.delta
     a, b, w = np.meshgrid(chart.amounts, chart.lengths, chart.loads, indexing="ij")
-    optimum = {metric: chart.optimum_lengths(metric) for metric in ("effective_error", "peak_to_peak")}
+    optimum = {key: chart.optimum_lengths(key) for key in ("effective_error", "peak_to_peak")}
     aa, ww = np.meshgrid(chart.amounts, chart.loads, indexing="ij")
     tables = (
         Table(
@@ -106,49 +120,79 @@ def _run_chart(scene: Scene, name: str, done: Done, progress: Progress) -> Outco
     ]
     for member, relief in (("driver", best.driver), ("driven", best.driven)):
         values += [
-            Value(f"{name}.{member}.optimum_amount", relief.amount, "um", None, f"by the optimiser, {part.metric}"),
+            Value(f"{name}.{member}.optimum_amount", relief.amount, "um", None, f"by the optimiser, {metric}"),
             Value(f"{name}.{member}.optimum_start", relief.start, "deg", None, "roll angle where that relief starts"),
         ]
-    left = float(getattr(best, part.metric)[-1])
-    values.append(Value(f"{name}.optimum_{part.metric}", left, "um", None, "left at the largest load"))
+    left = float(getattr(best, metric)[-1])
+    values.append(Value(f"{name}.optimum_{metric}", left, "um", None, "left at the largest load"))
     settings = {
-        "shape": asked.shape, "metric": part.metric, "candidates": best.candidates, "evaluations": best.evaluations,
+        "shape": asked.shape, "metric": metric, "candidates": best.candidates, "evaluations": best.evaluations,
         "starts": best.starts, "agreeing": best.agreeing,
     }  # fmt: skip
-    data = ReliefChartData(pair, chart, best, delta)
     return Outcome(data, tables, tuple(values), settings, figures=_chart_figures(name, data))
 
 
 @dataclass(frozen=True)
 class RobustnessData:
-    """What the stage hands to pictures: the candidates by name."""
+    """How each candidate holds up, by its name."""
 
-    pair: LoadedPair
-    candidates: dict[str, Robustness]
+    candidates: Mapping[str, Robustness]
 
 
-def _run_robustness(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
+@dataclass(frozen=True)
+class RobustnessInputs:
+    """What the robustness of a pair's reliefs depends on.
+
+    Parameters
+    ----------
+    part : RobustnessPart
+    metric : str
+    own_relief : bool
+        Whether the relief of the case is a candidate too.
+    name : str
+        Of the pair.
+    """
+
+    part: RobustnessPart
+    metric: Metric
+    own_relief: bool
+    name: str = field(compare=False)
+
+
+def _robustness_inputs(scene: Scene, name: str) -> RobustnessInputs:
+    part = design_part(scene)
+    return RobustnessInputs(part.robustness, part.metric, scene.case.effects.relief, name)
+
+
+def _compute_robustness(inputs: RobustnessInputs, upstream: Upstream, work: Work) -> RobustnessData:
     from fegear.design import robustness
 
-    pair, part = loaded_pair(done, name), design_part(scene)
-    designed = cast("ReliefData", done[Task("relief", name)].data)
-    asked = part.robustness
-    states = {"designed": designed.designed}
-    states |= {f"{shape} tip relief": g.applied(designed.designed) for shape, g in designed.ground.items()}
-    if scene.case.effects.relief:
-        states["relief of the case"] = replace(pair.engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
-    found, rows, values = {}, [], []
-    for number, (label, state) in enumerate(states.items()):
-        r = found[label] = robustness(
-            state, designed.load, asked.load_factors, asked.spacing_errors, asked.relief_errors, part.metric
+    designed: ReliefData = next(found for task, found in upstream.items() if task.stage == "relief")
+    asked, design = inputs.part, designed.design
+    states = {"designed": design.designed}
+    states |= {f"{shape} tip relief": g.applied(design.designed) for shape, g in design.ground.items()}
+    if inputs.own_relief:
+        own = designed.pair.engagement
+        states["relief of the case"] = replace(own, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
+    found: dict[str, Robustness] = {}
+    for label, state in states.items():
+        found[label] = robustness(
+            state, design.task.load, asked.load_factors, asked.spacing_errors, asked.relief_errors, inputs.metric
         )
-        progress((number + 1) / len(states))
+        work.progress(len(found) / len(states))
+    return RobustnessData(found)
+
+
+def _present_robustness(data: RobustnessData, inputs: RobustnessInputs) -> Outcome:
+    name, metric, rows, values = inputs.name, inputs.metric, [], []
+    for label, r in data.candidates.items():
         for (i, j, k), value in np.ndenumerate(r.values):
             rows.append((label, r.load_factors[i], r.spacing_errors[j], r.relief_errors[k], value))
         factor, spacing, depth = r.worst_case
         where = f"load x {factor:g}, spacing error {spacing * 1e6:g} um, relief {depth:+.0%}"
-        key = label.replace(" ", "_")
-        values.append(Value(f"{name}.worst_{part.metric}.{key}", r.worst, "um", None, f"{label}, {where}"))
+        values.append(
+            Value(f"{name}.worst_{metric}.{label.replace(' ', '_')}", r.worst, "um", None, f"{label}, {where}")
+        )
     columns = list(zip(*rows, strict=True))
     table = Table(
         f"robustness_{name}",
@@ -157,12 +201,12 @@ def _run_robustness(scene: Scene, name: str, done: Done, progress: Progress) -> 
             Column("load_factor", np.array(columns[1]), "", "load over design load"),
             Column("spacing_error", np.array(columns[2]), "um", "of every second pair"),
             Column("relief_error", np.array(columns[3]), "", "relative error of the relief's depth"),
-            Column(part.metric, np.array(columns[4]), "um", "excitation"),
+            Column(metric, np.array(columns[4]), "um", "excitation"),
         ),
         f"Robustness of the reliefs of {name}",
     )
-    figure = _robustness_figure(name, found, part.metric)
-    return Outcome(RobustnessData(pair, found), (table,), tuple(values), {"metric": part.metric}, figures=(figure,))
+    figure = _robustness_figure(name, data.candidates, metric)
+    return Outcome(data, (table,), tuple(values), {"metric": metric}, figures=(figure,))
 
 
 def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
@@ -193,7 +237,7 @@ def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
     return (figure,)
 
 
-def _robustness_figure(name: str, found: dict[str, Robustness], metric: str) -> Figure:
+def _robustness_figure(name: str, found: Mapping[str, Robustness], metric: str) -> Figure:
     curves = []
     for label, r in found.items():
         order = np.argsort(r.load_factors)
@@ -239,8 +283,10 @@ RELIEF_CHART = Stage(
     title="Chart of tip reliefs",
     results=("relief-chart",),
     subjects=design_pairs,
-    run=_run_chart,
     needs=needs_pair,
+    inputs=_chart_inputs,
+    compute=_compute_chart,
+    present=_present_chart,
     effects=DESIGN_EFFECTS,
     cites=_CITES,
     forecast=_chart_forecast,
@@ -252,8 +298,10 @@ ROBUSTNESS = Stage(
     title="Robustness of the reliefs",
     results=("robustness",),
     subjects=design_pairs,
-    run=_run_robustness,
-    needs=lambda scene, name: (*needs_pair(scene, name), Task("relief", name)),
+    needs=lambda _scene, name: (Task("relief", name),),
+    inputs=_robustness_inputs,
+    compute=_compute_robustness,
+    present=_present_robustness,
     effects=DESIGN_EFFECTS,
     cites=_CITES,
     forecast=_robustness_forecast,

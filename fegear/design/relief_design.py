@@ -1,0 +1,187 @@
+"""The whole design of a pair's relief: loading, relief by (4.6), what can be ground, and what each leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.contact import transmission_error
+from fegear.contact.mesh_curve import roll_positions
+from fegear.design.minimum_excitation import minimum_excitation, relief_nodes, relief_table
+from fegear.design.optimise import grindable
+from fegear.design.root_stress_loading import design_stress, least_root_stress
+from fegear.geometry.relief import UNMODIFIED
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from fegear.contact import Engagement, Loaded, TransmissionError
+    from fegear.design.charts import Metric
+    from fegear.design.loading import LoadingFunction
+    from fegear.design.minimum_excitation import MinimumExcitationRelief, ReliefTable
+    from fegear.design.optimise import TipReliefPair
+    from fegear.design.root_stress_loading import StressOptimum
+    from fegear.geometry.pair import Member
+    from fegear.geometry.relief import Shape
+
+    Array = NDArray[np.float64]
+
+MEMBERS: tuple[Member, Member] = ("driver", "driven")
+
+
+@dataclass(frozen=True)
+class DesignTask:
+    """What a relief is designed for.
+
+    Parameters
+    ----------
+    loading : LoadingFunction
+    load : float
+        W_d [N].
+    least_root_stress : bool
+        Whether family and peak of the loading are chosen for the least root stress.
+    grind : tuple of str
+        Shapes of tip relief that a shop can grind.
+    metric : {"peak_to_peak", "effective_error"}
+        By which those are chosen.
+    loads : tuple of float
+        Of the curves [N].
+    positions, harmonics : int
+        Of the curves over the base pitch, and of the transmission errors.
+    """
+
+    loading: LoadingFunction
+    load: float
+    least_root_stress: bool
+    grind: tuple[Shape, ...]
+    metric: Metric
+    loads: tuple[float, ...]
+    positions: int
+    harmonics: int
+
+
+@dataclass(frozen=True)
+class MemberRelief:
+    """Relief of one gear at the nodes of its table, shape (n,).
+
+    Parameters
+    ----------
+    table : ReliefTable
+    diagonal : ndarray or None
+        Relief without the neighbours' loads (Mark 5.4) [m]; None where teeth are not coupled.
+    error : ndarray or None
+        Estimated error of the relief [m]; None where the compliances state none.
+    """
+
+    table: ReliefTable
+    diagonal: Array | None
+    error: Array | None
+
+
+@dataclass(frozen=True)
+class ReliefDesign:
+    """A designed relief and what it leaves.
+
+    Parameters
+    ----------
+    task : DesignTask
+        Its loading is the one that was chosen.
+    chosen : StressOptimum or None
+        The loadings tried for the least root stress.
+    designed : Engagement
+        With the relief of (4.6) by the full influence matrix.
+    reliefs : mapping of member to MemberRelief
+    ground : mapping of shape to TipReliefPair
+        What a shop can grind.
+    te : mapping of str to TransmissionError
+        At the design load: "no relief", "designed", "diagonal only", and each shape ground.
+    curves : mapping of str to Loaded
+        The same over roll positions, for every load.
+    left : float or None
+        Transmission error, peak to peak, that a design with compliances off by their errors leaves on true teeth [m].
+    tables_leave : float
+        Transmission error, peak to peak, of the relief tables read back linearly [m].
+    """
+
+    task: DesignTask
+    chosen: StressOptimum | None
+    designed: Engagement
+    reliefs: Mapping[Member, MemberRelief]
+    ground: Mapping[Shape, TipReliefPair]
+    te: Mapping[str, TransmissionError]
+    curves: Mapping[str, Loaded]
+    left: float | None
+    tables_leave: float
+
+
+def design_relief(
+    engagement: Engagement,
+    shifted: Sequence[Engagement],
+    task: DesignTask,
+    progress: Callable[[float], None] | None = None,
+) -> ReliefDesign:
+    """Design the relief of both gears of a pair.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        Reliefs and spacing errors of its own are left aside: they are what the design replaces.
+    shifted : sequence of Engagement
+        The same with one compliance each off by its estimated error.
+    task : DesignTask
+    progress : callable, optional
+    """
+    report = progress or (lambda _fraction: None)
+    load, chosen = task.load, None
+    plain = replace(
+        engagement, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED,
+        driver_spacing=np.empty(0), driven_spacing=np.empty(0),
+    )  # fmt: skip
+    if task.least_root_stress:
+        chosen = least_root_stress(design_stress(plain.compliance), task.loading)
+        task = replace(task, loading=chosen.loading)
+    states = {"no relief": plain, "designed": minimum_excitation(plain, task.loading, load)}
+    designed = states["designed"]
+    if plain.compliance.coupling and max(plain.compliance.driver.reach, plain.compliance.driven.reach) > 0:
+        states["diagonal only"] = minimum_excitation(plain, task.loading, load, full_matrix=False)
+    others = [minimum_excitation(replace(plain, compliance=s.compliance), task.loading, load) for s in shifted]
+    reliefs = _reliefs(designed, states.get("diagonal only"), others)
+    report(0.3)
+    ground: dict[Shape, TipReliefPair] = {}
+    for number, shape in enumerate(dict.fromkeys(task.grind)):
+        ground[shape] = grindable(designed, load, shape, task.metric)
+        states[f"{shape} tip relief"] = ground[shape].applied(plain)
+        report(0.3 + 0.5 * (number + 1) / len(task.grind))
+    te = {label: transmission_error(state, load, task.harmonics) for label, state in states.items()}
+    x = roll_positions(engagement, task.positions)
+    curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
+    left = None
+    if shifted:
+        off = [replace(designed, compliance=s.compliance) for s in shifted]
+        left = sum(transmission_error(state, load, task.harmonics).peak_to_peak for state in off)
+    driver, driven = (reliefs[member].table.relieved() for member in MEMBERS)
+    read = replace(designed, driver_relief=driver, driven_relief=driven)
+    tables_leave = transmission_error(read, load, task.harmonics).peak_to_peak
+    return ReliefDesign(task, chosen, designed, reliefs, ground, te, curves, left, tables_leave)
+
+
+def _own(engagement: Engagement, member: Member) -> MinimumExcitationRelief:
+    """The relief that `minimum_excitation` has put on a flank."""
+    relief = engagement.driver_relief if member == "driver" else engagement.driven_relief
+    return cast("MinimumExcitationRelief", relief)
+
+
+def _reliefs(
+    designed: Engagement, diagonal: Engagement | None, others: Sequence[Engagement]
+) -> dict[Member, MemberRelief]:
+    nodes, found = relief_nodes(*(_own(designed, member) for member in MEMBERS)), {}
+    for member in MEMBERS:
+        table = relief_table(_own(designed, member), nodes)
+        plain = None if diagonal is None else _own(diagonal, member).at(table.x)
+        changes = [np.abs(_own(other, member).at(table.x) - table.relief) for other in others]
+        found[member] = MemberRelief(table, plain, np.sum(changes, axis=0) if changes else None)
+    return found
