@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from fegear.results.dynamic_root_stress import DynamicRootStress
     from fegear.results.load_sharing import LoadSharingData
     from fegear.results.mesh_force_spectrum import SpectrumData
-    from fegear.results.relief import ReliefData
-    from fegear.results.relief_chart import ReliefChartData, RobustnessData
     from fegear.results.root_stress_history import RootStressData
     from fegear.results.stiffness import FilletCurves
     from fegear.results.tooth_contact import ToothContactData
@@ -137,32 +135,6 @@ def _root_stress_history(results: Results, task: Task, folder: Path) -> Iterator
     yield draw_root_stress(data, folder / f"root_stress_history_{name}.png", name, _gear_names(results, name))
 
 
-def _relief(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
-    from fegear.output.pictures.relief import draw_candidates, draw_harris, draw_reliefs
-
-    data, name = cast("ReliefData", results.outcomes[task].data), task.subject
-    yield draw_reliefs(data, folder / f"relief_{name}.png", name, _gear_names(results, name))
-    yield draw_candidates(data, folder / f"relief_candidates_{name}.png", name)
-    yield draw_harris(data, folder / f"harris_map_{name}.png", name)
-
-
-def _relief_chart(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
-    from fegear.output.pictures.relief import draw_chart
-
-    data, name = cast("ReliefChartData", results.outcomes[task].data), task.subject
-    picture = draw_chart(data, folder / f"relief_chart_{name}.png", name)
-    if picture is not None:
-        yield picture
-
-
-def _robustness(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
-    from fegear.output.pictures.relief import draw_robustness
-
-    outcome, name = results.outcomes[task], task.subject
-    data, metric = cast("RobustnessData", outcome.data), str(outcome.settings["metric"])
-    yield draw_robustness(data, folder / f"robustness_{name}.png", name, metric)
-
-
 def _natural_modes(results: Results, task: Task, folder: Path) -> Iterator[Picture]:
     from fegear.output.pictures.dynamics import draw_campbell, draw_modes
 
@@ -229,9 +201,6 @@ DRAWERS: dict[str, Callable[[Results, Task, Path], Iterator[Picture]]] = {
     "load-sharing": _load_sharing,
     "transmission-error": _transmission_error,
     "root-stress-history": _root_stress_history,
-    "relief": _relief,
-    "relief-chart": _relief_chart,
-    "robustness": _robustness,
     "tooth-contact": _tooth_contact,
     "transmissibility": _transmissibility,
     "natural-modes": _natural_modes,
