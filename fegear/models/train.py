@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fegear.case.names import nearest
+from fegear.dynamics.gear_train import GearTrain
 from fegear.dynamics.matrices import static_forces
 from fegear.dynamics.train import (
     Body,
@@ -21,6 +22,7 @@ from fegear.dynamics.train import (
     shaft_damping,
     shaft_stiffness,
 )
+from fegear.dynamics.train_mesh import TrainMesh, a_drives
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.case.train import BodyPart, ShaftPart, TrainPart
+    from fegear.dynamics.excitation import MeshExcitation
+    from fegear.geometry import GearPair
 
     Array = NDArray[np.float64]
 
@@ -77,7 +81,7 @@ def check_train(scene: Scene) -> None:
     known: dict[str, Iterable[str]] = {"body": part.body, "gear": scene.gears, "spur pair": scene.pairs}
     for key, name, kind in _references(scene, part):
         _known(key, name, known[kind], kind)
-    forces = static_forces(build_train(scene))
+    forces = static_forces(build_train(train_inputs(scene)))
     for name, force in zip(part.mesh, forces, strict=True):
         pair = part.loaded_pair_of(name)
         stated = scene.case.pair[pair].normal_load(scene.pairs[pair])
@@ -89,12 +93,41 @@ def check_train(scene: Scene) -> None:
             )  # fmt: skip
 
 
-def _body(scene: Scene, name: str, part: BodyPart) -> Body:
+@dataclass(frozen=True)
+class TrainInputs:
+    """What a train depends on besides the loaded teeth of its gear pairs.
+
+    Parameters
+    ----------
+    part : TrainPart
+    inertias : mapping of str to float
+        Of each body, the discs of its gears included [kg m^2].
+    pairs : mapping of str to GearPair
+        Of each mesh.
+    speed_of : str
+        Body that speeds refer to.
+    """
+
+    part: TrainPart
+    inertias: Mapping[str, float]
+    pairs: Mapping[str, GearPair]
+    speed_of: str
+
+
+def train_inputs(scene: Scene) -> TrainInputs:
+    """Collect what a case says of its train."""
+    part = train_part(scene)
+    pairs = {name: scene.pairs[part.pair_of(name)] for name in part.mesh}
+    inertias = {name: _inertia(scene, body) for name, body in part.body.items()}
+    return TrainInputs(part, inertias, pairs, scene.case.dynamics.speed_of or next(iter(part.body)))
+
+
+def _inertia(scene: Scene, part: BodyPart) -> float:
     inertia = part.inertia or 0.0
     for gear_name in part.gears or ():
         gear = scene.gears[gear_name]
         inertia += disc_inertia(gear.pitch_radius, gear.face_width, gear.material.density, gear.bore_radius)
-    return Body(name, inertia)
+    return inertia
 
 
 def _shaft(name: str, part: ShaftPart, inertias: Mapping[str, float]) -> Shaft:
@@ -111,20 +144,20 @@ def _shaft(name: str, part: ShaftPart, inertias: Mapping[str, float]) -> Shaft:
     return Shaft(name, part.a, part.b, stiffness, damping)
 
 
-def build_train(scene: Scene, stiffness: Mapping[str, float] | None = None) -> Train:
+def build_train(asked: TrainInputs, stiffness: Mapping[str, float] | None = None) -> Train:
     """Make the train for mean mesh stiffnesses [N/m]; without them only ratios and static forces mean anything.
 
     All angles count in one sense of rotation, so both base radii of a mesh have one sign; it is the one for which the
     torques press the teeth together. Bodies joined by rigid shafts count together in damping ratios.
     """
-    part = train_part(scene)
-    bodies = tuple(_body(scene, name, body) for name, body in part.body.items())
+    part = asked.part
+    bodies = tuple(Body(name, inertia) for name, inertia in asked.inertias.items())
     rigid = [Shaft(name, shaft.a, shaft.b, math.inf) for name, shaft in part.shaft.items() if shaft.rigid]
     inertias = joined_inertias(bodies, rigid)
     shafts = tuple(_shaft(name, shaft, inertias) for name, shaft in part.shaft.items())
     meshes = []
     for name, mesh in part.mesh.items():
-        pair = scene.pairs[part.pair_of(name)]
+        pair = asked.pairs[name]
         r1, r2 = pair.driver.base_radius, pair.driven.base_radius
         k = mesh.stiffness or (stiffness or {}).get(name, _ANY_STIFFNESS)
         damping = mesh.damping or 0.0
@@ -146,3 +179,13 @@ def build_train(scene: Scene, stiffness: Mapping[str, float] | None = None) -> T
         for mesh, force in zip(train.meshes, static_forces(train), strict=True)
     )
     return replace(train, meshes=turned)
+
+
+def assemble(asked: TrainInputs, excitations: Mapping[str, MeshExcitation]) -> GearTrain:
+    """Put excitations, by mesh, into the train."""
+    train = build_train(asked, {name: 1.0 / found.mean_compliance() for name, found in excitations.items()})
+    meshes = []
+    for (name, found), force, forward in zip(excitations.items(), static_forces(train), a_drives(train), strict=True):
+        pair = asked.pairs[name]
+        meshes.append(TrainMesh.under(pair if forward else pair.reversed(), found, float(force), a_drives=forward))
+    return GearTrain(train, tuple(meshes), abs(float(train.ratios[train.dof[asked.speed_of]])), asked.speed_of)

@@ -13,10 +13,10 @@ from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Need, Stage, Task
 from fegear.errors import FegearError, InputError
 from fegear.models.motion import excitations_at
-from fegear.models.train import train_part
+from fegear.models.train import assemble, train_inputs, train_part
 from fegear.results import forecasts
 from fegear.results.dynamic_factor import check_motion
-from fegear.results.gear_train import assemble, gear_train, the_train
+from fegear.results.gear_train import gear_train, the_train
 from fegear.results.loaded_pair import loaded_pair
 from fegear.results.train_parts import needs_speeds, own_meshes
 
@@ -82,7 +82,7 @@ def chart_trial(trial: Trial) -> dict[str, float]:
     found = mesh_excitation(engagement if mesh.a_drives else engagement.reversed(), mesh.force)
     by_mesh = {name: one.excitation for name, one in zip(trial.train.names, trial.train.meshes, strict=True)}
     by_mesh[trial.train.names[i]] = replace(found, phase=mesh.excitation.phase)
-    data = assemble(scene, by_mesh)
+    data = assemble(train_inputs(scene), by_mesh)
     speeds = part.speed_values / data.speed_ratio
     model = MotionModel(data.train, excitations_at(scene, data, float(speeds[-1])), 1.0)
     curve = speed_chart(model, speeds, mesh=i, direction=part.direction, tolerance=part.tolerance)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from fegear.engine.stage import Forecast
 from fegear.models.settings import mesh_settings, seconds_of_gear
-from fegear.models.train import build_train
+from fegear.models.train import build_train, train_inputs
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -66,7 +66,7 @@ def sizes(scene: Scene) -> tuple[int, int]:
 
 def periods(scene: Scene) -> int:
     """Periods of the fastest mesh after which all meshes stand as before."""
-    orders = [Fraction(order) for order in build_train(scene).mesh_orders]
+    orders = [Fraction(order) for order in build_train(train_inputs(scene)).mesh_orders]
     parts = [1 / order for order in orders]
     turns = Fraction(math.lcm(*(p.numerator for p in parts)), math.gcd(*(p.denominator for p in parts)))
     return round(float(turns * max(orders)))

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.dynamics.gear_train import GearTrain
 from fegear.dynamics.matrices import static_forces
-from fegear.dynamics.train_mesh import TrainMesh, a_drives
+from fegear.dynamics.train_mesh import a_drives
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.models.pair_checks import check_relief
-from fegear.models.train import build_train, check_train, train_part
+from fegear.models.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
 from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, loaded_pair
 
@@ -23,7 +22,8 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.dynamics.excitation import MeshExcitation
-    from fegear.engine.stage import Done, Progress
+    from fegear.dynamics.gear_train import GearTrain
+    from fegear.engine.stage import Upstream, Work
 
 
 #: One mesh as springs [s]: tooth pairs that stand alone, and pairs that share.
@@ -58,27 +58,15 @@ def _check(scene: Scene, _subject: str) -> None:
         check_relief(scene, name)
 
 
-def assemble(scene: Scene, excitations: dict[str, MeshExcitation]) -> GearTrain:
-    """Put excitations, by mesh, into the train."""
-    part = train_part(scene)
-    train = build_train(scene, {name: 1.0 / found.mean_compliance() for name, found in excitations.items()})
-    meshes = []
-    for (name, found), force, forward in zip(excitations.items(), static_forces(train), a_drives(train), strict=True):
-        pair = scene.pairs[part.pair_of(name)]
-        meshes.append(TrainMesh.under(pair if forward else pair.reversed(), found, float(force), a_drives=forward))
-    speed_of = scene.case.dynamics.speed_of or train.bodies[0].name
-    return GearTrain(train, tuple(meshes), abs(float(train.ratios[train.dof[speed_of]])), speed_of)
-
-
-def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
+def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTrain:
+    """Springs and excitation of every mesh under its mean force, put into the train."""
     from fegear.dynamics.mesh_excitation import mesh_excitation
 
-    part, train = train_part(scene), build_train(scene)
+    part, train = asked.part, build_train(asked)
     forces, forward = static_forces(train), a_drives(train)
     excitations: dict[str, MeshExcitation] = {}
-    remarks: list[str] = []
     for number, (name, mesh) in enumerate(part.mesh.items()):
-        loaded = loaded_pair(done, part.loaded_pair_of(name))
+        loaded = loaded_pair(upstream, part.loaded_pair_of(name))
         width = mesh.like.width_ratio if mesh.like else 1.0
         engagement = loaded.engagement.unmodified() if mesh.like else loaded.engagement
         found = mesh_excitation(
@@ -86,27 +74,30 @@ def _run(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome
             abs(float(forces[number])) / width or loaded.nominal,
         )
         excitations[name] = replace(found.widened(width), phase=mesh.phase)
-        if not forward[number]:
-            remarks.append(
-                f"Mesh {name}: the torques make {mesh.driven} drive {mesh.driver}, so x counts toward the tip of the "
-                f"gear of {mesh.driven}."
-            )
-        if not found.slotted:
-            remarks.append(f"Mesh {name}: coupled teeth and contacts off the path are linear about the mean load.")
-        if mesh.like is None and loaded.engagement.cycles > 1:
-            remarks.append(
-                f"Mesh {name}: its excitation repeats after {loaded.engagement.cycles} base pitches (spacing errors)."
-            )
-        progress((number + 1) / len(part.mesh))
-    data = assemble(scene, excitations)
+        work.progress((number + 1) / len(part.mesh))
+    return assemble(asked, excitations)
+
+
+def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
+    remarks: list[str] = []
     values: list[Value] = []
-    for mesh_, force, error in zip(data.train.meshes, data.forces, data.errors, strict=True):
-        name = mesh_.name
+    for (name, part), mesh, one in zip(asked.part.mesh.items(), data.train.meshes, data.meshes, strict=True):
+        if not one.a_drives:
+            remarks.append(
+                f"Mesh {name}: the torques make {part.driven} drive {part.driver}, so x counts toward the tip of the "
+                f"gear of {part.driven}."
+            )
+        if not one.excitation.slotted:
+            remarks.append(f"Mesh {name}: coupled teeth and contacts off the path are linear about the mean load.")
+        if part.like is None and one.error.pitches > 1:
+            remarks.append(
+                f"Mesh {name}: its excitation repeats after {one.error.pitches} base pitches (spacing errors)."
+            )
         s = np.linspace(0.0, 1.0, 2001)
         values += [
-            Value(f"{name}.mean_force", float(force), "N", None, "along the line of action, from the torques"),
-            Value(f"{name}.mean_stiffness", mesh_.stiffness, "N/um", None, "1 over the mean compliance"),
-            Value(f"{name}.static_te_peak_to_peak", float(np.ptp(error(s))), "um", None, "under the mean force"),
+            Value(f"{name}.mean_force", one.force, "N", None, "along the line of action, from the torques"),
+            Value(f"{name}.mean_stiffness", mesh.stiffness, "N/um", None, "1 over the mean compliance"),
+            Value(f"{name}.static_te_peak_to_peak", float(np.ptp(one.error(s))), "um", None, "under the mean force"),
         ]
     settings: dict[str, object] = {body.name: body.inertia for body in data.train.bodies}
     return Outcome(data, (), tuple(values), {"inertia": settings}, tuple(remarks))
@@ -131,8 +122,10 @@ GEAR_TRAIN = Stage(
     title="Gear train",
     results=("gear-train",),
     subjects=the_train,
-    run=_run,
     needs=_needs,
+    inputs=lambda scene, _subject: train_inputs(scene),
+    compute=compute_train,
+    present=_present,
     check=_check,
     effects=EFFECTS,
     cites=TRAIN_SOURCES,

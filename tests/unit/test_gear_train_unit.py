@@ -24,7 +24,7 @@ from fegear.dynamics.train import (
     shaft_stiffness,
 )
 from fegear.errors import InputError, RangeError
-from fegear.models.train import build_train
+from fegear.models.train import build_train, train_inputs
 
 
 def mesh(name="m", a="a", b="b", ra=0.05, rb=0.1, za=20, zb=40, k=1e8, **more):
@@ -177,5 +177,5 @@ def test_rigid_shafts_of_a_case_join_bodies_in_damping_ratios():
             del shaft[key]
         shaft["rigid"] = True
     (mesh,) = case["train"]["mesh"].values()
-    swinging = damped_eigenvalues(build_train(build_scene(case, "rigid", Path())))[-1]
+    swinging = damped_eigenvalues(build_train(train_inputs(build_scene(case, "rigid", Path()))))[-1]
     assert -swinging.real / abs(swinging) == pytest.approx(mesh["damping_ratio"], rel=1e-9)

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.contact import transmission_error
 from fegear.dynamics.single_tooth import force_history
-from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Task
+from fegear.engine.executor import Executor
+from fegear.engine.stage import Task, Work
 from fegear.models.loaded_pair import build_loaded_pair
 from fegear.models.motion import motion_model
 from fegear.models.neglected_effects import Neglected
 from fegear.models.pair_inputs import MEMBERS, pair_inputs
-from fegear.results.gear_train import GEAR_TRAIN
+from fegear.models.train import train_inputs
+from fegear.results.gear_train import compute_train
 from fegear.results.loaded_pair import LoadedPairData
+from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from fegear.contact import TransmissionError
@@ -50,11 +50,9 @@ def pair_error(asked: Asked, source: Source, order: int = 16) -> TransmissionErr
 def train_of(asked: Asked, source: Source) -> GearTrain:
     """The train with the compliances of a source in all its meshes."""
     nothing = Neglected({}, {})
-    done = {
-        Task("loaded-pair", name): Outcome(LoadedPairData(loaded(asked, source, name), nothing)) for name in asked.pairs
-    }
-    run = cast("Callable[..., Outcome]", GEAR_TRAIN.run)
-    return cast("GearTrain", run(asked.scene, "", done, lambda _fraction: None).data)
+    done = {Task("loaded-pair", name): LoadedPairData(loaded(asked, source, name), nothing) for name in asked.pairs}
+    work = Work(lambda _fraction: None, SolutionCache(), Executor(here=True))
+    return compute_train(train_inputs(asked.scene), done, work)
 
 
 def largest_force(asked: Asked, data: GearTrain, harmonics: int = FORCE_HARMONICS, positions: int = 0) -> float:
