@@ -52,6 +52,8 @@ _CLOSER = {
     "effective_error": ((0, False, 8, 1, 0.15), (0, False, 2, 3, 0.04)),
 }  # fmt: skip
 _AGREED = 1.05
+#: States of all sets of pairs to a roll position up to which nothing is saved: two pairs under one load.
+_WORK = 2.6
 #: Corners and middle of a first population about its start, in units of its spread.
 _CLOUD = np.concatenate([np.zeros((1, 4)), np.random.default_rng(2).uniform(-1.0, 1.0, (11, 4))])
 
@@ -314,9 +316,10 @@ def search(engagement: Engagement, loads: Array, power: float, metric: str) -> F
     """
     pair = engagement.pair
     coarse = Stand(bench(engagement, 5, 6), loads, power, metric)
-    # Several loads cost as much as many positions: fewer of these, and of starts, keep the time in bounds.
-    thrift = loads.size**-0.5
     fine = Stand(bench(engagement) if loads.size == 1 else bench(engagement, 8, 10), loads, power, metric)
+    # Several loads and many sets of pairs cost as much as many positions: fewer of these, and of starts, keep the time.
+    work = sum(s.base.size for s in fine.quick.sets) / fine.bench.points.x.size
+    thrift = max(min(1.0, math.sqrt(_WORK / work)), 0.4)
     scale = float((fine.exact(np.array([[0.0, 0.5, 0.0, 0.5]]))[0] / np.tile(loads, fine.bench.points.x.size)).mean())
     scale *= float(loads.max())
     deepest = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (pair.driver, pair.driven)]
@@ -370,4 +373,5 @@ def _kinks(stand: Stand, p: Array) -> Array:
         touching = stand.exact(p)[1] != 0.0
         changed = (touching[..., 1:] != touching[..., :-1]).any(axis=(0, 1))
         places.append(0.5 * (points.x[1:] + points.x[:-1])[changed])
-    return np.asarray(stand.bench.engagement.meshing.reduced(np.concatenate(places)))
+    found = np.sort(stand.bench.engagement.meshing.reduced(np.concatenate(places)))
+    return np.asarray(found[np.diff(found, append=np.inf) > 1e-3 * points.period])
