@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.geometry.curves import Arc, Line
+from fegear.geometry.fillet import ProtuberanceFillet
 from fegear.geometry.outline import gear_outline, tooth_outline, turned
 
 if TYPE_CHECKING:
@@ -66,7 +67,10 @@ def _add_curve(space: Any, curve: Curve, scale: float, turn: float, *, mirrored:
         return turned(points * side, turn) * scale
 
     layer = {"layer": "OUTLINE"}
-    if isinstance(curve, Line):
+    if isinstance(curve, ProtuberanceFillet):  # its curvature jumps, which one spline would round off
+        for piece in (curve.trochoid, curve.involute):
+            _add_curve(space, piece, scale, turn, mirrored=mirrored)
+    elif isinstance(curve, Line):
         a, b = place(curve.points(np.array([curve.start, curve.end]))).T
         space.add_line(tuple(a), tuple(b), dxfattribs=layer)
     elif isinstance(curve, Arc):

@@ -10,6 +10,7 @@ import pytest
 from scipy.interpolate import BSpline
 
 from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.geometry.fillet import ProtuberanceFillet
 from fegear.geometry.outline import gear_outline, tooth_outline
 from fegear.output.dxf import CHORD_TOLERANCE, write_dxf
 
@@ -17,6 +18,7 @@ GEARS = {
     "plain": Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3e-3, 15e-3),
     "undercut": Gear(Tooth(9, BasicRack.named("A")), 2e-3, 4e-3),
     "rounded": Gear(Tooth(28, BasicRack.full_fillet(), tip_rounding=0.12), 3e-3, 15e-3),
+    "protuberance": Gear(Tooth(28, BasicRack(1.0, 1.4, 0.35, protuberance=0.06, protuberance_angle=0.26)), 3e-3, 15e-3),
     "chamfered": Gear(Tooth(17, BasicRack.named("D"), profile_shift=0.3, tip_chamfer=0.1), 1e-3, 4e-3),
 }
 
@@ -62,7 +64,8 @@ def test_splines_hold_the_curves_and_their_ends_meet(gear, tmp_path):
     for part, count in (("g_tooth_spline", 1), ("g_gear_spline", gear.teeth)):
         space = ezdxf.readfile(paths[part]).modelspace()
         splines = list(space.query("SPLINE"))
-        assert len(splines) == 4 * count
+        # A flank, and a fillet that is two curves where the protuberance's involute follows the trochoid.
+        assert len(splines) == (6 if isinstance(gear.tooth.fillet, ProtuberanceFillet) else 4) * count
         ends = []
         for spline in splines:
             curve = BSpline(np.array(spline.knots), np.array(spline.control_points)[:, :2], spline.dxf.degree)
@@ -84,6 +87,30 @@ def test_splines_hold_the_curves_and_their_ends_meet(gear, tmp_path):
             ends = np.array(ends)
             distance = np.hypot(*(ends[:, None] - ends[None]).transpose(2, 0, 1)) + np.eye(len(ends)) * 9
             assert ((distance < 1e-9 * gear.tip_radius * 1e3).sum(axis=1) == 1).all()
+
+
+def test_splines_of_a_fillet_of_two_curves_lie_on_both(tmp_path):
+    gear = GEARS["protuberance"]
+    fillet = gear.tooth.fillet
+    assert isinstance(fillet, ProtuberanceFillet)
+    paths = {path.stem: path for path in write_dxf(gear, tmp_path, "g")}
+    both = {"trochoid": fillet.trochoid, "involute": fillet.involute}
+    looked = dict.fromkeys(both, 0)
+    for spline in ezdxf.readfile(paths["g_tooth_spline"]).modelspace().query("SPLINE"):
+        curve = BSpline(np.array(spline.knots), np.array(spline.control_points)[:, :2], spline.dxf.degree)
+        # Both are interpolated in the curve's own parameter, so that the knots say where on it a point belongs.
+        for name, piece in both.items():
+            if sorted(np.abs([spline.knots[0], spline.knots[-1]])) == pytest.approx(
+                [piece.start, piece.end], abs=1e-12
+            ):
+                u = np.linspace(spline.knots[0], spline.knots[-1], 301)
+                points = curve(u).T / gear.module / 1e3
+                exact = piece.points(u)
+                turn = np.arctan2(exact[0], exact[1]) - np.abs(np.arctan2(points[0], points[1]))
+                assert np.abs(np.hypot(*points) - np.hypot(*exact)).max() < 2e-8
+                assert np.abs(turn).max() < 2e-8
+                looked[name] += 1
+    assert looked == {"trochoid": 2, "involute": 2}
 
 
 def test_the_tooth_outline_is_symmetric_and_spans_one_pitch():
