@@ -115,6 +115,8 @@ class Points(_Item):
         Positive numbers that the colours show on a logarithmic scale.
     shade_label : str
         What these are, with the unit.
+    error : array_like, shape (N,), optional
+        Estimated error of y.
     notes : tuple of str
         What the reader sees on pointing at each point.
     written : bool
@@ -129,9 +131,10 @@ class Points(_Item):
     size: float = 6.0
     shade: ArrayLike | None = None
     shade_label: str = ""
+    error: ArrayLike | None = None
     notes: tuple[str, ...] = ()
     written: bool = False
-    ARRAYS: ClassVar[tuple[str, ...]] = ("x", "y", "shade")
+    ARRAYS: ClassVar[tuple[str, ...]] = ("x", "y", "shade", "error")
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report import write_page
 from fegear.output.summary import write_json
 from fegear.output.tables import write_table
+from fegear.studies.cost.figures import cost_figures
 from fegear.studies.cost.result import ALL, TOLERANCES
 from fegear.studies.cost.tables import tables
 from fegear.units import from_si
@@ -35,12 +36,15 @@ def write_cost(results: CostResults, folder: Path, *, plots: bool = True) -> Non
     (folder / "tables").mkdir()
     for table in tables(results):
         write_table(folder / "tables", table)
+    figures = cost_figures(results)
     if plots:
-        from fegear.output.pictures.cost import draw_cost
+        from fegear.output.draw_png import draw_pictures
 
         (folder / "plots").mkdir()
-        draw_cost(results, folder / "plots")
-    write_page(folder / "report.html", cost_page(results))
+        for figure in figures:
+            for _ in draw_pictures(figure, folder / "plots"):
+                pass
+    write_page(folder / "report.html", cost_page(results, figures))
     write_json(folder / SUMMARY, _summary(results, [*files_in(folder), SUMMARY]))
 
 

@@ -213,6 +213,8 @@ def _points(panel: Panel, item: Points) -> list[Spec]:
         ticks = {"tickvals": powers.tolist(), "ticktext": [f"10<sup>{p:.0f}</sup>" for p in powers]}
         bar = {"title": {"text": rich(item.shade_label), "side": "right"}, "outlinewidth": 0, **ticks}
         marker |= {"color": typed(level), "colorscale": SEQUENTIAL.title(), "showscale": True, "colorbar": bar}
+    if item.error is not None:
+        trace |= {"error_y": {"type": "data", "array": typed(item.error), "thickness": 1}}
     if item.notes:
         trace |= {"text": [rich(note) for note in item.notes], "hovertemplate": f"%{{text}}<br>{place}"}
     return [trace]

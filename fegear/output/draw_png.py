@@ -138,7 +138,7 @@ class _Sheet:
     def _title_room(self, row: int) -> float:
         here = self.panels[row * self.columns : (row + 1) * self.columns]
         second = any(panel.x.second for panel, _ in here)
-        return _TITLE * any(title for _, title in here) + _SECOND * second
+        return _TITLE * max(title.count("\n") + 1 if title else 0 for _, title in here) + _SECOND * second
 
     def _joined(self, row: int, column: int) -> bool:
         """Whether the panel below has the same abscissa, which then names it for both."""
@@ -434,6 +434,8 @@ def _points(axes: Any, _panel: Panel, item: Points) -> Any:
             norm="log", linewidths=0.0,
         )  # fmt: skip
     axes.plot(item.x, item.y, ls="", marker=symbol, ms=0.8 * item.size, color=shade(item.role).light, mew=0.3)
+    if item.error is not None:
+        axes.errorbar(item.x, item.y, item.error, fmt="none", ecolor=shade(item.role).light, elinewidth=1.0)
     if item.written:
         _write_notes(axes, item)
     return None

@@ -9,10 +9,11 @@ import numpy as np
 import fegear
 from fegear.engine.outcome import Column, Table
 from fegear.output.folder import SUMMARY, files_in
-from fegear.output.report.effects import write_effects_report
+from fegear.output.report.effects import effects_page
+from fegear.output.report.page import write_page
 from fegear.output.summary import write_json
 from fegear.output.tables import write_table
-from fegear.studies.effect_study import CURVES
+from fegear.studies.effect_figures import effect_figure, telling_curve
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,44 +22,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
-    from fegear.studies.effect_study import Fixed, Measured, Switched
+    from fegear.studies.effect_study import Fixed, Switched
 
     Array = NDArray[np.float64]
     Curve = tuple[Table, Table, str, str]
-
-
-def curves_of(measured: Measured) -> dict[str, Table]:
-    """Tables of a run by name."""
-    return {table.name: table for table in measured.results.tables}
-
-
-def telling_curve(found: Switched) -> Curve | None:
-    """The curve to draw: of the first kind that the runs have, the table that the effect changes most."""
-    before, after = curves_of(found.without), curves_of(found.with_it)
-    for start, x, y in CURVES:
-        shared = [name for name in before if name.startswith(start) and name in after and _is_curve(before[name], x, y)]
-        changed = [(_change(before[name], after[name], x, y), name) for name in shared]
-        if changed and max(changed)[0] > 1e-9:
-            name = max(changed)[1]
-            return before[name], after[name], x, y
-    return None
-
-
-def _is_curve(table: Table, x: str, y: str) -> bool:
-    """Whether a table holds one curve, and not one for each of several loads."""
-    names = {column.name for column in table.columns}
-    return {x, y} <= names and "total_load" not in names
-
-
-def _change(before: Table, after: Table, x: str, y: str) -> float:
-    """Largest change of a curve over its largest value, where both reach."""
-    xa, ya, xb, yb = (np.asarray(table[column], dtype=float) for table in (before, after) for column in (x, y))
-    inside = (xa >= xb[0]) & (xa <= xb[-1])
-    scale = float(np.nanmax(np.abs(ya), initial=0.0))
-    if not inside.any():
-        return 0.0
-    change = float(np.nanmax(np.abs(np.interp(xa[inside], xb, yb) - ya[inside])))
-    return change / scale if scale > 0.0 else change
 
 
 def effects_table(switched: Sequence[Switched]) -> Table:
@@ -114,18 +81,20 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
     list of str
         One sentence for each effect.
     """
-    from fegear.output.pictures.effects import draw_effect
+    from fegear.output.draw_png import draw_pictures
 
     (folder / "tables").mkdir()
     (folder / "plots").mkdir()
     table = effects_table(switched)
     write_table(folder / "tables", table)
     curves = {found.effect: telling_curve(found) for found in switched}
-    for found in switched:
-        title = scene.case.title or scene.name
-        draw_effect(found, curves[found.effect], folder / "plots" / f"effect_{found.effect}.png", title)
+    title = scene.case.title or scene.name
+    figures = {found.effect: effect_figure(found, curves[found.effect], title) for found in switched}
+    for figure in figures.values():
+        for _ in draw_pictures(figure, folder / "plots"):
+            pass
     sentences = {found.effect: sentence(found) for found in switched}
-    write_effects_report(folder / "report.html", scene, switched, fixed, table, curves, sentences)
+    write_page(folder / "report.html", effects_page(scene, switched, fixed, table, curves, figures, sentences))
     told = list(sentences.values())
     told += [f"{one.effect} cannot be switched in this case: {one.reason}" for one in fixed]
     write_json(

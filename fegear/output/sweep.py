@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,15 +10,19 @@ import numpy as np
 import fegear
 from fegear.engine.outcome import Column, Table
 from fegear.output.folder import SUMMARY, files_in
-from fegear.output.report.swept import axis_head, varying, write_sweep_report
+from fegear.output.report.page import write_page
+from fegear.output.report.swept import sweep_page
 from fegear.output.summary import write_json
-from fegear.output.sweep_dataset import failures, swept_values, write_sweep_dataset
+from fegear.output.sweep_dataset import write_sweep_dataset
 from fegear.output.tables import write_table
+from fegear.studies.sweep_figures import sweep_figures
+from fegear.studies.swept import axis_head, failures, swept_values, varying
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from fegear.output.sweep_dataset import Swept
+    from fegear.engine.figure import Figure
     from fegear.studies.sweep import SweepResults
 
 #: Of more values than this the report alone has pictures.
@@ -41,18 +46,17 @@ def sweep_table(results: SweepResults) -> Table:
     return Table("sweep", tuple(columns), results.title)
 
 
-def _draw(results: SweepResults, swept: list[Swept], folder: Path) -> list[str]:
-    """Draw the values that vary over one or two axes; returns a remark where that is too many."""
-    axes = tuple(axis for axis in results.axes if len(axis) > 1)
-    moving = varying(swept)
-    if not 1 <= len(axes) <= 2 or not moving:
+def _draw(figures: Sequence[Figure], folder: Path) -> list[str]:
+    """Draw the first figure, value by value, where its values are pictures of their own; a remark where too many."""
+    if not figures or not figures[0].views[0].key:
         return []
-    from fegear.output.pictures.sweep import draw_value
+    from fegear.output.draw_png import draw_pictures
 
     folder.mkdir()
-    for one in moving[:_MOST_PICTURES]:
-        draw_value(one, axes, folder)
-    left = len(moving) - _MOST_PICTURES
+    views = figures[0].views
+    for _ in draw_pictures(replace(figures[0], views=views[:_MOST_PICTURES]), folder):
+        pass
+    left = len(views) - _MOST_PICTURES
     return [f"Pictures are drawn of the first {_MOST_PICTURES} values; the report shows all."] if left > 0 else []
 
 
@@ -76,9 +80,10 @@ def write_sweep(results: SweepResults, folder: Path, *, plots: bool = True) -> l
     table, swept = sweep_table(results), list(swept_values(results))
     write_table(folder / "tables", table)
     write_sweep_dataset(folder / "sweep.nc", results)
-    drawn = _draw(results, swept, folder / "plots") if plots else []
+    figures = sweep_figures(results, varying(swept))
+    drawn = _draw(figures, folder / "plots") if plots else []
     remarks = [*results.grouped_failures(), *results.remarks(), *drawn]
-    write_sweep_report(folder / "report.html", results, table, swept, results.remarks())
+    write_page(folder / "report.html", sweep_page(results, table, swept, figures, results.remarks()))
     solved, read, spared = results.shapes
     told = {
         "title": results.title,

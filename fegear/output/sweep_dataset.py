@@ -7,17 +7,16 @@ rows (dimension ``<table>.row``). Where a point failed, numbers are NaN and the 
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import fegear
-from fegear.engine.point_job import Failure
 from fegear.output.netcdf import put
 from fegear.studies.sweep import Point
+from fegear.studies.swept import failures, shared_clauses, swept_values
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -27,57 +26,6 @@ if TYPE_CHECKING:
     from fegear.studies.sweep import SweepResults
 
     Array = NDArray[np.generic]
-
-
-def failures(results: SweepResults) -> Array:
-    """Why each point failed; an empty text where it did not."""
-    return np.array([f"{p.kind}: {p.reason}" if isinstance(p, Failure) else "" for p in results.points])
-
-
-def _shared(meanings: Iterable[str]) -> str:
-    """Clauses that all meanings have in common: some name a place that differs from point to point."""
-    first, *others = dict.fromkeys(meanings)
-    return ", ".join(clause for clause in first.split(", ") if all(clause in other.split(", ") for other in others))
-
-
-class Swept(NamedTuple):
-    """One value of a run over all points of a sweep.
-
-    Attributes
-    ----------
-    name, unit, meaning : str
-    number : ndarray, shape (points,)
-        In that unit; NaN where the point has no such value.
-    error : ndarray, shape (points,), or None
-        Estimated errors; None if no point has one.
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    number: NDArray[np.float64]
-    error: NDArray[np.float64] | None
-
-    @property
-    def head(self) -> str:
-        """Head of its column in the table of the sweep."""
-        return f"{self.name} [{self.unit}]" if self.unit else self.name
-
-    @property
-    def error_head(self) -> str:
-        """Head of the column of its errors."""
-        return f"{self.name}_error [{self.unit}]" if self.unit else f"{self.name}_error"
-
-
-def swept_values(results: SweepResults) -> Iterator[Swept]:
-    """Every single value of the runs, over all points."""
-    found = [(i, v) for i, point in enumerate(results.points) if isinstance(point, Point) for v in point.values]
-    for name, unit in dict.fromkeys((v.name, v.unit) for _, v in found):
-        number, error = np.full(len(results.points), np.nan), np.full(len(results.points), np.nan)
-        same = [(i, v) for i, v in found if (v.name, v.unit) == (name, unit)]
-        for i, v in same:
-            number[i], error[i] = v.shown, np.nan if v.shown_error is None else v.shown_error
-        yield Swept(name, unit, _shared(v.meaning for _, v in same), number, None if np.isnan(error).all() else error)
 
 
 def _found_tables(results: SweepResults) -> dict[str, dict[int, Table]]:
@@ -119,7 +67,14 @@ def _put_table(
     for column, unit in dict.fromkeys((c.name, c.unit) for table in found.values() for c in table.columns):
         same = {i: c for i, table in found.items() for c in table.columns if (c.name, c.unit) == (column, unit)}
         values = _stacked(same, points, max(rows.values())).reshape(*sizes, -1)
-        put(file, f"{name}.{column}", (*axes, f"{name}.row"), values, unit, _shared(c.meaning for c in same.values()))
+        put(
+            file,
+            f"{name}.{column}",
+            (*axes, f"{name}.row"),
+            values,
+            unit,
+            shared_clauses(c.meaning for c in same.values()),
+        )
 
 
 def write_sweep_dataset(path: Path, results: SweepResults) -> None:

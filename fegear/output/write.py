@@ -6,6 +6,7 @@ import time
 from typing import TYPE_CHECKING
 
 from fegear.output.dataset import write_dataset
+from fegear.output.figures import described, draw_all
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report import write_report
 from fegear.output.summary import write_summary
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fegear.engine.run import Results, Watcher
-    from fegear.engine.stage import Task
-    from fegear.output.draw_png import Picture
 
 #: Steps of writing that a watcher sees after those of the plan.
 STEPS = 1
@@ -47,14 +46,9 @@ def write_results(results: Results, folder: Path, watcher: Watcher, *, plots: bo
     for table in results.tables:
         write_table(tables, table)
     write_dataset(folder / "results.nc", results)
-    pictures: list[tuple[Task, Picture]] = []
-    missing: list[str] = []
-    if plots:
-        from fegear.output.pictures.gallery import draw_all
-
-        pictures, missing = draw_all(results, folder / "plots", watcher.advance)
+    drawn, missing = draw_all(results, folder / "plots", watcher.advance) if plots else (described(results), [])
     remarks = [*results.remarks, *results.cache_remarks, *missing]
-    write_report(folder / "report.html", results, pictures, remarks)
+    write_report(folder / "report.html", results, drawn, remarks)
     write_summary(folder / SUMMARY, results, remarks, [*files_in(folder), SUMMARY])
     watcher.end(time.perf_counter() - started)
     return remarks

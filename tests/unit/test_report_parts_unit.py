@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import base64
 import json
 from pathlib import Path
 
@@ -11,11 +12,11 @@ import pytest
 
 from fegear.case.reading import read_scene
 from fegear.engine.citation import bibliography
+from fegear.engine.figure import Axis, Figure, Panel, Points
 from fegear.engine.outcome import Column, Table, Value
 from fegear.engine.plan import make_plan
 from fegear.output.report import Page, Section, write_page
 from fegear.output.report.blocks import DataTable, Facts, Plot, Values
-from fegear.output.report.figure import Figure
 from fegear.output.report.numbers import plain_number, pretty_unit, with_error
 from fegear.results.catalogue import STAGES
 from fegear.results.loaded_pair import LOADED_PAIR
@@ -102,8 +103,9 @@ def test_another_command_can_make_a_page(tmp_path):
     table = Table(
         "cost", (Column("seconds", np.array([0.1, 1.0]), "s"), Column("error", np.array([1e-2, 1e-4]))), "Cost"
     )
-    figure = Figure("cost", "Error against time", "Each point is a setting.")
-    figure.panel("seconds [s]", "error", log_x=True, log_y=True).points(table, "seconds", "error", "finite elements")
+    points = Points([0.1, 1.0], [1e-2, 1e-4], "</script><b>finite elements</b>", "blue", notes=("a", "<i>b</i>"))
+    panel = Panel(Axis("time", "s", log=True), Axis("error", log=True), (points,))
+    figure = Figure("cost", "Error against time", "Each point is a setting.", (panel,))
     page = Page("What it costs & why", "A note.", (
         Section("Prices", (Plot(figure), DataTable(table), Facts({"knob <a>": [{"size": 1.0}, {"size": 0.5}]}))),
         Section("Nothing", ()),
@@ -116,7 +118,10 @@ def test_another_command_can_make_a_page(tmp_path):
     assert ">Nothing<" not in text
     assert "over the tolerance" in text
     (told,) = json.loads(text.split("id='figures'>")[1].split("</script>")[0])
-    assert told["traces"][0]["x"] == {"$": "column", "table": "cost", "column": 0}
+    (trace,) = told["data"]
+    assert np.frombuffer(base64.b64decode(trace["x"]["bdata"])).tolist() == [0.1, 1.0]
+    assert trace["name"] == "&lt;/script&gt;&lt;b&gt;finite elements&lt;/b&gt;"  # plotly takes names for HTML
+    assert trace["text"] == ["a", "&lt;i&gt;b&lt;/i&gt;"]
     assert "id='plotly'" in text
 
 

@@ -4,22 +4,22 @@
 
     from fegear.output.report import Page, Section, write_page
     from fegear.output.report.blocks import DataTable, Facts, Notes, Paragraph, Plot, Still
-    from fegear.output.report.figure import Figure
+    from fegear.engine.figure import Axis, Figure, Panel, Points
 
-    figure = Figure("cost", "Error against time", "Each point is one setting.")
-    panel = figure.panel("seconds [s]", "relative error", log_x=True, log_y=True)
-    panel.points(table, "seconds", "error", "finite elements", where={"source": "fe"})
+    points = Points(seconds, error, "finite elements", "blue", notes=labels)
+    panel = Panel(Axis("time", "s", log=True), Axis("relative error", log=True), (points,))
+    figure = Figure("cost", "Error against time", "Each point is one setting.", (panel,))
     page = Page(
         title="What accuracy costs",
         note="one line below the title",
         sections=(Section("Error against time", (Paragraph("..."), Plot(figure), DataTable(table))),),
-        tables=(table,),             # every table that a plot or a DataTable shows; written once, as its CSV
+        tables=(table,),             # every table that a DataTable shows; written once, as its CSV
         name="nasa_four_square",     # of the files that the page offers for download
     )
     write_page(folder / "cost.html", page)
 
-The page holds each table once, as the bytes of its CSV file; plots are drawn from these, so that what is seen is what
-is downloaded. Nothing is fetched from anywhere. plotly.js comes from plotly's wheel; plotly's Python is never imported.
+The page holds each table once, as the bytes of its CSV file; plots carry their own numbers, as plotly's JSON. Nothing
+is fetched from anywhere. plotly.js comes from plotly's wheel; plotly's Python is never imported.
 """
 
 from fegear.output.report.page import Page, Section, write_page

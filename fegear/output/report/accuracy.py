@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from fegear.engine.figure import Axis, Figure, Mark, Panel, Points
 from fegear.output.report.blocks import Bars, Facts, Folded, Paragraph, Plot, relative_error
-from fegear.output.report.figure import Figure
 from fegear.output.report.numbers import plain_number
 
 if TYPE_CHECKING:
@@ -19,23 +21,23 @@ def _errors(results: Results) -> list[tuple[str, float]]:
 
 
 def _figure(found: list[tuple[str, float]], tolerance: float) -> Figure:
-    made = Figure(
+    found = sorted(found, key=lambda item: item[1])
+    names, share = tuple(name for name, _ in found), np.array([share for _, share in found])
+    rows = np.arange(len(found))
+    points = tuple(
+        Points(share[here], rows[here], label, role, symbol, 9.0)
+        for here, label, role, symbol in (
+            (share <= tolerance, "within the tolerance", "green", "circle"),
+            (share > tolerance, "over the tolerance", "red", "diamond"),
+        )
+        if here.any()
+    )
+    axes = Axis("estimated relative error", log=True), Axis(categories=names)
+    return Figure(
         "estimated_errors", "Estimated errors beside the tolerance",
         "Estimated error of every value over the value; left of the line it is within the case's tolerance.",
+        (Panel(*axes, points, (Mark("x", tolerance, "tolerance"),)),),
     )  # fmt: skip
-    found = sorted(found, key=lambda item: item[1])
-    panel = made.panel("estimated relative error", "", log_x=True, height=max(0.5, 0.07 * len(found) + 0.25))
-    for inside, name, colour in ((True, "within the tolerance", "@green"), (False, "over the tolerance", "@red")):
-        here = [item for item in found if (item[1] <= tolerance) == inside]
-        if here:
-            panel.add(
-                name, [share for _, share in here], [label for label, _ in here], mode="markers",
-                marker={"color": colour, "size": 9, "symbol": "circle" if inside else "diamond"},
-                hovertemplate="%{y}: %{x:.2~g}<extra></extra>",
-            )  # fmt: skip
-    panel.mark("x", tolerance, "tolerance")
-    made.shared = False
-    return made
 
 
 def accuracy_blocks(results: Results) -> tuple[Block, ...]:

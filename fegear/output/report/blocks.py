@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from fegear.engine.figure import Figure
     from fegear.engine.outcome import Column, Table, Value
     from fegear.output.draw_png import Picture
-    from fegear.output.report.figure import Figure as OldFigure
     from fegear.output.report.page import Block
 
 #: Rows of a table that stand in the page as text; the others are a click away.
@@ -289,7 +288,7 @@ def _short(told: str) -> str:
 class Plot:
     """An interactive figure; the page's script draws it."""
 
-    figure: Figure | OldFigure
+    figure: Figure
 
     def html(self) -> str:
         """Return its place as HTML."""

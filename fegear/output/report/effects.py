@@ -5,46 +5,31 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fegear.engine.outcome import Table
-from fegear.output.report.blocks import Bars, DataTable, Facts, Folded, Grid, Paragraph, Plot
-from fegear.output.report.figure import Figure, heading
+from fegear.output.report.blocks import DataTable, Facts, Folded, Grid, Paragraph, Plot
 from fegear.output.report.numbers import plain_number, pretty_unit
-from fegear.output.report.page import Page, Section, write_page
+from fegear.output.report.page import Page, Section
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
     from fegear.case.reading import Scene
+    from fegear.engine.figure import Figure
     from fegear.output.report.page import Block
+    from fegear.studies.effect_figures import EffectCurve
     from fegear.studies.effect_study import Fixed, Switched
-
-    Curve = tuple[Table, Table, str, str]
 
 #: Changes of values by less than this share are round-off.
 _ROUND_OFF = 1e-12
 
 
-def _words(told: str) -> str:
-    return told.replace("_", " ")
-
-
-def _title(table: Table, name: str) -> str:
-    unit = heading(table, name)
-    return f"{_words(name)} [{unit}]" if unit else _words(name)
-
-
-def _curve(effect: str, found: Curve) -> tuple[Figure, tuple[Table, Table]]:
-    """The curve without and with an effect, and the two tables under names of their own."""
-    before, after, x, y = found
+def _carried(effect: str, found: EffectCurve) -> tuple[Table, Table]:
+    """The tables of the curve without and with an effect, under names of their own."""
+    before, after, _, _ = found
     tables = tuple(
         Table(f"{effect}_{label}", table.columns, f"{table.title or table.name}, {label} {effect}")
         for table, label in ((before, "without"), (after, "with"))
     )
-    made = Figure(f"effect_{effect}", f"{before.title or _words(before.name)}", f"Without and with {effect}.")
-    panel = made.panel(_title(before, x), _title(before, y))
-    for number, (table, label) in enumerate(zip(tables, ("without", "with"), strict=True)):
-        panel.line(table, x, y, f"{label} {effect}", number)
-    return made, (tables[0], tables[1])
+    return tables[0], tables[1]
 
 
 def _values(found: Switched) -> Block:
@@ -74,7 +59,8 @@ def effects_page(
     switched: Sequence[Switched],
     fixed: Sequence[Fixed],
     table: Table,
-    curves: Mapping[str, Curve | None],
+    curves: Mapping[str, EffectCurve | None],
+    figures: Mapping[str, Figure],
     told: Mapping[str, str],
 ) -> Page:
     """Put the page together.
@@ -87,7 +73,8 @@ def effects_page(
     table : Table
         What ``tables/effects.csv`` holds.
     curves : mapping
-        The curve to draw of each effect, or None.
+        The curve of each effect, or None.
+    figures : mapping
     told : mapping
         One sentence for each effect.
     """
@@ -96,11 +83,8 @@ def effects_page(
         blocks: list[Block] = [Paragraph(told[found.effect])]
         curve = curves[found.effect]
         if curve is not None:
-            figure, tables = _curve(found.effect, curve)
-            blocks.append(Plot(figure))
-            carried += tables
-        seconds = {"without": found.without.seconds, "with": found.with_it.seconds}
-        blocks += [Paragraph("Processor seconds:"), Bars(seconds, "s"), _values(found), _kernels(found)]
+            carried += _carried(found.effect, curve)
+        blocks += [Plot(figures[found.effect]), _values(found), _kernels(found)]
         state = "on" if found.named else "off"
         sections.append(Section(f"{found.effect} ({state} in the case)", tuple(blocks)))
     stuck = [(one.effect, one.reason) for one in fixed]
@@ -134,16 +118,3 @@ def _largest(found: Switched) -> tuple[str, str, str]:
         return "none", "", price
     unit = f" {pretty_unit(a.unit)}".rstrip()
     return a.name, f"{plain_number(a.shown, 5)} to {plain_number(b.shown, 5)}{unit}", price
-
-
-def write_effects_report(
-    path: Path,
-    scene: Scene,
-    switched: Sequence[Switched],
-    fixed: Sequence[Fixed],
-    table: Table,
-    curves: Mapping[str, Curve | None],
-    told: Mapping[str, str],
-) -> None:
-    """Write the page; see `effects_page`."""
-    write_page(path, effects_page(scene, switched, fixed, table, curves, told))

@@ -14,7 +14,6 @@ from importlib import resources
 from typing import TYPE_CHECKING, Protocol
 
 import fegear
-from fegear.engine.figure import Figure as NewFigure
 from fegear.errors import MissingLibraryError
 from fegear.output.draw_plotly import darker, plotly_json, template
 from fegear.output.report.library import compressed_plotly
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
 
     from fegear.engine.figure import Figure
     from fegear.engine.outcome import Table
-    from fegear.output.report.figure import Figure as OldFigure
 
 #: Files in archives carry this date, so that equal content is equal bytes.
 _DATE = (1980, 1, 1, 0, 0, 0)
@@ -92,8 +90,8 @@ def _resource(name: str) -> str:
     return resources.files("fegear.output.report").joinpath(name).read_text("utf-8")
 
 
-def _figures(page: Page) -> list[Figure | OldFigure]:
-    def within(block: object) -> list[Figure | OldFigure]:
+def _figures(page: Page) -> list[Figure]:
+    def within(block: object) -> list[Figure]:
         found = getattr(block, "figure", None)
         inner = [figure for part in getattr(block, "blocks", ()) for figure in within(part)]
         return ([found] if found is not None else []) + inner
@@ -144,13 +142,8 @@ def page_text(page: Page) -> str:
         if files
         else ""
     )
-    specs = [
-        {"key": figure.key, **plotly_json(figure)} if isinstance(figure, NewFigure) else figure.spec()
-        for figure in figures
-    ]
-    drawn = [figure for figure in figures if isinstance(figure, NewFigure)]
-    scripts = _embedded("figures", "application/json", _json(specs))
-    scripts += _embedded("shades", "application/json", _json({"template": template(), "darker": darker(drawn)}))
+    scripts = _embedded("figures", "application/json", _json([{"key": f.key, **plotly_json(f)} for f in figures]))
+    scripts += _embedded("shades", "application/json", _json({"template": template(), "darker": darker(figures)}))
     if figures:
         scripts += _library()
     return (

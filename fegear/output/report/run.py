@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import fegear
 from fegear.engine.citation import bibliography
-from fegear.engine.figure import Figure
 from fegear.output.report.accuracy import accuracy_blocks
 from fegear.output.report.blocks import (
     Code,
@@ -23,17 +22,15 @@ from fegear.output.report.blocks import (
     Values,
 )
 from fegear.output.report.page import Page, Section, write_page
-from fegear.output.report.plots import figures
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from fegear.engine.citation import Citation
-    from fegear.engine.outcome import Outcome
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
-    from fegear.output.draw_png import Picture
+    from fegear.output.figures import Drawn
     from fegear.output.report.page import Block
 
 #: More values than this are folded, task by task: nobody reads forty numbers before the first plot.
@@ -79,15 +76,11 @@ def _sources(results: Results, task: Task) -> tuple[Block, ...]:
     return (Folded("Sources of these results", (Notes(told, "sources"),)),) if told else ()
 
 
-def _interactive(outcome: Outcome) -> list[Figure]:
-    return [f for f in outcome.figures if isinstance(f, Figure) and f.drawable_in_page]
-
-
-def _stage(results: Results, task: Task, pictures: Sequence[Picture]) -> Section:
+def _stage(results: Results, task: Task, drawn: Sequence[Drawn]) -> Section:
     outcome = results.outcomes[task]
-    blocks: list[Block] = [Plot(figure) for figure in _interactive(outcome)]
-    blocks += [Plot(figure) for figure in figures(outcome, task)]
-    blocks += [Still(picture) for picture in pictures]
+    blocks: list[Block] = []
+    for one in drawn:
+        blocks += [Plot(one.figure)] if one.figure.drawable_in_page else [Still(picture) for picture in one.pictures]
     blocks += [DataTable(table) for table in outcome.tables]
     return Section(_title(results, task), (*blocks, *_sources(results, task)) if blocks else ())
 
@@ -131,14 +124,14 @@ def _references(results: Results) -> tuple[Block, ...]:
     )  # fmt: skip
 
 
-def run_page(results: Results, pictures: Sequence[tuple[Task, Picture]], remarks: Sequence[str]) -> Page:
+def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -> Page:
     """Put the page of a run together.
 
     Parameters
     ----------
     results : Results
-    pictures : sequence of (Task, Picture)
-        Those that no interactive figure stands for are embedded; their files are read when the page is written.
+    drawn : sequence of Drawn
+        Figures that a page cannot draw itself are embedded as pictures; their files are read when it is written.
     remarks : sequence of str
         Sentences that the reader should see first.
 
@@ -147,11 +140,6 @@ def run_page(results: Results, pictures: Sequence[tuple[Task, Picture]], remarks
     Page
     """
     scene = results.scene
-    described = {figure.key for task, outcome in results.outcomes.items() for figure in figures(outcome, task)}
-    described |= {
-        f.key for o in results.outcomes.values() for f in o.figures if isinstance(f, Figure) and f.drawable_in_page
-    }
-    still = [(task, picture) for task, picture in pictures if picture.path.stem not in described]
     name = f"{scene.name}.toml"
     files = {name: scene.text.encode()} if scene.text else {}
     total = sum(results.seconds.values())
@@ -163,10 +151,7 @@ def run_page(results: Results, pictures: Sequence[tuple[Task, Picture]], remarks
         sections=(
             Section("To know first", (Notes(remarks, "warning"),) if remarks else ()),
             Section("Results", _values(results)),
-            *(
-                _stage(results, task, [picture for owner, picture in still if owner == task])
-                for task in results.outcomes
-            ),
+            *(_stage(results, task, [one for one in drawn if one.task == task]) for task in results.outcomes),
             Section("Accuracy and its price", accuracy_blocks(results)),
             Section("Plan", _plan(results)),
             Section("Case file", (Code(scene.text), Download(name)) if files else ()),
@@ -178,8 +163,6 @@ def run_page(results: Results, pictures: Sequence[tuple[Task, Picture]], remarks
     )
 
 
-def write_report(
-    path: Path, results: Results, pictures: Sequence[tuple[Task, Picture]], remarks: Sequence[str]
-) -> None:
+def write_report(path: Path, results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -> None:
     """Write the page of a run; see `run_page`."""
-    write_page(path, run_page(results, pictures, remarks))
+    write_page(path, run_page(results, drawn, remarks))

@@ -1,1 +1,0 @@
-"""Pictures of results: colour-blind safe, labelled with units, one module per topic."""

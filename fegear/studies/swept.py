@@ -1,0 +1,100 @@
+"""Every value of a sweep over its points, and which of them are worth a look."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.engine.point_job import Failure
+from fegear.studies.sweep import Point
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from fegear.studies.axis import Axis
+    from fegear.studies.sweep import SweepResults
+
+    Array = NDArray[np.generic]
+
+#: Values that vary by less than this share of their size do not vary.
+_ROUND_OFF = 1e-12
+
+
+def failures(results: SweepResults) -> Array:
+    """Why each point failed; an empty text where it did not."""
+    return np.array([f"{p.kind}: {p.reason}" if isinstance(p, Failure) else "" for p in results.points])
+
+
+def shared_clauses(meanings: Iterable[str]) -> str:
+    """Clauses that all meanings have in common: some name a place that differs from point to point."""
+    first, *others = dict.fromkeys(meanings)
+    return ", ".join(clause for clause in first.split(", ") if all(clause in other.split(", ") for other in others))
+
+
+class Swept(NamedTuple):
+    """One value of a run over all points of a sweep.
+
+    Attributes
+    ----------
+    name, unit, meaning : str
+    number : ndarray, shape (points,)
+        In that unit; NaN where the point has no such value.
+    error : ndarray, shape (points,), or None
+        Estimated errors; None if no point has one.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    number: NDArray[np.float64]
+    error: NDArray[np.float64] | None
+
+    @property
+    def head(self) -> str:
+        """Head of its column in the table of the sweep."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    @property
+    def error_head(self) -> str:
+        """Head of the column of its errors."""
+        return f"{self.name}_error [{self.unit}]" if self.unit else f"{self.name}_error"
+
+
+def swept_values(results: SweepResults) -> Iterator[Swept]:
+    """Every single value of the runs, over all points."""
+    found = [(i, v) for i, point in enumerate(results.points) if isinstance(point, Point) for v in point.values]
+    for name, unit in dict.fromkeys((v.name, v.unit) for _, v in found):
+        number, error = np.full(len(results.points), np.nan), np.full(len(results.points), np.nan)
+        same = [(i, v) for i, v in found if (v.name, v.unit) == (name, unit)]
+        for i, v in same:
+            number[i], error[i] = v.shown, np.nan if v.shown_error is None else v.shown_error
+        yield Swept(
+            name, unit, shared_clauses(v.meaning for _, v in same), number, None if np.isnan(error).all() else error
+        )
+
+
+def axis_head(axis: Axis) -> str:
+    """Head of an axis's column in the table of the sweep."""
+    return f"{axis.key} [{axis.unit}]" if axis.unit else axis.key
+
+
+def is_geometric(axis: Axis) -> bool:
+    """Whether the values grow by a constant factor, so that a logarithmic scale spaces them evenly."""
+    values = np.array(axis.numbers or ())
+    if values.size < 3 or values.min() <= 0.0:
+        return False
+    steps, differences = np.diff(np.log(values)), np.diff(values)
+    return bool(np.ptp(steps) < 1e-6 * abs(steps[0]) and np.ptp(differences) > 1e-6 * abs(differences[0]))
+
+
+def varying(swept: Sequence[Swept]) -> list[Swept]:
+    """The values that differ between points; the others need no picture."""
+
+    def moves(number: NDArray[np.float64]) -> bool:
+        found = number[np.isfinite(number)]
+        return found.size > 1 and float(np.ptp(found)) > _ROUND_OFF * float(np.abs(found).max())
+
+    return [one for one in swept if moves(one.number)]
