@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -93,6 +93,7 @@ class TrainMeshPart(Part):
     stiffness: PositiveStiffness | None = None
     damping: MeshDamping | None = None
     damping_ratio: Ratio | None = None
+    damping_law: Literal["constant", "momentary"] = "constant"
     backlash: LengthOrZero | None = None
     phase: Number = 0.0
 
@@ -100,6 +101,10 @@ class TrainMeshPart(Part):
     def _one_damping(self) -> Self:
         if self.damping is not None and self.damping_ratio is not None:
             raise refuse("contradicts damping", "give either", key="damping_ratio")
+        if "damping_law" in self.model_fields_set and self.damping is None and self.damping_ratio is None:
+            raise refuse(
+                "has a meaning only with damping", "give damping_ratio or damping, or leave it out", key="damping_law"
+            )
         return self
 
 

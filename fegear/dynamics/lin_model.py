@@ -14,6 +14,8 @@ from fegear.errors import RangeError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.dynamics.parts import DampingLaw
+
     Array = NDArray[np.float64]
 
 
@@ -38,6 +40,8 @@ class FourInertia:
         has it, whatever the shafts: stiff ones tend to rigid ones.
     backlash : float
         Backlash along the line of action [m].
+    damping_law : {"constant", "momentary"}
+        Mesh damping from the mean stiffness, or, as the report writes it, from that of the teeth that touch.
     """
 
     motor: float
@@ -54,6 +58,7 @@ class FourInertia:
     shaft_ratio: float = 0.005
     mesh_ratio: float = 0.1
     backlash: float = math.inf
+    damping_law: DampingLaw = "constant"
 
     def train(self, mesh_stiffness: float) -> Train:
         """The model as a train, for a mean mesh stiffness [N/m]."""
@@ -64,8 +69,9 @@ class FourInertia:
             return shaft_damping(self.shaft_ratio, stiffness, a, b) if math.isfinite(stiffness) else 0.0
 
         pair = Mesh(
-            "pair", "gear 1", "gear 2", r1, -r2, self.teeth_1, self.teeth_2, mesh_stiffness, damping, self.backlash
-        )
+            "pair", "gear 1", "gear 2", r1, -r2, self.teeth_1, self.teeth_2, mesh_stiffness, damping, self.backlash,
+            self.damping_law,
+        )  # fmt: skip
         return Train(
             bodies=(
                 Body("motor", self.motor),

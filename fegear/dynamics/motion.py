@@ -15,6 +15,7 @@ import numpy as np
 
 from fegear.dynamics import kernel
 from fegear.dynamics.packing import Packed, pack
+from fegear.dynamics.radau import radau
 from fegear.errors import ConvergenceError, InputError
 from fegear.tally import note, tallied
 
@@ -103,28 +104,27 @@ def propagate(
     if tangents:
         X[:, 1 : n + 1], V[:, n + 1 :] = np.eye(n), np.eye(n)
     active = np.zeros(packed.springs, dtype=np.int8) if status is None else np.array(status, dtype=np.int8)
-    max_steps = record or 20_000 + int(200 * duration)
-    result = kernel.compiled()(
-        X, V, start, start + duration, packed.K, packed.C, packed.f, packed.free.astype(np.int64),
-        packed.approach, packed.damping, packed.lever, packed.mesh_of, packed.side, packed.rate, packed.phase,
-        packed.first, packed.cuts, packed.poly, active, status is None,
-        order, tolerance, longest, max_steps, peaks, record,
+    rule = kernel.Rule(order, tolerance, longest, record or 20_000 + int(200 * duration), peaks, record)
+    found: kernel.Travelled = kernel.compiled()(
+        packed.train_arrays, packed.mesh_arrays, packed.spring_arrays, radau(), rule,
+        X, V, start, start + duration, active, status is None,
     )  # fmt: skip
-    X, V, code, steps, changes, high, low, tooth, apart, behind, times, polynomials, contact = result
-    if code != kernel.DONE:
-        what = "time steps" if code == kernel.TOO_MANY_STEPS else "changes of contact"
+    if found.code != kernel.DONE:
+        what = "time steps" if found.code == kernel.TOO_MANY_STEPS else "changes of contact"
         raise ConvergenceError(
-            f"Motion at {packed.model.speed:.6g} rad/s stopped after {steps} steps: too many {what} in {duration:.6g} "
-            "units of time. Give the gear pair damping, a lower stiffness of the back flanks, or a looser tolerance."
+            f"Motion at {packed.model.speed:.6g} rad/s stopped after {found.steps} steps: too many {what} in "
+            f"{duration:.6g} units of time. Give the gear pair damping, a lower stiffness of the back flanks, or a "
+            "looser tolerance."
         )
-    note("changes of contact", int(changes))
+    note("changes of contact", int(found.changes))
     note("springs in time", sum(packed.varies(s) for s in range(packed.springs)))
-    tangent = np.vstack([X[:, 1:], V[:, 1:]]) if tangents else np.zeros((0, 0))
-    of_mesh = np.array([tooth[packed.mesh_of == m].max() for m in range(packed.damping.size)])
-    unit = packed.force_unit
+    tangent = np.vstack([found.x[:, 1:], found.v[:, 1:]]) if tangents else np.zeros((0, 0))
+    of_mesh = np.array([found.tooth[packed.mesh_of == m].max() for m in range(packed.damping.size)])
+    unit, steps = packed.force_unit, found.steps
     return Passage(
-        X[:, 0].copy(), V[:, 0].copy(), tangent, active, changes, high * unit, low * unit, of_mesh * unit,
-        apart / duration, behind / duration, times[: steps + 1], polynomials[:steps], contact[:steps],
+        found.x[:, 0].copy(), found.v[:, 0].copy(), tangent, active, found.changes, found.high * unit,
+        found.low * unit, of_mesh * unit, found.apart / duration, found.behind / duration, found.times[: steps + 1],
+        found.polynomials[:steps], found.contact[:steps],
     )  # fmt: skip
 
 
@@ -201,6 +201,10 @@ class Trajectory:
 
     def spring_forces(self, time: ArrayLike) -> Array:
         """Elastic force of each slot of teeth [N], front slots and back flanks in order, shape (..., springs)."""
+        return self._springs(time)[0]
+
+    def _springs(self, time: ArrayLike) -> tuple[Array, Array]:
+        """Elastic force of each spring [N], and its stiffness in units."""
         p = self.packed
         value, step = self._at(time)
         t = np.asarray(time, dtype=float) / p.time_unit
@@ -216,12 +220,12 @@ class Trajectory:
             k[..., s] = np.polynomial.polynomial.polyval(v, np.moveaxis(rows[..., 0, :], -1, 0), tensor=False)
             e[..., s] = np.polynomial.polynomial.polyval(v, np.moveaxis(rows[..., 1, :], -1, 0), tensor=False)
         strain = value @ p.approach[p.mesh_of].T - e
-        return np.where(self.passage.contact[step] == 1, k * strain, 0.0) * p.force_unit
+        return np.where(self.passage.contact[step] == 1, k * strain, 0.0) * p.force_unit, k
 
     def mesh_forces(self, time: ArrayLike) -> Array:
         """Force of each gear pair [N] with its damping, negative on the back flanks, shape (..., meshes)."""
         p = self.packed
-        elastic = self.spring_forces(time)
+        elastic, stiffness = self._springs(time)
         rate, step = self._at(time, 1)
         contact = self.passage.contact[step] == 1
         found = np.zeros((*np.shape(time), p.damping.size))
@@ -229,6 +233,8 @@ class Trajectory:
             of = p.mesh_of == m
             touching = contact[..., of].any(axis=-1)
             slide = p.damping[m] * (rate @ p.approach[m]) * p.force_unit
+            if p.momentary[m]:
+                slide = slide * np.sqrt(np.where(contact, stiffness, 0.0)[..., of].sum(axis=-1) / p.stiffness[m])
             found[..., m] = elastic[..., of].sum(axis=-1) + np.where(touching, slide, 0.0)
         return found
 

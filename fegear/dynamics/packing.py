@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.dynamics.kernel import MeshArrays, SpringArrays, TrainArrays
 from fegear.dynamics.matrices import damping_matrix, elements, projected
 from fegear.dynamics.modes import modes
 from fegear.dynamics.motion_model import friction_loss_torque
@@ -37,6 +39,10 @@ class Packed:
         Coordinates whose position matters (all but the rigid-body angle).
     shapes : ndarray, shape (size, n)
         Rotation angles [rad] per coordinate.
+    damping, stiffness : ndarray, shape (meshes,)
+        Damping of each gear pair at its mean stiffness, and that stiffness.
+    momentary : ndarray of bool, shape (meshes,)
+        Whether the damping follows the stiffness of the teeth that touch.
     """
 
     model: MotionModel
@@ -50,6 +56,8 @@ class Packed:
     f: Array
     approach: Array
     damping: Array
+    stiffness: Array
+    momentary: NDArray[np.bool_]
     lever: Array
     mesh_of: NDArray[np.int64]
     side: Array
@@ -73,6 +81,21 @@ class Packed:
     def springs(self) -> int:
         """Number of one-sided springs."""
         return int(self.mesh_of.size)
+
+    @cached_property
+    def train_arrays(self) -> TrainArrays:
+        """What the integrator knows of the train."""
+        return TrainArrays(self.K, self.C, self.f, self.free.astype(np.int64))
+
+    @cached_property
+    def mesh_arrays(self) -> MeshArrays:
+        """What it knows of the gear pairs."""
+        return MeshArrays(self.approach, self.lever, self.damping, self.stiffness, self.momentary.astype(np.int64))
+
+    @cached_property
+    def spring_arrays(self) -> SpringArrays:
+        """What it knows of their springs."""
+        return SpringArrays(self.mesh_of, self.side, self.rate, self.phase, self.first, self.cuts, self.poly)
 
     def varies(self, spring: int) -> bool:
         """Whether the stiffness of a spring varies in time."""
@@ -167,6 +190,8 @@ def pack(model: MotionModel) -> Packed:
         f=shapes.T @ (train.torque + friction_loss_torque(model)) * time**2 / unit,
         approach=rows * unit / length,
         damping=np.array([m.damping for m in train.meshes]) * length / (force * time),
+        stiffness=stiffness * length / force,
+        momentary=np.array([m.damping_law == "momentary" for m in train.meshes]),
         lever=shapes[ends] * unit / length,
         mesh_of=mesh_of,
         side=np.array([s[1] for s in springs]),

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 from fegear.errors import InputError
 
+#: How a gear pair's damping goes with the stiffness of the teeth that touch.
+DampingLaw = Literal["constant", "momentary"]
 #: Largest mismatch of base radii against tooth numbers.
 RATIO_TOLERANCE = 1e-6
 
@@ -87,7 +90,10 @@ class Mesh:
     stiffness : float
         Mean mesh stiffness along the line of action [N/m].
     damping : float
-        Mesh damping on the rate of approach [N s/m].
+        Mesh damping C on the rate of approach [N s/m], at the mean stiffness.
+    damping_law : {"constant", "momentary"}
+        Whether motion in time keeps it while any teeth touch, or has it follow their stiffness, C sqrt(K(t)/K), as
+        TM-100180 writes it ((2), (3), (16), (20), (24)). Transfer functions know the mean stiffness only.
     backlash : float
         Backlash along the line of action [m]; infinity means that the back flanks never touch.
     """
@@ -102,6 +108,7 @@ class Mesh:
     stiffness: float
     damping: float = 0.0
     backlash: float = math.inf
+    damping_law: DampingLaw = "constant"
 
     def __post_init__(self) -> None:
         key = f"mesh.{self.name}"
@@ -110,6 +117,8 @@ class Mesh:
         require_positive(f"{key}.stiffness", self.stiffness)
         require_positive(f"{key}.damping", self.damping, zero=True)
         require_positive(f"{key}.backlash", self.backlash, infinite=True, zero=True)
+        if self.damping_law not in ("constant", "momentary"):
+            raise InputError(f"{key}.damping_law", self.damping_law, 'must be "constant" or "momentary"')
         for side, teeth in (("a", self.teeth_a), ("b", self.teeth_b)):
             if teeth < 1:
                 raise InputError(f"{key}.teeth_{side}", teeth, "must be a whole number of at least 1")

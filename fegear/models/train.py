@@ -165,7 +165,7 @@ def build_train(asked: TrainInputs, stiffness: Mapping[str, float] | None = None
             damping = mesh_damping(mesh.damping_ratio, k, r1, r2, inertias[mesh.driver], inertias[mesh.driven])
         backlash = math.inf if mesh.backlash is None else mesh.backlash
         teeth = pair.driver.teeth, pair.driven.teeth
-        meshes.append(Mesh(name, mesh.driver, mesh.driven, r1, r2, *teeth, k, damping, backlash))
+        meshes.append(Mesh(name, mesh.driver, mesh.driven, r1, r2, *teeth, k, damping, backlash, mesh.damping_law))
     dampers = tuple(Damper(damper.a, damper.b, damper.damping) for damper in part.damper.values())
     free = Train(bodies, shafts, tuple(meshes), dampers)
     torques = [Torque(body, value) for body, value in part.torque.items()]
