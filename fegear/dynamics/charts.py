@@ -10,9 +10,11 @@ import numpy as np
 from fegear.dynamics.excitation import effective_error
 from fegear.dynamics.motion_model import MotionModel
 from fegear.dynamics.steady_state import SteadyState, speed_sweep
-from fegear.errors import InputError
+from fegear.errors import InputError, RangeError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.dynamics.excitation import MeshExcitation
@@ -38,7 +40,12 @@ class SpeedChart:
     periods : ndarray of int, shape (n,)
         Periods after which the motion repeats, 0 if it does not.
     kinds : tuple of str
-        "periodic", "quasi-periodic" or "chaotic" at each speed.
+        Kind of motion at each speed; see `SteadyState`.
+    median, upper : ndarray, shape (n,)
+        What half and 99 % of the periods do not exceed: quantiles of the largest force on one tooth pair in a period,
+        over the mean mesh force. Of a motion that repeats, the dynamic factor itself.
+    measured : ndarray of int, shape (n,)
+        Periods of excitation that the largest forces are taken over.
     """
 
     speeds: Array
@@ -48,6 +55,35 @@ class SpeedChart:
     behind: Array
     periods: NDArray[np.int64]
     kinds: tuple[str, ...]
+    median: Array
+    upper: Array
+    measured: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, speeds: Array, states: Sequence[SteadyState], mesh: int, mean: float) -> SpeedChart:
+        """One mesh of steady motions at speeds [rad/s], over its mean force [N]."""
+        return cls(
+            speeds,
+            np.array([s.tooth_force[mesh] for s in states]) / mean,
+            np.array([s.largest[mesh] for s in states]) / mean,
+            np.array([s.apart[mesh] for s in states]),
+            np.array([s.behind[mesh] for s in states]),
+            np.array([s.periods for s in states], dtype=np.int64),
+            tuple(s.kind for s in states),
+            np.array([s.quantile(0.5)[mesh] for s in states]) / mean,
+            np.array([s.quantile(0.99)[mesh] for s in states]) / mean,
+            np.array([s.measured for s in states], dtype=np.int64),
+        )
+
+    @classmethod
+    def linear(cls, speeds: Array, dynamic_factor: Array, mesh_force_factor: Array) -> SpeedChart:
+        """Factors of a linear train whose teeth never part: periodic at every speed."""
+        none, one = np.zeros(speeds.size), np.ones(speeds.size, dtype=np.int64)
+        kinds = ("periodic",) * speeds.size
+        return cls(
+            speeds, dynamic_factor, mesh_force_factor, none, none.copy(), one, kinds, dynamic_factor, dynamic_factor,
+            one.copy(),
+        )  # fmt: skip
 
     @property
     def worst(self) -> tuple[float, float]:
@@ -83,20 +119,17 @@ def speed_chart(
     speed = np.sort(np.atleast_1d(np.asarray(speeds, dtype=float)))
     if direction not in ("up", "down", "static", "rest"):
         raise InputError("direction", direction, 'must be "up", "down", "static" or "rest"')
+    if not model.static[mesh] > 0.0:
+        raise RangeError(
+            "dynamic factor", f"{float(model.static[mesh]):.6g} N", "is the mean force: must be positive",
+            "look at the forces of `speed_sweep` for an idling gear pair",
+        )  # fmt: skip
     order = speed[::-1] if direction == "down" else speed
     start = "follow" if direction in ("up", "down") else direction
     states: tuple[SteadyState, ...] = speed_sweep(model, order, start=start, tolerance=tolerance)
     if direction == "down":
         states = states[::-1]
-    return SpeedChart(
-        speed,
-        np.array([s.dynamic_factor[mesh] for s in states]),
-        np.array([s.mesh_force_factor[mesh] for s in states]),
-        np.array([s.apart[mesh] for s in states]),
-        np.array([s.behind[mesh] for s in states]),
-        np.array([s.periods for s in states], dtype=np.int64),
-        tuple(s.kind for s in states),
-    )
+    return SpeedChart.of(speed, states, mesh, float(model.static[mesh]))
 
 
 @dataclass(frozen=True)

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 DONE, TOO_MANY_STEPS, TOO_MANY_EVENTS = 0, 1, 2
 
 
-#: Least length of a collocation step, and what a failed one waits for, both in Taylor steps; largest wait.
-WORTH, WAIT, LONGEST_WAIT = 40.0, 8, 64
+#: Least length of a collocation step, and what a failed one waits for, both in Taylor steps; most that the wait grows.
+WORTH, WAIT, LONGEST_WAIT = 40.0, 8, 8
 
 
 class TrainArrays(NamedTuple):
@@ -618,7 +618,11 @@ def _run(  # noqa: C901  (one loop over steps: what it shares is its local varia
                 friction = True
     long_steps = math.isinf(rule.longest) and radau.nodes.shape[0] <= order - 2
     t, steps, events, code = t0, 0, 0, DONE
-    waited, wait, reach = WAIT, WAIT, 0.0
+    # what a collocation step costs in Taylor steps: a long train needs a longer stretch for it
+    unknowns, taylor = float(radau.nodes.shape[0] * n), float(order * (n * n + 10 * n * columns))
+    worth = max(WORTH, (unknowns**3 / 3.0 + unknowns**2 * columns) / taylor)
+    shortest = max(WAIT, int(0.25 * worth))
+    waited, wait, reach = shortest, shortest, 0.0
     # which piece of its period each spring is in; a break point within round-off belongs to the piece after it
     for s in range(count):
         u = springs.rate[s] * t0 + springs.phase[s]
@@ -660,17 +664,17 @@ def _run(  # noqa: C901  (one loop over steps: what it shares is its local varia
         _series(train, meshes, springs, work, status, x, v, friction)
         h = _taylor_step(train, rule, X, x, v)
         waited += 1
-        if long_steps and waited >= wait and limit - t > WORTH * h:
-            far = min(max(reach, WORTH * h), limit - t)
+        if long_steps and waited >= wait and limit - t > worth * h:
+            far = min(max(reach, worth * h), limit - t)
             if _collocate(train, meshes, springs, rule, radau, work, status, x, v, far):
-                h, reach, wait = far, 8.0 * far, WAIT
+                h, reach, wait = far, 8.0 * far, shortest
             else:
                 # too long for the teeth's change, or the vibration still lives: shorter next time, then wait
                 shorter = 0.25 * far
-                if shorter > WORTH * h:
+                if shorter > worth * h:
                     reach = shorter
                 else:
-                    reach, wait, waited = 0.0, min(2 * wait, LONGEST_WAIT), 0
+                    reach, wait, waited = 0.0, min(2 * wait, LONGEST_WAIT * shortest), 0
                 _series(train, meshes, springs, work, status, x, v, friction)
         to_limit = h >= limit - t
         if to_limit:

@@ -1,8 +1,9 @@
-"""Steady motion by shooting: Newton on the state after a period, Floquet multipliers, non-periodic motion named.
+"""Steady motion: Newton on the state after a period, Floquet multipliers, motion that does not repeat.
 
-A linear train (no change of contact) is closed in one Newton step, exactly. With contact loss the motion first runs
-a few periods from its start, so that it ends on the branch the start leads to, and Newton closes what is left. When no
-stable motion of up to 32 periods is found, the largest Lyapunov exponent tells quasi-periodic from chaotic motion.
+A train whose teeth never part is linear and is closed in one Newton step, exactly; if its motion grows, it has no
+steady motion and is refused. With contact loss the motion runs from its start until it stands in the neighbourhood of
+a stable motion of up to 32 periods, which Newton closes. An unstable motion is never reported. What comes near none is
+followed until transients have died away, and measured over many periods.
 """
 
 from __future__ import annotations
@@ -13,9 +14,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.motion import Passage, Trajectory, propagate, starting_state
+from fegear.dynamics.motion import Trajectory, propagate, starting_state
 from fegear.dynamics.packing import Packed, pack
-from fegear.errors import ConvergenceError, RangeError
+from fegear.dynamics.shooting import Orbit, close, leads_to, leap, moving
+from fegear.dynamics.wandering import (
+    CHAOTIC_GROWTH,
+    LONGEST_WINDOW,
+    PATIENCE,
+    WINDOW,
+    Window,
+    drifting,
+    follow,
+    growth,
+    recurrences,
+)
+from fegear.errors import RangeError
 from fegear.tally import tallied
 
 if TYPE_CHECKING:
@@ -30,28 +43,25 @@ if TYPE_CHECKING:
 
 #: Most periods of excitation that one period of the motion may take.
 LONGEST_MULTIPLE = 32
-#: Periods integrated before Newton starts, and windows of the search for a repeating motion.
-SETTLING, SEARCH = 12, 160
-#: Periods over which a non-periodic motion is measured.
-MEASURED = 200
-#: Growth of tangents per period beyond which a non-periodic motion counts as chaotic.
-CHAOTIC_GROWTH = 0.01
+#: Periods integrated before Newton starts, how often they are doubled, and periods that measure what never repeats.
+SETTLING, DOUBLINGS, MEASURED = 12, 5, 1000
+#: Longest transient without changes of contact that is followed to see whether contact changes on the way.
+TRANSIENT = 100
 #: Motion so many times the static deflection of a mesh grows for ever: no gear train holds that.
 UNBOUNDED = 1e5
-#: How far a multiplier may exceed one before the motion counts as unstable.
-UNSTABLE = 1e-6
 
 
 @dataclass(frozen=True)
 class SteadyState:
-    """Steady motion of a train at one speed.
+    """Steady motion of a train at one speed, stable.
 
     Attributes
     ----------
     model : MotionModel
         What moves.
     kind : str
-        "periodic", "quasi-periodic", "chaotic", or "long-period" (repeats, but after more than 32 periods).
+        "periodic", "quasi-periodic", "chaotic", "long-period" (comes back, but after more than 32 periods), or
+        "unsettled" (a transient that had not died after 60,000 periods).
     periods : int
         Periods of the excitation after which the motion repeats; 0 if it does not.
     multipliers : ndarray, complex
@@ -65,11 +75,14 @@ class SteadyState:
     apart, behind : ndarray, shape (meshes,)
         Share of the time without contact and on the back flanks.
     changes : int
-        Changes of contact in the motion's period (in the measured window if it does not repeat).
+        Changes of contact in the motion's period (in the measured periods if it does not repeat).
     residual : float
-        What the motion misses closing by, beside the static deflection.
+        What the motion misses closing by, beside the static deflection; nan if it does not repeat.
     x, v : ndarray
         State at time zero, in the coordinates of `motion.pack`.
+    per_period : ndarray, shape (N, meshes)
+        Largest force on one tooth pair [N] in each of the N periods of excitation that were measured: a sample of a
+        motion that does not repeat, one row of a motion that does.
     """
 
     model: MotionModel
@@ -86,6 +99,24 @@ class SteadyState:
     residual: float
     x: Array
     v: Array
+    per_period: Array
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the motion repeats: only then do its largest forces have a tolerance."""
+        return self.kind == "periodic"
+
+    @property
+    def measured(self) -> int:
+        """Periods of excitation that the largest forces are taken over: those after which it repeats, or N."""
+        return self.periods or int(self.per_period.shape[0])
+
+    def quantile(self, share: float) -> Array:
+        """Force on one tooth pair [N] that so large a share of the periods does not exceed, shape (meshes,).
+
+        Of a motion that repeats, its largest.
+        """
+        return np.asarray(np.quantile(self.per_period, share, axis=0))
 
     @property
     def dynamic_factor(self) -> Array:
@@ -123,6 +154,7 @@ def steady_state(
     start: str | tuple[Array, Array] = "static",
     tolerance: float = 1e-6,
     settling: int = SETTLING,
+    measured: int = MEASURED,
 ) -> SteadyState:
     """Find the steady motion that a start leads to.
 
@@ -133,162 +165,160 @@ def steady_state(
     start : {"static", "rest"} or (x, v)
         Where the motion begins; a state of another speed continues its branch.
     tolerance : float
-        Accuracy of the largest forces, beside the mean force; steps and closure are held well below it.
+        Accuracy of the largest forces of a motion that repeats, beside the mean force; steps and closure are held well
+        below it.
     settling : int
         Periods integrated before Newton (when contact is lost).
+    measured : int
+        Periods over which a motion that does not repeat is measured.
 
     Raises
     ------
     RangeError
         If the tolerance is out of range, a train without damping is at resonance, or the motion grows without bound
-        (parametric instability of teeth that touch on either flank).
+        (parametric instability of teeth that never part, or that touch on either flank).
     """
     if not 1e-13 < tolerance <= 1e-2:
         raise RangeError("tolerance", tolerance, "must lie between 1e-13 and 1e-2")
     packed = pack(model)
     step = max(1e-3 * tolerance, 1e-14)
     x, v = starting_state(packed, start)
-    passage = propagate(packed, x, v, packed.period, tolerance=step, peaks=False, tangents=True)
+    if not np.any(packed.side):
+        return _linear(packed, x, v, step)
+    passage = propagate(packed, x, v, packed.period, tolerance=step, peaks=False)
     if passage.changes == 0:
-        found = _close(packed, x, v, 1, step)
-        if found is not None and found[2].changes == 0:
-            return _periodic(packed, *found, 1)
-    x, v = passage.x, passage.v
-    if settling > 1:
-        passage = propagate(packed, x, v, (settling - 1) * packed.period, tolerance=step, peaks=False)
-        x, v = passage.x, passage.v
-    for further in (0, 2 * settling, 4 * settling):
-        if further:
-            passage = propagate(packed, x, v, further * packed.period, tolerance=step, peaks=False)
-            x, v = passage.x, passage.v
-        for multiple in (1, 2):
-            found = _close(packed, x, v, multiple, step)
-            if found is not None and _radius(packed, found[2]) <= 1.0 + UNSTABLE:
-                return _periodic(packed, *found, multiple)
-    return _search(packed, x, v, step)
+        orbit = close(packed, x, v, 1, step)
+        if orbit is not None and orbit.passage.changes == 0:
+            if not orbit.stable:
+                x, v = leap(orbit, x, v, step)
+            elif _keeps_contact(orbit, x, v, step):
+                return _periodic(orbit)
+    run, periods = 0, max(settling, 1)
+    states = np.zeros((0, int(moving(packed).sum())))
+    for _ in range(DOUBLINGS + 1):
+        window = follow(packed, x, v, periods, step, peaks=False)
+        x, v = window.x, window.v
+        _bounded(packed, window)
+        states = np.concatenate([states, window.states])
+        found, (x, v) = _settled(packed, states, x, v, step)
+        if found is not None:
+            return found
+        run += periods
+        periods = run
+    return _wander(packed, x, v, step, measured)
 
 
-def _moving(packed: Packed) -> NDArray[np.bool_]:
-    """Entries of the state (x, v) that matter for the motion: all but the free turning angle."""
-    return np.concatenate([packed.free, np.ones(packed.size, dtype=bool)])
+def _linear(packed: Packed, x: Array, v: Array, step: float) -> SteadyState:
+    """Steady motion of teeth that never part: the one fixed point, if motions tend to it."""
+    orbit = close(packed, x, v, 1, step)
+    if orbit is None or not orbit.stable:
+        raise _grows(packed, f" {orbit.radius:.4g} times a period" if orbit is not None else "")
+    return _periodic(orbit)
 
 
-def _close(packed: Packed, x: Array, v: Array, multiple: int, step: float) -> tuple[Array, Array, Passage] | None:
-    """Newton on the state after `multiple` periods; None when it does not settle."""
-    use = _moving(packed)
-    n = packed.size
-    y = np.concatenate([x, v])
-    before, closed = math.inf, False
-    for _ in range(16):
-        try:
-            passage = propagate(
-                packed, y[:n], y[n:], multiple * packed.period, tolerance=step, tangents=True, peaks=False
-            )
-        except ConvergenceError:
-            return None
-        miss = (np.concatenate([passage.x, passage.v]) - y)[use]
-        size = float(np.max(np.abs(miss))) if miss.size else 0.0
-        if closed:
-            return y[:n], y[n:], passage
-        if not np.isfinite(size) or size > 8.0 * before:
-            return None
-        before = size
-        tangent = passage.tangent[np.ix_(use, use)]
-        matrix = tangent - np.eye(int(use.sum()))
-        if np.linalg.svd(matrix, compute_uv=False)[-1] <= 1e-10 * np.linalg.norm(tangent, 2):
-            if passage.changes == 0 and not np.any(passage.apart > 0.0) and not np.any(passage.behind > 0.0):
-                raise RangeError(
-                    "speed",
-                    f"{packed.model.speed:.9g} rad/s",
-                    "meets a resonance without damping: there is no bounded steady motion",
-                    "give the train damping or leave this speed out",
-                )
-            return None
-        change = np.linalg.solve(matrix, miss)
-        y[use] -= change
-        # what the last change leaves is of second order; round-off in the largest coordinate bounds it below
-        largest = float(np.max(np.abs(y[use])))
-        closed = bool(np.max(np.abs(change)) <= max(10.0 * step, 1e-12 * largest))
-    return None
+def _keeps_contact(orbit: Orbit, x: Array, v: Array, step: float) -> bool:
+    """Whether contact does not change on the way from a start to an orbit on which it does not."""
+    use = moving(orbit.packed)
+    far = float(np.max(np.abs(np.concatenate([x, v])[use] - orbit.state)))
+    shrinks = -math.log(max(orbit.radius, 1e-300))
+    # what is left of the way after so many periods is a thousandth of the static deflection
+    needed = math.log(max(far, 1e-3) / 1e-3) / shrinks if shrinks > 0.0 else math.inf
+    periods = math.ceil(min(needed, TRANSIENT))
+    if periods <= 1:
+        return True
+    way = propagate(orbit.packed, x, v, periods * orbit.packed.period, tolerance=step, peaks=False)
+    return way.changes == 0
 
 
-def _radius(packed: Packed, passage: Passage) -> float:
-    use = _moving(packed)
-    return float(np.max(np.abs(np.linalg.eigvals(passage.tangent[np.ix_(use, use)]))))
+def _grows(packed: Packed, how: str) -> RangeError:
+    return RangeError(
+        "speed",
+        f"{packed.model.speed:.9g} rad/s",
+        f"lets the motion grow without bound{how}: the varying mesh stiffness feeds it more than damping takes",
+        "give the meshes damping, let teeth part (effects.contact_loss), or leave this speed out",
+    )
 
 
-def _periodic(packed: Packed, x: Array, v: Array, passage: Passage, multiple: int) -> SteadyState:
-    use = _moving(packed)
-    for divisor in range(1, multiple):
-        if multiple % divisor:
+def _bounded(packed: Packed, window: Window) -> None:
+    if not np.all(np.isfinite(window.states)) or np.max(np.abs(window.states)) > UNBOUNDED:
+        raise _grows(packed, "")
+
+
+def _settled(
+    packed: Packed, states: Array, x: Array, v: Array, step: float
+) -> tuple[SteadyState | None, tuple[Array, Array]]:
+    """The stable motion of up to 32 periods that a motion has come to, if any, and from where to follow it further.
+
+    Beside an unstable orbit growth may take very long: as far as it is linear it is leapt over.
+    """
+    for multiple in recurrences(states, LONGEST_MULTIPLE, 0.2):
+        orbit = close(packed, x, v, multiple, step)
+        if orbit is None:
+            continue
+        if not orbit.stable:
+            x, v = leap(orbit, x, v, step)
+        elif leads_to(orbit, x, v, step):
+            return _periodic(orbit), (x, v)
+    return None, (x, v)
+
+
+def _periodic(orbit: Orbit) -> SteadyState:
+    packed, x, v = orbit.packed, orbit.x, orbit.v
+    use = moving(packed)
+    for divisor in range(1, orbit.periods):
+        if orbit.periods % divisor:
             continue
         # a motion of period 1 also closes after 2: report the shortest
         short = propagate(packed, x, v, divisor * packed.period, tolerance=1e-13, peaks=False, tangents=True)
-        if np.max(np.abs(np.concatenate([short.x - x, short.v - v])[use])) < 1e-5:
-            passage, multiple = short, divisor
+        miss = float(np.max(np.abs(np.concatenate([short.x - x, short.v - v])[use])))
+        if miss < 1e-5:
+            orbit = Orbit(packed, x, v, divisor, short, miss)
             break
-    values = np.asarray(np.linalg.eigvals(passage.tangent[np.ix_(use, use)]), dtype=complex)
-    values = values[np.argsort(-np.abs(values), kind="stable")]
-    miss = np.concatenate([passage.x - x, passage.v - v])[use]
-    final = propagate(packed, x, v, multiple * packed.period, tolerance=1e-13, peaks=True)
-    growth = math.log(max(abs(values[0]), 1e-300)) / multiple
+    final = propagate(packed, x, v, orbit.periods * packed.period, tolerance=1e-13, peaks=True)
     return SteadyState(
-        packed.model, "periodic", multiple, values, growth, final.largest, final.smallest, final.tooth_force,
-        final.apart, final.behind, final.changes, float(np.max(np.abs(miss))), x, v,
+        packed.model, "periodic", orbit.periods, orbit.multipliers,
+        math.log(max(orbit.radius, 1e-300)) / orbit.periods, final.largest, final.smallest, final.tooth_force,
+        final.apart, final.behind, final.changes, orbit.miss, x, v, final.tooth_force[None, :],
     )  # fmt: skip
 
 
-def _search(packed: Packed, x: Array, v: Array, step: float) -> SteadyState:
-    """Let the motion run until it repeats, or measure how it does not."""
-    use = _moving(packed)
-    past: list[Array] = []
-    for period in range(SEARCH):
-        passage = propagate(packed, x, v, packed.period, tolerance=step, peaks=False)
-        x, v = passage.x, passage.v
-        past.append(np.concatenate([x, v])[use])
-        if np.max(np.abs(past[-1])) > UNBOUNDED:
-            raise RangeError(
-                "speed",
-                f"{packed.model.speed:.9g} rad/s",
-                "lets the motion grow without bound: the varying mesh stiffness feeds it more than damping takes",
-                "give the meshes damping or leave this speed out",
-            )
-        if period < 20 or period % 20 != 0:
-            continue
-        for multiple in range(1, LONGEST_MULTIPLE + 1):
-            # close to itself is worth a try; Newton decides
-            if multiple >= len(past) or np.max(np.abs(past[-1] - past[-1 - multiple])) > 0.2:
+def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int) -> SteadyState:
+    """Follow a motion that came to no orbit until it settles or stays as it is, and measure it."""
+    rate = growth(packed, x, v, step)
+    window = follow(packed, x, v, WINDOW, step, peaks=False)
+    run, kind = WINDOW, "unsettled"
+    while run < PATIENCE:
+        _bounded(packed, window)
+        found, (x, v) = _settled(packed, window.states, window.x, window.v, step)
+        if found is not None:
+            return found
+        length = WINDOW if rate > CHAOTIC_GROWTH else min(2 * window.states.shape[0], LONGEST_WINDOW)
+        before, window = window, follow(packed, x, v, length, step, peaks=False)
+        run += length
+        chaotic = rate > CHAOTIC_GROWTH
+        if chaotic or not drifting(before, window):
+            rate = growth(packed, window.x, window.v, step, WINDOW if chaotic else 4 * WINDOW)
+            # growth may be that of a transient: only what still grows is chaotic
+            if chaotic and rate <= CHAOTIC_GROWTH:
                 continue
-            found = _close(packed, x, v, multiple, step)
-            if found is not None and _radius(packed, found[2]) <= 1.0 + UNSTABLE:
-                near = np.max(np.abs(np.concatenate([found[0] - x, found[1] - v])[use]))
-                if near <= 0.5:
-                    return _periodic(packed, *found, multiple)
-    return _measure(packed, x, v, step)
-
-
-def _measure(packed: Packed, x: Array, v: Array, step: float) -> SteadyState:
-    """Forces and growth of tangents over a long stretch of motion that does not repeat."""
-    use = np.flatnonzero(_moving(packed))
-    frame = np.eye(use.size)
-    first = x, v
-    total, parts = 0.0, []
-    for _ in range(MEASURED):
-        passage = propagate(packed, x, v, packed.period, tolerance=step, tangents=True)
-        frame, upper = np.linalg.qr(passage.tangent[np.ix_(use, use)] @ frame)
-        total += math.log(max(abs(upper[0, 0]), 1e-300))
-        x, v = passage.x, passage.v
-        parts.append(passage)
-    growth = total / MEASURED
-    # on a torus neighbours neither part nor close in; where they close in, the motion repeats after all
-    settled = "quasi-periodic" if growth > -CHAOTIC_GROWTH else "long-period"
-    kind = "chaotic" if growth > CHAOTIC_GROWTH else settled
+            # on a torus neighbours neither part nor close in; where they close in, the motion repeats after all
+            settled = "quasi-periodic" if rate > -CHAOTIC_GROWTH else "long-period"
+            kind = "chaotic" if rate > CHAOTIC_GROWTH else settled
+            break
+    start = window.x, window.v
+    sample = follow(packed, *start, measured, step, peaks=True)
+    _bounded(packed, sample)
+    if kind != "chaotic":
+        found, _ = _settled(packed, sample.states, sample.x, sample.v, step)
+        if found is not None:
+            return found
+    parts = sample.passages
+    per_period = np.array([p.tooth_force for p in parts])
     return SteadyState(
-        packed.model, kind, 0, np.zeros(0, dtype=complex), growth,
+        packed.model, kind, 0, np.zeros(0, dtype=complex), rate,
         np.max([p.largest for p in parts], axis=0), np.min([p.smallest for p in parts], axis=0),
-        np.max([p.tooth_force for p in parts], axis=0), np.mean([p.apart for p in parts], axis=0),
-        np.mean([p.behind for p in parts], axis=0), sum(p.changes for p in parts),
-        float(np.max(np.abs(np.concatenate([x - first[0], v - first[1]])[use]))), *first,
+        np.max(per_period, axis=0), np.mean([p.apart for p in parts], axis=0),
+        np.mean([p.behind for p in parts], axis=0), sum(p.changes for p in parts), math.nan, *start, per_period,
     )  # fmt: skip
 
 

@@ -92,7 +92,11 @@ def _run_sweep(scene: Scene, _subject: str, done: Done, progress: Progress) -> O
     odd = [state for state in found if state.kind != "periodic"]
     if odd:
         told = ", ".join(f"{state.model.speed * data.speed_ratio * 30.0 / np.pi:.6g} rpm {state.kind}" for state in odd)
-        remarks.append(f"The motion does not repeat at {len(odd)} of {len(found)} speeds: {told}.")
+        remarks.append(
+            f"The motion does not repeat at {len(odd)} of {len(found)} speeds: {told}. Its factors are the largest of "
+            f"{odd[0].measured} periods, a sample without a tolerance: more periods find larger ones. See the "
+            "quantiles in the table."
+        )
     settings: dict[str, object] = {"direction": part.direction, "tolerance": part.tolerance}
     return Outcome(SweepData(data, speeds, found), (), (), settings, tuple(remarks))
 
@@ -108,10 +112,7 @@ def _linear_chart(scene: Scene, data: GearTrain, i: int, speeds: Array, progress
         tooth[number] = (float(found.total.max()) + float(found.cross_peak.sum())) / mean
         mesh[number] = mesh_force_range(data, i, float(speed), part.harmonics)[1] / mean
         progress((number + 1) / speeds.size)
-    none = np.zeros(speeds.size)
-    return SpeedChart(
-        speeds, tooth, mesh, none, none.copy(), np.ones(speeds.size, dtype=np.int64), ("periodic",) * speeds.size
-    )
+    return SpeedChart.linear(speeds, tooth, mesh)
 
 
 def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
@@ -125,16 +126,7 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
         remark = f"Mesh {name} carries no mean force, so it has no dynamic factor."
         return Outcome(None, (), (), {}, (remark,))
     if states:
-        mean = float(data.forces[i])
-        chart = SpeedChart(
-            speeds,
-            np.array([s.tooth_force[i] for s in states]) / mean,
-            np.array([s.largest[i] for s in states]) / mean,
-            np.array([s.apart[i] for s in states]),
-            np.array([s.behind[i] for s in states]),
-            np.array([s.periods for s in states], dtype=np.int64),
-            tuple(s.kind for s in states),
-        )
+        chart = SpeedChart.of(speeds, states, i, float(data.forces[i]))
     else:
         chart = _linear_chart(scene, data, i, speeds, progress)
     chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
@@ -153,14 +145,28 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
                 "periods", chart.periods, "", "periods of excitation after which the motion repeats; 0 if it does not"
             ),
             Column("mesh_force_factor", chart.mesh_force_factor, "", "largest mesh force over the mean mesh force"),
-            Column("motion", np.array(chart.kinds, dtype=str), "", "periodic, quasi-periodic, chaotic or long-period"),
+            Column(
+                "motion",
+                np.array(chart.kinds, dtype=str),
+                "",
+                "periodic (and stable), quasi-periodic, chaotic, long-period or unsettled",
+            ),
+            Column("median_factor", chart.median, "", "dynamic factor that half of the periods do not exceed"),
+            Column("factor_99_percent", chart.upper, "", "dynamic factor that 99 % of the periods do not exceed"),
+            Column("periods_measured", chart.measured, "", "periods of excitation that the largest forces come from"),
         ),
         f"Dynamic factor of mesh {name} over speed",
     )
     worst, where = chart.worst
-    error = part.tolerance * worst if states else None
+    at = int(np.argmax(chart.dynamic_factor))
+    repeats = chart.kinds[at] == "periodic"
+    # what a motion that never repeats did over some periods is a sample: no tolerance holds for it
+    error = part.tolerance * worst if states and repeats else None
+    sample = "" if repeats else f"; largest of {chart.measured[at]} periods of a motion that does not repeat"
     values = [
-        Value(f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {part.direction}"),
+        Value(
+            f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {part.direction}{sample}"
+        ),
         Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {data.speed_of}"),
     ]
     if parting:

@@ -59,11 +59,13 @@ def relieved(amount_1, amount_2, length):
     )
 
 
-def system(shaft_ratio=0.005):
+def system(shaft_ratio=0.05):
     gear = gears().driver
     j = disc_inertia(gear.pitch_radius, FACE, 7850.0)
     r = gear.base_radius
-    return FourInertia(10 * j, j, j, 10 * j, 2.18e4, 2.18e4, r, r, 28, 28, FORCE, shaft_ratio, 0.10)
+    return FourInertia(
+        10 * j, j, j, 10 * j, 2.18e4, 2.18e4, r, r, 28, 28, FORCE, shaft_ratio, 0.10, damping_law="momentary"
+    )
 
 
 def worst(amount_1, amount_2, length):
@@ -79,7 +81,7 @@ def test_contact_ratio_and_pitch_point():
 
 def test_unmodified_gears():
     """Fig. 5(c): about 2.2 at about 11,000 rpm; the issue asks for 2.1 to 2.2 between 10,000 and 11,500 rpm."""
-    for shaft_ratio in (0.005, 0.05):
+    for shaft_ratio in (0.02, 0.05):
         found = relieved(0.0, 0.0, 1.0)
         chart = speed_chart(
             MotionModel(system(shaft_ratio).train(1 / found.mean_compliance()), (found,), 1.0), SPEEDS,
