@@ -52,8 +52,10 @@ _CLOSER = {
     "effective_error": ((0, False, 8, 1, 0.15), (0, False, 2, 3, 0.04)),
 }  # fmt: skip
 _AGREED = 1.05
-#: States of all sets of pairs to a roll position up to which nothing is saved: two pairs under one load.
-_WORK = 2.6
+#: What a scan may cost and how fine it may be, see `scan`: harmonics need less time afterwards.
+_BUDGET = {"peak_to_peak": (1.2e7, 15), "effective_error": (2.4e7, 17)}
+#: States of all sets of pairs to a roll position up to which nothing is saved: three pairs under one load.
+_WORK = 4.0
 #: Corners and middle of a first population about its start, in units of its spread.
 _CLOUD = np.concatenate([np.zeros((1, 4)), np.random.default_rng(2).uniform(-1.0, 1.0, (11, 4))])
 
@@ -163,7 +165,7 @@ class Limits:
     high: Array
 
 
-def scan(stand: Stand, scale: float, limits: Limits, budget: float = 1.2e7) -> tuple[Array, int]:
+def scan(stand: Stand, scale: float, limits: Limits, budget: float, finest: int) -> tuple[Array, int]:
     """Try every combination of amounts and lengths on a grid.
 
     Parameters
@@ -174,6 +176,8 @@ def scan(stand: Stand, scale: float, limits: Limits, budget: float = 1.2e7) -> t
     limits : Limits
     budget : float
         States times sets of pairs times candidates that the grid may cost.
+    finest : int
+        Most amounts, and lengths, of one gear.
 
     Returns
     -------
@@ -186,7 +190,7 @@ def scan(stand: Stand, scale: float, limits: Limits, budget: float = 1.2e7) -> t
 
     quick = stand.quick
     work = sum(s.base.size for s in quick.sets)
-    side = int(np.clip((budget / work) ** 0.25, 7, 15))
+    side = int(np.clip((budget / work) ** 0.25, 7, finest))
     t = np.linspace(0.0, 1.0, side)
     axes = []
     for gear in (0, 1):
@@ -319,13 +323,13 @@ def search(engagement: Engagement, loads: Array, power: float, metric: str) -> F
     fine = Stand(bench(engagement) if loads.size == 1 else bench(engagement, 8, 10), loads, power, metric)
     # Several loads and many sets of pairs cost as much as many positions: fewer of these, and of starts, keep the time.
     work = sum(s.base.size for s in fine.quick.sets) / fine.bench.points.x.size
-    thrift = max(min(1.0, math.sqrt(_WORK / work)), 0.4)
+    thrift = 1.0 if work < _WORK else max(math.sqrt(2.6 / work), 0.4)
     scale = float((fine.exact(np.array([[0.0, 0.5, 0.0, 0.5]]))[0] / np.tile(loads, fine.bench.points.x.size)).mean())
     scale *= float(loads.max())
     deepest = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (pair.driver, pair.driven)]
     top = [min(_DEEPEST * scale, d) for d in deepest]
     limits = Limits(np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], LONGEST, top[1], LONGEST]))
-    starts, candidates = scan(coarse, scale, limits)
+    starts, candidates = scan(coarse, scale, limits, *_BUDGET[metric])
     settled, values = settle(fine, starts[: math.ceil(_SCANNED * thrift)], limits, scale)
     ends, values = descend(fine, settled[np.argsort(values)[: math.ceil(_STARTS * thrift)]], limits, scale)
     final, solved, of_starts = fine, ends.shape[0] * (_ROUNDS + 2), values
