@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Work
 from fegear.plain import content_key
-from fegear.solution_cache import Solution, SolutionCache
+from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -178,10 +178,11 @@ def run_plan(
 
 
 class _Finished(NamedTuple):
-    """A task's outcome, its key (None for a stage that has no inputs of its own), and its timing."""
+    """A task's numerical result, its outcome, its key, and its timing."""
 
+    data: object
     outcome: Outcome
-    key: str | None
+    key: str
     timing: Timing
 
 
@@ -190,25 +191,15 @@ def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work
     work.cache.begin()
     shapes = work.cache.shapes.state
     stage, subject = step.stage, step.task.subject
-    if stage.inputs is None or stage.compute is None or stage.present is None:
-        if stage.run is None:
-            raise TypeError(f"stage {stage.name} has neither run nor inputs, compute and present")
-        outcome = stage.run(scene, subject, {t: one.outcome for t, one in done.items()}, work)
-        key, solution = None, None
-    else:
-        inputs, needs = stage.inputs(scene, subject), stage.needs(scene, subject)
-        upstream = {need: done[need].outcome.data for need in needs}
-        key = _key(stage.name, inputs, [done[need].key for need in needs])
-        compute = partial(stage.compute, inputs, upstream, work)
-        solution = work.cache.solve(key, compute) if key else Solution(compute(), 0.0, "computed")
-        outcome = stage.present(solution.value, inputs)
+    inputs, needs = stage.inputs(scene, subject), stage.needs(scene, subject)
+    # All that the result reads of the case, and the keys of what it builds on: nothing else changes its numbers.
+    key = content_key(stage.name, inputs, [done[need].key for need in needs])
+    upstream = {need: done[need].data for need in needs}
+    solution = work.cache.solve(key, partial(stage.compute, inputs, upstream, work))
+    outcome = stage.present(solution.value, inputs)
     seconds = time.perf_counter() - started
-    recalled = solution is not None and solution.source != "computed"
+    recalled = solution.source != "computed"
     used = work.cache.shapes.since(shapes)
-    when = solution.seconds if solution is not None and recalled else seconds
-    return _Finished(outcome, key, Timing(seconds, recalled, when, used.recalled, used.from_disk, used.spared))
-
-
-def _key(stage: str, inputs: object, upstream: list[str | None]) -> str | None:
-    """Key of a task: what it reads of the case and what it builds on; None where something of that has no key."""
-    return None if None in upstream else content_key(stage, inputs, upstream)
+    when = solution.seconds if recalled else seconds
+    timing = Timing(seconds, recalled, when, used.recalled, used.from_disk, used.spared)
+    return _Finished(solution.value, outcome, key, timing)

@@ -33,7 +33,6 @@ class Progress(Protocol):
         """Report the fraction done, 0 to 1."""
 
 
-Done = Mapping[Task, "Outcome"]
 #: What the tasks that a task needs have computed, by task.
 Upstream = Mapping[Task, Any]
 
@@ -55,10 +54,6 @@ class Work:
     progress: Progress
     cache: SolutionCache
     executor: Executor
-
-    def __call__(self, fraction: float) -> None:
-        """Report the fraction done."""
-        self.progress(fraction)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,8 +148,6 @@ class Stage:
         ``compute(inputs, upstream, work)`` -> the numerical result; `upstream` holds what the needed tasks computed.
     present : callable
         ``present(data, inputs)`` -> `Outcome`: tables, values, figures and remarks. It computes nothing of weight.
-    run : callable
-        ``run(scene, subject, done, work)`` -> `Outcome`, all in one, for stages that are not yet split in three.
     needs : callable
         ``needs(scene, subject)`` -> tasks that must run first.
     check : callable
@@ -173,13 +166,12 @@ class Stage:
     title: str
     results: tuple[str, ...]
     subjects: Callable[[Scene], tuple[str, ...]]
-    run: Callable[[Scene, str, Done, Any], Outcome] | None = None
+    inputs: Callable[[Scene, str], Any]
+    compute: Callable[[Any, Upstream, Work], Any]
+    present: Callable[[Any, Any], Outcome]
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
     effects: tuple[str, ...] = ()
     requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown
     cites: Cites = _uncited
-    inputs: Callable[[Scene, str], Any] | None = None
-    compute: Callable[[Any, Upstream, Work], Any] | None = None
-    present: Callable[[Any, Any], Outcome] | None = None

@@ -1,4 +1,4 @@
-"""What a moving train leaves out: contact loss and friction, from one motion with them at the speed where they tell."""
+"""What a moving train neglects: contact loss and friction, from one motion with them at the speed where they matter."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from fegear.models.neglected_effects import percent, remark
 from fegear.tally import tallying
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
-    from fegear.case.reading import Scene
+    from fegear.case.effects import EffectsPart
     from fegear.dynamics.excitation import MeshExcitation
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.steady_state import SteadyState
+    from fegear.models.motion import MotionInputs
 
 
 #: Separations that differ by less are the same [m].
@@ -49,26 +50,18 @@ class FactorChange:
         return abs(self.size) / self.factor
 
 
-def with_effects(scene: Scene, **chosen: bool) -> Scene:
-    """The scene with some effects switched."""
-    effects = scene.case.effects.model_copy(update=chosen)
-    return replace(scene, case=scene.case.model_copy(update={"effects": effects}))
-
-
 def _loaded(data: GearTrain) -> list[int]:
     """Meshes that carry a mean force."""
     least = 1e-9 * float(np.max(np.abs(data.forces)))
     return [m for m, force in enumerate(data.forces) if force > least]
 
 
-def _changes(scene: Scene, data: GearTrain, state: SteadyState) -> list[FactorChange]:
-    """One motion of a scene with one effect more, at the speed of a state without it."""
+def _changes(asked: MotionInputs, data: GearTrain, state: SteadyState) -> list[FactorChange]:
+    """One motion with one effect more, at the speed of a state without it."""
     from fegear.dynamics.steady_state import steady_state
 
-    part = scene.case.dynamics
-    start = "rest" if part.direction == "rest" else "static"
     speed = state.model.speed
-    other = steady_state(motion_model(scene, data, speed), start=start, tolerance=max(part.tolerance, 1e-3))
+    other = steady_state(motion_model(asked, data, speed), start=asked.start, tolerance=max(asked.tolerance, 1e-3))
     found = []
     for m in _loaded(data):
         before, after = (float(s.tooth_force[m] / data.forces[m]) for s in (state, other))
@@ -85,7 +78,7 @@ def _held_apart(excitation: MeshExcitation) -> bool:
     return bool(spread.max() > _NOTHING)
 
 
-def contact_loss_changes(scene: Scene, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
+def contact_loss_changes(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
     """What contact loss changes at the speed at which a mesh that may not part has the smallest force.
 
     No change, and no work, where no mesh force falls below zero and all teeth of a mesh touch at one approach: none
@@ -93,42 +86,67 @@ def contact_loss_changes(scene: Scene, data: GearTrain, states: Sequence[SteadyS
     """
     least = [min(float(s.smallest[m] / data.forces[m]) for m in _loaded(data)) for s in states]
     worst = int(np.argmin(least))
-    if least[worst] >= 0.0 and not (
-        scene.case.effects.parametric and any(_held_apart(m.excitation) for m in data.meshes)
-    ):
+    if least[worst] >= 0.0 and not (asked.parametric and any(_held_apart(m.excitation) for m in data.meshes)):
         return []
-    return _changes(with_effects(scene, contact_loss=True), data, states[worst])
+    return _changes(replace(asked, contact_loss=True), data, states[worst])
 
 
-def friction_changes(scene: Scene, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
+def friction_changes(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
     """What tooth friction changes at the speed of the largest dynamic factor."""
-    effects = scene.case.effects
-    if not effects.parametric or not all(mesh.excitation.slotted for mesh in data.meshes):
+    if not asked.parametric or not all(mesh.excitation.slotted for mesh in data.meshes):
         return []  # lumped teeth have no place at which they slide
-    # A motion that does not repeat takes long to find, and friction would have to be told from its wandering.
+    # A motion that does not repeat takes long to find, and friction would have to be seen in its wandering.
     steady = [s for s in states if s.kind == "periodic"]
     factors = [max(float(s.tooth_force[m] / data.forces[m]) for m in _loaded(data)) for s in steady]
-    return _changes(with_effects(scene, friction=True), data, steady[int(np.argmax(factors))]) if steady else []
+    return _changes(replace(asked, friction=True), data, steady[int(np.argmax(factors))]) if steady else []
 
 
-def motion_remarks(scene: Scene, data: GearTrain, states: Sequence[SteadyState]) -> tuple[str, ...]:
-    """Contact loss and friction that are off and would change the dynamic factor by more than the tolerance."""
-    told = []
-    for effect, changes in (("contact_loss", contact_loss_changes), ("friction", friction_changes)):
-        if scene.case.effects.is_on(effect) or not states:
+@dataclass(frozen=True)
+class NeglectedInMotion:
+    """Effects of a motion that are off.
+
+    Parameters
+    ----------
+    changes : mapping of str to tuple of FactorChange
+        What each of them would change.
+    failed : mapping of str to str
+        Why the size of an effect cannot be estimated.
+    """
+
+    changes: Mapping[str, tuple[FactorChange, ...]]
+    failed: Mapping[str, str]
+
+
+def neglected_in_motion(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> NeglectedInMotion:
+    """What contact loss and friction would change where they are off."""
+    changes: dict[str, tuple[FactorChange, ...]] = {}
+    failed: dict[str, str] = {}
+    off = {"contact_loss": not asked.contact_loss, "friction": not asked.friction}
+    for effect, estimate in (("contact_loss", contact_loss_changes), ("friction", friction_changes)):
+        if not off[effect] or not states:
             continue
         try:
-            with tallying():  # what the estimate runs is no part of the scene's own work
-                found = changes(scene, data, states)
+            with tallying():  # what the estimate runs is no part of the case's own work
+                changes[effect] = tuple(estimate(asked, data, states))
         except FegearError as error:
-            told.append(f"{effect} is off, and what it would change could not be estimated: {error}")
-            continue
+            failed[effect] = str(error)
+    return NeglectedInMotion(changes, failed)
+
+
+def motion_remarks(
+    found: NeglectedInMotion, data: GearTrain, effects: EffectsPart, tolerance: float
+) -> tuple[str, ...]:
+    """Contact loss and friction that are off and would change the dynamic factor by more than the tolerance."""
+    said = []
+    for effect in ("contact_loss", "friction"):
+        if effect in found.failed:
+            said.append(f"{effect} is off, and what it would change cannot be estimated: {found.failed[effect]}")
         sizes = [
             f"the dynamic factor of mesh {data.names[change.mesh]} by {change.size:+.3g} ({percent(change.share)}, at "
             f"{change.speed * data.speed_ratio * 30.0 / np.pi:.5g} rpm of {data.speed_of})"
-            for change in found
-            if change.share > scene.case.accuracy.tolerance
+            for change in found.changes.get(effect, ())
+            if change.share > tolerance
         ]
         if sizes:
-            told.append(remark("Motion", scene.case.effects, scene.case.accuracy.tolerance, effect, sizes))
-    return tuple(told)
+            said.append(remark("Motion", effects, tolerance, effect, sizes))
+    return tuple(said)

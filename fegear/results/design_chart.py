@@ -12,12 +12,14 @@ from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Need, Stage, Task
 from fegear.errors import FegearError, InputError
-from fegear.models.motion import excitations_at
+from fegear.models.motion import excitations_at, motion_inputs
+from fegear.models.pair_inputs import pair_inputs
+from fegear.models.tooth_influence import gear_to_solve
 from fegear.models.train import assemble, train_inputs, train_part
 from fegear.results import forecasts
-from fegear.results.dynamic_factor import check_motion
 from fegear.results.gear_train import gear_train, the_train
 from fegear.results.loaded_pair import loaded_pair
+from fegear.results.motion import check_motion
 from fegear.results.train_parts import needs_speeds, own_meshes
 
 if TYPE_CHECKING:
@@ -27,16 +29,50 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact import Engagement
     from fegear.dynamics.gear_train import GearTrain
-    from fegear.engine.stage import Done, Work
+    from fegear.engine.stage import Upstream, Work
+    from fegear.geometry.relief import Shape
+    from fegear.models.motion import MotionInputs
+    from fegear.models.pair_inputs import PairInputs
+    from fegear.models.tooth_influence import GearToSolve
+    from fegear.models.train import TrainInputs
 
     Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ChartInputs:
+    """What the chart depends on.
+
+    Parameters
+    ----------
+    amounts, lengths : ndarray
+        Of tip relief, over Delta and in L_n.
+    shape : {"linear", "parabolic"}
+    mesh : str
+        That is relieved and looked at.
+    train : TrainInputs
+    motion : MotionInputs
+    teeth : PairInputs
+        Of that mesh.
+    gears : tuple of GearToSolve
+        Whose influence functions its compliances come from; empty for closed forms and tables.
+    """
+
+    amounts: Array
+    lengths: Array
+    shape: Shape
+    mesh: str
+    train: TrainInputs
+    motion: MotionInputs
+    teeth: PairInputs
+    gears: tuple[GearToSolve, ...]
 
 
 @dataclass(frozen=True)
 class Trial:
     """One point of the chart: all that a process needs to compute it."""
 
-    scene: Scene
+    inputs: ChartInputs
     train: GearTrain
     engagement: Engagement
     mesh: int
@@ -47,15 +83,34 @@ class Trial:
 
 @dataclass(frozen=True)
 class DesignChartData:
-    """The chart; arrays of shape (amounts, lengths), nan where a point has no result."""
+    """The chart; arrays of shape (amounts, lengths), nan where a point has no result.
+
+    Parameters
+    ----------
+    amounts, lengths : ndarray
+    dynamic_factor, effective_error, speed, contact_loss, unsteady : ndarray
+        Largest factor, A_e [m], speed of the largest [rad/s], share of the time without contact, unsteady speeds.
+    reasons : tuple of str
+        Why a point has no result, the last axis fastest; empty where it has one.
+    unmodified : float
+        Largest dynamic factor of perfect involutes.
+    delta : float
+        Welbourn's Delta [m].
+    speed_of : str
+        Body that speeds refer to.
+    """
 
     amounts: Array
     lengths: Array
     dynamic_factor: Array
     effective_error: Array
+    speed: Array
+    contact_loss: Array
+    unsteady: Array
+    reasons: tuple[str, ...]
     unmodified: float
     delta: float
-    failures: tuple[str, ...]
+    speed_of: str
 
 
 def chart_trial(trial: Trial) -> dict[str, float]:
@@ -66,26 +121,25 @@ def chart_trial(trial: Trial) -> dict[str, float]:
     from fegear.dynamics.motion_model import MotionModel
     from fegear.geometry.relief import CombinedRelief, normalised_tip_relief
 
-    scene, i = trial.scene, trial.mesh
-    part, pair = scene.case.dynamics, trial.engagement.pair
+    asked, i = trial.inputs, trial.mesh
+    pair = trial.engagement.pair
     engagement = replace(trial.engagement, driver_relief=CombinedRelief(), driven_relief=CombinedRelief())
     if trial.amount > 0.0:
-        chart = part.chart
-        shape = chart.shape if chart else "linear"
         amount = trial.amount * trial.delta
         engagement = replace(
             engagement,
-            driver_relief=normalised_tip_relief(pair, "driver", amount, trial.length, shape),
-            driven_relief=normalised_tip_relief(pair, "driven", amount, trial.length, shape),
+            driver_relief=normalised_tip_relief(pair, "driver", amount, trial.length, asked.shape),
+            driven_relief=normalised_tip_relief(pair, "driven", amount, trial.length, asked.shape),
         )
     mesh = trial.train.meshes[i]
     found = mesh_excitation(engagement if mesh.a_drives else engagement.reversed(), mesh.force)
     by_mesh = {name: one.excitation for name, one in zip(trial.train.names, trial.train.meshes, strict=True)}
     by_mesh[trial.train.names[i]] = replace(found, phase=mesh.excitation.phase)
-    data = assemble(train_inputs(scene), by_mesh)
-    speeds = part.speed_values / data.speed_ratio
-    model = MotionModel(data.train, excitations_at(scene, data, float(speeds[-1])), 1.0)
-    curve = speed_chart(model, speeds, mesh=i, direction=part.direction, tolerance=part.tolerance)
+    data = assemble(asked.train, by_mesh)
+    motion = asked.motion
+    speeds = motion.speeds / data.speed_ratio
+    model = MotionModel(data.train, excitations_at(motion, data, float(speeds[-1])), 1.0)
+    curve = speed_chart(model, speeds, mesh=i, direction=motion.direction, tolerance=motion.tolerance)
     worst, where = curve.worst
     return {
         "dynamic_factor": worst,
@@ -97,23 +151,12 @@ def chart_trial(trial: Trial) -> dict[str, float]:
 
 
 def trial_content(trial: Trial) -> object:
-    """All that a point's numbers depend on."""
-    case = trial.scene.case
-    plain = case.model_dump(include={"gear", "pair", "train", "effects", "accuracy"})
-    dynamics = case.dynamics.model_dump()
-    chart = dynamics.pop("chart")
-    excitations = [mesh.excitation for mesh in trial.train.meshes]
-    springs = [(f.breaks, f.coefficients) for e in excitations for f in (*e.stiffness, *e.separation)]
+    """All that a point's numbers depend on: not the chart that it belongs to, so that a larger one finds it again."""
+    asked = trial.inputs
     return (
-        plain,
-        dynamics,
-        chart["shape"] if chart else "",
-        springs,
-        trial.mesh,
-        trial.amount,
-        trial.length,
-        trial.delta,
-    )
+        asked.shape, asked.mesh, asked.train, asked.motion, asked.teeth, asked.gears,
+        trial.amount, trial.length, trial.delta,
+    )  # fmt: skip
 
 
 def _chart(scene: Scene) -> DesignChartPart:
@@ -148,57 +191,66 @@ def _check(scene: Scene, subject: str) -> None:
         )  # fmt: skip
 
 
-def _run(scene: Scene, _subject: str, done: Done, progress: Work) -> Outcome:
+def _inputs(scene: Scene, _subject: str) -> ChartInputs:
+    part, mesh = _chart(scene), _mesh(scene)
+    pair = train_part(scene).loaded_pair_of(mesh)
+    teeth = pair_inputs(scene, pair)
+    solved = teeth.gears if teeth.compliance.source == "fe" else ()
+    return ChartInputs(
+        np.unique(part.amounts), np.unique(part.lengths), part.shape, mesh, train_inputs(scene), motion_inputs(scene),
+        teeth, tuple(gear_to_solve(scene, gear) for gear in solved),
+    )  # fmt: skip
+
+
+def _compute(asked: ChartInputs, upstream: Upstream, work: Work) -> DesignChartData:
     from fegear.design import welbourn_amount
     from fegear.engine.executor import map_points
     from fegear.engine.point_job import Failure
 
-    part, name, data = _chart(scene), _mesh(scene), gear_train(done)
-    i = data.train.mesh_index(name)
-    engagement = loaded_pair(done, train_part(scene).loaded_pair_of(name)).engagement
+    data = gear_train(upstream)
+    i = data.train.mesh_index(asked.mesh)
+    engagement = loaded_pair(upstream, asked.teeth.name).engagement
     delta = welbourn_amount(engagement, float(data.forces[i]))
-    amounts, lengths = np.unique(part.amounts), np.unique(part.lengths)
-    points = [Trial(scene, data, engagement, i, 0.0, 0.0, delta)]
-    points += [Trial(scene, data, engagement, i, float(a), float(n), delta) for a in amounts for n in lengths]
-    found = map_points(
-        chart_trial, points, progress.executor, progress.cache, key=trial_content, progress=progress.progress
+    reliefs = [(0.0, 0.0), *((float(a), float(n)) for a in asked.amounts for n in asked.lengths)]
+    points = [Trial(asked, data, engagement, i, amount, length, delta) for amount, length in reliefs]
+    plain, *found = map_points(
+        chart_trial, points, work.executor, work.cache, key=trial_content, progress=work.progress
     )
-    failures = tuple(
-        f"amount {p.amount:.4g} Delta, length {p.length:.4g}: {r.reason}"
-        for p, r in zip(points, found, strict=True)
-        if isinstance(r, Failure)
-    )
-    if isinstance(found[0], Failure):
-        raise FegearError(f"The unmodified gears of the design chart have no result: {found[0].reason}")
+    if isinstance(plain, Failure):
+        raise FegearError(f"The unmodified gears of the design chart have no result: {plain.reason}")
 
-    def column(key: str) -> Array:
-        return np.array([np.nan if isinstance(r, Failure) else cast("dict[str, float]", r)[key] for r in found[1:]])
+    def grid(key: str) -> Array:
+        values = [np.nan if isinstance(one, Failure) else cast("dict[str, float]", one)[key] for one in found]
+        return np.array(values).reshape(asked.amounts.size, -1)
 
-    reasons = [r.reason if isinstance(r, Failure) else "" for r in found[1:]]
-    factor, error = column("dynamic_factor"), column("effective_error")
+    return DesignChartData(
+        asked.amounts, asked.lengths, grid("dynamic_factor"), grid("effective_error"), grid("speed"),
+        grid("contact_loss"), grid("unsteady"), tuple(r.reason if isinstance(r, Failure) else "" for r in found),
+        cast("dict[str, float]", plain)["dynamic_factor"], delta, data.speed_of,
+    )  # fmt: skip
+
+
+def _present(chart: DesignChartData, asked: ChartInputs) -> Outcome:
+    amounts, lengths = chart.amounts, chart.lengths
+    amount, length = np.repeat(amounts, lengths.size), np.tile(lengths, amounts.size)
     table = Table(
-        f"design_chart_{name}",
+        f"design_chart_{asked.mesh}",
         (
-            Column("amount", np.repeat(amounts, lengths.size), "", "of tip relief over Delta"),
-            Column("length", np.tile(lengths, amounts.size), "", "L_n, 1 from the tip to the HPSTC"),
-            Column("dynamic_factor", factor, "", "largest over the speeds"),
-            Column("speed", column("speed"), "rpm", f"of {data.speed_of}, where it is largest"),
-            Column("effective_error", error, "um", "A_e of the static transmission error"),
-            Column("contact_loss_fraction", column("contact_loss"), "", "largest over the speeds"),
-            Column("unsteady_speeds", column("unsteady"), "", "how many speeds have no repeating motion"),
-            Column("failure", np.array(reasons, dtype=str), "", "why a point has no result"),
+            Column("amount", amount, "", "of tip relief over Delta"),
+            Column("length", length, "", "L_n, 1 from the tip to the HPSTC"),
+            Column("dynamic_factor", chart.dynamic_factor.ravel(), "", "largest over the speeds"),
+            Column("speed", chart.speed.ravel(), "rpm", f"of {chart.speed_of}, where it is largest"),
+            Column("effective_error", chart.effective_error.ravel(), "um", "A_e of the static transmission error"),
+            Column("contact_loss_fraction", chart.contact_loss.ravel(), "", "largest over the speeds"),
+            Column("unsteady_speeds", chart.unsteady.ravel(), "", "how many speeds have no repeating motion"),
+            Column("failure", np.array(chart.reasons, dtype=str), "", "why a point has no result"),
         ),
-        f"Dynamic factor of mesh {name} against tip relief",
+        f"Dynamic factor of mesh {asked.mesh} against tip relief",
     )
-    plain = cast("dict[str, float]", found[0])["dynamic_factor"]
-    chart = DesignChartData(
-        amounts, lengths, factor.reshape(amounts.size, -1), error.reshape(amounts.size, -1), plain, delta, failures
-    )
+    about = "Welbourn's Delta: deflection at the HPSTC under the mean force"
     values = [
-        Value(
-            "design_chart.delta", delta, "um", None, "Welbourn's Delta: deflection at the HPSTC under the mean force"
-        ),
-        Value("design_chart.unmodified", plain, "", None, "largest dynamic factor of perfect involutes"),
+        Value("design_chart.delta", chart.delta, "um", None, about),
+        Value("design_chart.unmodified", chart.unmodified, "", None, "largest dynamic factor of perfect involutes"),
     ]
     for a, row in zip(amounts, chart.dynamic_factor, strict=True):
         if np.isfinite(row).any():
@@ -207,7 +259,12 @@ def _run(scene: Scene, _subject: str, done: Done, progress: Work) -> Outcome:
                 Value(f"design_chart.best_length_{a:g}", float(lengths[k]), "", None, f"L_n at {a:g} Delta"),
                 Value(f"design_chart.least_factor_{a:g}", float(row[k]), "", None, f"at {a:g} Delta"),
             ]
-    settings: dict[str, object] = {"points": len(points), "speeds": int(scene.case.dynamics.speed_values.size)}
+    failures = tuple(
+        f"amount {a:.4g} Delta, length {n:.4g}: {reason}"
+        for a, n, reason in zip(amount, length, chart.reasons, strict=True)
+        if reason
+    )
+    settings: dict[str, object] = {"points": 1 + amount.size, "speeds": int(asked.motion.speeds.size)}
     return Outcome(chart, (table,), tuple(values), settings, failures, _figures(chart))
 
 
@@ -258,8 +315,10 @@ DESIGN_CHART = Stage(
     title="Design chart of tip relief",
     results=("design-chart",),
     subjects=the_train,
-    run=_run,
     needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     check=_check,
     effects=("contact_loss", "parametric"),
     requires=(

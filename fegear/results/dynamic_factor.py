@@ -3,139 +3,117 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.pull import largest_pull, mesh_force_range
-from fegear.dynamics.single_tooth import force_history
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Panel, Points
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.errors import InputError
-from fegear.models.motion import in_time, motion_model
-from fegear.models.neglected_in_motion import motion_remarks
+from fegear.models.motion import motion_inputs
 from fegear.models.train import train_part
-from fegear.results import forecasts
-from fegear.results.gear_train import gear_train, needs_train, the_train
+from fegear.results.gear_train import gear_train, needs_train
 from fegear.results.train_parts import meshes, needs_speeds, pull_remarks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
     from fegear.dynamics.charts import SpeedChart
-    from fegear.dynamics.gear_train import GearTrain
-    from fegear.dynamics.steady_state import SteadyState
-    from fegear.engine.stage import Done, Progress
+    from fegear.dynamics.pull import Pull
+    from fegear.engine.stage import Upstream, Work
+    from fegear.models.motion import MotionInputs
+    from fegear.results.motion import SweepData
 
     Array = NDArray[np.float64]
 
 
 _RPM = 30.0 / np.pi
-
-
-@dataclass(frozen=True)
-class SweepData:
-    """Steady motions over speeds, in increasing order of speed."""
-
-    train: GearTrain
-    speeds: Array
-    states: tuple[SteadyState, ...]
+#: A mesh with less of the largest mean force carries none.
+_NO_SHARE = 1e-9
 
 
 @dataclass(frozen=True)
 class DynamicFactorData:
-    """What pictures need: the chart of one mesh, speeds in rad/s of the body that the case refers to."""
+    """Factors of one mesh over speed.
 
-    chart: SpeedChart
+    Parameters
+    ----------
+    chart : SpeedChart or None
+        Speeds in rad/s of the body that they refer to; None where the mesh carries no mean force.
+    speed_of : str
+        That body.
+    in_time : bool
+        Whether they come from motions in time; else from the linearised train.
+    pull : Pull or None
+        How far the force of the linearised mesh falls below zero.
+    """
+
+    chart: SpeedChart | None
     speed_of: str
+    in_time: bool = False
+    pull: Pull | None = None
 
 
-def check_motion(scene: Scene, _subject: str = "") -> None:
-    """Refuse friction where teeth are lumped, and backlash that nothing looks at."""
-    effects = scene.case.effects
-    if effects.friction and (effects.neighbour_coupling or effects.corner_contact):
-        raise InputError(
-            "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
-            "leave out neighbour_coupling and corner_contact",
-        )  # fmt: skip
-    if effects.friction and not effects.parametric:
-        raise InputError(
-            "effects.friction", "true", "needs tooth pairs that come and go", "set effects.parametric = true"
-        )
+@dataclass(frozen=True)
+class FactorInputs:
+    """What the factors of a mesh depend on besides train and motions.
+
+    Parameters
+    ----------
+    mesh : str
+    motion : MotionInputs
+    positions, harmonics : int
+        Of tooth forces in the linearised train.
+    """
+
+    mesh: str
+    motion: MotionInputs
+    positions: int
+    harmonics: int
 
 
-def _run_sweep(scene: Scene, _subject: str, done: Done, progress: Progress) -> Outcome:
-    from fegear.dynamics.steady_state import steady_state
-
-    data, part = gear_train(done), scene.case.dynamics
-    speeds = part.speed_values / data.speed_ratio
-    order = speeds[::-1] if part.direction == "down" else speeds
-    start: str | tuple[Array, Array] = "rest" if part.direction == "rest" else "static"
-    states: list[SteadyState] = []
-    model = motion_model(scene, data, float(order[0]))
-    for number, speed in enumerate(order):
-        model = motion_model(scene, data, float(speed)) if scene.case.effects.friction else model.at_speed(float(speed))
-        state = steady_state(model, start=start, tolerance=part.tolerance)
-        states.append(state)
-        if part.direction in ("up", "down"):
-            start = (state.x, state.v)
-        progress((number + 1) / order.size)
-    found = tuple(states[::-1] if part.direction == "down" else states)
-    remarks = [*motion_remarks(scene, data, found)]
-    if "friction" in part.model_fields_set and not scene.case.effects.friction:
-        remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
-    odd = [state for state in found if state.kind != "periodic"]
-    if odd:
-        told = ", ".join(f"{state.model.speed * data.speed_ratio * 30.0 / np.pi:.6g} rpm {state.kind}" for state in odd)
-        remarks.append(
-            f"The motion does not repeat at {len(odd)} of {len(found)} speeds: {told}. Its factors are the largest of "
-            f"{odd[0].measured} periods, a sample without a tolerance: more periods find larger ones. See the "
-            "quantiles in the table."
-        )
-    settings: dict[str, object] = {"direction": part.direction, "tolerance": part.tolerance}
-    return Outcome(SweepData(data, speeds, found), (), (), settings, tuple(remarks))
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    return (*needs_train(scene, name), *((Task("motion"),) if motion_inputs(scene).in_time else ()))
 
 
-def _linear_chart(scene: Scene, data: GearTrain, i: int, speeds: Array, progress: Progress) -> SpeedChart:
-    """Dynamic factor of the linearised train: no contact loss, the other meshes at the worst relative phase."""
+def _inputs(scene: Scene, name: str) -> FactorInputs:
+    part = scene.case.dynamics
+    return FactorInputs(name, motion_inputs(scene), part.positions, part.harmonics)
+
+
+def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFactorData:
     from fegear.dynamics.charts import SpeedChart
+    from fegear.dynamics.linear_factor import linear_chart
+    from fegear.dynamics.pull import largest_pull
 
-    part, mean = scene.case.dynamics, float(data.forces[i])
-    tooth, mesh = np.empty(speeds.size), np.empty(speeds.size)
-    for number, speed in enumerate(speeds):
-        found = force_history(data, i, float(speed) * data.speed_ratio, part.positions, part.harmonics)
-        tooth[number] = (float(found.total.max()) + float(found.cross_peak.sum())) / mean
-        mesh[number] = mesh_force_range(data, i, float(speed), part.harmonics)[1] / mean
-        progress((number + 1) / speeds.size)
-    return SpeedChart.linear(speeds, tooth, mesh)
-
-
-def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
-    from fegear.dynamics.charts import SpeedChart
-
-    data, part = gear_train(done), scene.case.dynamics
-    states = cast("SweepData", done[Task("motion")].data).states if in_time(scene) else ()
-    speeds = part.speed_values / data.speed_ratio
-    i = data.train.mesh_index(name)
-    if data.forces[i] <= 1e-9 * float(np.max(np.abs(data.forces))):
-        remark = f"Mesh {name} carries no mean force, so it has no dynamic factor."
-        return Outcome(None, (), (), {}, (remark,))
-    if states:
-        chart = SpeedChart.of(speeds, states, i, float(data.forces[i]))
+    data, motion = gear_train(upstream), asked.motion
+    speeds, i = motion.speeds / data.speed_ratio, data.train.mesh_index(asked.mesh)
+    if data.forces[i] <= _NO_SHARE * float(np.max(np.abs(data.forces))):
+        return DynamicFactorData(None, data.speed_of)
+    pull = None
+    if motion.in_time:
+        sweep: SweepData = upstream[Task("motion")]
+        chart = SpeedChart.of(speeds, sweep.states, i, float(data.forces[i]))
     else:
-        chart = _linear_chart(scene, data, i, speeds, progress)
+        chart = linear_chart(data, i, speeds, asked.positions, asked.harmonics, work.progress)
+        pull = largest_pull(data, i, speeds, asked.harmonics)
     chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
-    parting = scene.case.effects.contact_loss and bool(states)
+    return DynamicFactorData(chart, data.speed_of, motion.in_time, pull)
+
+
+def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
+    name, motion, chart = asked.mesh, asked.motion, found.chart
+    if chart is None:
+        return Outcome(found, remarks=(f"Mesh {name} carries no mean force, so it has no dynamic factor.",))
+    parting = motion.contact_loss and found.in_time
     zero = "" if parting else "; zero, for nothing parts without effects.contact_loss"
     table = Table(
         f"dynamic_factor_{name}",
         (
-            Column("speed", chart.speeds, "rpm", f"of {data.speed_of}"),
+            Column("speed", chart.speeds, "rpm", f"of {found.speed_of}"),
             Column(
                 "dynamic_factor", chart.dynamic_factor, "", "largest force on one tooth pair over the mean mesh force"
             ),
@@ -161,25 +139,25 @@ def _run(scene: Scene, name: str, done: Done, progress: Progress) -> Outcome:
     at = int(np.argmax(chart.dynamic_factor))
     repeats = chart.kinds[at] == "periodic"
     # what a motion that never repeats did over some periods is a sample: no tolerance holds for it
-    error = part.tolerance * worst if states and repeats else None
+    error = motion.tolerance * worst if found.in_time and repeats else None
     sample = "" if repeats else f"; largest of {chart.measured[at]} periods of a motion that does not repeat"
     values = [
         Value(
-            f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {part.direction}{sample}"
+            f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {motion.direction}{sample}"
         ),
-        Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {data.speed_of}"),
+        Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {found.speed_of}"),
     ]
     if parting:
         lost = float(chart.apart.max())
         values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "share of the time"))
-    remarks = [] if states else [*pull_remarks(largest_pull(data, i, speeds, part.harmonics))]
-    if states and not scene.case.effects.parametric:
+    remarks = [*pull_remarks(found.pull)]
+    if found.in_time and not motion.parametric:
         remarks.append(
             f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
             "dynamic factor is that of the mesh force."
         )
-    figures = (_figure(name, chart, data.speed_of),) if chart.speeds.size > 1 else ()
-    return Outcome(DynamicFactorData(chart, data.speed_of), (table,), tuple(values), {}, tuple(remarks), figures)
+    figures = (_figure(name, chart, found.speed_of),) if chart.speeds.size > 1 else ()
+    return Outcome(found, (table,), tuple(values), {}, tuple(remarks), figures)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -219,48 +197,23 @@ def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
     )
 
 
-def _motion_forecast(scene: Scene, _subject: str) -> Forecast:
-    """One steady motion for each speed; one that does not repeat takes ten times as long, which nobody foresees."""
-    speeds = int(scene.case.dynamics.speed_values.size)
-    settings = {"speeds": speeds, "periods": forecasts.periods(scene), "tolerance": scene.case.dynamics.tolerance}
-    left_out = sum(not scene.case.effects.is_on(effect) for effect in ("contact_loss", "friction"))
-    return Forecast(settings, forecasts.seconds_per_speed(scene) * speeds + 0.1 * left_out)
-
-
-def _factor_forecast(scene: Scene, _name: str) -> Forecast:
+def _forecast(scene: Scene, _name: str) -> Forecast:
     """Read from the motion, or the linearised train at each speed."""
     speeds = int(scene.case.dynamics.speed_values.size)
-    return Forecast({"speeds": speeds}, 0.005 if in_time(scene) else 0.02 * speeds)
+    return Forecast({"speeds": speeds}, 0.005 if motion_inputs(scene).in_time else 0.02 * speeds)
 
-
-def _motion_sources(scene: Scene, _subject: str) -> Iterator[Citation]:
-    yield Citation("lin-huston-coy", "contact, its loss, and contact on the back flanks", "Eqs. 19 to 24")
-    if scene.case.effects.friction:
-        yield Citation("lin-huston-coy", "tooth friction", "Eqs. 17 and 18")
-
-
-MOTION = Stage(
-    name="motion",
-    title="Motion over the speeds",
-    results=(),
-    subjects=the_train,
-    run=_run_sweep,
-    needs=needs_train,
-    check=check_motion,
-    effects=("contact_loss", "friction", "parametric"),
-    cites=_motion_sources,
-    forecast=_motion_forecast,
-)
 
 DYNAMIC_FACTOR = Stage(
     name="dynamic-factor",
     title="Dynamic factor over speed",
     results=("dynamic-factor",),
     subjects=meshes,
-    run=_run,
-    needs=lambda scene, name: (*needs_train(scene, name), *((Task("motion"),) if in_time(scene) else ())),
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
     check=_check,
     effects=("contact_loss", "friction", "parametric"),
     cites=citing(Citation("lin-townsend-oswald", "dynamic factor over speed")),
-    forecast=_factor_forecast,
+    forecast=_forecast,
 )

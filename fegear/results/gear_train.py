@@ -42,8 +42,7 @@ def needs_train(_scene: Scene, _subject: str) -> tuple[Task, ...]:
 
 def gear_train(upstream: Mapping[Task, object]) -> GearTrain:
     """What this stage computed."""
-    found = upstream[Task("gear-train")]
-    return cast("GearTrain", getattr(found, "data", found))
+    return cast("GearTrain", upstream[Task("gear-train")])
 
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:

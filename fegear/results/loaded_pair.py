@@ -73,8 +73,7 @@ def needs_pair(_scene: Scene, name: str) -> tuple[Task, ...]:
 
 def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
     """What this stage computed for a pair."""
-    found = upstream[Task("loaded-pair", name)]
-    return cast("LoadedPairData", getattr(found, "data", found)).pair
+    return cast("LoadedPairData", upstream[Task("loaded-pair", name)]).pair
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
+from fegear.models.motion import motion_inputs
 from fegear.models.neglected_in_motion import contact_loss_changes, friction_changes
 from fegear.results.catalogue import STAGES
 
@@ -48,7 +49,7 @@ def test_the_size_told_is_that_of_the_run_with_the_effect_on(load, relief, effec
     off = run(load, f"effects.{effect}=false", f"effects.relief={relief}")
     on = run(load, f"effects.{effect}=true", f"effects.relief={relief}")
     data, states = off.outcomes[Task("gear-train")].data, off.outcomes[Task("motion")].data.states
-    (change,) = changes(off.scene, data, states)
+    (change,) = changes(motion_inputs(off.scene), data, states)
     true = factors(on) - factors(off)
     there = true[np.argmin(np.abs(np.array([s.model.speed for s in states]) - change.speed))]
     # at its own speed it is the run's

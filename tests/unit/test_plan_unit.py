@@ -31,24 +31,27 @@ class Workshop:
         self.log = []
 
         def work(name):
-            def run(scene, subject, done, progress):
-                progress(0.5)
-                self.log.append((name, subject, tuple(done)))
-                return Outcome(data=name, values=(Value(f"{name}.{subject}", 2e-3, "mm", 1e-6),))
+            def compute(subject, upstream, work):
+                work.progress(0.5)
+                self.log.append((name, subject, tuple(upstream)))
+                return name
 
-            return run
+            def present(data, subject):
+                return Outcome(data=data, values=(Value(f"{name}.{subject}", 2e-3, "mm", 1e-6),))
+
+            return (lambda _scene, subject: subject), compute, present
 
         def gears(scene):
             return tuple(scene.gears)
 
         self.stages = (
-            Stage("blank", "Blank", (), gears, work("blank")),
+            Stage("blank", "Blank", (), gears, *work("blank")),
             Stage(
                 "tooth",
                 "Tooth",
                 ("teeth",),
                 gears,
-                work("tooth"),
+                *work("tooth"),
                 lambda s, g: (Task("blank", g),),
                 effects=("relief",),
             ),
@@ -57,10 +60,10 @@ class Workshop:
                 "Pair",
                 ("pairs", "both"),
                 lambda s: ("I",),
-                work("pair"),
+                *work("pair"),
                 lambda s, p: (Task("tooth", "a"), Task("tooth", "b")),
             ),
-            Stage("noise", "Noise", ("noise",), lambda s: tuple(s.pairs), work("noise")),
+            Stage("noise", "Noise", ("noise",), lambda s: tuple(s.pairs), *work("noise")),
         )
 
 
@@ -71,7 +74,7 @@ def test_needs_come_first_and_each_task_runs_once():
     assert tasks == [Task("blank", "a"), Task("tooth", "a"), Task("blank", "b"), Task("tooth", "b"), Task("pair", "I")]
     results = run_plan(scene("pairs"), plan)
     assert [entry[:2] for entry in shop.log] == [tuple(task) for task in tasks]
-    assert shop.log[-1][2] == tuple(tasks[:-1])
+    assert shop.log[-1][2] == (Task("tooth", "a"), Task("tooth", "b"))
     assert list(results.seconds) == tasks
     assert {value.name: value.shown for value in results.values}["pair.I"] == 2.0
 

@@ -11,7 +11,7 @@ from fegear.dynamics.single_tooth import force_history
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
 from fegear.models.loaded_pair import build_loaded_pair
-from fegear.models.motion import motion_model
+from fegear.models.motion import motion_inputs, motion_model
 from fegear.models.neglected_effects import Neglected
 from fegear.models.pair_inputs import MEMBERS, pair_inputs
 from fegear.models.train import train_inputs
@@ -70,7 +70,9 @@ def factor_at(asked: Asked, data: GearTrain, speed: float, tolerance: float) -> 
     from fegear.dynamics.steady_state import steady_state
 
     i = data.train.mesh_index(asked.mesh)
-    state = steady_state(motion_model(asked.scene, data, speed / data.speed_ratio), start="static", tolerance=tolerance)
+    state = steady_state(
+        motion_model(motion_inputs(asked.scene), data, speed / data.speed_ratio), start="static", tolerance=tolerance
+    )
     return float(state.tooth_force[i]) / float(data.forces[i])
 
 

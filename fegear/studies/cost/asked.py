@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
-from fegear.models.motion import in_time
+from fegear.models.motion import motion_inputs
 from fegear.results.loaded_pair import spur_pairs
 from fegear.results.stiffness import contact_half_width, load_radii
 from fegear.studies.cost.quantities import OF_GEAR, Quantity
@@ -165,7 +165,7 @@ def _mesh(scene: Scene, pair: str, names: list[str]) -> str:
         mesh = ""
     else:
         mesh = next((m for m, part in train.mesh.items() if part.like is None and train.pair_of(m) == pair), "")
-    if "dynamic-factor" in names and not (mesh and in_time(scene)):
+    if "dynamic-factor" in names and not (mesh and motion_inputs(scene).in_time):
         raise InputError(
             "cost.quantities", '"dynamic-factor"', "needs a train, speeds, and an effect of motion in time",
             "describe them and set effects.contact_loss = true, or leave the quantity out",
