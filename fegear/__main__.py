@@ -4,7 +4,7 @@ import sys
 
 
 def main() -> None:
-    """Load the command line and run it; an interrupt while it is still loading is told like any other."""
+    """Load the command line and run it; an interrupt while it is still loading is reported like any other."""
     try:
         from fegear.cli import main as run
 

@@ -54,9 +54,9 @@ def pack(value: object) -> bytes:
             columns_first = item.flags.f_contiguous and not item.flags.c_contiguous
             order, data = ("F", item.tobytes("F")) if columns_first else ("C", item.tobytes("C"))
             arrays.append((end, data))
-            told = {"a": [item.dtype.str, list(item.shape), order, end]}
+            placed = {"a": [item.dtype.str, list(item.shape), order, end]}
             end += -(-len(data) // _ALIGN) * _ALIGN
-            return told
+            return placed
         if isinstance(item, list):
             return {"l": [encode(x) for x in item]}
         if isinstance(item, tuple):

@@ -67,7 +67,7 @@ class Store:
         payload = data[_HEAD:]
         if data[:_HEAD] != _MAGIC + hashlib.sha256(payload).digest():
             return None
-        with contextlib.suppress(OSError):  # tells when it was last of use; a folder may be read-only
+        with contextlib.suppress(OSError):  # records when it was last of use; a folder may be read-only
             os.utime(place)
         return payload
 

@@ -1,4 +1,4 @@
-"""How often the costly kernels run, counted while somebody asks: what an effect costs, told without a clock."""
+"""How often the costly kernels run, counted while somebody asks: what an effect costs, measured without a clock."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a run tells what it is doing: a progress bar on a terminal, plain lines elsewhere."""
+"""How a run shows its progress: a progress bar on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``[accuracy]``: a tolerance that picks the settings, or the settings themselves."""
+"""``[accuracy]``: a tolerance that chooses the settings, or the settings themselves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``[cost]``: what ``fegear cost`` prices; without it, what ``results`` asks for."""
+"""``[cost]``: which results ``fegear cost`` studies; without it, those that ``results`` asks for."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``[effects]``: what a scene calls for; everything is off unless named."""
+"""``[effects]``: what a case calls for; everything is off unless named."""
 
 from __future__ import annotations
 

@@ -133,7 +133,7 @@ class GearPart(Part):
             "normal_module", "normal_diametral_pitch", "rack", "rim_thickness",
         }  # fmt: skip
         for key in sorted(self.model_fields_set - known):
-            raise refuse("has no meaning for a gear with a helix_angle", f"leave out {key}", key=key)
+            raise refuse("has no meaning for a gear with a helix_angle", f"remove {key}", key=key)
         for key in ("hand", "face_width"):
             if getattr(self, key) is None:
                 raise refuse("is missing for a helical gear", f"give {key}", key=key)
@@ -162,7 +162,7 @@ class GearPart(Part):
         return self.module if self.module is not None else 1.0 / (self.diametral_pitch or math.nan)
 
     def build(self, prefix: str) -> Gear:
-        """Make the gear; errors of the geometry are told under the keys of the case file.
+        """Make the gear; errors of the geometry are reported under the keys of the case file.
 
         Without a bore radius the body is held fast at half the root radius; without a face width the gear is 1 mm
         wide, which no plane result per unit width depends on.
@@ -185,7 +185,7 @@ class GearPart(Part):
             raise at(prefix, self._in_words_of_the_case(error), _KEYS) from None
 
     def _in_words_of_the_case(self, error: InputError) -> InputError:
-        """Tell lengths that the tooth takes in modules as the case gave them."""
+        """Report lengths that the tooth takes in modules as the case gave them."""
 
         def in_mm(text: str) -> str:
             return re.sub(

@@ -68,7 +68,7 @@ class TipReliefPart(EndReliefPart):
 
 
 class RootReliefPart(EndReliefPart):
-    """``root = { amount, start_..., shape, end_radius }``; it ends where contact starts unless told otherwise."""
+    """``root = { amount, start_..., shape, end_radius }``; it ends where contact starts unless given otherwise."""
 
     end_radius: PositiveLength | None = None
 
@@ -80,7 +80,7 @@ class RootReliefPart(EndReliefPart):
 
 
 class CrowningPart(Part):
-    """``crowning = { amount, start_radius, end_radius }``; over the active profile unless told otherwise."""
+    """``crowning = { amount, start_radius, end_radius }``; over the active profile unless given otherwise."""
 
     amount: Length
     start_radius: PositiveLength | None = None

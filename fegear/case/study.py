@@ -14,7 +14,7 @@ Shares = Annotated[list[Annotated[Number, Field(ge=0.0, le=1.0)]], Field(min_len
 
 
 class StudyPart(Part):
-    """Every combination of the lists is computed; what is left out keeps the gear's own value."""
+    """Every combination of the lists is computed; a list that is not given keeps the gear's own value."""
 
     gear: str | None = None
     teeth: Teeth | None = None

@@ -84,7 +84,7 @@ class LikePart(Part):
 
 
 class TrainMeshPart(Part):
-    """A gear pair between two bodies; the pair of the same name unless told otherwise."""
+    """A gear pair between two bodies; the pair of the same name unless given otherwise."""
 
     pair: str | None = None
     driver: str

@@ -166,7 +166,7 @@ def pair_compliance_answers(pair: GearPair, x: ArrayLike, line_load: float) -> d
 def pair_reference(
     pair: GearPair, driver: GearInfluence, driven: GearInfluence, x: ArrayLike, line_load: float
 ) -> PairReference:
-    """Finite elements of one tooth pair under a Hertzian contact; positions off a meshed flank are left out.
+    """Finite elements of one tooth pair under a Hertzian contact; positions off a meshed flank are skipped.
 
     Parameters
     ----------

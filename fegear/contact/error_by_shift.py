@@ -1,4 +1,4 @@
-"""Estimated errors of what follows from load sharing: the same again with each compliance off by its own error.
+"""Estimated errors of what follows from load sharing: solved again with each compliance off by its own error.
 
 `shifted` holds engagements whose compliances are off, one source each (`fegear.contact.shifted_compliance`); the
 changes that they make add up.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: Interpolation points over the flank: splines for the loaded tooth, Chebyshev polynomials for its smooth neighbours.
 _OWN_POINTS = 97
 _NEIGHBOUR_POINTS = 14
-#: Half-width that c_0 is told for [modules], and that a contact keeps whose width does not follow its load.
+#: Half-width that c_0 is given for [modules], and that a contact keeps whose width does not follow its load.
 _NOMINAL_HALF_WIDTH = 0.08
 
 
@@ -129,7 +129,7 @@ def finite_element_compliance(influence: GearInfluence) -> FiniteElementComplian
     s = np.linspace(0.0, 1.0, _OWN_POINTS // 2)
     lengths = np.concatenate([low + (high - corner - low) * (s * s * (3.0 - 2.0 * s))[:-1], high - corner * (1.0 - s)])
     radii = np.clip(np.hypot(rb, lengths), bottom, top)
-    # Taken at a usual width, where what goes with the width itself is right, and told for the nominal one.
+    # Taken at a usual width, where what goes with the width itself is right, and given for the nominal one.
     usual, nominal = influence.reference_half_width, _NOMINAL_HALF_WIDTH * gear.module
     own = influence.self_compliance(radii, usual) - influence.log_slope * math.log(nominal / usual)
     return FiniteElementCompliance(influence, spline(lengths, own), low, high)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.left_out import corners_bear
+from fegear.contact.neglected_effects import corners_bear
 from fegear.contact.transmission_error import contact_changes
 from fegear.dynamics.excitation import MeshExcitation
 from fegear.dynamics.periodic import Periodic

@@ -1,4 +1,4 @@
-"""Finite elements for gear teeth: influence functions of the whole ring at the price of one tooth."""
+"""Finite elements for gear teeth: influence functions of the whole ring at the cost of one tooth."""
 
 from fegear.fem.gear import GearInfluence, Round, level_for, solve_gear, solve_to_tolerance
 from fegear.fem.settings import MeshSettings, settings_at

@@ -248,7 +248,7 @@ def rim_factor(rim_thickness: float, tooth_height: float) -> float:
     Raises
     ------
     RangeError
-        For s_R / h_t <= 0.5, which the standard tells to avoid.
+        For s_R / h_t <= 0.5, which the standard says to avoid.
     """
     if not tooth_height > 0.0:
         raise RangeError("tooth height", tooth_height, "must be positive")

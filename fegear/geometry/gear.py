@@ -107,7 +107,7 @@ class Gear:
             raise InputError(
                 "material.poisson_ratio",
                 nu,
-                "is incompressible, which plane strain with displacements alone cannot tell from rigid",
+                "is incompressible, which plane strain with displacements alone cannot distinguish from rigid",
                 f"choose at most {_LARGEST_POISSON_RATIO}, which is within 1e-4 of the limit, or plane stress",
             )
 

@@ -71,7 +71,7 @@ class BasicRack:
                     "makes the rack tooth pointed before it reaches its full depth",
                     f"choose at most {math.pi / 4 / math.tan(self.pressure_angle):.4f} modules",
                 )
-            fits = math.floor(fits * 1e6) * 1e-6  # never told as more than what is accepted
+            fits = math.floor(fits * 1e6) * 1e-6  # never given as more than what is accepted
             raise GeometryError(
                 "rack.tip_radius",
                 self.tip_radius,

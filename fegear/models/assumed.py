@@ -1,4 +1,4 @@
-"""What a run takes for keys that a case leaves out and that its answer depends on, in words."""
+"""Assumed defaults: what a run assumes for keys that a case does not give and its answer depends on, in words."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
     if scene.case.gear[gear].bore_radius is not None:
         return ()
     bore = scene.gears[gear].bore_radius * 1e3
-    return (f"Gear {gear}: no bore_radius was given; the body is held at half the root radius, {bore:.6g} mm.",)
+    held = f"held at half the root radius, {bore:.6g} mm"
+    return (f"Gear {gear}: no bore_radius was given; assumed default: the body is {held}.",)
 
 
 def width_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
     """On which width a gear carries its load, if the case does not say."""
     if scene.case.gear[gear].face_width is not None:
         return ()
-    return (f"Gear {gear}: no face_width was given; the load is carried on 1 mm. Give gear.{gear}.face_width.",)
+    remedy = f"Give gear.{gear}.face_width."
+    return (f"Gear {gear}: no face_width was given; assumed default: the load is carried on 1 mm. {remedy}",)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from fegear.case.effects import EffectsPart
     from fegear.contact import Engagement
-    from fegear.contact.left_out import Answer, Change
+    from fegear.contact.neglected_effects import Answer, Change
     from fegear.models.loaded_pair import LoadedPair
     from fegear.models.pair_inputs import PairInputs
 
@@ -98,7 +98,7 @@ def with_effect(asked: PairInputs, engagement: Engagement, effect: str) -> Engag
 
 
 def _off(effects: EffectsPart, known: Sequence[str]) -> list[str]:
-    """Effects that are off, and contacts whose stiffness is taken as that under the nominal load."""
+    """Effects that are off, and contacts whose stiffness is assumed to be that under the nominal load."""
     found = [effect for effect in known if not effects.is_on(effect)]
     return [*found, "hertz"] if effects.hertz == "linear" else found
 
@@ -117,7 +117,7 @@ def neglected_effects(
     loads : sequence of float
         [N].
     """
-    from fegear.contact.left_out import changes
+    from fegear.contact.neglected_effects import changes
 
     if not answers:
         return Neglected({}, {})
@@ -143,7 +143,7 @@ def neglected_remarks(
 ) -> tuple[str, ...]:
     """Effects of load sharing that are off and would change the wanted answers by more than the tolerance."""
     said = [
-        f"Pair {name}: {effect} is off, and cannot be estimated as it is given: {error}"
+        f"Pair {name}: {effect} is off; its effect cannot be estimated from the data given: {error}"
         for effect, error in found.wrong.items()
     ]
     for effect, parts in found.changes.items():
@@ -163,7 +163,7 @@ def neglected_in_design(
     dict of str to tuple of str
         By the effect, its sizes in words.
     """
-    from fegear.contact.left_out import changes
+    from fegear.contact.neglected_effects import changes
     from fegear.design import MinimumExcitationRelief
 
     found: dict[str, tuple[str, ...]] = {}

@@ -167,9 +167,13 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
     for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
         part = scene.case.gear[gear]
         if part.relief is not None and not effects.relief:
-            remarks.append(f"Gear {gear} has a relief, but effects.relief is off: its flanks are taken as involutes.")
+            remarks.append(
+                f"Gear {gear} has a relief, but effects.relief is off: its flanks are assumed to be involutes."
+            )
         if part.spacing_errors is not None and not effects.spacing_errors:
-            remarks.append(f"Gear {gear} has spacing_errors, but the effect is off: its teeth are taken as even.")
+            remarks.append(
+                f"Gear {gear} has spacing_errors, but the effect is off: its teeth are assumed to be evenly spaced."
+            )
         remarks += width_remarks(scene, gear)
         if scene.case.pair[name].compliance.source == "fe":
             remarks += bore_remarks(scene, gear)

@@ -26,7 +26,7 @@ def needed_reach(scene: Scene, name: str) -> int:
     """How many neighbours on either side a gear's solution must know: as many as share the load in any of its pairs.
 
     All stages ask for the same number, so that they find the same solution. Without neighbour coupling it is one, which
-    comes with the solution: the size of what is left out is told from it.
+    comes with the solution: the size of what is neglected follows from it.
     """
     reach = 1
     if not scene.case.effects.neighbour_coupling:
@@ -78,8 +78,8 @@ def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
         If the gear's own mesh cannot be read.
     """
     mesh, accuracy = own_sector_mesh(scene, name), scene.case.accuracy
-    taken = mesh is not None or bool(given_settings(accuracy))
-    settings = mesh_settings(accuracy) if taken else None
+    given = mesh is not None or bool(given_settings(accuracy))
+    settings = mesh_settings(accuracy) if given else None
     return GearToSolve(scene.gears[name], accuracy.tolerance, settings, needed_reach(scene, name), mesh, name)
 
 
@@ -113,7 +113,7 @@ def solve_influence_functions(
 
 def solution_settings(influence: GearInfluence) -> dict[str, object]:
     """Settings of a gear's solution and what they cost, for the summary."""
-    told: dict[str, object] = {
+    found: dict[str, object] = {
         **asdict(influence.settings),
         "unknowns": influence.fine.unknowns,
         "mesh": influence.fine.mesh.origin,
@@ -121,7 +121,7 @@ def solution_settings(influence: GearInfluence) -> dict[str, object]:
         "seconds": {key: round(seconds, 6) for key, seconds in influence.seconds.items()},
     }
     if influence.rounds:
-        told["rounds"] = [
+        found["rounds"] = [
             {
                 "root_edge_length": one.settings.root_edge_length,
                 "unknowns": one.unknowns,
@@ -130,7 +130,7 @@ def solution_settings(influence: GearInfluence) -> dict[str, object]:
             }
             for one in influence.rounds
         ]
-    return told
+    return found
 
 
 def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> tuple[str, ...]:

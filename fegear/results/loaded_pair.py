@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
-    from fegear.contact.left_out import Answer
+    from fegear.contact.neglected_effects import Answer
     from fegear.engine.citation import Citation
     from fegear.engine.stage import Upstream, Work
     from fegear.models.pair_inputs import PairInputs

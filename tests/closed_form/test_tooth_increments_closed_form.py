@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from fegear.contact.engagement import Engagement, Loaded, RollGrid
-from fegear.contact.left_out import corners_bear
 from fegear.contact.load_sharing import share_load
+from fegear.contact.neglected_effects import corners_bear
 from fegear.contact.pair_compliance import PairCompliance, PairMatrices
 from fegear.dynamics.excitation import MeshExcitation
 from fegear.dynamics.mesh_excitation import mesh_excitation, tooth_pair_at

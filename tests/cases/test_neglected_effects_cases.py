@@ -1,4 +1,4 @@
-"""What a scene leaves out is told with its size, and the size is that of the run with the effect on."""
+"""What a case neglects is reported with its size, and the size is that of the run with the effect on."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def effects(**chosen: str) -> tuple[str, ...]:
         ("lin_tip_relief", "relief", {"hertz": "load-dependent"}),
     ],
 )
-def test_the_size_told_is_that_of_the_run_with_the_effect_on(name, effect, among):
+def test_the_reported_size_is_that_of_the_run_with_the_effect_on(name, effect, among):
     off = {**OFF, **among, effect: OFF[effect]}
     before = run(name, *effects(**off))
     after = run(name, *effects(**{**off, effect: ON[effect]}))
@@ -131,7 +131,7 @@ def test_the_size_told_is_that_of_the_run_with_the_effect_on(name, effect, among
 
 
 @pytest.mark.parametrize("effect", ["corner_contact", "neighbour_coupling", "hertz"])
-def test_it_is_told_above_the_tolerance_and_not_below(effect):
+def test_it_is_reported_above_the_tolerance_and_not_below(effect):
     results = ('results=["transmission-error"]',)
     off = {"corner_contact": "true", "neighbour_coupling": "true", "hertz": "load-dependent", effect: OFF[effect]}
     asked = (*results, *effects(**off))
@@ -143,21 +143,21 @@ def test_it_is_told_above_the_tolerance_and_not_below(effect):
     load, te = pair.loads[-1], columns(before, "transmission_error_loads_I")
     share = true_change(before, after, "transmission error", load) / te["te"][te["total_load"] == load].mean()
 
-    def told(tolerance: float) -> list[str]:
+    def remarks_at(tolerance: float) -> list[str]:
         scene = before.scene
         one_load = replace(pair, loads=(load,), nominal=load)
         found = neglected_effects(pair_inputs(scene, "I"), one_load, ("transmission error",), [load])
         return [r for r in neglected_remarks("I", found, scene.case.effects, tolerance, load) if effect in r]
 
-    assert len(told(share / 2.2)) == 1
-    assert told(share * 2.2) == []
-    remark = told(share / 2.2)[0]
+    assert len(remarks_at(share / 2.2)) == 1
+    assert remarks_at(share * 2.2) == []
+    remark = remarks_at(share / 2.2)[0]
     line = f'{effect} = "load-dependent"' if effect == "hertz" else f"{effect} = true"
     assert f"Write {line} under [effects]." in remark
     assert " um (" in remark
 
 
-def test_nothing_is_told_where_everything_is_on():
+def test_nothing_is_reported_where_everything_is_on():
     on = effects(corner_contact="true", neighbour_coupling="true", hertz="load-dependent")
     assert not [r for r in run("calculix_pair", *on).remarks if "would change" in r]
 
@@ -165,10 +165,10 @@ def test_nothing_is_told_where_everything_is_on():
 def test_wrong_data_of_an_effect_that_is_off_does_not_stop_the_run():
     far = "gear.a.relief={ tip = { amount = '10 um', start_radius = '900 mm' } }"
     results = run("lin_tip_relief", "effects.relief=false", far)
-    assert any("relief is off, and cannot be estimated as it is given" in r for r in results.remarks)
+    assert any("relief is off; its effect cannot be estimated from the data given" in r for r in results.remarks)
 
 
-def test_uneven_teeth_that_are_left_out_are_told_with_their_size():
+def test_neglected_spacing_errors_are_reported_with_their_size():
     errors = [0.0] * 28
     errors[5] = 4.0
     given = "gear.a.spacing_errors={ values = [" + ", ".join(f"'{e} um'" for e in errors) + "] }"
@@ -181,7 +181,7 @@ def test_uneven_teeth_that_are_left_out_are_told_with_their_size():
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 def test_sizes_of_random_pairs_and_loads(seed):
-    """Teeth, shifts, face, bore and load at random: every size told is within a factor of two of the run's."""
+    """Teeth, shifts, face, bore and load at random: every reported size is within a factor of two of the run's."""
     dice = np.random.default_rng(seed)
     gears = {
         name: {

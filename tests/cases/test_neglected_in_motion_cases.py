@@ -1,4 +1,4 @@
-"""Contact loss and friction that a motion leaves out: told with the size that the run with them has."""
+"""Contact loss and friction that a motion neglects: reported with the size that the run with them has."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def factors(results) -> np.ndarray:
         (8890.0, "false", "friction", friction_changes),
     ],
 )
-def test_the_size_told_is_that_of_the_run_with_the_effect_on(load, relief, effect, changes):
+def test_the_reported_size_is_that_of_the_run_with_the_effect_on(load, relief, effect, changes):
     off = run(load, f"effects.{effect}=false", f"effects.relief={relief}")
     on = run(load, f"effects.{effect}=true", f"effects.relief={relief}")
     data, states = off.outcomes[Task("gear-train")].data, off.outcomes[Task("motion")].data.states

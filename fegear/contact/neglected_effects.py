@@ -1,4 +1,4 @@
-"""What an effect that is left out would change: load sharing at a few roll positions, with it and without it.
+"""What a neglected effect would change: load sharing at a few roll positions, with it and without it.
 
 The estimate takes the contact problem itself, not a formula for it: the same teeth and loads, one effect more, at under
 a hundred roll positions instead of the thousands of a run, without quadrature and without error estimates. It is exact
@@ -96,7 +96,7 @@ def changes(
     others : mapping of str to Engagement
         The same gears with one effect more, by its name.
     loads : array_like, shape (L,)
-        [N]; each answer is told for the load at which its share is largest.
+        [N]; each answer is given for the load at which its share is largest.
     answers : sequence of str
         What is looked at. Root tension needs finite-element compliances.
     cycle : int
@@ -140,7 +140,7 @@ def _largest_tensions(engagement: Engagement, state: Loaded) -> Array:
 
 
 def _load_changes(before: Loaded, after: Loaded) -> Array:
-    """Change of that pair's load which changes most, shape (P, L) [N]; pairs are told by their place."""
+    """Change of that pair's load which changes most, shape (P, L) [N]; pairs are matched by their place."""
     numbers = before.grid.contacts.number, after.grid.contacts.number
     first = min(n[0] for n in numbers)
     difference = np.zeros((int(max(n[-1] for n in numbers) - first) + 1, *before.loads.shape[1:]))

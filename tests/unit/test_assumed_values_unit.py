@@ -1,4 +1,4 @@
-"""A run tells what it takes for keys that the case leaves out and the answer depends on."""
+"""A run reports the assumed defaults of keys that the case does not give and the answer depends on."""
 
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ def said(case: dict, tmp_path) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize(
-    ("key", "told"), [("face_width", "the load is carried on 1 mm"), ("bore_radius", "half the root radius, 19.125 mm")]
+    ("key", "expected"),
+    [("face_width", "the load is carried on 1 mm"), ("bore_radius", "half the root radius, 19.125 mm")],
 )
-def test_a_missing_length_is_told_once_with_the_value_taken(key, told, tmp_path):
+def test_a_missing_length_is_reported_once_with_the_assumed_value(key, expected, tmp_path):
     assert said(CASE, tmp_path) == ()
     case = copy.deepcopy(CASE)
     del case["gear"]["a"][key]
     (remark,) = said(case, tmp_path)
-    assert told in remark
+    assert expected in remark
 
 
 def test_a_body_that_the_source_does_not_know_is_not_talked_about(tmp_path):
