@@ -20,6 +20,7 @@ from fegear.dynamics.network import Network
 from fegear.dynamics.packing import pack
 from fegear.dynamics.periodic import Periodic
 from fegear.dynamics.segments import segment_shapes
+from fegear.dynamics.shooting import has_fixed_direction
 from fegear.dynamics.steady_state import steady_state
 from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train
 from fegear.errors import RangeError
@@ -314,3 +315,30 @@ def test_segments_are_coordinates_of_any_train(train):
     assert projected(train, shapes, "stiffness") == pytest.approx(plain, abs=1e-12 * np.abs(plain).max() + 1e-300)
     damped = shapes.T @ damping_matrix(train, meshes=False) @ shapes
     assert projected(train, shapes, "damping") == pytest.approx(damped, abs=1e-12 * np.abs(damped).max() + 1e-300)
+
+
+# ---- very light gears -----------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("scale", [1.0, 1e5, 1e9])
+def test_what_stands_still_is_told_in_whatever_units(scale):
+    """A turning of 0.3 rad moves every direction, one of zero none, however small a light gear makes velocities."""
+    for angle, fixed in ((0.3, False), (0.0, True), (1e-12, True)):
+        c, s = math.cos(angle), math.sin(angle)
+        assert has_fixed_direction(np.array([[c, s * scale], [-s / scale, c]])) is fixed
+
+
+@pytest.mark.long
+def test_a_gear_of_next_to_no_inertia_is_no_resonance():
+    """1e-12 kg m^2 between a shaft and the teeth, undamped: the forces are those of forty digits."""
+    radius, k, amplitude, speed = 0.05, 2e8, 1e-8, 100.0
+    train = Train(
+        (Body("motor", 2e-3), Body("gear", 1e-12), Body("load", 2e-3)),
+        (Shaft("s", "motor", "gear", 1e4),),
+        (Mesh("p", "gear", "load", radius, radius, 30, 30, k),),
+        torques=(Torque("motor", 25.0), Torque("load", 25.0)),
+    )
+    error = Periodic.fit(lambda s: amplitude * np.cos(2.0 * np.pi * s), degree=10, tolerance=1e-13)
+    model = MotionModel(train, (MeshExcitation.from_mesh(Periodic.constant(k), error),), speed)
+    state = steady_state(model)
+    shaking = k * abs(exact(train, 30 * speed)[0, 0]) * amplitude
+    assert state.largest[0] == pytest.approx(500.0 + shaking, abs=1e-6 * 500.0)
+    assert state.smallest[0] == pytest.approx(500.0 - shaking, abs=1e-6 * 500.0)
