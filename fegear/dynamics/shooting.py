@@ -113,7 +113,7 @@ def close(packed: Packed, x: Array, v: Array, periods: int, step: float) -> Orbi
     n = packed.size
     y = np.concatenate([x, v])
     before, closed = math.inf, False
-    for number in range(16):
+    for _ in range(16):
         try:
             passage = propagate(
                 packed, y[:n], y[n:], periods * packed.period, tolerance=step, tangents=True, peaks=False
@@ -124,7 +124,7 @@ def close(packed: Packed, x: Array, v: Array, periods: int, step: float) -> Orbi
         size = float(np.max(np.abs(miss))) if miss.size else 0.0
         if closed:
             return Orbit(packed, y[:n].copy(), y[n:].copy(), periods, passage, size)
-        if not np.isfinite(size) or size > (8.0 if number > 1 else 1e3) * before:
+        if not np.isfinite(size) or size > 8.0 * before:
             return None
         before = size
         tangent = passage.tangent[np.ix_(use, use)]

@@ -45,6 +45,8 @@ if TYPE_CHECKING:
 LONGEST_MULTIPLE = 32
 #: Periods integrated before Newton starts, how often they are doubled, and periods that measure what never repeats.
 SETTLING, DOUBLINGS, MEASURED = 12, 5, 1000
+#: Periods after which motions of more than two periods are looked for.
+LATER = 80
 #: Longest transient without changes of contact that is followed to see whether contact changes on the way.
 TRANSIENT = 100
 #: Motion so many times the static deflection of a mesh grows for ever: no gear train holds that.
@@ -195,12 +197,16 @@ def steady_state(
                 return _periodic(orbit)
     run, periods = 0, max(settling, 1)
     states = np.zeros((0, int(moving(packed).sum())))
+    ahead: Orbit | None = None
     for _ in range(DOUBLINGS + 1):
         window = follow(packed, x, v, periods, step, peaks=False)
         x, v = window.x, window.v
         _bounded(packed, window)
         states = np.concatenate([states, window.states])
-        found, (x, v) = _settled(packed, states, x, v, step)
+        # one seen from the window before: one look tells whether the motion is near it now
+        if ahead is not None and periods % ahead.periods == 0 and leads_to(ahead, x, v, step):
+            return _periodic(ahead)
+        found, ahead, (x, v) = _settled(packed, states, x, v, step)
         if found is not None:
             return found
         run += periods
@@ -246,20 +252,27 @@ def _bounded(packed: Packed, window: Window) -> None:
 
 def _settled(
     packed: Packed, states: Array, x: Array, v: Array, step: float
-) -> tuple[SteadyState | None, tuple[Array, Array]]:
-    """The stable motion of up to 32 periods that a motion has come to, if any, and from where to follow it further.
+) -> tuple[SteadyState | None, Orbit | None, tuple[Array, Array]]:
+    """The stable motion of up to 32 periods that a motion has come to, if any; else a stable one that may lie ahead.
+
+    Last, from where to follow the motion further.
 
     Beside an unstable orbit growth may take very long: as far as it is linear it is leapt over.
     """
-    for multiple in recurrences(states, LONGEST_MULTIPLE, 0.2):
+    ahead: Orbit | None = None
+    # a vibration that still dies away seems to come back after its own period: long ones are for later
+    longest = LONGEST_MULTIPLE if states.shape[0] >= LATER else 2
+    for multiple in recurrences(states, longest, 0.2):
         orbit = close(packed, x, v, multiple, step)
         if orbit is None:
             continue
         if not orbit.stable:
             x, v = leap(orbit, x, v, step)
         elif leads_to(orbit, x, v, step):
-            return _periodic(orbit), (x, v)
-    return None, (x, v)
+            return _periodic(orbit), orbit, (x, v)
+        else:
+            ahead = orbit
+    return None, ahead, (x, v)
 
 
 def _periodic(orbit: Orbit) -> SteadyState:
@@ -289,7 +302,7 @@ def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int) -> S
     run, kind = WINDOW, "unsettled"
     while run < PATIENCE:
         _bounded(packed, window)
-        found, (x, v) = _settled(packed, window.states, window.x, window.v, step)
+        found, _, (x, v) = _settled(packed, window.states, window.x, window.v, step)
         if found is not None:
             return found
         length = WINDOW if rate > CHAOTIC_GROWTH else min(2 * window.states.shape[0], LONGEST_WINDOW)
@@ -309,7 +322,7 @@ def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int) -> S
     sample = follow(packed, *start, measured, step, peaks=True)
     _bounded(packed, sample)
     if kind != "chaotic":
-        found, _ = _settled(packed, sample.states, sample.x, sample.v, step)
+        found, _, _ = _settled(packed, sample.states, sample.x, sample.v, step)
         if found is not None:
             return found
     parts = sample.passages
