@@ -23,6 +23,7 @@ from fegear.results import (
     stiffness,
     tooth_contact,
     tooth_force,
+    tooth_geometry_check,
     train_response,
     transmissibility,
     transmission_error,
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 #: Every stage, in the order in which plans list those that they skip.
 STAGES: tuple[Stage, ...] = (
     geometry.GEOMETRY,
+    tooth_geometry_check.TOOTH_GEOMETRY_CHECK,
     gear_solution.GEAR_SOLUTION,
     stiffness.STIFFNESS,
     stiffness.ROOT_STRESS,
