@@ -22,6 +22,8 @@ def write_mesh_file(
     triangles: Index,
     boundaries: Mapping[str, Index],
     point_data: Mapping[str, Array],
+    *,
+    single: bool = False,
 ) -> None:
     """Write six-node triangles with named boundary edges and nodal fields.
 
@@ -34,12 +36,17 @@ def write_mesh_file(
     boundaries : mapping of str to ndarray of int, shape (3, n)
         Kept in ``.msh`` only; VTU has no names for edges.
     point_data : mapping of str to ndarray, shape (N,) or (N, 3)
+    single : bool
+        Whether ``.vtu`` holds seven digits and is not packed: as large as 16 packed digits, and written at once.
     """
     import meshio
 
     flat = np.column_stack([points.T, np.zeros(points.shape[1])])
     if path.suffix == ".vtu":
-        meshio.Mesh(flat, [("triangle6", triangles.T)], point_data=dict(point_data)).write(path, binary=True)
+        data = {name: values.astype(np.float32) if single else values for name, values in point_data.items()}
+        corners = triangles.T.astype(np.int32) if single else triangles.T
+        gear = meshio.Mesh(flat.astype(np.float32) if single else flat, [("triangle6", corners)], point_data=data)
+        gear.write(path, binary=True, compression=None if single else "zlib")
         return
     cells = [("triangle6", triangles.T), *(("line3", edges.T) for edges in boundaries.values())]
     tags = [np.full(block.shape[0], tag) for tag, (_, block) in enumerate(cells, start=1)]

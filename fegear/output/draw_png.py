@@ -99,10 +99,18 @@ def draw_pictures(figure: Figure, folder: Path, kind: str = "png") -> Iterator[P
         yield Picture(path, figure.title, figure.caption)
 
 
+#: Letters that stand lower as letters of their own: laying out mathematics takes long.
+_LOWER = str.maketrans("0123456789+−-=()aehklmnopstx", "₀₁₂₃₄₅₆₇₈₉₊₋₋₌₍₎ₐₑₕₖₗₘₙₒₚₛₜₓ")
+
+
 def _words(text: str) -> str:
-    """Plain text for matplotlib: nothing in it is mathematics but what ``_{...}`` sets lower."""
-    safe = text.replace("\\", "\\backslash ").replace("$", r"\$") if "$" in text or "\\" in text else text
-    return re.sub(r"_\{([^{}]*)\}", lambda found: rf"$_{{\mathrm{{{found[1]}}}}}$", safe)
+    """Plain text for matplotlib: nothing in it is mathematics but what ``_{...}`` sets lower and no letter shows."""
+
+    def lower(found: re.Match[str]) -> str:
+        plain = found[1].translate(_LOWER)
+        return rf"$_{{\mathrm{{{found[1]}}}}}$" if any(a == b for a, b in zip(plain, found[1], strict=True)) else plain
+
+    return re.sub(r"_\{([^{}]*)\}", lower, text.replace("$", r"\$"))
 
 
 def _titled(label: str, unit: str) -> str:

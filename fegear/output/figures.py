@@ -77,4 +77,6 @@ def _write_field(field: MeshField, folder: Path) -> None:
     from fegear.fem.mesh_files import write_mesh_file
 
     folder.mkdir(exist_ok=True)
-    write_mesh_file(folder / f"{field.name}.vtu", np.asarray(field.points), field.triangles, {}, field.values)
+    write_mesh_file(
+        folder / f"{field.name}.vtu", np.asarray(field.points), field.triangles, {}, field.values, single=True
+    )
