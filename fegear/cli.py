@@ -1,4 +1,4 @@
-"""The command line: ``fegear run``, ``fegear plan``, ``fegear cost``, ``fegear sweep``, ``fegear export``."""
+"""The command line: ``fegear run``, ``plan``, ``cost``, ``sweep``, ``effects`` and ``export``."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def run(
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))
             watching = stack.enter_context(watcher(sys.stderr))
-            # Afresh by default: the seconds of a run are one of its results.
+            # Nothing is recalled by default: the seconds of a run are one of its results.
             known = cache_on_disk() if cache else SolutionCache()
             results = run_plan(scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler))
             remarks = write_results(results, scratch, watching, plots=not no_plots)
@@ -101,7 +101,7 @@ def run(
 
 @app.command()
 def plan(case: CaseFile, overrides: Overrides = None) -> None:
-    """Tell what a case would compute and why, with which settings, in about how long, and what it would not."""
+    """Show what a case would compute and why, with which settings, in about how long, and what it would not."""
     from fegear.case.reading import read_scene
     from fegear.engine.plan import make_plan
     from fegear.engine.plan_text import plan_lines
@@ -116,7 +116,9 @@ def cost(
     case: CaseFile,
     overrides: Overrides = None,
     out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>-cost.")] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="A few rungs instead of all, for a first look.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A few configurations instead of all, for a first look.")
+    ] = False,
     no_plots: NoPlots = False,
 ) -> None:
     """Show what accuracy costs in time: every closed form, sectors, whole gears from coarse to fine."""
@@ -127,14 +129,15 @@ def cost(
     from fegear.terminal import watcher
 
     try:
-        priced = asked(read_scene(case, overrides or ()))
+        studied = asked(read_scene(case, overrides or ()))
         target = out or Path("results") / f"{case.stem}-cost"
         check_target(target)
-        ladder = ladder_of(priced, quick=quick)
-        typer.echo(f"Prices {', '.join(q.name for q in priced.quantities)}: {len(ladder.rungs)} rungs.")
-        typer.echo(f"Predicted: about {forecast(priced, ladder):.2g} s of one core, measured on a usual machine.")
+        ladder = ladder_of(studied, quick=quick)
+        quantities = ", ".join(q.name for q in studied.quantities)
+        typer.echo(f"Cost study: {len(ladder.configurations)} configurations for {quantities}.")
+        typer.echo(f"Predicted: about {forecast(studied, ladder):.2g} s of one core, measured on a usual machine.")
         with watcher(sys.stderr) as watching:
-            results = study_cost(priced, quick=quick, watcher=watching)
+            results = study_cost(studied, quick=quick, watcher=watching)
         with whole_or_nothing(target) as scratch:
             write_cost(results, scratch, plots=not no_plots)
     except KeyboardInterrupt:
@@ -144,7 +147,7 @@ def cost(
         typer.echo(f"Note: {remark}")
     typer.echo(f"Wrote {target} in {results.seconds:.1f} s.")
     if not results.complete:
-        _leave(f"interrupted; {results.finished} of {results.planned} rungs are in {target}.", 130)
+        _leave(f"interrupted; {results.finished} of {results.planned} configurations are in {target}.", 130)
 
 
 @app.command()
@@ -167,10 +170,10 @@ def sweep(
     no_plots: NoPlots = False,
     no_cache: Annotated[
         bool,
-        typer.Option("--no-cache", help="Compute all anew and keep nothing: a killed sweep then starts from nothing."),
+        typer.Option("--no-cache", help="Recompute everything and keep nothing: a killed sweep starts again."),
     ] = False,
 ) -> None:
-    """Run a case over a grid of values; killed and started again, it goes on where it was."""
+    """Run a case over a grid of values; killed and started again, it resumes where it stopped."""
     from fegear.engine.executor import Executor
     from fegear.output.folder import check_target, whole_or_nothing
     from fegear.output.sweep import write_sweep
@@ -199,7 +202,7 @@ def sweep(
         with whole_or_nothing(target) as scratch:
             remarks = write_sweep(results, scratch, plots=not no_plots)
     except KeyboardInterrupt:
-        _leave("interrupted; started again, the sweep goes on where it was.", 130)
+        _leave("interrupted; started again, the sweep resumes where it stopped.", 130)
     for remark in remarks:
         typer.echo(f"Note: {remark}")
     solved, read, spared = results.shapes
@@ -220,10 +223,10 @@ def effects(
     out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_effects.")] = None,
     only: Annotated[
         list[str] | None,
-        typer.Option("--effect", metavar="NAME", help="An effect to look at; default all that the results can feel."),
+        typer.Option("--effect", metavar="NAME", help="An effect to study; default all that influence the results."),
     ] = None,
 ) -> None:
-    """Run a case with each effect switched, one at a time: what it changes, what it costs, one picture for each."""
+    """Run a case with each effect switched, one at a time: what it changes, the time it costs, one picture for each."""
     from fegear.output.effects import write_effects
     from fegear.output.folder import check_target, whole_or_nothing
     from fegear.studies.effect_study import effect_study
@@ -240,10 +243,10 @@ def effects(
             )
             watching.end(time.perf_counter() - start)
         with whole_or_nothing(target) as scratch:
-            told = write_effects(scene, switched, fixed, scratch)
+            sentences = write_effects(scene, switched, fixed, scratch)
     except KeyboardInterrupt:
         _leave(_INTERRUPTED, 130)
-    for line in told:
+    for line in sentences:
         typer.echo(line)
     typer.echo(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
 

@@ -61,7 +61,7 @@ def watcher(stream: TextIO, *, remaining: bool = False) -> Iterator[Watcher]:
     ----------
     stream : text stream
     remaining : bool
-        Whether a bar foretells the time that is left, which makes sense for many alike steps.
+        Whether a bar predicts the time that is left, which makes sense for many alike steps.
     """
     if not stream.isatty():
         yield PlainLines(stream)
@@ -70,6 +70,6 @@ def watcher(stream: TextIO, *, remaining: bool = False) -> Iterator[Watcher]:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     columns = (TextColumn("{task.description}"), BarColumn(bar_width=30), TimeElapsedColumn())
-    ahead = (TextColumn("left"), TimeRemainingColumn(elapsed_when_finished=False)) if remaining else ()
+    ahead = (TextColumn("remaining"), TimeRemainingColumn(elapsed_when_finished=False)) if remaining else ()
     with Progress(*columns, *ahead, console=Console(file=stream)) as progress:
         yield Bar(progress)

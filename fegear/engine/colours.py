@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-#: Told apart by all kinds of colour vision (Okabe and Ito).
+#: Distinguished by all kinds of colour vision (Okabe and Ito).
 SERIES = ("blue", "orange", "green", "red", "purple", "sky")
 DASHES = ("solid", "dash", "dashdot", "dot", "longdash", "longdashdot")
 SYMBOLS = ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross")

@@ -89,7 +89,7 @@ class Value:
     value : float
         In SI.
     unit : str
-        Unit in which it is told.
+        Unit in which it is reported.
     error : float or None
         Estimated absolute error in SI; None where the value is exact or the error unknown.
     meaning : str

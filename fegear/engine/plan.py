@@ -103,7 +103,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
     running = {step.stage.name for step in steps}
     skipped = tuple((stage.name, _why_not(stage)) for stage in stages if stage.name not in running)
     used = {effect for step in steps for effect in step.effects}
-    # What `fegear cost` prices in this case is wanted too, if not by a run.
+    # What `fegear cost` studies in this case is wanted too, if not by a run.
     used |= {effect for name in scene.case.cost.stages if name in by_name for effect in by_name[name].effects}
     idle = tuple(effect for effect in on if effect not in used)
     return Plan(steps, skipped, idle, tuple(_idle(effect, stages) for effect in idle))

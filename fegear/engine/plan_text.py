@@ -14,10 +14,10 @@ def forecast_seconds(scene: Scene, plan: Plan) -> list[float | None]:
     solved: set[object] = set()
     found: list[float | None] = []
     for step in plan.steps:
-        told = step.stage.forecast(scene, step.task.subject)
-        anew = sum(seconds for key, seconds in told.shapes.items() if key not in solved)
-        solved |= set(told.shapes)
-        found.append(None if told.seconds is None else told.seconds + anew)
+        ahead = step.stage.forecast(scene, step.task.subject)
+        anew = sum(seconds for key, seconds in ahead.shapes.items() if key not in solved)
+        solved |= set(ahead.shapes)
+        found.append(None if ahead.seconds is None else ahead.seconds + anew)
     return found
 
 
@@ -27,9 +27,9 @@ def plan_lines(scene: Scene, plan: Plan) -> list[str]:
     for number, (step, predicted) in enumerate(zip(plan.steps, seconds, strict=True), start=1):
         effects = f"; effects: {', '.join(step.effects)}" if step.effects else ""
         lines.append(f"  {number}. {step.task}: {'; '.join(step.reasons)}{effects}")
-        told = step.stage.forecast(scene, step.task.subject)
-        if told.settings:
-            lines.append("     settings: " + ", ".join(f"{key} = {_short(v)}" for key, v in told.settings.items()))
+        ahead = step.stage.forecast(scene, step.task.subject)
+        if ahead.settings:
+            lines.append("     settings: " + ", ".join(f"{key} = {_short(v)}" for key, v in ahead.settings.items()))
         lines.append("     run time unknown" if predicted is None else f"     about {predicted:.2g} s")
     if plan.skipped:
         lines.append("Will not compute:")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Watcher(Protocol):
-    """Who is told how a run goes on (a progress bar, a log)."""
+    """Who follows the progress of a run (a progress bar, a log)."""
 
     def begin(self, title: str, number: int, count: int) -> None:
         """Tell that a task starts."""
@@ -121,7 +121,7 @@ class Results:
 
     @property
     def cache_remarks(self) -> tuple[str, ...]:
-        """What was recalled: the seconds of such tasks alone would give too low a price."""
+        """What was recalled: the seconds of such tasks alone would be too few."""
         recalled = {task: timing for task, timing in self.timings.items() if timing.recalled}
         said = []
         if recalled:

@@ -1,4 +1,4 @@
-"""What a study of cost leaves behind: tables, pictures, a page and ``summary.json``."""
+"""What a cost study writes: tables, pictures, a page and ``summary.json``."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _summary(results: CostResults, files: list[str]) -> dict[str, object]:
             "value": value, "unit": quantity.unit, "error": floor * abs(value), "meaning": quantity.meaning,
         }  # fmt: skip
     cheapest = {
-        q.name: {f"{tolerance:.0e}": _rung(results, q.name, tolerance) for tolerance in TOLERANCES}
+        q.name: {f"{tolerance:.0e}": _configuration(results, q.name, tolerance) for tolerance in TOLERANCES}
         for q in results.quantities
     }
     return {
@@ -68,7 +68,7 @@ def _summary(results: CostResults, files: list[str]) -> dict[str, object]:
         "results": reference,
         "cheapest": cheapest,
         "settings": {"reference": results.reference.paste(""), "effects": list(scene.case.effects.on())},
-        "rungs": {"planned": results.planned, "finished": results.finished},
+        "configurations": {"planned": results.planned, "finished": results.finished},
         "timings": {"total": round(results.seconds, 6)},
         "remarks": list(results.remarks),
         "files": files,
@@ -76,16 +76,16 @@ def _summary(results: CostResults, files: list[str]) -> dict[str, object]:
     }
 
 
-def _rung(results: CostResults, quantity: str, tolerance: float) -> dict[str, object] | None:
+def _configuration(results: CostResults, quantity: str, tolerance: float) -> dict[str, object] | None:
     row = results.cheapest(quantity, tolerance)
     if row is None:
         return None
     error = results.shown_error(row)
     return {
-        "rung": row.rung.label,
+        "configuration": row.configuration.label,
         "seconds": round(row.seconds.cpu, 6),
         "error": error if math.isfinite(error) else None,
-        "case_line": row.rung.paste(results.asked.pair),
+        "case_line": row.configuration.paste(results.asked.pair),
     }
 
 
@@ -93,10 +93,10 @@ def cheapest_lines(results: CostResults) -> list[str]:
     """The cheapest settings in words, for the terminal."""
     lines = []
     for name in results.named:
-        floor = "" if name == ALL else f" (the reference knows it to {results.floors[name]:.0e})"
+        floor = "" if name == ALL else f" (error of the reference: {results.floors[name]:.0e})"
         lines.append(f"{name}{floor}:")
         for tolerance in TOLERANCES:
             row = results.cheapest(name, tolerance)
-            told = f"{row.seconds.cpu:9.3g} s  {row.rung.label}" if row else "not reached"
-            lines.append(f"  {tolerance:.0e}  {told}")
+            best = f"{row.seconds.cpu:9.3g} s  {row.configuration.label}" if row else "not reached"
+            lines.append(f"  {tolerance:.0e}  {best}")
     return lines

@@ -1,4 +1,4 @@
-"""``report.html`` of a study of cost: every point says which rung it is, every table can be taken along."""
+"""``report.html`` of a cost study: every point says which configuration it is, every table can be downloaded."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _cheapest(results: CostResults) -> Grid:
     rows = []
     for name in results.named:
         found = [results.cheapest(name, tolerance) for tolerance in TOLERANCES]
-        cells = [f"{row.rung.label}: {row.seconds.cpu:.2g} s" if row else "not reached" for row in found]
+        cells = [f"{row.configuration.label}: {row.seconds.cpu:.2g} s" if row else "not reached" for row in found]
         rows.append([name, *cells])
     return Grid(["", *(f"{tolerance:.0e}" for tolerance in TOLERANCES)], rows)
 
@@ -42,10 +42,10 @@ def cost_page(results: CostResults, figures: Sequence[Figure]) -> Page:
     """
     cost, orders, knobs, cheapest = tables(results)
     scene = results.asked.scene
-    total = f"{results.finished} of {results.planned} rungs in {results.seconds:.0f} s"
+    total = f"{results.finished} of {results.planned} configurations in {results.seconds:.0f} s"
     lead: list[Block] = [Paragraph(
-        "Every rung computes the same quantities with other means. Errors are relative, the largest over the load "
-        "positions, against a converged solution; seconds are those of one core and wander on a busy machine."
+        "Every configuration computes the same quantities in another way. Errors are relative, the largest over "
+        "the load positions, against a converged solution; seconds are those of one core and wander on a busy machine."
     )]  # fmt: skip
     if results.remarks:
         lead.insert(0, Notes(results.remarks))
@@ -55,7 +55,8 @@ def cost_page(results: CostResults, figures: Sequence[Figure]) -> Page:
     sections += [Section(f"Cost of {q.name}", (Plot(by_key[f"cost_{q.name}"]),)) for q in results.quantities]
     knobs_drawn = (Plot(by_key["cost_knobs"]),) if "cost_knobs" in by_key else ()
     if np.size(orders.columns[0].values):
-        sections.append(Section("What each knob does", (*knobs_drawn, DataTable(orders), DataTable(knobs))))
-    sections.append(Section("Every rung", (DataTable(cost), Facts({"reference": results.reference.label, **settings}))))
+        sections.append(Section("What each setting does", (*knobs_drawn, DataTable(orders), DataTable(knobs))))
+    reference = Facts({"reference": results.reference.label, **settings})
+    sections.append(Section("Every configuration", (DataTable(cost), reference)))
     title = f"What accuracy costs: {scene.case.title or scene.name}"
     return Page(title, total, tuple(sections), (cost, orders, knobs, cheapest), name=f"{scene.name}-cost")

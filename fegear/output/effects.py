@@ -13,7 +13,7 @@ from fegear.output.report.effects import effects_page
 from fegear.output.report.page import write_page
 from fegear.output.summary import write_json
 from fegear.output.tables import write_table
-from fegear.studies.effect_figures import effect_figure, telling_curve
+from fegear.studies.effect_figures import clearest_curve, effect_figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -87,7 +87,7 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
     (folder / "plots").mkdir()
     table = effects_table(switched)
     write_table(folder / "tables", table)
-    curves = {found.effect: telling_curve(found) for found in switched}
+    curves = {found.effect: clearest_curve(found) for found in switched}
     title = scene.case.title or scene.name
     figures = {found.effect: effect_figure(found, curves[found.effect], title) for found in switched}
     for figure in figures.values():

@@ -40,7 +40,7 @@ class Axis:
         """Return how many values it has."""
         return len(self.values)
 
-    def told(self, index: int) -> str:
+    def words(self, index: int) -> str:
         """``profile_shift = 0.25``."""
         return f"{self.key} = {self.values[index]}"
 

@@ -37,7 +37,7 @@ def curves_of(measured: Measured) -> dict[str, Table]:
     return {table.name: table for table in measured.results.tables}
 
 
-def telling_curve(found: Switched) -> EffectCurve | None:
+def clearest_curve(found: Switched) -> EffectCurve | None:
     """The curve to draw: of the first kind that the runs have, the table that the effect changes most."""
     before, after = curves_of(found.without), curves_of(found.with_it)
     for start, x, y in CURVES:
@@ -81,7 +81,7 @@ def effect_figure(found: Switched, curve: EffectCurve | None, title: str) -> Fig
     ----------
     found : Switched
     curve : tuple, optional
-        What `telling_curve` gives.
+        What `clearest_curve` gives.
     title : str
         Of the case.
     """

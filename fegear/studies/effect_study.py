@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     Document = dict[str, Any]
 
-#: Curves that show an effect, the most telling first: start of the table's name, its abscissa and ordinate.
+#: Curves that show an effect, the clearest first: start of the table's name, its abscissa and ordinate.
 CURVES = (
     ("dynamic_factor_", "speed", "dynamic_factor"),
     ("tooth_contact_", "phi1", "te"),
@@ -51,7 +51,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Switched:
-    """An effect with and without; `named` tells whether the case has it on."""
+    """An effect with and without; `named`: whether the case has it on."""
 
     effect: str
     named: bool

@@ -91,7 +91,7 @@ class SweepResults:
     def place(self, index: int) -> str:
         """``gear.a.teeth = 20, gear.a.profile_shift = 0.1``."""
         where = np.unravel_index(index, [len(axis) for axis in self.axes])
-        return ", ".join(axis.told(int(i)) for axis, i in zip(self.axes, where, strict=True))
+        return ", ".join(axis.words(int(i)) for axis, i in zip(self.axes, where, strict=True))
 
     def failed(self) -> list[FailedAlike]:
         """Failures that differ in their numbers only, together; the largest group first."""

@@ -21,11 +21,13 @@ def results():
 
 
 def errors(results, quantity, family):
-    return {row.rung.label: row.miss.largest for row in results.of(quantity) if row.rung.family == family}
+    return {
+        row.configuration.label: row.miss.largest for row in results.of(quantity) if row.configuration.family == family
+    }
 
 
 @pytest.mark.long
-def test_the_whole_ladder_is_climbed(results):
+def test_all_configurations_are_tried(results):
     assert results.complete
     assert tuple(q.name for q in results.quantities) == NAMES
     assert all(math.isfinite(row.miss.largest) for row in results.rows), [r.reason for r in results.rows if r.reason]
@@ -57,7 +59,7 @@ def test_tolerances_are_reached_and_what_they_take(results):
                 before = row.seconds.cpu
     whole = results.cheapest("all", 1e-3)
     assert whole is not None
-    assert whole.rung.family == "ring"
+    assert whole.configuration.family == "ring"
     for floor in results.floors.values():
         assert floor < 1e-3
 

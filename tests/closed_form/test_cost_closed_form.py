@@ -1,4 +1,4 @@
-"""Pareto front, cheapest rung and observed order on data whose answer is known."""
+"""Pareto front, cheapest configuration and observed order on data whose answer is known."""
 
 import math
 
@@ -12,10 +12,10 @@ from fegear.studies.cost.pareto import cheapest, pareto_front
 from fegear.studies.cost.quantities import miss
 
 number = st.floats(1e-9, 1e3) | st.just(math.nan)
-rungs = st.lists(st.tuples(number, number), min_size=1, max_size=40)
+configurations = st.lists(st.tuples(number, number), min_size=1, max_size=40)
 
 
-@given(rungs)
+@given(configurations)
 def test_nothing_beats_the_front_and_the_front_beats_all_else(pairs):
     t, e = np.array(pairs).T
     front = pareto_front(t, e)
@@ -31,8 +31,8 @@ def test_nothing_beats_the_front_and_the_front_beats_all_else(pairs):
             assert beaten.any() or any((t[i], e[i]) == (t[j], e[j]) for j in front)
 
 
-@given(rungs, st.floats(1e-9, 1e3))
-def test_the_cheapest_rung_is_the_first_on_the_front_within_the_tolerance(pairs, tolerance):
+@given(configurations, st.floats(1e-9, 1e3))
+def test_the_cheapest_configuration_is_the_first_on_the_front_within_the_tolerance(pairs, tolerance):
     t, e = np.array(pairs).T
     found = cheapest(tolerance, t, e)
     on_front = [i for i in pareto_front(t, e) if e[i] <= tolerance]
@@ -50,11 +50,11 @@ def test_a_power_law_gives_its_power(p, factor, count):
     assert order.slope == pytest.approx(p, rel=1e-9)
     assert order.used == count
     assert order.scatter == pytest.approx(1.0, abs=1e-9)
-    assert f"{count} of {count} rungs" in order.words
+    assert f"{count} of {count} configurations" in order.words
 
 
 @given(st.floats(1.0, 6.0), st.floats(0.3, 0.9))
-def test_coarse_rungs_that_are_not_asymptotic_yet_are_left_out(p, wild):
+def test_coarse_configurations_that_are_not_asymptotic_yet_are_dropped(p, wild):
     h = 2.0 ** -np.arange(8.0)
     error = h**p
     error[:2] *= wild * np.array([1e-3, 30.0])
@@ -64,14 +64,14 @@ def test_coarse_rungs_that_are_not_asymptotic_yet_are_left_out(p, wild):
     assert order.used < 8
 
 
-def test_rungs_at_the_floor_say_nothing():
+def test_configurations_at_the_floor_say_nothing():
     h = 2.0 ** -np.arange(7.0)
     order = observed_order(h, h**2 + 1e-3, floor=1e-3)
     assert order.used == 5  # 1, 0.25, .. 2^-8 = 4e-3 lie above three floors
     assert 1.6 < order.slope < 2.0
     none = observed_order(h, np.full(7, 1e-3), floor=1e-3)
     assert math.isnan(none.slope)
-    assert none.words == "none: only 0 of 7 rungs lie above the reference's own error"
+    assert none.words == "none: only 0 of 7 configurations lie above the reference's own error"
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_rungs_at_the_floor_say_nothing():
         ([0.0, 0.0, 0.0, 0.0], "only 0 of 4"),
     ],
 )
-def test_no_order_is_told_where_there_is_none(error, words):
+def test_no_order_is_reported_where_there_is_none(error, words):
     order = observed_order([1.0, 0.5, 0.25, 0.125], error)
     assert math.isnan(order.slope)
     assert order.words.startswith("none: ")

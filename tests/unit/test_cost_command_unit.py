@@ -1,4 +1,4 @@
-"""``fegear cost`` as users meet it: what it prices, what it leaves behind, what it refuses, what Ctrl-C keeps."""
+"""``fegear cost`` as users meet it: what it studies, what it writes, what it refuses, what Ctrl-C keeps."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def rows(folder, name):
 
 @pytest.fixture(scope="module")
 def short(case):
-    """The command on a ladder of a few coarse rungs."""
+    """The command on a ladder of a few coarse configurations."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ladders, "_QUICK_FACTORS", {2: (4.0, 2.8, 2.0)})
         patch.setattr(ladders, "_QUICK_PATCHES", (2.0,))
@@ -67,7 +67,7 @@ def short(case):
     return out
 
 
-def test_tables_hold_every_rung_with_error_and_seconds(short):
+def test_tables_hold_every_configuration_with_error_and_seconds(short):
     found = rows(short, "cost")
     assert {row["quantity"] for row in found} == set(NAMES)
     families = {row["family"] for row in found}
@@ -76,7 +76,7 @@ def test_tables_hold_every_rung_with_error_and_seconds(short):
     for row in found:
         assert float(row["seconds [s]"]) >= float(row["seconds_solving [s]"])
         assert (float(row["seconds_solving [s]"]) > 0.0) == (row["family"] in ("ring", "sector", "tolerance"))
-        refused = row["rung"].startswith("potential-energy") and row["quantity"] != "c_1"
+        refused = row["configuration"].startswith("potential-energy") and row["quantity"] != "c_1"
         assert ("Sainsot" in row["reason"]) == refused  # his polynomials end at about 24 teeth
         assert (row["answered"] == "0") == refused
         if row["answered"] == "1":
@@ -107,15 +107,15 @@ def test_front_and_cheapest_follow_from_the_table(short):
         if name == "all":
             continue
         good = [r for r in found if r["quantity"] == name and float(r["error"]) <= tolerance]
-        if row["rung"] == "not reached":
+        if row["configuration"] == "not reached":
             assert good == []
             assert math.isnan(float(row["seconds [s]"]))
         else:
             best = min(good, key=lambda r: float(r["seconds [s]"]))
-            assert (row["rung"], row["seconds [s]"]) == (best["rung"], best["seconds [s]"])
+            assert (row["configuration"], row["seconds [s]"]) == (best["configuration"], best["seconds [s]"])
             assert best["on_front"] == "1"
     at_once = cheapest["all", 1e-1]
-    assert at_once["rung"].startswith("whole gear")
+    assert at_once["configuration"].startswith("whole gear")
     assert float(at_once["seconds [s]"]) >= float(cheapest["c_1", 1e-1]["seconds [s]"])
 
 
@@ -128,8 +128,8 @@ def test_what_is_cheapest_can_be_pasted_into_a_case(short, case):
         if row["case_line"].startswith("accuracy"):
             document = tomllib.loads(CASE) | tomllib.loads(row["case_line"])
             settings = mesh_settings(build_scene(document, "pasted", case.parent).case.accuracy)
-            assert f"order {settings.order}, " in row["rung"]
-            assert row["rung"].endswith(f"patch {settings.patch_half_width:.4g}")
+            assert f"order {settings.order}, " in row["configuration"]
+            assert row["configuration"].endswith(f"patch {settings.patch_half_width:.4g}")
     assert any(row["case_line"].startswith("accuracy") for row in rows(short, "cost_cheapest"))
 
 
@@ -140,7 +140,7 @@ def test_orders_tell_what_they_rest_on(short):
     assert {("c_0", "edge length, order 2"), ("c_1", "patch half-width"), ("te-harmonics", even)} <= knobs
     for row in found:
         assert (row["order"] == "nan") == row["rests_on"].startswith("none")
-        assert int(row["rungs_used"]) <= int(row["rungs"])
+        assert int(row["configurations_used"]) <= int(row["configurations"])
     # The mesh stiffness jumps: a trapezoidal rule converges with 1 / N, whatever N is.
     (jumps,) = (row for row in found if row["quantity"] == "stiffness-harmonics" and row["knob"] == even)
     assert float(jumps["order"]) == pytest.approx(1.0, abs=0.25)
@@ -148,7 +148,7 @@ def test_orders_tell_what_they_rest_on(short):
 
 def test_summary_and_pictures(short):
     summary = json.loads((short / "summary.json").read_text())
-    assert summary["rungs"]["planned"] == summary["rungs"]["finished"]
+    assert summary["configurations"]["planned"] == summary["configurations"]["finished"]
     assert set(summary["results"]) == {"a.c_0", "a.c_1", "a.root-stress", "I.te-peak-to-peak", "I.tooth-force"}
     assert summary["results"]["I.tooth-force"]["value"] == pytest.approx(4000.0)
     assert all((short / name).is_file() for name in summary["files"])
@@ -157,47 +157,47 @@ def test_summary_and_pictures(short):
     }  # fmt: skip
 
 
-def test_no_rung_is_paid_by_an_earlier_one(case, monkeypatch):
-    """Every finite-element rung is meshed and solved in its own time, past all caches."""
+def test_no_configuration_profits_from_an_earlier_one(case, monkeypatch):
+    """Every finite-element configuration is meshed and solved in its own time, past all caches."""
     import fegear.studies.cost.measure as measure
-    from fegear.studies.cost.rung import Rung
+    from fegear.studies.cost.configuration import Configuration
     from fegear.studies.cost.sources import FiniteElements
 
     solved = []
     plain = measure.solve_influence
     monkeypatch.setattr(measure, "solve_influence", lambda *a, **k: (solved.append(k), plain(*a, **k))[1])
-    priced = asked(read_scene(case, ['results=["stiffness"]']))
-    rung = Rung("ring", ladders.MeshSettings().scaled(5.6), 5.6)
+    studied = asked(read_scene(case, ['results=["stiffness"]']))
+    configuration = Configuration("ring", ladders.MeshSettings().scaled(5.6), 5.6)
     for _ in range(2):
-        influences, seconds = measure.solve_gears(priced, rung)
+        influences, seconds = measure.solve_gears(studied, configuration)
         assert seconds["a"].cpu > 0.0
     assert len(solved) == 6  # three times each, for the median
-    assert np.isfinite(measure.finite_elements(priced, rung, influences).of_gear("c_0", priced)).all()
-    assert isinstance(measure.finite_elements(priced, rung, influences), FiniteElements)
+    assert np.isfinite(measure.finite_elements(studied, configuration, influences).of_gear("c_0", studied)).all()
+    assert isinstance(measure.finite_elements(studied, configuration, influences), FiniteElements)
 
 
-def test_only_what_the_case_asks_for_is_priced(case):
+def test_only_what_the_case_asks_for_is_studied(case):
     scene = read_scene(case, ['results=["stiffness"]'])
     assert [q.name for q in asked(scene).quantities] == ["c_0", "c_1"]
     assert asked(scene).pair == ""
     assert asked(scene).gears == ("a",)
     stress = asked(read_scene(case, ['cost.quantities=["root-stress"]']))
-    assert [rung.family for rung in ladder_of(stress).others][:1] == ["stress-formula"]
+    assert [configuration.family for configuration in ladder_of(stress).others][:1] == ["stress-formula"]
     force = asked(read_scene(case, ['cost.quantities=["tooth-force"]']))
     assert force.gear == ""
     assert "static" in force.quantities[0].meaning
     assert forecast(force, ladder_of(force, quick=True)) < forecast(force, ladder_of(force))
 
 
-def test_effects_that_only_the_prices_depend_on_are_not_idle(case):
+def test_effects_that_only_the_cost_study_depends_on_are_not_idle(case):
     from fegear.engine.plan import make_plan
     from fegear.results.catalogue import STAGES
 
     wanted = 'results=["stiffness"]'
     idle = make_plan(read_scene(case, [wanted]), STAGES).idle_effects
     assert idle == ("neighbour_coupling", "hertz")
-    priced = read_scene(case, [wanted, 'cost.quantities=["te-peak-to-peak"]'])
-    assert make_plan(priced, STAGES).idle_effects == ()
+    studied = read_scene(case, [wanted, 'cost.quantities=["te-peak-to-peak"]'])
+    assert make_plan(studied, STAGES).idle_effects == ()
 
 
 @pytest.mark.parametrize(
@@ -213,12 +213,12 @@ def test_effects_that_only_the_prices_depend_on_are_not_idle(case):
         ("gear.a.tooth_mesh=own.msh", "fixes the mesh"),
     ],
 )
-def test_what_cannot_be_priced_is_refused_with_the_remedy(case, override, words):
+def test_what_cannot_be_studied_is_refused_with_the_remedy(case, override, words):
     with pytest.raises(InputError, match=words):
         asked(read_scene(case, [override]))
 
 
-def test_a_case_without_a_load_has_no_pair_to_price(tmp_path):
+def test_a_case_without_a_load_has_no_pair_to_study(tmp_path):
     path = tmp_path / "bare.toml"
     path.write_text(CASE.replace('load = "4000 N"\n', ""))
     with pytest.raises(InputError, match=r"cost\.pair = \(not given\): must be a pair of spur gears that carries"):
@@ -239,7 +239,7 @@ def test_ctrl_c_leaves_what_is_finished(case, tmp_path):
     )  # fmt: skip
     assert process.stdout is not None
     lines = iter(process.stdout.readline, "")
-    assert next(lines).startswith("Prices c_0: ")
+    assert next(lines).startswith("Cost study: ")
     assert next(lines).startswith("Predicted: about ")
     assert next(lines) == "waiting\n"
     os.kill(process.pid, signal.SIGINT)
@@ -248,5 +248,5 @@ def test_ctrl_c_leaves_what_is_finished(case, tmp_path):
     assert "fegear: interrupted; " in errors
     out = tmp_path / "results" / "pair-cost"
     summary = json.loads((out / "summary.json").read_text())
-    assert 0 < summary["rungs"]["finished"] < summary["rungs"]["planned"]
+    assert 0 < summary["configurations"]["finished"] < summary["configurations"]["planned"]
     assert {row["family"] for row in rows(out, "cost")} == {"ring", "sector", "compliance-formula"}

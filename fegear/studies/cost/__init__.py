@@ -1,4 +1,4 @@
-"""What accuracy costs: a ladder of settings, each rung with its error against a converged reference and its seconds."""
+"""What accuracy costs: configurations from quick to exact, with error (against a converged reference) and seconds."""
 
 from fegear.studies.cost.asked import asked
 from fegear.studies.cost.ladder import Ladder

@@ -42,7 +42,7 @@ def loaded(asked: Asked, source: Source, name: str) -> LoadedPair:
 
 
 def pair_error(asked: Asked, source: Source, order: int = 16) -> TransmissionError:
-    """Transmission error of the pair that is priced; `order` is the number of Gauss points between jumps."""
+    """Transmission error of the pair that is studied; `order` is the number of Gauss points between jumps."""
     pair = loaded(asked, source, asked.pair)
     return transmission_error(pair.engagement, pair.nominal, HARMONICS, order=order)
 

@@ -1,4 +1,4 @@
-"""What a case asks to be priced, and of which gear, pair and mesh."""
+"""What a case asks of a cost study, and of which gear, pair and mesh."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _USUAL_LINE_LOAD = 100e3
 
 @dataclass(frozen=True)
 class Asked:
-    """What a case asks to be priced, and where.
+    """What a case asks of a cost study, and where.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def _gear(scene: Scene, names: list[str], pair: str) -> str:
 
 
 def _mesh(scene: Scene, pair: str, names: list[str]) -> str:
-    """Mesh of the train whose dynamics are priced; empty where the case describes none."""
+    """Mesh of the train whose dynamics are studied; empty where the case describes none."""
     train, speed = scene.case.train, scene.case.dynamics
     if not pair or train is None or not speed.speed_values.size:
         mesh = ""
@@ -168,13 +168,13 @@ def _mesh(scene: Scene, pair: str, names: list[str]) -> str:
     if "dynamic-factor" in names and not (mesh and motion_inputs(scene).in_time):
         raise InputError(
             "cost.quantities", '"dynamic-factor"', "needs a train, speeds, and an effect of motion in time",
-            "describe them and set effects.contact_loss = true, or leave the quantity out",
+            "describe them and set effects.contact_loss = true, or remove the quantity",
         )  # fmt: skip
     return mesh if mesh and ("dynamic-factor" in names or not math.isnan(speed.one_speed)) else ""
 
 
 def asked(scene: Scene) -> Asked:
-    """Read from a case what is to be priced.
+    """Read from a case what is to be studied.
 
     Raises
     ------
@@ -189,8 +189,8 @@ def asked(scene: Scene) -> Asked:
         own = scene.case.gear[name].tooth_mesh if name else None
         if own is not None:
             raise InputError(
-                f"gear.{name}.tooth_mesh", f'"{own}"', "fixes the mesh, whose fineness is what is priced",
-                "leave it out, for example in a second case",
+                f"gear.{name}.tooth_mesh", f'"{own}"', "fixes the mesh, whose fineness is what the study varies",
+                "remove it, for example in a second case",
             )  # fmt: skip
     none = np.empty(0)
     radii = load_radii(scene, gear) if gear else none

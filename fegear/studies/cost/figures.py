@@ -29,7 +29,7 @@ NAMES = {
 }
 #: Formulas answer so quickly that their seconds would stretch the axis; they stand no farther left than this [s].
 _QUICKEST = 1e-4
-#: Errors that a double cannot tell from none.
+#: Errors below what a double resolves.
 _ROUND_OFF = 1e-16
 _ORDERS = ((2, "sky", "circle"), (3, "blue", "square"), (4, "green", "diamond"))
 #: Where the grey zone of the reference's own error starts, over that error.
@@ -40,7 +40,7 @@ def cost_figures(results: CostResults) -> tuple[Figure, ...]:
     """Describe all: the quantities together, each alone, and the knobs where some were turned."""
     alone = tuple(_quantity_figure(results, quantity) for quantity in results.quantities)
     together = Figure(
-        "cost", "What accuracy costs", "Every rung of the ladder; grey: what the reference does not know.",
+        "cost", "What accuracy costs", "Every configuration of the study; grey: below the reference's own error.",
         tuple(_panel(results, q, title=NAMES.get(q.name, q.name), written=False) for q in results.quantities),
         columns=min(2, len(results.quantities)),
     )  # fmt: skip
@@ -54,7 +54,7 @@ def _quantity_figure(results: CostResults, quantity: Quantity) -> Figure:
         f"cost_{quantity.name}",
         f"Cost of {name}",
         f"{quantity.meaning[0].upper()}{quantity.meaning[1:]}: relative error against a converged solution over the "
-        f"seconds it takes. The grey band is what the reference itself does not know (below {floor:.0e}).",
+        f"seconds it takes. The grey band lies below the error of the reference itself ({floor:.0e}).",
         (_panel(results, quantity, title="", written=True),),
     )
 
@@ -63,15 +63,16 @@ def _panel(results: CostResults, quantity: Quantity, *, title: str, written: boo
     rows = results.of(quantity.name)
     items: list[Item] = []
     for order, role, symbol in _ORDERS:
-        ring = [r for r in rows if r.rung.family == "ring" and r.rung.settings and r.rung.settings.order == order]
+        whole = [row for row in rows if row.configuration.family == "ring"]
+        ring = [row for row in whole if row.configuration.settings and row.configuration.settings.order == order]
         items += _points(results, ring, f"ring, order {order}", role, symbol)
     for families, label, role, symbol in (
         (("sector",), "sector with free sides", "orange", "triangle-up"),
         (("compliance-formula", "stress-formula"), "closed form", "red", "x"),
         (("table",), "the case's table", "ink", "square"),
-        (("tolerance",), "picked for accuracy.tolerance, its error estimate paid", "purple", "star"),
+        (("tolerance",), "chosen for accuracy.tolerance, error estimate included", "purple", "star"),
     ):
-        here = [row for row in rows if row.rung.family in families]
+        here = [row for row in rows if row.configuration.family in families]
         items += _points(results, here, label, role, symbol, written=written)
     front = results.front(quantity.name)
     if front.front.size:
@@ -86,7 +87,7 @@ def _panel(results: CostResults, quantity: Quantity, *, title: str, written: boo
 def _points(
     results: CostResults, rows: Sequence[Measured], label: str, role: str, symbol: str, *, written: bool = False
 ) -> list[Points]:
-    """Rungs with an error; a formula that leaves positions out still shows what it misses at the others."""
+    """Configurations with an error; a formula that leaves positions out still shows what it misses at the others."""
     error = [results.error_where_answered(row) for row in rows]
     known = [(row, e) for row, e in zip(rows, error, strict=True) if math.isfinite(e) and e > 0.0]
     if not known:
@@ -98,8 +99,8 @@ def _points(
 
 
 def _note(row: Measured) -> str:
-    rung = row.rung
-    text = f"{rung.teeth} teeth" if rung.teeth else rung.formula or rung.label
+    configuration = row.configuration
+    text = f"{configuration.teeth} teeth" if configuration.teeth else configuration.formula or configuration.label
     return text + (f" ({row.miss.answered:.0%} of the flank)" if row.miss.answered < 1.0 else "")
 
 
@@ -120,6 +121,6 @@ def _knobs_figure(results: CostResults) -> Figure:
         axes = Axis("setting", unit, log=True), Axis("relative error", log=True)
         panels.append(Panel(*axes, tuple(curves), title=title))
     return Figure(
-        "cost_knobs", "What each knob does", "One setting varied at a time, all others fine.", tuple(panels),
+        "cost_knobs", "What each setting does", "One setting varied at a time, all others fine.", tuple(panels),
         columns=min(3, len(names)),
     )  # fmt: skip

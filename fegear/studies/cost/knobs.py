@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.studies.cost.asked import Asked
+    from fegear.studies.cost.configuration import Configuration
     from fegear.studies.cost.ladder import Ladder
     from fegear.studies.cost.measure import Found
     from fegear.studies.cost.quantities import Quantity
     from fegear.studies.cost.result import Knob
-    from fegear.studies.cost.rung import Rung
 
     Array = NDArray[np.float64]
 
@@ -50,29 +50,29 @@ def ladder_knobs(found: Found, ladder: Ladder, best: FiniteElements) -> list[Kno
     knobs: list[Knob] = []
     asked, values, rows = found.asked, found.values, found.rows
     quantities = [q for q in asked.quantities if asked.solves(q)]
-    seconds = {(row.rung, row.quantity): row.seconds.cpu for row in rows}
+    seconds = {(row.configuration, row.quantity): row.seconds.cpu for row in rows}
     for quantity in quantities:
         name = quantity.name
         fine = _by_patch(asked, quantity, best)
         for group in _edge_groups(ladder):
             settings = group[0].settings
-            there = [rung for rung in group if (rung, name) in values]
+            there = [configuration for configuration in group if (configuration, name) in values]
             if settings is None or len(there) < 2:
                 continue
             exact = fine(settings.patch_half_width)
-            factors = np.array([rung.factor for rung in there])
+            factors = np.array([configuration.factor for configuration in there])
             edges = factors * MeshSettings().root_edge_length
-            errors = [miss(name, values[rung, name], exact).rms for rung in there]
+            errors = [miss(name, values[configuration, name], exact).rms for configuration in there]
             at = f"patch {settings.patch_half_width:g} modules, against the reference's mesh with it; root mean square"
-            spent = [seconds[rung, name] for rung in there]
+            spent = [seconds[configuration, name] for configuration in there]
             knob = f"edge length, order {settings.order}"
             knobs.append(make_knob(name, knob, at, edges, factors, errors, found.mesh_floors[name], spent))
         known = [fine(a) for a in _PATCHES]
         change = [miss(name, a, b).rms for a, b in pairwise(known)]
         at = "the reference's mesh, change to the next narrower of equal ratio"
         knobs.append(make_knob(name, "patch half-width", at, _PATCHES[:-1], _PATCHES[:-1], change))
-        sectors = [row for row in rows if row.rung.family == "sector" and row.quantity == name]
-        teeth = np.array([row.rung.teeth for row in sectors], dtype=float)
+        sectors = [row for row in rows if row.configuration.family == "sector" and row.quantity == name]
+        teeth = np.array([row.configuration.teeth for row in sectors], dtype=float)
         if teeth.size > 1:
             at = "against the whole gear; root mean square"
             errors = [row.miss.rms for row in sectors]
@@ -99,9 +99,9 @@ def _by_patch(asked: Asked, quantity: Quantity, best: FiniteElements) -> Callabl
     return answers
 
 
-def _edge_groups(ladder: Ladder) -> Iterable[list[Rung]]:
-    """Whole-gear rungs of one order and one patch: the narrowest that every mesh of the order has."""
-    by_order: dict[int, list[tuple[Rung, ...]]] = {}
+def _edge_groups(ladder: Ladder) -> Iterable[list[Configuration]]:
+    """Whole-gear configurations of one order and one patch: the narrowest that every mesh of the order has."""
+    by_order: dict[int, list[tuple[Configuration, ...]]] = {}
     for group in ladder.meshes:
         settings = group[0].settings
         if settings is not None and group[0].family == "ring":

@@ -1,4 +1,4 @@
-"""Which rungs are tried: every closed form, sectors of a few teeth, the whole ring from coarse to fine, tolerances."""
+"""The configurations that are tried: closed forms, sectors of a few teeth, the whole gear, tolerances."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fegear.fem.settings import MeshSettings
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import SOURCES
-from fegear.studies.cost.rung import ISO_STIFFNESS, Rung
+from fegear.studies.cost.configuration import ISO_STIFFNESS, Configuration
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +22,7 @@ _FACTORS = {
 _QUICK_FACTORS = {2: (4.0, 2.0, 1.0), 3: (4.0, 2.0), 4: (2.8, 1.4)}
 #: Half-widths of the pressure that loads the mesh, over the usual one.
 _PATCHES, _QUICK_PATCHES = (2.0, 1.0, 0.5), (2.0, 1.0)
-#: A pressure narrower than this many edges of the flank is not worth a rung.
+#: A pressure narrower than this many edges of the flank is not worth a configuration.
 _NARROWEST = 0.75
 #: Teeth of the sectors with free sides; those that the picture names are 3, 5 and 9.
 _SECTORS, _QUICK_SECTORS = (3, 5, 7, 9, 13), (3, 5, 9)
@@ -41,35 +41,35 @@ _NARROW, _WIDE = 0.04, 0.08
 
 @dataclass(frozen=True)
 class Ladder:
-    """The rungs, and what they are held against.
+    """The configurations, and what they are held against.
 
     Parameters
     ----------
-    reference : Rung
-    check : Rung
+    reference : Configuration
+    check : Configuration
         A coarser one beside it; their difference is the floor below which no error is claimed.
-    meshes : tuple of tuple of Rung
-        Finite-element rungs that differ in the patch alone, which costs no new solution.
-    others : tuple of Rung
+    meshes : tuple of tuple of Configuration
+        Finite-element configurations that differ in the patch alone, which costs no new solution.
+    others : tuple of Configuration
         Closed forms and tolerances, each on its own.
     """
 
-    reference: Rung
-    check: Rung
-    meshes: tuple[tuple[Rung, ...], ...]
-    others: tuple[Rung, ...]
+    reference: Configuration
+    check: Configuration
+    meshes: tuple[tuple[Configuration, ...], ...]
+    others: tuple[Configuration, ...]
 
     @property
-    def rungs(self) -> tuple[Rung, ...]:
+    def configurations(self) -> tuple[Configuration, ...]:
         """All but reference and check."""
-        return tuple(rung for group in self.meshes for rung in group) + self.others
+        return tuple(configuration for group in self.meshes for configuration in group) + self.others
 
 
-def _ring(order: int, factor: float, patch: float) -> Rung:
+def _ring(order: int, factor: float, patch: float) -> Configuration:
     s = MeshSettings().scaled(factor)
     # No coarser than a case file may ask for.
     s = replace(s, rim_fraction=min(s.rim_fraction, 1.0), body_fraction=min(s.body_fraction, 10.0))
-    return Rung("ring", replace(s, order=order, patch_half_width=patch), factor)
+    return Configuration("ring", replace(s, order=order, patch_half_width=patch), factor)
 
 
 def make_ladder(
@@ -82,13 +82,13 @@ def make_ladder(
     half_width : float
         Usual half-width of the true contact [modules].
     quantities : sequence of str
-        Names of the quantities that finite elements and formulas have a say in; none, no such rungs.
+        Names of the quantities that finite elements and formulas have a say in; none, no such configurations.
     teeth : int
         Smallest number of teeth of a gear: a sector must be smaller.
     tabled : bool
         Whether a pair's compliances come from the case's own table.
     quick : bool
-        A few rungs instead of all.
+        A few configurations instead of all.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def make_ladder(
     """
     patch = min(max(half_width, _NARROW), _WIDE) if half_width > 0.0 else _WIDE
     reference, check = _reference(patch, quick=quick)
-    others = [Rung("table")] if tabled else []
+    others = [Configuration("table")] if tabled else []
     if not quantities:
         return Ladder(reference, check, (), tuple(others))
     usual = MeshSettings().patch_half_width
@@ -107,21 +107,20 @@ def make_ladder(
             narrowest = _NARROWEST * MeshSettings().scaled(factor).flank_edge_length * 2.0 / order
             meshes.append(tuple(_ring(order, factor, p) for p in patches if p >= narrowest))
     settings = _ring(_SECTOR_ORDER, _SECTOR_FACTOR, usual).settings
-    meshes += [
-        (Rung("sector", settings, _SECTOR_FACTOR, n),) for n in (_QUICK_SECTORS if quick else _SECTORS) if n < teeth
-    ]
+    sectors = _QUICK_SECTORS if quick else _SECTORS
+    meshes += [(Configuration("sector", settings, _SECTOR_FACTOR, n),) for n in sectors if n < teeth]
     if set(quantities) - {"root-stress"}:
-        others += [Rung("compliance-formula", formula=name) for name in (*SOURCES, ISO_STIFFNESS)]
+        others += [Configuration("compliance-formula", formula=name) for name in (*SOURCES, ISO_STIFFNESS)]
     if "root-stress" in quantities:
-        others += [Rung("stress-formula", formula=name) for name in ROOT_STRESS_SOURCES]
-    others += [Rung("tolerance", tolerance=t) for t in (_TOLERANCES[:3] if quick else _TOLERANCES)]
+        others += [Configuration("stress-formula", formula=name) for name in ROOT_STRESS_SOURCES]
+    others += [Configuration("tolerance", tolerance=t) for t in (_TOLERANCES[:3] if quick else _TOLERANCES)]
     return Ladder(reference, check, tuple(meshes), tuple(others))
 
 
-def _reference(patch: float, *, quick: bool) -> tuple[Rung, Rung]:
+def _reference(patch: float, *, quick: bool) -> tuple[Configuration, Configuration]:
     """Order 4 with edges along flank and fillet finer than any of the ladder's, and the same a step coarser."""
     fine = MeshSettings().scaled(_REFERENCE_FACTOR)
     fine = replace(fine, order=4, patch_half_width=patch, **_REFERENCE_EDGES)
     both = (fine.scaled(_QUICKER), fine.scaled(_QUICKER * _CHECK)) if quick else (fine, fine.scaled(_CHECK))
-    made = [Rung("ring", s, s.flank_edge_length / MeshSettings().flank_edge_length) for s in both]
+    made = [Configuration("ring", s, s.flank_edge_length / MeshSettings().flank_edge_length) for s in both]
     return made[0], made[1]

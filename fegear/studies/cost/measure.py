@@ -1,4 +1,4 @@
-"""Climb one rung: solve, answer, compare, tell the seconds."""
+"""Measure one configuration: solve, answer, compare, take the seconds."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from fegear.fem.influence import Influence
     from fegear.geometry import Gear
     from fegear.studies.cost.asked import Asked
+    from fegear.studies.cost.configuration import Configuration
     from fegear.studies.cost.ladder import Ladder
     from fegear.studies.cost.quantities import Quantity
     from fegear.studies.cost.result import Knob
-    from fegear.studies.cost.rung import Rung
     from fegear.studies.cost.sources import Source
 
     Array = NDArray[np.float64]
@@ -49,13 +49,13 @@ _ROUND_OFF = 1e-13
 
 @dataclass
 class Found:
-    """What has been found so far; grows rung by rung.
+    """What has been found so far; grows configuration by configuration.
 
     Parameters
     ----------
     asked : Asked
     rows : list of Measured
-    values : dict of (Rung, quantity) to ndarray
+    values : dict of (Configuration, quantity) to ndarray
     reference : dict of quantity to ndarray
     floors, mesh_floors : dict of quantity to float
         What the reference does not know (largest), and how much of that is its mesh (root mean square); relative.
@@ -65,7 +65,7 @@ class Found:
 
     asked: Asked
     rows: list[Measured] = field(default_factory=list)
-    values: dict[tuple[Rung, str], Array] = field(default_factory=dict)
+    values: dict[tuple[Configuration, str], Array] = field(default_factory=dict)
     reference: dict[str, Array] = field(default_factory=dict)
     floors: dict[str, float] = field(default_factory=dict)
     mesh_floors: dict[str, float] = field(default_factory=dict)
@@ -82,13 +82,13 @@ def _solve(gear: Gear, settings: MeshSettings, reach: int, sector_teeth: int) ->
     )  # fmt: skip
 
 
-def solve_gears(asked: Asked, rung: Rung) -> tuple[dict[str, Influence], dict[str, Seconds]]:
+def solve_gears(asked: Asked, configuration: Configuration) -> tuple[dict[str, Influence], dict[str, Seconds]]:
     """Solve every gear that is needed by finite elements, from nothing; equal shapes once.
 
     Parameters
     ----------
     asked : Asked
-    rung : Rung
+    configuration : Configuration
         With settings.
 
     Returns
@@ -96,9 +96,9 @@ def solve_gears(asked: Asked, rung: Rung) -> tuple[dict[str, Influence], dict[st
     influences, seconds : dict
         By the gears' names; a gear of the same shape as an earlier one takes no time.
     """
-    settings = rung.settings
+    settings = configuration.settings
     if settings is None:
-        raise ValueError(f"{rung.label} is no finite-element rung")
+        raise ValueError(f"{configuration.label} is no finite-element configuration")
     found: dict[str, Influence] = {}
     seconds: dict[str, Seconds] = {}
     shapes: dict[object, Influence] = {}
@@ -107,18 +107,18 @@ def solve_gears(asked: Asked, rung: Rung) -> tuple[dict[str, Influence], dict[st
         shape = (gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption)
         if shape not in shapes:
             shapes[shape], seconds[name] = timed(
-                functools.partial(_solve, gear, settings, needed_reach(asked.scene, name), rung.teeth)
+                functools.partial(_solve, gear, settings, needed_reach(asked.scene, name), configuration.teeth)
             )
         found[name] = shapes[shape]
         seconds.setdefault(name, NOTHING)
     return found, seconds
 
 
-def finite_elements(asked: Asked, rung: Rung, solved: Mapping[str, Influence]) -> FiniteElements:
-    """Solved gears with the patch of a rung."""
-    settings = rung.settings
+def finite_elements(asked: Asked, configuration: Configuration, solved: Mapping[str, Influence]) -> FiniteElements:
+    """Solved gears with the patch of a configuration."""
+    settings = configuration.settings
     if settings is None:
-        raise ValueError(f"{rung.label} is no finite-element rung")
+        raise ValueError(f"{configuration.label} is no finite-element configuration")
     gears = asked.scene.gears
     return FiniteElements(
         {name: replace(_any_solution(gears[name]), fine=one, settings=settings) for name, one in solved.items()}
@@ -127,15 +127,15 @@ def finite_elements(asked: Asked, rung: Rung, solved: Mapping[str, Influence]) -
 
 @functools.lru_cache(maxsize=8)
 def _any_solution(gear: Gear) -> GearInfluence:
-    """A gear's influence functions in SI, whose solution others take the place of; nobody is charged for it."""
+    """A gear's influence functions in SI, into which other solutions are put; no configuration is charged for it."""
     return solve_gear(gear, MeshSettings().scaled(4.0), estimate_error=False)
 
 
-def _record(found: Found, rung: Rung, source: Source, seconds: Mapping[str, Seconds]) -> None:
+def _record(found: Found, configuration: Configuration, source: Source, seconds: Mapping[str, Seconds]) -> None:
     """Answer and compare every quantity that a source knows."""
     asked = found.asked
-    here = without_neighbours(asked) if rung.family == "compliance-formula" else asked
-    for quantity in answered(asked, rung):
+    here = without_neighbours(asked) if configuration.family == "compliance-formula" else asked
+    for quantity in answered(asked, configuration):
         solve = NOTHING
         for name in asked.gears_for(quantity):
             solve = solve.plus(seconds.get(name, NOTHING))
@@ -143,11 +143,11 @@ def _record(found: Found, rung: Rung, source: Source, seconds: Mapping[str, Seco
             values, own = timed(functools.partial(answer, here, quantity, source))
         except FegearError as problem:
             nothing = Miss(math.nan, math.nan, 0.0)
-            found.rows.append(Measured(rung, quantity.name, math.nan, nothing, solve, NOTHING, str(problem)))
+            found.rows.append(Measured(configuration, quantity.name, math.nan, nothing, solve, NOTHING, str(problem)))
             continue
-        found.values[rung, quantity.name] = values
+        found.values[configuration, quantity.name] = values
         off = miss(quantity.name, values, found.reference[quantity.name])
-        found.rows.append(Measured(rung, quantity.name, largest(values), off, solve, own))
+        found.rows.append(Measured(configuration, quantity.name, largest(values), off, solve, own))
 
 
 def largest(values: Array) -> float:
@@ -157,7 +157,7 @@ def largest(values: Array) -> float:
 
 
 def refer(found: Found, ladder: Ladder) -> FiniteElements:
-    """Solve the reference and the coarser one that tells its error."""
+    """Solve the reference and the coarser one that shows its error."""
     asked = found.asked
     solved, _ = solve_gears(asked, ladder.reference)
     best = finite_elements(asked, ladder.reference, solved)
@@ -179,45 +179,45 @@ def refer(found: Found, ladder: Ladder) -> FiniteElements:
     return best
 
 
-def _tolerance(found: Found, rung: Rung) -> None:
-    """What a run pays for a tolerance: every solution it makes, the ones for its own error estimate among them."""
+def _tolerance(found: Found, configuration: Configuration) -> None:
+    """The time that a run takes for a tolerance: all solutions it makes, those for its own error estimate included."""
     scene = found.asked.scene
-    accuracy = type(scene.case.accuracy)(tolerance=rung.tolerance)
+    accuracy = type(scene.case.accuracy)(tolerance=configuration.tolerance)
     wanted = replace(scene, case=scene.case.model_copy(update={"accuracy": accuracy}))
     solved: dict[str, GearInfluence] = {}
     seconds: dict[str, Seconds] = {}
-    cache = SolutionCache()  # gears of one shape pay once, as they do in a run
+    cache = SolutionCache()  # gears of one shape are solved once, as in a run
     for name in found.asked.gears:
         solved[name], seconds[name] = timed(
             functools.partial(solve_influence_functions, gear_to_solve(wanted, name), cache), repeat=False
         )
-    _record(found, rung, FiniteElements(solved), seconds)
+    _record(found, configuration, FiniteElements(solved), seconds)
 
 
-def climb(found: Found, rung: Rung) -> None:
-    """A rung on its own: a closed form, the case's table, or a tolerance."""
-    if rung.family == "tolerance":
-        _tolerance(found, rung)
-    elif rung.family == "table":
-        _record(found, rung, CaseTable(), {})
-    elif rung.family == "stress-formula":
-        _record(found, rung, StressFormula(rung.formula), {})
+def measure_alone(found: Found, configuration: Configuration) -> None:
+    """A configuration on its own: a closed form, the case's table, or a tolerance."""
+    if configuration.family == "tolerance":
+        _tolerance(found, configuration)
+    elif configuration.family == "table":
+        _record(found, configuration, CaseTable(), {})
+    elif configuration.family == "stress-formula":
+        _record(found, configuration, StressFormula(configuration.formula), {})
     else:
-        _record(found, rung, ComplianceFormula(rung.formula), {})
+        _record(found, configuration, ComplianceFormula(configuration.formula), {})
 
 
-def climb_mesh(found: Found, group: tuple[Rung, ...]) -> None:
-    """Rungs that differ in the patch alone: the gears are solved once, and each rung is charged for that."""
+def measure_meshes(found: Found, group: tuple[Configuration, ...]) -> None:
+    """Configurations that differ in the patch alone: the gears are solved once, and each is charged for that."""
     solved, seconds = solve_gears(found.asked, group[0])
-    for rung in group:
-        _record(found, rung, finite_elements(found.asked, rung, solved), seconds)
+    for configuration in group:
+        _record(found, configuration, finite_elements(found.asked, configuration, solved), seconds)
 
 
-def answered(asked: Asked, rung: Rung) -> list[Quantity]:
-    """Quantities that a rung knows anything of."""
+def answered(asked: Asked, configuration: Configuration) -> list[Quantity]:
+    """Quantities that a configuration knows anything of."""
     kinds: dict[str, frozenset[str]] = {
         "compliance-formula": ComplianceFormula.answers, "stress-formula": StressFormula.answers,
         "table": CaseTable.answers,
     }  # fmt: skip
-    known = kinds.get(rung.family, FiniteElements.answers)
-    return [q for q in asked.quantities if q.name in known and asked.solves(q) != (rung.family == "table")]
+    known = kinds.get(configuration.family, FiniteElements.answers)
+    return [q for q in asked.quantities if q.name in known and asked.solves(q) != (configuration.family == "table")]

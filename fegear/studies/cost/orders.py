@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 #: Errors below this many floors are too near to what the reference itself does not know.
 ABOVE_FLOOR = 3.0
-#: Rungs that lie farther than this factor off the line are not asymptotic yet.
+#: Configurations that lie farther than this factor off the line are not asymptotic yet.
 _SCATTER = 1.6
 #: A slope below this is none.
 _FLAT = 0.1
@@ -28,9 +28,9 @@ class Order:
     Parameters
     ----------
     slope : float
-        p of error ~ step^p; NaN where none can be told.
+        p of error ~ step^p; NaN where none is observed.
     used : int
-        Rungs on the line, counted from the finest that lies above the floor.
+        Configurations on the line, counted from the finest that lies above the floor.
     scatter : float
         Largest factor between a used error and the line; NaN without a line.
     words : str
@@ -46,7 +46,7 @@ class Order:
 def observed_order(step: ArrayLike, error: ArrayLike, floor: float = 0.0) -> Order:
     """Least-squares slope of log error over log step.
 
-    Starts with every rung above the floor and leaves out the coarsest, one by one, until those that remain lie on a
+    Starts with every configuration above the floor and drops the coarsest, one by one, until those that remain lie on a
     line.
 
     Parameters
@@ -54,7 +54,7 @@ def observed_order(step: ArrayLike, error: ArrayLike, floor: float = 0.0) -> Ord
     step, error : array_like, shape (n,)
         Positive steps and errors.
     floor : float
-        Error of the reference: rungs below three times it say nothing.
+        Error of the reference: configurations below three times it say nothing.
 
     Returns
     -------
@@ -67,7 +67,7 @@ def observed_order(step: ArrayLike, error: ArrayLike, floor: float = 0.0) -> Ord
     count = int(clear.sum())
     if count < _FEWEST:
         at = "lie above the reference's own error" if floor > 0.0 else "have an error"
-        return Order(math.nan, 0, math.nan, f"none: only {count} of {h.size} rungs {at}")
+        return Order(math.nan, 0, math.nan, f"none: only {count} of {h.size} configurations {at}")
     x, y = np.log(h[clear]), np.log(e[clear])
     for used in range(count, _FEWEST - 1, -1):
         line = np.polyfit(x[:used], y[:used], 1)
@@ -75,6 +75,8 @@ def observed_order(step: ArrayLike, error: ArrayLike, floor: float = 0.0) -> Ord
         if scatter <= _SCATTER:
             if line[0] < _FLAT:
                 return Order(math.nan, 0, math.nan, "none: the error does not fall with the knob")
-            told = f"{used} of {h.size} rungs, within a factor of {scatter:.2f} of the line"
-            return Order(float(line[0]), used, scatter, told)
-    return Order(math.nan, 0, math.nan, f"none: no {_FEWEST} neighbouring rungs lie within {_SCATTER} of a line")
+            basis = f"{used} of {h.size} configurations, within a factor of {scatter:.2f} of the line"
+            return Order(float(line[0]), used, scatter, basis)
+    return Order(
+        math.nan, 0, math.nan, f"none: no {_FEWEST} neighbouring configurations lie within {_SCATTER} of a line"
+    )

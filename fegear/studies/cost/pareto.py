@@ -1,4 +1,4 @@
-"""Which rungs nothing beats in both time and error, and the cheapest for a tolerance."""
+"""Which configurations nothing beats in both time and error, and the cheapest for a tolerance."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 
 def pareto_front(seconds: ArrayLike, error: ArrayLike) -> NDArray[np.intp]:
-    """Indices of the rungs that no other rung beats, from cheap and poor to dear and good.
+    """Indices of the configurations that no other configuration beats, from quick and rough to slow and accurate.
 
     Parameters
     ----------
     seconds, error : array_like, shape (n,)
-        NaN where a rung has no answer; such rungs are never on the front.
+        NaN where a configuration has no answer; such configurations are never on the front.
 
     Returns
     -------
@@ -34,13 +34,13 @@ def pareto_front(seconds: ArrayLike, error: ArrayLike) -> NDArray[np.intp]:
 
 
 def cheapest(tolerance: float, seconds: ArrayLike, error: ArrayLike) -> int | None:
-    """Index of the cheapest rung whose error is within a tolerance; None where none is.
+    """Index of the cheapest configuration whose error is within a tolerance; None where none is.
 
     Parameters
     ----------
     tolerance : float
     seconds, error : array_like, shape (n,)
-        NaN where a rung has no answer.
+        NaN where a configuration has no answer.
     """
     t, e = np.asarray(seconds, dtype=float), np.asarray(error, dtype=float)
     good = np.flatnonzero(np.isfinite(t) & (e <= tolerance))

@@ -1,4 +1,4 @@
-"""The quantities that can be priced, and how far an answer is from the reference's."""
+"""The quantities of a cost study, and how far an answer is from the reference's."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ OF_GEAR = ("c_0", "c_1", "root-stress")
 
 @dataclass(frozen=True)
 class Quantity:
-    """One thing that is priced.
+    """One quantity of a cost study.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a study of cost found."""
+"""What a cost study found."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.studies.cost.asked import Asked
+    from fegear.studies.cost.configuration import Configuration
     from fegear.studies.cost.quantities import Miss, Quantity
-    from fegear.studies.cost.rung import Rung
 
     Array = NDArray[np.float64]
 
-#: Tolerances for which the cheapest settings are told.
+#: Tolerances for which the cheapest settings are reported.
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
 #: Stands for every quantity at once.
 ALL = "all"
@@ -31,11 +31,11 @@ ALL = "all"
 
 @dataclass(frozen=True)
 class Measured:
-    """One quantity by one rung.
+    """One quantity by one configuration.
 
     Parameters
     ----------
-    rung : Rung
+    configuration : Configuration
     quantity : str
     value : float
         The answer, or of many the one of largest size; SI; NaN without an answer.
@@ -47,7 +47,7 @@ class Measured:
         Why there is no answer; empty where there is one.
     """
 
-    rung: Rung
+    configuration: Configuration
     quantity: str
     value: float
     miss: Miss
@@ -76,7 +76,7 @@ class Knob:
     error : ndarray, shape (n,)
         Relative.
     seconds : ndarray, shape (n,)
-        Processor seconds; NaN where the setting costs nothing that can be told.
+        Processor seconds; NaN where the setting takes no time of its own.
     floor : float
     order : Order
     """
@@ -104,12 +104,12 @@ def make_knob(
 
 @dataclass(frozen=True)
 class Front:
-    """Rungs of one quantity in arrays, shape (n,): what pictures and tables draw on.
+    """Configurations of one quantity in arrays, shape (n,): what pictures and tables draw on.
 
     Parameters
     ----------
     rows : tuple of Measured
-        Those that a user may choose from: tolerances, which pay for their own error estimate, stand apart.
+        Those that a user may choose from: tolerances, whose time includes their own error estimate, stand apart.
     seconds, error : ndarray
         Errors no smaller than the floor.
     front : ndarray of int
@@ -124,12 +124,12 @@ class Front:
 
 @dataclass(frozen=True)
 class CostResults:
-    """Errors and seconds of every rung, the orders of the knobs, the cheapest settings.
+    """Errors and seconds of every configuration, the orders of the knobs, the cheapest settings.
 
     Parameters
     ----------
     asked : Asked
-    reference : Rung
+    reference : Configuration
     reference_values : mapping of str to float
         As `Measured.value`.
     floors : mapping of str to float
@@ -137,14 +137,14 @@ class CostResults:
     rows : tuple of Measured
     knobs : tuple of Knob
     planned : int
-        Rungs that were to be tried.
+        Configurations that were to be tried.
     seconds : float
         On the wall, for all.
     remarks : tuple of str
     """
 
     asked: Asked
-    reference: Rung
+    reference: Configuration
     reference_values: Mapping[str, float]
     floors: Mapping[str, float]
     rows: tuple[Measured, ...]
@@ -155,13 +155,13 @@ class CostResults:
 
     @property
     def quantities(self) -> tuple[Quantity, ...]:
-        """What was priced."""
+        """What was studied."""
         return self.asked.quantities
 
     @property
     def finished(self) -> int:
-        """Rungs that were tried."""
-        return len(dict.fromkeys(row.rung for row in self.rows))
+        """Configurations that were tried."""
+        return len(dict.fromkeys(row.configuration for row in self.rows))
 
     @property
     def complete(self) -> bool:
@@ -177,30 +177,30 @@ class CostResults:
         return math.nan if row.reason else max(row.miss.largest, self.floors[row.quantity])
 
     def of(self, quantity: str) -> tuple[Measured, ...]:
-        """All rungs of a quantity."""
+        """All configurations of a quantity."""
         return tuple(row for row in self.rows if row.quantity == quantity)
 
     def front(self, quantity: str) -> Front:
         """Time, error and Pareto front of one quantity, or of `ALL` at once."""
         rows = self.at_once() if quantity == ALL else self.of(quantity)
-        chosen = tuple(row for row in rows if row.rung.family != "tolerance")
+        chosen = tuple(row for row in rows if row.configuration.family != "tolerance")
         seconds = np.array([row.seconds.cpu for row in chosen])
         error = np.array([row.miss.largest if quantity == ALL else self.shown_error(row) for row in chosen])
         return Front(chosen, seconds, error, pareto_front(seconds, error))
 
     @property
     def named(self) -> tuple[str, ...]:
-        """Names of the quantities, and of all at once where there are several and some rung answers them all."""
+        """Names of the quantities, and of all at once where there are several and one configuration answers all."""
         names = tuple(q.name for q in self.quantities)
         return (*names, ALL) if len(names) > 1 and self.at_once() else names
 
     def at_once(self) -> tuple[Measured, ...]:
-        """Rungs that answer every quantity: the worst error of any, the gears solved once."""
+        """Configurations that answer every quantity: the worst error of any, the gears solved once."""
         from fegear.studies.cost.quantities import Miss
 
         names, found = [q.name for q in self.quantities], []
-        for rung in dict.fromkeys(row.rung for row in self.rows):
-            rows = [row for row in self.rows if row.rung == rung]
+        for configuration in dict.fromkeys(row.configuration for row in self.rows):
+            rows = [row for row in self.rows if row.configuration == configuration]
             errors = [self.shown_error(row) for row in rows]
             if [row.quantity for row in rows] != names or not np.isfinite(errors).all():
                 continue
@@ -208,11 +208,11 @@ class CostResults:
             own = NOTHING
             for row in rows:
                 own = own.plus(row.own)
-            found.append(Measured(rung, ALL, math.nan, Miss(max(errors), math.nan, 1.0), solve, own))
+            found.append(Measured(configuration, ALL, math.nan, Miss(max(errors), math.nan, 1.0), solve, own))
         return tuple(found)
 
     def cheapest(self, quantity: str, tolerance: float) -> Measured | None:
-        """The cheapest rung within a tolerance; None if none is."""
+        """The cheapest configuration within a tolerance; None if none is."""
         front = self.front(quantity)
         i = cheapest(tolerance, front.seconds, front.error)
         return None if i is None else front.rows[i]

@@ -1,4 +1,4 @@
-"""Where a rung's numbers come from: finite elements, a formula for compliance or root stress, or the case's table."""
+"""Where a configuration's numbers come from: finite elements, a formula, or the case's table."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import source as formula_source
 from fegear.geometry import GearPair
 from fegear.models.pair_inputs import gear_name, pair_compliance_table
-from fegear.studies.cost.rung import ISO_STIFFNESS
+from fegear.studies.cost.configuration import ISO_STIFFNESS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -35,7 +35,7 @@ _PAIR = frozenset({"te-peak-to-peak", "tooth-force", "dynamic-factor"})
 
 
 class Source(Protocol):
-    """Answers of one rung."""
+    """Answers of one configuration."""
 
     @property
     def answers(self) -> frozenset[str]:

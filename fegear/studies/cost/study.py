@@ -1,4 +1,4 @@
-"""A whole study: the reference, every rung, the knobs; what is finished survives Ctrl-C."""
+"""A whole study: the reference, every configuration, the knobs; what is finished survives Ctrl-C."""
 
 from __future__ import annotations
 
@@ -11,7 +11,16 @@ from fegear.models.settings import seconds_of_gear
 from fegear.studies.cost.answers import answer
 from fegear.studies.cost.knobs import ladder_knobs
 from fegear.studies.cost.ladder import make_ladder
-from fegear.studies.cost.measure import Found, answered, climb, climb_mesh, finite_elements, largest, refer, solve_gears
+from fegear.studies.cost.measure import (
+    Found,
+    answered,
+    finite_elements,
+    largest,
+    measure_alone,
+    measure_meshes,
+    refer,
+    solve_gears,
+)
 from fegear.studies.cost.pair_knobs import pair_knobs
 from fegear.studies.cost.result import CostResults
 from fegear.studies.cost.sources import CaseTable
@@ -33,10 +42,10 @@ _KNOB_SECONDS = 6.0
 def forecast(asked: Asked, ladder: Ladder) -> float:
     """About how long a study takes on one core [s]."""
     own = sum(_ANSWER_SECONDS.get(q.name, 0.02) for q in asked.quantities)
-    total = _KNOB_SECONDS * bool(asked.pair) + own * (len(ladder.rungs) + 2)
-    for rung in [ladder.reference, ladder.check, *(group[0] for group in ladder.meshes)]:
-        if rung.settings is not None:
-            one = seconds_of_gear(rung.settings)
+    total = _KNOB_SECONDS * bool(asked.pair) + own * (len(ladder.configurations) + 2)
+    for configuration in [ladder.reference, ladder.check, *(group[0] for group in ladder.meshes)]:
+        if configuration.settings is not None:
+            one = seconds_of_gear(configuration.settings)
             total += one * len(asked.gears) * (3.0 if one < 0.3 else 1.0)
     return total
 
@@ -55,13 +64,13 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
     ----------
     asked : Asked
     quick : bool
-        A few rungs instead of all.
+        A few configurations instead of all.
     watcher : Watcher, optional
 
     Returns
     -------
     CostResults
-        After Ctrl-C those of the rungs that were finished, if the reference was.
+        After Ctrl-C those of the configurations that were finished, if the reference was.
     """
     watcher = watcher or Silence()
     started = time.perf_counter()
@@ -78,12 +87,12 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
     except KeyboardInterrupt:
         if not found.rows:
             raise
-        found.remarks.append("Interrupted: only the rungs that were finished are here.")
-    whole = {rung: len(answered(asked, rung)) for rung in ladder.rungs}
-    done = [rung for rung, count in whole.items() if sum(row.rung == rung for row in found.rows) == count]
+        found.remarks.append("Interrupted: only the configurations that were finished are here.")
+    whole = {one: len(answered(asked, one)) for one in ladder.configurations}
+    done = [one for one, count in whole.items() if sum(row.configuration == one for row in found.rows) == count]
     return CostResults(
         asked, ladder.reference, {name: largest(v) for name, v in found.reference.items()}, found.floors,
-        tuple(row for row in found.rows if row.rung in done), tuple(found.knobs), len(ladder.rungs),
+        tuple(row for row in found.rows if row.configuration in done), tuple(found.knobs), len(ladder.configurations),
         time.perf_counter() - started, tuple(found.remarks),
     )  # fmt: skip
 
@@ -103,11 +112,11 @@ def _steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], None]]]
         ("Warm-up", lambda: _warm_up(asked, ladder)),
         (f"Reference: {ladder.reference.label}", reference),
     ]
-    steps += [(rung.label, partial(climb, found, rung)) for rung in ladder.others if rung.formula]
+    steps += [(one.label, partial(measure_alone, found, one)) for one in ladder.others if one.formula]
     for group in ladder.meshes:
         more = f" and {len(group) - 1} more" if len(group) > 1 else ""
-        steps.append((group[0].label + more, partial(climb_mesh, found, group)))
-    steps += [(rung.label, partial(climb, found, rung)) for rung in ladder.others if not rung.formula]
+        steps.append((group[0].label + more, partial(measure_meshes, found, group)))
+    steps += [(one.label, partial(measure_alone, found, one)) for one in ladder.others if not one.formula]
     steps.append(("Knobs of the finite elements", vary))
     if asked.pair:
         steps.append(
@@ -121,7 +130,7 @@ def _of_pair(asked: Asked, kept: Mapping[str, Source]) -> Source:
 
 
 def _warm_up(asked: Asked, ladder: Ladder) -> None:
-    """Import and compile everything once: no rung pays for that."""
+    """Import and compile everything once: no configuration is charged for that."""
     coarse = ladder.meshes[0][0] if ladder.meshes else ladder.check
     source = finite_elements(asked, coarse, solve_gears(asked, coarse)[0])
     for quantity in asked.quantities:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def cost_table(results: CostResults) -> Table:
-    """Every rung for every quantity, in rising time."""
+    """Every configuration for every quantity, in rising time."""
     names = [q.name for q in results.quantities]
     rows = sorted(results.rows, key=lambda row: (names.index(row.quantity), row.seconds.cpu))
     unit = {q.name: q.unit for q in results.quantities}
@@ -34,12 +34,13 @@ def cost_table(results: CostResults) -> Table:
         return np.array([read(row) for row in rows], dtype=np.str_)
 
     def setting(name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        return number(lambda row: float(getattr(row.rung.settings, name)) if row.rung.settings else math.nan)
+        found = [row.configuration.settings for row in rows]
+        return np.array([float(getattr(s, name)) if s else math.nan for s in found])
 
     columns = (
         Column("quantity", words(lambda r: r.quantity), "", "what was computed"),
-        Column("rung", words(lambda r: r.rung.label), "", "with what"),
-        Column("family", words(lambda r: r.rung.family), "", "kind of rung"),
+        Column("configuration", words(lambda r: r.configuration.label), "", "with what"),
+        Column("family", words(lambda r: r.configuration.family), "", "kind of configuration"),
         Column("seconds", number(lambda r: r.seconds.cpu), "s", "of one core, from nothing to the answer"),
         Column("seconds_wall", number(lambda r: r.seconds.wall), "s", "the same by the clock on the wall"),
         Column("seconds_solving", number(lambda r: r.solve.cpu), "s", "of these for meshing and solving the gears"),
@@ -57,11 +58,11 @@ def cost_table(results: CostResults) -> Table:
         Column("root_edge_length", setting("root_edge_length"), "", "[modules]"),
         Column("flank_edge_length", setting("flank_edge_length"), "", "[modules]"),
         Column("patch_half_width", setting("patch_half_width"), "", "[modules]"),
-        Column("teeth", np.array([r.rung.teeth for r in rows]), "", "of a sector; 0 for the whole gear"),
-        Column("case_line", words(lambda r: r.rung.paste(results.asked.pair)), "", "asks a case for this rung"),
+        Column("teeth", np.array([r.configuration.teeth for r in rows]), "", "of a sector; 0 for the whole gear"),
+        Column("case_line", words(lambda r: r.configuration.paste(results.asked.pair)), "", "asks a case for this"),
         Column("reason", words(lambda r: r.reason), "", "why there is no answer"),
     )  # fmt: skip
-    return Table("cost", columns, "Error and seconds of every rung")
+    return Table("cost", columns, "Error and seconds of every configuration")
 
 
 def orders_table(results: CostResults) -> Table:
@@ -71,8 +72,8 @@ def orders_table(results: CostResults) -> Table:
         Column("quantity", np.array([k.quantity for k in knobs], dtype=np.str_)),
         Column("knob", np.array([k.name for k in knobs], dtype=np.str_), "", "the setting that was varied alone"),
         Column("order", np.array([k.order.slope for k in knobs]), "", "p of error ~ step^p; nan: none"),
-        Column("rungs_used", np.array([k.order.used for k in knobs], dtype=int), "", "on the line"),
-        Column("rungs", np.array([k.step.size for k in knobs], dtype=int), "", "tried"),
+        Column("configurations_used", np.array([k.order.used for k in knobs], dtype=int), "", "on the line"),
+        Column("configurations", np.array([k.step.size for k in knobs], dtype=int), "", "tried"),
         Column("scatter", np.array([k.order.scatter for k in knobs]), "", "largest factor off the line"),
         Column("rests_on", np.array([k.order.words for k in knobs], dtype=np.str_)),
         Column("at", np.array([k.at for k in knobs], dtype=np.str_), "", "what the other settings were"),
@@ -81,7 +82,7 @@ def orders_table(results: CostResults) -> Table:
 
 
 def knobs_table(results: CostResults) -> Table:
-    """The rungs behind the observed orders."""
+    """The configurations behind the observed orders."""
     knobs = results.knobs
     count = [k.step.size for k in knobs]
 
@@ -104,11 +105,12 @@ def cheapest_table(results: CostResults) -> Table:
     wanted = [(name, tolerance) for name in results.named for tolerance in TOLERANCES]
     found = [results.cheapest(name, tolerance) for name, tolerance in wanted]
     error = [_error(results, row) for row in found]
-    lines = [row.rung.paste(results.asked.pair) if row else "" for row in found]
+    labels = [row.configuration.label if row else "not reached" for row in found]
+    lines = [row.configuration.paste(results.asked.pair) if row else "" for row in found]
     columns = (
         Column("quantity", np.array([name for name, _ in wanted], dtype=np.str_)),
         Column("tolerance", np.array([tolerance for _, tolerance in wanted]), "", "relative"),
-        Column("rung", np.array([row.rung.label if row else "not reached" for row in found], dtype=np.str_)),
+        Column("configuration", np.array(labels, dtype=np.str_)),
         Column("seconds", np.array([row.seconds.cpu if row else math.nan for row in found]), "s", "of one core"),
         Column("error", np.array(error), "", "largest relative error"),
         Column("case_line", np.array(lines, dtype=np.str_), "", "asks a case for it"),

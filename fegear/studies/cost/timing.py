@@ -32,7 +32,7 @@ NOTHING = Seconds(0.0, 0.0)
 
 
 def timed(work: Callable[[], T], *, repeat: bool = True) -> tuple[T, Seconds]:
-    """Do some work and tell its seconds.
+    """Do some work and measure its seconds.
 
     Parameters
     ----------

@@ -15,8 +15,8 @@ ISO_STIFFNESS = "iso6336-stiffness"
 
 
 @dataclass(frozen=True, slots=True)
-class Rung:
-    """One rung of the ladder.
+class Configuration:
+    """One configuration of a cost study.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Rung:
 
     @property
     def label(self) -> str:
-        """Short name, unlike that of any other rung of a ladder."""
+        """Short name, unlike that of any other configuration of a study."""
         if self.family == "tolerance":
             return f"tolerance = {self.tolerance:.0e}"
         if self.family == "table":
@@ -55,7 +55,7 @@ class Rung:
         return f"{who}, order {s.order}, edges x {self.factor:.3g}, patch {s.patch_half_width:.4g}"
 
     def paste(self, pair: str) -> str:
-        """The rung as lines of a case file; empty for what no case can ask for.
+        """The configuration as lines of a case file; empty for what no case can ask for.
 
         Parameters
         ----------
@@ -66,8 +66,8 @@ class Rung:
             return f"accuracy = {{ tolerance = {self.tolerance:g} }}"
         if self.family == "ring" and self.settings is not None:
             usual = asdict(MeshSettings())
-            told = {k: v for k, v in asdict(self.settings).items() if v != usual[k]} or {"order": self.settings.order}
-            return "accuracy = { " + ", ".join(f"{k} = {v:.6g}" for k, v in told.items()) + " }"
+            own = {k: v for k, v in asdict(self.settings).items() if v != usual[k]} or {"order": self.settings.order}
+            return "accuracy = { " + ", ".join(f"{k} = {v:.6g}" for k, v in own.items()) + " }"
         if self.family == "compliance-formula" and pair and self.formula != ISO_STIFFNESS:
             return f'pair.{pair}.compliance = {{ source = "{self.formula}" }}'
         return ""
