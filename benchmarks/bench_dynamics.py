@@ -5,6 +5,7 @@ for later processes); it is made before the clock starts.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,12 +13,13 @@ from scipy.integrate import solve_ivp
 
 from fegear.dynamics.charts import chart_point
 from fegear.dynamics.excitation import MeshExcitation
+from fegear.dynamics.increments import dynamic_increments
 from fegear.dynamics.lin_model import FourInertia, linear_tip_relief
 from fegear.dynamics.motion_model import MotionModel
 from fegear.dynamics.periodic import Periodic
 from fegear.dynamics.spectra import mesh_force_spectrum
 from fegear.dynamics.steady_state import speed_sweep, steady_state
-from fegear.dynamics.train import Body, Damper, Mesh, Torque, Train
+from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train, mesh_damping, shaft_damping
 
 R, PITCH, FORCE = 0.04177, 9.373e-3, 8890.0
 
@@ -61,6 +63,47 @@ def test_frequency_chain_64_harmonics_200_speeds(benchmark):
     speeds = np.linspace(500, 15000, 200) * math.pi / 30
     found = benchmark(mesh_force_spectrum, four_square(), [k, k.scaled(0.1)], speeds, 64)
     assert found.coefficients.shape == (2, 2, 64, 200)
+
+
+def row_of_bodies(count, meshes):
+    """Bodies in a row, gear pairs spread evenly among shafts, torques at both ends."""
+    at = {int((m + 0.5) * (count - 1) / meshes) for m in range(meshes)}
+    bodies = tuple(Body(f"b{i}", 1e-3 * (1.0 + 0.3 * math.sin(i))) for i in range(count))
+    shafts, pairs = [], []
+    for i in range(count - 1):
+        if i in at:
+            c = mesh_damping(0.05, 3e8, 0.04, 0.05, 1e-3, 1e-3)
+            pairs.append(Mesh(f"m{i}", f"b{i}", f"b{i + 1}", 0.04, 0.05, 40, 50, 3e8, c))
+        else:
+            k = 2e5 * (1.0 + 0.2 * math.cos(i))
+            shafts.append(Shaft(f"s{i}", f"b{i}", f"b{i + 1}", k, shaft_damping(0.01, k, 1e-3, 1e-3)))
+    free = Train(bodies, tuple(shafts), tuple(pairs))
+    last = bodies[-1].name
+    ends = Torque("b0", 100.0), Torque(last, -100.0 / free.ratios[free.dof[last]])
+    return replace(free, torques=ends)
+
+
+@pytest.mark.parametrize(("bodies", "meshes"), [(200, 1), (60, 30)])
+def test_increments_of_long_trains_at_1000_frequencies(benchmark, bodies, meshes):
+    """Asked for: 5 s and 500 MB with one gear pair, 30 s with thirty."""
+    train = row_of_bodies(bodies, meshes)
+    omega = 2.0 * math.pi * np.logspace(1, 4, 1000)
+    found = benchmark.pedantic(dynamic_increments, (train, omega), rounds=1)
+    assert found.shape == (meshes, meshes, 1000)
+
+
+@pytest.mark.usefixtures("losing_contact")
+def test_motion_of_200_bodies_at_four_speeds(benchmark):
+    """Asked for: 30 s."""
+    stiffness = Periodic.through_points([0, 0.35, 0.35, 0.65, 0.65, 1], [3.6e8, 3.6e8, 2.4e8, 2.4e8, 3.6e8, 3.6e8])
+    error = Periodic.fit(lambda s: 1e-6 * np.cos(2.0 * np.pi * s), degree=10, tolerance=1e-12)
+    model = MotionModel(row_of_bodies(200, 1), (MeshExcitation.from_mesh(stiffness, error),), 100.0)
+    speeds = np.array([400.0, 1000.0, 2000.0, 4000.0]) * math.pi / 30
+
+    def run():
+        return [steady_state(model.at_speed(float(speed))) for speed in speeds]
+
+    assert all(state.repeats for state in benchmark.pedantic(run, rounds=1))
 
 
 @pytest.fixture(scope="module")
