@@ -160,11 +160,14 @@ class Way:
         Share of the distance by which the periods take it elsewhere than the monodromy matrix says.
     shrinks : float
         Distance after the periods over that before, along the Floquet directions.
+    alike : bool
+        Whether contact changes as often as on the orbit.
     """
 
     far: float
     bent: float
     shrinks: float
+    alike: bool
 
 
 def way_beside(orbit: Orbit, x: Array, v: Array, step: float) -> Way:
@@ -173,13 +176,13 @@ def way_beside(orbit: Orbit, x: Array, v: Array, step: float) -> Way:
     away = np.concatenate([x, v])[use] - orbit.state
     far = float(np.max(np.abs(away)))
     if far <= ON_IT:
-        return Way(far, 0.0, orbit.radius)
+        return Way(far, 0.0, orbit.radius, alike=True)
     after = propagate(packed, x, v, orbit.periods * packed.period, tolerance=step, peaks=False)
     left = np.concatenate([after.x, after.v])[use] - orbit.state
     frame = floquet_frame(orbit.monodromy)
     size = float(np.linalg.norm(frame @ away))
     bent = float(np.linalg.norm(frame @ (left - orbit.monodromy @ away))) / size
-    return Way(far, bent, float(np.linalg.norm(frame @ left)) / size)
+    return Way(far, bent, float(np.linalg.norm(frame @ left)) / size, after.changes == orbit.passage.changes)
 
 
 def leads_to(orbit: Orbit, x: Array, v: Array, step: float) -> bool:
@@ -221,7 +224,11 @@ def leap(orbit: Orbit, x: Array, v: Array, step: float) -> tuple[Array, Array]:
         return y[: packed.size], y[packed.size :]
 
     def linear(distance: Array) -> bool:
-        return bool(np.max(np.abs(distance)) < FARTHEST) and way_beside(orbit, *at(distance), step).bent <= STRAIGHT
+        # far out, where teeth touch on either flank, all is linear again: contact must change as on the orbit
+        if not float(np.max(np.abs(distance))) < FARTHEST:
+            return False
+        way = way_beside(orbit, *at(distance), step)
+        return way.alike and way.bent <= STRAIGHT
 
     if not linear(away):
         return x, v
