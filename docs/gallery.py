@@ -65,10 +65,10 @@ def _run(path: Path) -> None:
 
 def _numbers(results: dict[str, dict[str, object]]) -> str:
     rows = ["| quantity | value | unit | estimated error |", "|---|---|---|---|"]
-    for name, told in results.items():
-        value = "none" if told["value"] is None else f"{told['value']:.6g}"
-        error = {None: "not estimated", 0: "exact"}.get(told["error"]) or f"{told['error']:.1e}"
-        rows.append(f"| `{name}` | {value} | {told['unit']} | {error} |")
+    for name, found in results.items():
+        value = "none" if found["value"] is None else f"{found['value']:.6g}"
+        error = {None: "not estimated", 0: "exact"}.get(found["error"]) or f"{found['error']:.1e}"
+        rows.append(f"| `{name}` | {value} | {found['unit']} | {error} |")
     return "\n".join(rows)
 
 
@@ -115,9 +115,7 @@ def page(path: Path) -> str:
             f"Computed in {summary['timings']['total']:.2f} s. [The whole report]({path.stem}/report.html), "
             f"[all numbers as a dataset]({path.stem}/results.nc)."
         ),
-        "## To know first\n\n" + "\n".join(f"- {remark}" for remark in summary["remarks"])
-        if summary["remarks"]
-        else "",
+        "## Warnings\n\n" + "\n".join(f"- {remark}" for remark in summary["remarks"]) if summary["remarks"] else "",
         "## Numbers\n\n" + _numbers(summary["results"]) if summary["results"] else "",
         "## Pictures\n\n" + "\n\n".join(f"![{Path(name).stem}]({path.stem}/{name})" for name in pictures)
         if pictures

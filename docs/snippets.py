@@ -1,4 +1,4 @@
-"""Run what a page of the docs tells its reader to type, and hold what is printed against what the page says.
+"""Run what a page of the docs asks its reader to type, and hold what is printed against what the page says.
 
 ``python docs/snippets.py PAGE FOLDER`` goes through the fenced blocks of the page in their order, in FOLDER:
 
@@ -104,8 +104,8 @@ def _same_line(expected: str, got: str) -> bool:
     found = re.fullmatch(pattern, got)
     if not found:
         return False
-    told = [(parts[i - 1], part) for i, part in enumerate(parts) if i % 2 and part != "..."]
-    return all(_same_number(before, part, g) for (before, part), g in zip(told, found.groups(), strict=True))
+    said = [(parts[i - 1], part) for i, part in enumerate(parts) if i % 2 and part != "..."]
+    return all(_same_number(before, part, g) for (before, part), g in zip(said, found.groups(), strict=True))
 
 
 def _same_number(before: str, expected: str, got: str) -> bool:
@@ -209,11 +209,11 @@ def execute(page: Path, folder: Path) -> str:
         command, cwd=folder, env=environment, stdout=pipe, stderr=pipe, text=True, start_new_session=True
     )
     try:
-        _, told = running.communicate()
+        _, complaint = running.communicate()
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(running.pid, signal.SIGTERM)
-    return told or f"ends with {running.returncode}" if running.returncode else ""
+    return complaint or f"ends with {running.returncode}" if running.returncode else ""
 
 
 if __name__ == "__main__":

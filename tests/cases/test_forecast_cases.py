@@ -25,7 +25,7 @@ def planned(name: str, *overrides: str):
     return scene, make_plan(scene, STAGES)
 
 
-def test_every_task_of_every_case_is_foretold():
+def test_every_task_of_every_case_is_predicted():
     silent = Stage("x", "x", (), lambda _scene: (), *3 * (lambda *_: None,)).forecast
     assert not [stage.name for stage in STAGES if stage.forecast is silent]
     for path in sorted(CASES.glob("*.toml")):
@@ -58,7 +58,7 @@ def test_a_shape_is_solved_once_and_counts_once():
          "dynamics.chart={ amounts = [0.5], lengths = [0.5] }"),
     ],
 )  # fmt: skip
-def test_what_costs_more_is_foretold_to_cost_more(name, more, less):
+def test_what_costs_more_is_predicted_to_cost_more(name, more, less):
     total = [sum(found or 0.0 for found in forecast_seconds(*planned(name, option))) for option in (more, less)]
     assert total[0] > 1.1 * total[1]
 
@@ -70,7 +70,7 @@ def test_the_plan_says_where_the_run_time_is_unknown():
     assert any("run time unknown" in line for line in lines)
 
 
-def test_effects_that_nothing_uses_are_told_by_plan_and_run():
+def test_effects_that_nothing_uses_are_reported_by_plan_and_run():
     scene, plan = planned("lin_tip_relief", "effects.friction=true")
     assert plan.idle_effects == ("friction",)
     lines = [line for line in plan_lines(scene, plan) if line.startswith("Note: ")]

@@ -137,7 +137,7 @@ def test_forces_stay_accurate_down_to_frequency_zero():
     assert np.abs(t.G[0] @ np.array([0, 0, 0, 0, 1.0])).max() < 1e-9 * model.mesh.stiffness
 
 
-def test_rigid_body_motions_are_told_apart():
+def test_rigid_body_motions_are_distinguished():
     model = unequal(2)
     assert (mode_table(model).ratio == 0.0).sum() == 1
     spur = ReducedPairModel.from_ratios(

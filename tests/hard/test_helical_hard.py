@@ -83,7 +83,7 @@ def test_a_base_helix_angle_that_vanishes_leaves_the_spur_pair_s_transmissibilit
     assert np.abs(straight.G[:, 1]).max() == 0.0
 
 
-def test_modes_that_share_a_frequency_are_told_and_their_sums_hold():
+def test_modes_that_share_a_frequency_are_reported_and_their_sums_hold():
     """z and theta_y of a spur pair move on their bearings alone: alpha_theta = alpha_z / 2 puts them together."""
     together = mode_table(small_model(0.0, alpha_z=0.8, alpha_theta=0.4))
     assert any("share a frequency" in remark for remark in together.remarks)
@@ -98,7 +98,7 @@ def test_modes_that_share_a_frequency_are_told_and_their_sums_hold():
     assert near == pytest.approx(exact, rel=1e-9, abs=1e-3)
 
 
-def test_a_mode_too_soft_beside_the_others_is_told_before_it_is_taken_for_rigid():
+def test_a_mode_too_soft_beside_the_others_is_reported_before_it_is_taken_for_rigid():
     soft = mode_table(small_model(0.3, alpha_z=1e-9))
     assert any("so soft" in remark for remark in soft.remarks)
     assert mode_table(small_model(0.3, alpha_z=1e-3)).remarks == ()

@@ -148,7 +148,7 @@ def test_a_new_body_s_torque_may_be_set_and_a_misspelt_table_is_named():
             read_scene(case, [path])
 
 
-def test_an_output_folder_below_a_file_is_told_as_such(tmp_path):
+def test_an_output_folder_below_a_file_is_reported_as_such(tmp_path):
     from fegear.output.folder import whole_or_nothing
 
     file = tmp_path / "notes.txt"
@@ -161,7 +161,7 @@ def test_an_output_folder_below_a_file_is_told_as_such(tmp_path):
     assert file.read_text() == "mine"
 
 
-def test_an_interrupt_while_the_program_is_still_loading_is_told_in_one_line(tmp_path):
+def test_an_interrupt_while_the_program_is_still_loading_is_reported_in_one_line(tmp_path):
     """Held where the command line would be imported, as on a slow disk."""
     program = (
         "import signal, sys, time\n"

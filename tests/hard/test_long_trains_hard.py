@@ -319,7 +319,7 @@ def test_segments_are_coordinates_of_any_train(train):
 
 # ---- very light gears -----------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("scale", [1.0, 1e5, 1e9])
-def test_what_stands_still_is_told_in_whatever_units(scale):
+def test_what_stands_still_is_reported_in_whatever_units(scale):
     """A turning of 0.3 rad moves every direction, one of zero none, however small a light gear makes velocities."""
     for angle, fixed in ((0.3, False), (0.0, True), (1e-12, True)):
         c, s = math.cos(angle), math.sin(angle)

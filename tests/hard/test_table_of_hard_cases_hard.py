@@ -59,10 +59,10 @@ def test_tests_of_hard_cases_are_on_the_page():
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
     ]
     minor = {
-        "test_at_the_start_of_the_involute_the_limit_is_crossed_within_the_error_told",
+        "test_at_the_start_of_the_involute_the_limit_is_crossed_within_the_reported_error",
         "test_undamped_motion_beside_resonance_is_finite_on_both_sides",
         "test_a_new_body_s_torque_may_be_set_and_a_misspelt_table_is_named",
-        "test_an_output_folder_below_a_file_is_told_as_such",
-        "test_an_interrupt_while_the_program_is_still_loading_is_told_in_one_line",
+        "test_an_output_folder_below_a_file_is_reported_as_such",
+        "test_an_interrupt_while_the_program_is_still_loading_is_reported_in_one_line",
     }
     assert {name for name in own if f"`{name}`" not in text} == minor

@@ -119,7 +119,7 @@ def test_the_limit_of_undercut_is_crossed_without_a_jump():
         assert np.abs(np.array(found) / answers[0.0] - 1.0).max() < 1e-4 + 5.0 * abs(beside)
 
 
-def test_at_the_start_of_the_involute_the_limit_is_crossed_within_the_error_told():
+def test_at_the_start_of_the_involute_the_limit_is_crossed_within_the_reported_error():
     """There the corner of an undercut flank holds the contact at the corner distance, a smooth fillet carries it on."""
     found = []
     for beside in (-1e-6, 1e-6):
@@ -255,7 +255,7 @@ def test_without_poissons_ratio_plane_strain_is_plane_stress():
     ("nu", "plane"), [(0.5, "strain"), (0.49999, "strain"), (0.7, "strain"), (0.5, "stress"), (0.7, "stress"),
                       (-1.0, "stress"), (math.nan, "stress")],
 )  # fmt: skip
-def test_materials_that_are_unstable_or_cannot_be_told_from_rigid_are_refused(nu, plane):
+def test_materials_that_are_unstable_or_cannot_be_distinguished_from_rigid_are_refused(nu, plane):
     with pytest.raises(InputError, match=r"material\.poisson_ratio"):
         gear(Tooth(28), nu=nu, plane=plane)
     assert gear(Tooth(28), nu=0.4999, plane=plane).plane_modulus > 0.0

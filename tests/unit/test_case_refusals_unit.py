@@ -142,7 +142,7 @@ def test_what_is_required_is_named(missing):
     assert refusal.value.key == missing
 
 
-def test_a_misspelt_key_is_told_before_the_one_that_is_missing():
+def test_a_misspelt_key_is_reported_before_the_one_that_is_missing():
     document = copy.deepcopy(CASE)
     document["gear"]["a"]["teth"] = document["gear"]["a"].pop("teeth")
     with pytest.raises(InputError, match=r'gear\.a\.teth = 28: is an unknown key.*nearest known name is "teeth"'):

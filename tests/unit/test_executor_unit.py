@@ -58,7 +58,7 @@ def test_workers_use_one_thread_each_and_leave_the_environment_alone(monkeypatch
     assert os.environ["OMP_NUM_THREADS"] == "7"
 
 
-def test_a_store_that_cannot_be_written_to_is_told(tmp_path):
+def test_a_store_that_cannot_be_written_to_is_reported(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="cannot be written to"):
         map_points(math.sqrt, [1.0], cache=SolutionCache(Store(tmp_path / "file")))

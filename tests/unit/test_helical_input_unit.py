@@ -60,7 +60,7 @@ def test_results_are_read_only():
         result.mesh.r1[0] = 1.0
 
 
-def test_interference_below_the_form_circle_is_told():
+def test_interference_below_the_form_circle_is_reported():
     def spur(teeth):
         return HelicalGear(teeth, 5e-3, 20.0 * DEG, 0.0, 0.04, "spur")
 

@@ -141,7 +141,7 @@ def test_a_result_without_an_effect_that_it_needs_is_refused_with_the_remedy():
         make_plan(scene("blanks"), hertz)
 
 
-def test_finer_settings_are_foretold_to_take_longer():
+def test_finer_settings_is_predicted_to_take_longer():
     usual = MeshSettings()
     seconds = [seconds_of_gear(settings) for settings in (usual.scaled(1.5), usual, usual.scaled(0.5))]
     assert 0.0 < seconds[0] < seconds[1] < seconds[2]

@@ -137,7 +137,7 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
     assert float(rows[3]["I.contact_ratio"]) == pytest.approx(ratio, rel=1e-11)
 
 
-def test_failures_are_values_with_a_reason_and_told_in_groups(case, tmp_path):
+def test_failures_are_values_with_a_reason_and_reported_in_groups(case, tmp_path):
     import xarray
 
     done = fegear(case, "--over", "gear.a.profile_shift=0:2:9", cwd=tmp_path, cache=tmp_path / "cache")

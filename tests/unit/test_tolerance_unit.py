@@ -70,7 +70,7 @@ def test_refinement_ends_at_the_finest_level_and_says_so(monkeypatch, tmp_path):
     assert any("at radius" in remark and "c_self" in remark for remark in outcome.remarks)
 
 
-def test_what_a_tolerance_cost_is_told_round_by_round(tmp_path):
+def test_what_a_tolerance_cost_is_reported_round_by_round(tmp_path):
     outcome = run(tmp_path, tolerance=0.1)
     (only,) = outcome.settings["rounds"]
     assert set(only) == {"root_edge_length", "unknowns", "estimated_error", "seconds"}
