@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.iso_check import HelicalCheck, RatedPair
 from fegear.engine.outcome import Column, Table, Value
-from fegear.formulas.iso6336_rating import RatingChoice
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
+    from fegear.contact.iso_check import HelicalCheck, RatedPair
     from fegear.fem.settings import MeshSettings
+    from fegear.formulas.iso6336_rating import RatingChoice
 
 #: Tangential load per face width of helical pairs when the case names none [N/m].
 USUAL_LINE_LOAD = 100e3
@@ -36,6 +36,9 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
     """Take from a scene what ISO 6336 needs of one pair."""
     part = scene.case.pair[name]
     names = (part.driver, part.driven)
+    from fegear.contact.iso_check import HelicalCheck
+    from fegear.formulas.iso6336_rating import RatingChoice
+
     choice = RatingChoice(part.iso_6336.edition, part.iso_6336.accuracy_grade)
     rims = (scene.case.gear[names[0]].rim_thickness, scene.case.gear[names[1]].rim_thickness)
     if name in scene.pairs:

@@ -190,3 +190,15 @@ def test_the_command_line_starts_without_the_heavy_libraries():
     probe = f"import sys, fegear.cli, fegear.terminal; print(*[name for name in {HEAVY!r} if name in sys.modules])"
     run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
     assert run.stdout.split() == []
+
+
+def test_a_plan_needs_none_of_the_mechanics_libraries():
+    """What results could be asked for is known without loading what computes them: `fegear plan` stays quick."""
+    late = ("scipy.", "fegear.contact.", "fegear.fem.", "fegear.formulas.")
+    probe = (
+        "import sys, fegear.case.reading, fegear.engine.run, fegear.results.catalogue;"
+        f"print(*[name for name in sys.modules if name.startswith({late!r})],"
+        f"*[name for name in {HEAVY!r} if name in sys.modules and name not in ('pint', 'scipy')])"
+    )
+    run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []
