@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import FegearError
-from fegear.fem.gear import solve_gear
+from fegear.fem.gear import GearInfluence
 from fegear.fem.influence import solve_influence
 from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings
 from fegear.models.tooth_influence import gear_to_solve, needed_reach, solve_influence_functions
 from fegear.solution_cache import SolutionCache
 from fegear.studies.cost.answers import answer
@@ -27,8 +26,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fegear.fem.gear import GearInfluence
     from fegear.fem.influence import Influence
+    from fegear.fem.settings import MeshSettings
     from fegear.geometry import Gear
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.configuration import Configuration
@@ -121,14 +120,11 @@ def finite_elements(asked: Asked, configuration: Configuration, solved: Mapping[
         raise ValueError(f"{configuration.label} is no finite-element configuration")
     gears = asked.scene.gears
     return FiniteElements(
-        {name: replace(_any_solution(gears[name]), fine=one, settings=settings) for name, one in solved.items()}
+        {
+            name: GearInfluence(gears[name], one, None, settings, settings.patch_half_width, {})
+            for name, one in solved.items()
+        }
     )
-
-
-@functools.lru_cache(maxsize=8)
-def _any_solution(gear: Gear) -> GearInfluence:
-    """A gear's influence functions in SI, into which other solutions are put; no configuration is charged for it."""
-    return solve_gear(gear, MeshSettings().scaled(4.0), estimate_error=False)
 
 
 def _record(found: Found, configuration: Configuration, source: Source, seconds: Mapping[str, Seconds]) -> None:
