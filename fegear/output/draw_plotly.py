@@ -263,7 +263,7 @@ def _inner(panel: Panel, alone: bool) -> float:
 def _layout(figure: Figure, members: list[list[int]], count: int, names: int) -> Spec:
     panels = figure.views[0].panels
     heights = [_inner(panel, len(panels) == 1) for panel in panels]
-    above = [_SECOND * bool(p.x.second) + _TITLED * bool(p.title) for p in panels]
+    above = [_SECOND * bool(p.x.second) + _TITLED * (p.title.count("\n") + 1 if p.title else 0) for p in panels]
     inner = sum(heights) + sum(above[1:]) + _GAP * (len(panels) - 1)
     menu = len(figure.views) > 1
     top = _TOP + above[0] + _MENU * menu + (_LEGEND_LINE * -(-names // _BESIDE) - 10 if names > 1 else 0)
@@ -291,7 +291,8 @@ def _layout(figure: Figure, members: list[list[int]], count: int, names: int) ->
         if panel.title:
             made["annotations"].append({
                 "text": f"<b>{rich(panel.title)}</b>", "xref": "paper", "yref": "paper", "x": 0, "xanchor": "left",
-                "y": upper, "yanchor": "bottom", "yshift": 2 + _SECOND * bool(panel.x.second), "showarrow": False,
+                "y": upper, "yanchor": "bottom", "align": "left",
+                "yshift": 2 + _SECOND * bool(panel.x.second), "showarrow": False,
             })  # fmt: skip
         upper = lower - (_GAP + (above[number] if number < len(panels) else 0.0)) / inner
     if menu:

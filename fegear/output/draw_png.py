@@ -188,6 +188,7 @@ class _Sheet:
             drawn.append(axes)
         self._share(drawn)
         for axes, (panel, _) in zip(drawn, self.panels, strict=True):
+            _plain_numbers(axes, panel)
             _marks(axes, panel)
         self._place(drawn, images)
 
@@ -213,7 +214,7 @@ class _Sheet:
         ]
         whole = sum(lefts) + count * width + sum(bars) + _RIGHT
         legend = _legend_entries(panels)
-        across = max(1, int((whole - 0.3) / (_HANDLE + _LETTER * max((len(n) for n in legend), default=1))))
+        across = _columns(list(legend), whole - lefts[0])
         lines = -(-len(legend) // across) if len(legend) > 1 else 0
         tall = 0.18 + lines * _LINE + sum(heights) + sum(bottoms) + sum(tops)
         self.made.set_size_inches(whole, tall)
@@ -281,6 +282,15 @@ def _lines(axis: Axis) -> int:
     return max((name.count("\n") + 1 for name in axis.categories), default=1)
 
 
+def _columns(names: list[str], width: float) -> int:
+    """How many columns of a legend fit into a width."""
+    for count in range(len(names), 1, -1):
+        parts = np.array_split(np.array([len(name) for name in names]), count)
+        if sum(_HANDLE + _LETTER * int(part.max()) for part in parts) <= width:
+            return count
+    return 1
+
+
 def _longest(axis: Any) -> int:
     """Letters of the longest number at an axis."""
     low, high = sorted(axis.get_view_interval())
@@ -316,18 +326,12 @@ def _legend_entries(panels: Sequence[Panel]) -> dict[str, Any]:
 
 def _ranges(axes: Any, panel: Panel) -> None:
     """Ranges of both axes, and whole numbers at those that have no others."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
+    from matplotlib.ticker import MultipleLocator
 
     sides: tuple[tuple[Which, Axis], ...] = (("x", panel.x), ("y", panel.y))
     for which, axis in sides:
         if axis.whole:
             getattr(axes, f"{which}axis").set_major_locator(MultipleLocator(panel.whole_step(which)))
-        low, high = panel.extent(which)
-        if axis.log and low > 0.0 and high < _FEW_DECADES * low:
-            here = getattr(axes, f"{which}axis")
-            here.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0)))
-            here.set_major_formatter(FuncFormatter(lambda value, _place: f"{value:g}"))
-            here.set_minor_formatter(NullFormatter())
     if panel.limits:
         axes.set_ylim(*panel.limits)
     elif panel.y.zero:
@@ -336,6 +340,19 @@ def _ranges(axes: Any, panel: Panel) -> None:
         axes.set_xlim(*panel.x.limits)
     elif panel.x.zero:
         axes.set_xlim(left=0.0)
+
+
+def _plain_numbers(axes: Any, panel: Panel) -> None:
+    """Numbers without powers at logarithmic axes of few decades."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    for which, axis in (("x", panel.x), ("y", panel.y)):
+        low, high = getattr(axes, f"get_{which}lim")()
+        if axis.log and high < _FEW_DECADES * low:
+            here = getattr(axes, f"{which}axis")
+            here.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0)))
+            here.set_major_formatter(FuncFormatter(lambda value, _place: f"{value:g}"))
+            here.set_minor_formatter(NullFormatter())
 
 
 def _dress(axes: Any, panel: Panel, *, joined: bool, beside: bool) -> None:

@@ -116,9 +116,9 @@ def _knobs_figure(results: CostResults) -> Figure:
             curves.append(Curve(knob.settings[known], error, knob.quantity, role, width=1.2, markers=True))
             if not math.isnan(knob.order.slope):
                 orders.append(f"{knob.quantity} {knob.order.slope:.1f}")
-        title = name + (f"\norder: {', '.join(orders)}" if orders else "")
+        title = f"order: {', '.join(orders)}" if orders else "no order seen"
         unit = "modules" if name.startswith(("edge", "patch")) else ""
-        axes = Axis("setting", unit, log=True), Axis("relative error", log=True)
+        axes = Axis(name, unit, log=True), Axis("relative error", log=True)
         panels.append(Panel(*axes, tuple(curves), title=title))
     return Figure(
         "cost_knobs", "What each setting does", "One setting varied at a time, all others fine.", tuple(panels),
