@@ -28,7 +28,7 @@ from fegear.engine.figure import (
     Stems,
     Which,
 )
-from fegear.output.report.numbers import pretty_unit
+from fegear.output.numbers import pretty_unit
 from fegear.output.shades import DARK, DIVERGING, LIGHT, SEQUENTIAL, shade
 
 if TYPE_CHECKING:
@@ -416,7 +416,7 @@ def notebook_html(figure: Figure) -> str:
     spec = plotly_json(figure)
     layout = spec["layout"] | {"template": template() | {"data": {}}, "paper_bgcolor": LIGHT["paper"]}
     plot: str = to_html(json.loads(json.dumps({"data": spec["data"], "layout": layout})), full_html=False,
-                        include_plotlyjs="cdn", validate=False)  # fmt: skip
+                        include_plotlyjs=True, validate=False)  # fmt: skip
     return f"<b>{html.escape(figure.title)}</b>{plot}<p>{html.escape(figure.caption)}</p>"
 
 

@@ -27,7 +27,7 @@ from fegear.engine.figure import (
     Which,
     few,
 )
-from fegear.output.report.numbers import pretty_unit
+from fegear.output.numbers import pretty_unit
 from fegear.output.shades import DIVERGING, SEQUENTIAL, shade
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 DPI = 150
 #: Logarithmic axes that span less have plain numbers.
 _FEW_DECADES = 100.0
+#: They reach so much farther where notes stand beside points.
+_ROOM_FOR_NOTES = 1.6
 #: So many views stand two by two, others three abreast.
 _SQUARE = 4
 #: Inches: a panel alone, panels above each other, and around them.
@@ -44,8 +46,8 @@ _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
 _ALONE, _STACKED = 3.4, 2.3
 _LEFT, _RIGHT, _BOTTOM, _NARROW = 0.45, 0.25, 0.55, 0.22
 _TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
-#: Inches of a legend's letter and of its line before the words.
-_LETTER, _HANDLE = 0.078, 0.55
+#: Inches of a letter at an axis, of one in a legend, and of the line before the legend's words.
+_LETTER, _SMALL_LETTER, _HANDLE = 0.078, 0.069, 0.6
 _DASHES = {
     "solid": "-", "dash": "--", "dashdot": "-.", "dot": ":", "longdash": (0, (8, 3)),
     "longdashdot": (0, (8, 2, 2, 2)), "steps": "-",
@@ -286,7 +288,7 @@ def _columns(names: list[str], width: float) -> int:
     """How many columns of a legend fit into a width."""
     for count in range(len(names), 1, -1):
         parts = np.array_split(np.array([len(name) for name in names]), count)
-        if sum(_HANDLE + _LETTER * int(part.max()) for part in parts) <= width:
+        if sum(_HANDLE + _SMALL_LETTER * int(part.max()) for part in parts) <= width:
             return count
     return 1
 
@@ -470,6 +472,9 @@ def _write_notes(axes: Any, item: Points) -> None:
     """Names beside points; those that would lie on each other go below each other."""
     log = axes.get_xscale() == "log", axes.get_yscale() == "log"
     x, y = np.asarray(item.x), np.asarray(item.y)
+    if log[0]:
+        left, right = axes.get_xlim()
+        axes.set_xlim(left, _ROOM_FOR_NOTES * right)
     placed: list[tuple[float, float]] = []
     for i in np.argsort(-y):
         a, b = (math.log10(v) if scale else float(v) for v, scale in zip((x[i], y[i]), log, strict=True))

@@ -15,9 +15,9 @@ from fegear.engine.citation import bibliography
 from fegear.engine.figure import Axis, Figure, Panel, Points
 from fegear.engine.outcome import Column, Table, Value
 from fegear.engine.plan import make_plan
+from fegear.output.numbers import plain_number, pretty_unit, with_error
 from fegear.output.report import Page, Section, write_page
 from fegear.output.report.blocks import DataTable, Facts, Plot, Values
-from fegear.output.report.numbers import plain_number, pretty_unit, with_error
 from fegear.results.catalogue import STAGES
 from fegear.results.loaded_pair import LOADED_PAIR
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.figure import Axis, Figure, Mark, Panel, Points
+from fegear.output.numbers import plain_number
 from fegear.output.report.blocks import Bars, Facts, Folded, Paragraph, Plot, relative_error
-from fegear.output.report.numbers import plain_number
 
 if TYPE_CHECKING:
     from fegear.engine.run import Results

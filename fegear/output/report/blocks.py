@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fegear.output.report.numbers import plain_number, pretty_unit, with_error
+from fegear.output.numbers import plain_number, pretty_unit, with_error
 from fegear.output.tables import cell
 
 if TYPE_CHECKING:

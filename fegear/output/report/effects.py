@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fegear.engine.outcome import Table
+from fegear.output.numbers import plain_number, pretty_unit
 from fegear.output.report.blocks import DataTable, Facts, Folded, Grid, Paragraph, Plot
-from fegear.output.report.numbers import plain_number, pretty_unit
 from fegear.output.report.page import Page, Section
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.output.numbers import plain_number, pretty_unit
 from fegear.output.report.blocks import DataTable, Facts, Grid, Notes, Paragraph, Plot
-from fegear.output.report.numbers import plain_number, pretty_unit
 from fegear.output.report.page import Page, Section
 from fegear.studies.swept import varying
 

@@ -1,0 +1,191 @@
+"""Descriptions of figures and their two renderers: the same arrays, names that are text, pictures that open."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fegear.engine.colours import ROLES
+from fegear.engine.figure import (
+    Axis,
+    Bars,
+    Curve,
+    DeferredFigure,
+    Figure,
+    HeatMap,
+    Mark,
+    Panel,
+    Points,
+    Scale,
+    Stems,
+    TriangleField,
+    View,
+    Zone,
+    few,
+    round_numbers,
+)
+from fegear.output.draw_plotly import darker, notebook_html, plotly_json, template
+from fegear.output.draw_png import draw_pictures
+from fegear.output.shades import shade
+
+
+def array(spec: dict) -> np.ndarray:
+    found = np.frombuffer(base64.b64decode(spec["bdata"]), dtype=spec["dtype"])
+    return found.reshape([int(n) for n in spec["shape"].split(",")]) if "shape" in spec else found
+
+
+def everything() -> Figure:
+    """One figure with every kind of item that a page draws itself."""
+    x = np.linspace(1.0, 5.0, 30)
+    scale = Scale("radius", "mm", x, 2.0 * x)
+    return Figure("all", "All", "A caption.", (
+        Panel(Axis("x", "mm", second=scale), Axis("c_{0}", "um.mm/N"), (
+            Curve(x, np.sin(x), "curve", "tension", 0.1 + 0.0 * x), Points(x, np.cos(x), "points", "series:1"),
+        ), (Mark("x", 2.0, "here"), Zone("y", -0.1, 0.1)), "A title"),
+        Panel(Axis("mode", categories=("a", "b")), Axis("share"), (
+            Bars([0, 1], [0.2, 0.4], "first", "series:0"), Bars([0, 1], [0.5, 0.1], "second", "series:1"),
+        ), stacked=True),
+        Panel(Axis("f", "Hz"), Axis("F", "N", log=True), (Stems([1.0, 2.0], [10.0, 1e-3], "lines", "series:2"),)),
+        Panel(Axis("x"), Axis("y"), (HeatMap([1, 2, 3], [1, 2], [[1, 2, np.nan], [4, 5, 6]], "z", "um"),)),
+    ))  # fmt: skip
+
+
+def test_arrays_are_copies_that_nobody_can_change():
+    given_x = np.arange(3.0)
+    curve = Curve(given_x, [1, 2, 3])
+    given_x[0] = 9.0
+    assert np.asarray(curve.x).tolist() == [0.0, 1.0, 2.0]
+    with pytest.raises(ValueError, match="read-only"):
+        np.asarray(curve.y)[0] = 5.0
+
+
+def test_plotly_gets_every_number_to_the_last_bit_and_plain_json():
+    figure = everything()
+    spec = json.loads(json.dumps(plotly_json(figure), allow_nan=False))
+    curve = next(trace for trace in spec["data"] if trace.get("name") == "curve" and "customdata" in trace)
+    item = figure.panels[0].items[0]
+    assert np.array_equal(array(curve["x"]), item.x)
+    assert np.array_equal(array(curve["y"]), item.y)
+    assert np.array_equal(array(curve["customdata"]), item.error)
+    tiles = next(trace for trace in spec["data"] if trace["type"] == "heatmap")
+    assert np.array_equal(array(tiles["z"]), figure.panels[3].items[0].z, equal_nan=True)
+    assert array(tiles["z"]).shape == (2, 3)
+
+
+def test_bars_of_one_place_stand_on_each_other_or_side_by_side():
+    panel = everything().panels[1]
+    (_, a, below_a, _), (_, b, below_b, width) = panel.bars()
+    assert a.tolist() == b.tolist() == [0.0, 1.0]
+    assert (below_a.tolist(), below_b.tolist()) == ([0.0, 0.0], [0.2, 0.4])
+    beside = Panel(panel.x, panel.y, panel.items)
+    (_, a, _, _), (_, b, foot, width) = beside.bars()
+    assert np.allclose(b - a, width)
+    assert not foot.any()
+
+
+@pytest.mark.parametrize("kind", ["png", "svg"])
+def test_a_picture_of_everything_can_be_read(tmp_path, kind):
+    (picture,) = draw_pictures(everything(), tmp_path, kind)
+    assert picture.path == tmp_path / f"all.{kind}"
+    if kind == "svg":
+        again = tmp_path / "again"
+        again.mkdir()
+        (twice,) = draw_pictures(everything(), again, kind)
+        assert picture.path.read_bytes() == twice.path.read_bytes()
+        return
+    from matplotlib.image import imread
+
+    image = imread(picture.path)
+    assert min(image.shape[:2]) > 400
+    assert (image[..., :3].min(axis=2) < 0.9).mean() > 0.01
+
+
+@given(st.text(min_size=1, max_size=30))
+def test_names_are_text_and_never_markup(name):
+    figure = Figure("k", "t", "c", (Panel(Axis(name), Axis("y"), (Curve([0, 1], [0, 1], name, "series:0"),)),))
+    spec = plotly_json(figure)
+    shown = spec["data"][0]["name"]
+    assert re.sub(r"</?sub>|<br>", "", shown).count("<") == 0
+    assert "<script" not in json.dumps(spec)
+
+
+@pytest.mark.parametrize("name", ["a $x$ b", "50 % \\alpha", "p_{1} and $", "x_{$}", "under_score", "Δ_{θx}"])
+def test_names_that_look_like_mathematics_are_drawn(tmp_path, name):
+    panel = Panel(Axis(name), Axis("y"), (Curve([0, 1], [0, 1], name, "blue"), Curve([0, 1], [1, 0], "b", "red")))
+    (picture,) = draw_pictures(Figure("k", "t", "c", (panel,)), tmp_path)
+    assert picture.path.stat().st_size > 5_000
+
+
+def test_a_menu_shows_one_view_and_paper_shows_them_beside_each_other(tmp_path):
+    views = tuple(
+        View(f"view {k}", (Panel(Axis("x"), Axis("y", "N"), (Curve([0, 1], [0, k], "c", "blue"),)),)) for k in range(6)
+    )
+    spec = plotly_json(Figure("k", "t", "c", views=views))
+    assert [trace.get("visible", True) for trace in spec["data"]] == [True] + [False] * 5
+    buttons = spec["layout"]["updatemenus"][0]["buttons"]
+    assert [button["args"][0]["visible"].index(True) for button in buttons] == list(range(6))
+    assert len(list(draw_pictures(Figure("k", "t", "c", views=views), tmp_path))) == 1
+    alone = tuple(View(view.label, view.panels, f"own_{k}") for k, view in enumerate(views))
+    names = [picture.path.stem for picture in draw_pictures(Figure("k", "t", "c", views=alone), tmp_path)]
+    assert names == [f"own_{k}" for k in range(6)]
+
+
+def test_every_role_has_a_shade_on_either_ground_and_pages_know_the_pairs():
+    pairs = [shade(role) for role in (*ROLES, "series:7", "ramp:0.000", "ramp:1.000", "ramp:0.333")]
+    assert all(re.fullmatch("#[0-9A-F]{6}", colour) for pair in pairs for colour in pair)
+    figure = everything()
+    known = darker([figure])
+    used = set(re.findall("#[0-9A-F]{6}", json.dumps([plotly_json(figure), template()])))
+    assert used <= set(known)
+
+
+def test_curves_that_hardly_vary_are_drawn_level():
+    level = Panel(Axis("x"), Axis("y"), (Curve([0, 1], [100.0, 100.001]),))
+    assert level.limits == pytest.approx((95.0, 105.0), rel=1e-3)
+    assert Panel(Axis("x"), Axis("y"), (Curve([0, 1], [100.0, 101.0]),)).limits is None
+
+
+def test_words_of_marks_that_would_lie_on_each_other_are_said_once():
+    marks = tuple(Mark("y", at, f"mode {at}") for at in (1.0, 1.01, 2.0))
+    panel = Panel(Axis("x"), Axis("y", limits=(0.0, 3.0)), (Curve([0, 1], [0, 3]),), marks)
+    assert [panel.written(mark) for mark in marks] == ["mode 1.0", "", "mode 2.0"]
+
+
+@given(st.floats(-1e6, 1e6), st.floats(1e-6, 1e6))
+def test_round_numbers_lie_between_the_ends_and_are_few(low, width):
+    found = round_numbers(low, low + width)
+    if low + width > low:
+        step = 1e-6 * width
+        assert ((found >= low - step) & (found <= low + width + step)).all()
+        assert found.size <= 8
+
+
+def test_a_family_keeps_its_ends_and_what_it_must():
+    assert few(5) == [0, 1, 2, 3, 4]
+    chosen = few(100, (37,))
+    assert {0, 37, 99} <= set(chosen)
+    assert len(chosen) <= 8
+
+
+def test_fields_are_pictures_in_pages_and_notebooks(tmp_path):
+    field = TriangleField([[0, 1, 0], [0, 0, 1]], np.array([[0], [1], [2]]), [0, 1, 2], 2.0, "stress", "MPa")
+    figure = Figure("f", "<Field>", "c", (Panel(Axis("x"), Axis("y"), (field,), equal=True),))
+    assert not figure.drawable_in_page
+    assert everything().drawable_in_page
+    shown = figure._repr_html_()
+    assert "data:image/png;base64," in shown
+    assert "&lt;Field&gt;" in shown
+    deferred = DeferredFigure("f", "Field", lambda: figure)
+    assert deferred.make() is figure
+
+
+def test_a_notebook_shows_a_plot():
+    shown = notebook_html(everything())
+    assert "Plotly.newPlot" in shown
+    assert "A caption." in shown
