@@ -37,6 +37,8 @@ _FEWEST_FILLET_EDGES = 4
 #: the radius, that nothing is left of the digits of a tooth's own strain; a thinner rim [modules] takes elements
 #: without number.
 _SMALLEST_BORE, _THINNEST_RIM = 1e-4, 5e-3
+#: Widest angle of an edge on the bore [rad]: a cubic edge misses its circle by the fourth power of it over 384.
+_WIDEST_BORE_EDGE = 0.25
 #: The shortest edges on a sharp fillet, as a share of the usual ones.
 _SHARPEST = 0.1
 
@@ -157,7 +159,8 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
         (turn @ side_b.middles)[:, ::-1],
         (-turn @ side_b.tangents)[:, ::-1],
     )
-    bore_edges = max(1, round(pitch_angle * bore_radius / float(body_size(np.array(outer - bore_radius)))))
+    by_size = round(pitch_angle * bore_radius / float(body_size(np.array(outer - bore_radius))))
+    bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
     bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
     back_land = [_mirrored(chain, "root_land") for chain in land]
     return [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]

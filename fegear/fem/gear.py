@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.boundary import check_bore
-from fegear.fem.influence import REFERENCE_HALF_WIDTH, SIDES, Influence, Side, solve_influence
+from fegear.fem.contact_width import REFERENCE_HALF_WIDTH
+from fegear.fem.influence import SIDES, Influence, Side, solve_influence
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import COARSEST_LEVEL, FINEST_LEVEL, LEVEL_RATIO, MeshSettings, settings_at
 from fegear.fem.shape_cache import known_or_solved
@@ -38,8 +39,16 @@ _SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 3.0, 1.0
 _HIGHEST_ORDER = 4
 #: Edges half as long for a tenth of the error; and how often at most a solution is refined.
 _LEVELS_PER_DECADE, _MOST_ROUNDS = 2.0, 4
-#: Positions over the flank at which usual and largest errors are looked for.
+#: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
+#: times what the difference usually is over the flank.
+_USUAL = 1.5
+#: What is modelled nearer to an end of the flank than the mesh resolves is wrong by the first power of the edges'
+#: length, of which neighbouring levels differ by two fifths.
+_END_SHARE = 3.0
+#: Positions over the flank, evenly in roll angle, at which usual errors are looked for; for the largest, twice as many
+#: and these distances from its ends [modules].
 _SAMPLES = 17
+_BESIDE_ENDS = (0.005, 0.01, 0.02, 0.035, 0.05, 0.075, 0.1)
 
 
 @dataclass(frozen=True)
@@ -174,15 +183,28 @@ class GearInfluence:
         c = self.fine.neighbour(k, self._modules(radius_p), self._modules(radius_q), a)
         return c / self.gear.material.young_modulus
 
-    def fillet_stress(self, k: int, side: Side, radius: ArrayLike) -> Array:
-        """Tangential stress along a fillet of tooth k per unit line load on tooth 0, shape (points, P) [1/m]."""
-        r = self._modules(radius)
-        return self.fine.fillet_stress(k, side, r, self.settings.patch_half_width) / self.gear.module
+    def _half_width(self, half_width: ArrayLike | None) -> Array:
+        if half_width is None:
+            return np.asarray(REFERENCE_HALF_WIDTH)
+        return np.asarray(half_width, dtype=float) / self.gear.module
 
-    def largest_root_stress(self, k: int, side: Side, radius: ArrayLike) -> tuple[Array, Array]:
-        """Largest root tension or compression per unit line load [1/m] and its arc length from the root land [m]."""
+    def fillet_stress(self, k: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None) -> Array:
+        """Tangential stress along a fillet of tooth k per unit line load on tooth 0, shape (points, P) [1/m].
+
+        Half-widths [m] are 0.02 modules unless given.
+        """
+        r, b = self._modules(radius), self._half_width(half_width)
+        return self.fine.fillet_stress(k, side, r, b) / self.gear.module
+
+    def largest_root_stress(
+        self, k: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None
+    ) -> tuple[Array, Array]:
+        """Largest root tension or compression per unit line load [1/m] and its arc length from the root land [m].
+
+        Half-widths [m] are 0.02 modules unless given.
+        """
         m = self.gear.module
-        value, arc = self.fine.largest_root_stress(k, side, self._modules(radius), self.settings.patch_half_width)
+        value, arc = self.fine.largest_root_stress(k, side, self._modules(radius), self._half_width(half_width))
         return value / m, arc * m
 
     def self_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
@@ -194,7 +216,9 @@ class GearInfluence:
             return np.abs(fine - self._other.self_compliance(at, self.coarse_patch, width))
 
         usual = _root_mean_square(difference(self._samples, np.asarray(REFERENCE_HALF_WIDTH)))
-        return _SHARE * self._estimate(difference(r, b), usual) / self.gear.material.young_modulus
+        share = np.where(self._at_an_end(r, b), _END_SHARE, _SHARE)
+        found = np.maximum(share * difference(r, b), _SHARE * _USUAL * usual)
+        return self._known(found) / self.gear.material.young_modulus
 
     def neighbour_error(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """Estimated error of `neighbour` [m^2/N], shape (P, Q)."""
@@ -205,18 +229,18 @@ class GearInfluence:
 
         usual = _root_mean_square(difference(self._samples, self._samples))
         own = difference(self._modules(radius_p), self._modules(radius_q))
-        return _NEIGHBOUR_SHARE * self._estimate(own, usual) / self.gear.material.young_modulus
+        return self._known(_NEIGHBOUR_SHARE * np.maximum(own, _USUAL * usual)) / self.gear.material.young_modulus
 
-    def root_stress_error(self, k: int, side: Side, radius: ArrayLike) -> Array:
+    def root_stress_error(self, k: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None) -> Array:
         """Estimated error of `largest_root_stress` [1/m], shape (P,)."""
 
-        def both(r: Array) -> tuple[Array, Array]:
-            fine = self.fine.largest_root_stress(k, side, r, self.settings.patch_half_width)[0]
-            return fine, np.abs(fine - self._other.largest_root_stress(k, side, r, self.coarse_patch)[0])
+        def both(r: Array, b: ArrayLike) -> tuple[Array, Array]:
+            fine = self.fine.largest_root_stress(k, side, r, b)[0]
+            return fine, np.abs(fine - self._other.largest_root_stress(k, side, r, b)[0])
 
-        value, difference = both(self._modules(radius))
-        usual = _root_mean_square(np.divide(*both(self._samples)[::-1]))
-        return _STRESS_SHARE * self._estimate(difference, usual * np.abs(value)) / self.gear.module
+        value, difference = both(self._modules(radius), self._half_width(half_width))
+        usual = _root_mean_square(np.divide(*both(self._samples, REFERENCE_HALF_WIDTH)[::-1]))
+        return self._known(_STRESS_SHARE * np.maximum(difference, _USUAL * usual * np.abs(value))) / self.gear.module
 
     def largest_errors(self) -> dict[str, float]:
         """Largest estimated relative error over the flank of each quantity.
@@ -227,7 +251,7 @@ class GearInfluence:
             c_self (of a contact 0.02 modules wide to either side), c_neighbour (over c_self), root_tension and
             root_compression.
         """
-        r = self._samples * self.gear.module
+        r = self._everywhere * self.gear.module
         b = REFERENCE_HALF_WIDTH * self.gear.module
         own = self.self_compliance(r, b)
         errors = {"c_self": self.self_error(r, b) / own}
@@ -239,25 +263,42 @@ class GearInfluence:
             )
         return {key: float(np.max(values)) for key, values in errors.items()}
 
-    def _estimate(self, difference: Array, usual: ArrayLike) -> Array:
-        """A difference may vanish by chance at one position; what it usually is over the flank does not."""
-        if self.coarse is None:
-            return np.full(np.shape(difference), np.nan)
-        return np.maximum(difference, usual)
+    def _known(self, estimate: Array) -> Array:
+        """The estimate, if there is a second solution to tell it from."""
+        return np.full(np.shape(estimate), np.nan) if self.coarse is None else estimate
 
     @property
     def _other(self) -> Influence:
         return self.fine if self.coarse is None else self.coarse
 
-    @property
+    def _at_an_end(self, radius: Array, half_width: Array) -> NDArray[np.bool_]:
+        """Whether contacts [modules] are narrower than pressures that the mesh resolves, and have no room for these."""
+        flank = self.fine.flank
+        arc, resolved = flank.arc_of_radius(radius), 2.0 * max(self.fine.corner_distance, self._other.corner_distance)
+        room = np.minimum(arc - flank.flank_start, flank.flank_end - arc)
+        return np.asarray((room < resolved) & (half_width < resolved))
+
+    @functools.cached_property
     def _samples(self) -> Array:
-        """Radii over the flank, evenly in roll angle, at which usual and largest errors are looked for [modules]."""
+        """Radii over the flank, evenly in roll angle, at which usual errors are looked for [modules]."""
+        low, high = self._flank_ends
+        first, last = self.gear.tooth.roll(np.array([max(low, self.gear.tooth.base_radius), high])).tolist()
+        return np.clip(self.gear.tooth.radius_of_roll(np.linspace(first, last, _SAMPLES)), low, high)
+
+    @functools.cached_property
+    def _everywhere(self) -> Array:
+        """Radii at which the largest errors are looked for: twice as many, and beside the ends [modules]."""
+        (low, high), rb = self._flank_ends, self.gear.tooth.base_radius
+        between = np.sqrt(0.5 * (self._samples[1:] ** 2 + self._samples[:-1] ** 2))
+        # On an involute the squared radius grows by twice the base radius times the arc length.
+        near = 2.0 * rb * np.array(_BESIDE_ENDS)
+        ends = np.sqrt(np.concatenate([low**2 + near, high**2 - near]))
+        return np.unique(np.concatenate([self._samples, between, ends[(ends > low) & (ends < high)]]))
+
+    @property
+    def _flank_ends(self) -> tuple[float, float]:
         flank, tooth = self.fine.flank, self.gear.tooth
-        low = max(flank.lowest_radius, tooth.form_radius)
-        high = min(flank.highest_radius, tooth.involute_tip_radius)
-        first, last = tooth.roll(np.array([max(low, tooth.base_radius), high])).tolist()
-        rolls = np.linspace(first, last, _SAMPLES)
-        return np.clip(tooth.radius_of_roll(rolls), low, high)
+        return max(flank.lowest_radius, tooth.form_radius), min(flank.highest_radius, tooth.involute_tip_radius)
 
 
 def _root_mean_square(values: Array) -> float:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fegear.fem.contact_width import REFERENCE_HALF_WIDTH, check_half_widths
+from fegear.fem.corner import corner_angles, wedge_slope
 from fegear.fem.elasticity import assemble
 from fegear.fem.ring import close_ring
 from fegear.fem.root_stress import FilletStrain, extreme, fillet_strain
@@ -27,22 +29,15 @@ if TYPE_CHECKING:
 
 Side = Literal["tension", "compression"]
 SIDES: tuple[Side, ...] = ("tension", "compression")
-#: A contact's usual half-width [modules], at which what depends on it is told.
-REFERENCE_HALF_WIDTH = 0.02
-
 #: Half-width of a load that is as good as concentrated [modules].
 _POINT = 1e-4
-#: A pressure wider than usual takes no more than this share of a contact's height above the fillet.
-_FILLET_SHARE = 0.25
-#: Nearer to a contact than this [modules] a fillet's stress is the contact's own.
-_BESIDE_CONTACT = 0.1
 #: The narrower of the two pressures that load the mesh, as a share of the wider one.
-_NARROWER = 0.5
+_NARROWER = 0.6
 #: The wider pressure takes this share of the room to the nearest corner or curvature jump: what the corner does to it
 #: goes with the square of that share, which is taken out, and then with higher powers of it.
 _ROOM_SHARE = 0.7
-#: Mean distance of two points of a semi-elliptic pressure, and of one from its centre, over its half-width.
-_MEAN, _CENTRE = 256.0 / (45.0 * np.pi**2), 4.0 / (3.0 * np.pi)
+#: Mean distance of two points of a semi-elliptic pressure over its half-width.
+_MEAN = 256.0 / (45.0 * np.pi**2)
 
 
 def log_slope(poisson_ratio: float, plane: Plane) -> float:
@@ -82,7 +77,8 @@ class Influence:
     stress : mapping of (int, side) to ndarray, shape (points, 2n)
         Tangential fillet stress of tooth k under forces on tooth 0's run.
     corner_distance : float
-        Contacts nearer than this to a corner of the flank are modelled at this distance [modules].
+        Nearer than this to a corner of the flank the exact wedge tells c_0; the narrowest pressure that loads the
+        mesh [modules].
     reach : int
         K: neighbours -K..K are known. Tooth k = +1 lies clockwise of tooth 0, on the side that the load comes from.
     unknowns : int
@@ -108,49 +104,52 @@ class Influence:
         """See `log_slope`."""
         return log_slope(self.poisson_ratio, self.plane)
 
-    def place(self, radius: ArrayLike, patch: ArrayLike) -> tuple[Array, Array]:
-        """Arc position and half-width of the wider pressure that models a contact at `radius`, shape (P,) each.
+    def place(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array]:
+        """Arc position and half-width of contacts at `radius`, shape (P,) each [modules].
 
-        Near a corner of the flank, or where the fillet's curvature begins, the patch is narrowed to a part of the room
-        there is; a contact at the corner itself is modelled at the corner distance inside it. [modules]
+        A contact that reaches past a corner of the flank stands where it just ends there.
+
+        Raises
+        ------
+        RangeError
+            If no flank holds such a contact (`check_half_widths`).
         """
-        arc, room = self._room(radius)
-        return arc, np.maximum(np.minimum(patch, _ROOM_SHARE * room), self.corner_distance)
-
-    def _room(self, radius: ArrayLike) -> tuple[Array, Array]:
-        """Arc position of contacts, off the corners, and the room on either side of them, shape (P,) each [modules]."""
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
-        low, high, closest = self.flank.flank_start, self.flank.flank_end, self.corner_distance
-        # A tip rounded by less than the corner distance is a corner still: the flank's end is as far off as is missing.
-        arc = np.minimum(arc, high - max(closest - self.flank.beyond, 0.0))
+        width = np.broadcast_to(np.asarray(half_width, dtype=float), arc.shape)
+        low, high = self.flank.flank_start, self.flank.flank_end
+        check_half_widths(width, np.minimum(arc - low, high - arc))
+        arc = np.minimum(arc, high - np.maximum(width - self.flank.beyond, 0.0))
         if self.flank.lower_corner:
-            arc = np.maximum(arc, low + closest)
-        return arc, np.maximum(np.minimum(arc - low, high - arc), closest)
+            arc = np.maximum(arc, low + width)
+        return arc, width
 
     def _remote(self, radius: ArrayLike, patch: float) -> Array:
         """Loads in their exact place for effects away from the contact, where a narrow patch needs no resolution."""
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
-        return self._mixed(arc, np.minimum(patch, room), 0.0)
-
-    def _beside_fillet(self, radius: ArrayLike, patch: float) -> Array:
-        """Loads for the stress in the fillet: contacts of the usual width, told from wider ones where there is room."""
-        arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
-        above = arc - self.flank.flank_start
-        wide = np.maximum(np.minimum(patch, _FILLET_SHARE * above), REFERENCE_HALF_WIDTH)
-        return self._mixed(arc, np.minimum(wide, self.flank.flank_end - arc), REFERENCE_HALF_WIDTH)
-
-    def _mixed(self, arc: Array, wide: Array, half_width: float) -> Array:
-        """Two pressures in such a mixture that the second moment is that of a half-width: the same, seen from afar."""
         low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
-        wide = np.maximum(wide, _POINT)
+        # Two pressures in such a mixture that the second moment vanishes: a concentrated load, seen from afar.
+        wide = np.maximum(np.minimum(patch, room), _POINT)
         narrow = np.maximum(_NARROWER * wide, 0.5 * _POINT)
         loads = self.flank.patches(np.tile(np.clip(arc, low, high), 2), np.concatenate([wide, narrow]))
-        share = (np.minimum(half_width, wide) ** 2 - narrow**2) / (wide**2 - narrow**2)
+        share = -(narrow**2) / (wide**2 - narrow**2)
         return share * loads[:, : arc.size] + (1.0 - share) * loads[:, arc.size :]
 
+    def _above_fillet(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array, Array]:
+        """Loads for the stress in the fillet, how far above it they stand and their half-width.
+
+        In their exact place, for it decides about the bending; narrowed where they would reach past a corner.
+        """
+        arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
+        above, room = arc - self.flank.flank_start, self.flank.flank_end + self.flank.beyond - arc
+        if self.flank.lower_corner:
+            room = np.minimum(above, room)
+        width = np.minimum(np.asarray(half_width, dtype=float), np.maximum(room, _POINT))
+        low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
+        return self.flank.patches(np.clip(arc, low, high), width), above, width
+
     def self_compliance(self, radius: ArrayLike, patch: float, half_width: ArrayLike | None = None) -> Array:
-        """Deflection at the centre of a contact under its own unit line load, shape (P,) [1/E].
+        """Deflection of a contact under its own unit line load, shape (P,) [1/E].
 
         Parameters
         ----------
@@ -163,29 +162,66 @@ class Influence:
 
         Notes
         -----
+        The deflection is the pressure-weighted mean over the contact plus `log_slope` / 4, by which Hertz's centre
+        lies deeper than it: the approach of two bodies in contact, for the gap that closes is as deep as that,
+        weighted with the pressure. Unlike the deflection of one point it is reciprocal, and it converges at twice
+        the order.
+
         What depends on the width of a narrow contact is known in closed form: the half-plane's logarithm and, on a
         flank of curvature 1/rho, `curvature_slope` times width / rho. What is left varies with the square of the
-        width; the two pressures give that, and the value at the true width follows. The pressure-weighted mean
-        deflection is used, which converges at twice the order of the deflection at a point; the centre of a contact
-        lies log_slope / 4 deeper whatever its width.
+        width; two pressures that the mesh resolves give that, and the value at the true width follows. Nearer to a
+        corner than `corner_distance` the exact wedge tells how the deflection grows.
         """
         wanted = np.asarray(patch if half_width is None else half_width, dtype=float)
-        arc, room = self._room(radius)
-        _, wide = self.place(radius, patch)
-        curvature = self._curvature(arc)
-        (regular_wide, regular_narrow), narrow = self._regular(arc, wide, curvature), _NARROWER * wide
-        square = (regular_wide - regular_narrow) / (wide**2 - narrow**2)
-        regular = regular_narrow + square * (np.minimum(wanted, room) ** 2 - narrow**2)
-        return regular - self.log_slope * np.log(wanted) + self.curvature_slope * curvature * _CENTRE * wanted
+        arc, width = self.place(radius, wanted)
+        regular = self._regular(arc, width, patch)
+        for corner, inward, angle in self._corners:
+            distance = inward * (arc - corner)
+            near = distance < self.corner_distance
+            if near.any():
+                regular[near] = self._beside_corner(corner, inward, angle, distance[near], width[near], patch)
+        bend = self.curvature_slope * _MEAN * self._curvature(arc)
+        return regular - self.log_slope * np.log(width) + bend * width
 
-    def _regular(self, arc: Array, wide: Array, curvature: Array) -> tuple[Array, Array]:
-        """What two pressures leave of c_0 without what depends on their width in closed form, shape (P,) each."""
-        places, widths = np.concatenate([arc, arc]), np.concatenate([wide, _NARROWER * wide])
+    @property
+    def _corners(self) -> list[tuple[float, float, float]]:
+        """Arc position, direction into the flank and angle of the flank's corners."""
+        lower, upper = corner_angles(self.tooth)
+        found = [(self.flank.flank_start, 1.0, lower)] if self.flank.lower_corner else []
+        # A tip rounded by less than the corner distance is a corner still.
+        if self.flank.beyond < self.corner_distance:
+            found.append((self.flank.flank_end + self.flank.beyond, -1.0, upper))
+        return found
+
+    def _beside_corner(
+        self, corner: float, inward: float, angle: float, distance: Array, width: Array, patch: float
+    ) -> Array:
+        """`_regular` nearer to a corner than the mesh tells: scaled contacts on a wedge differ by a logarithm alone.
+
+        What is left of first order in the distance follows from contacts at once and twice the corner distance.
+        """
+        d = self.corner_distance
+        distance = np.maximum(distance, 1e-6 * d)
+        slope = (wedge_slope(angle) - 2.0 / np.pi) * self.log_slope * np.pi / 2.0
+        near, twice = (
+            self._regular(np.full(distance.shape, corner + inward * n * d), n * d * width / distance, patch)
+            for n in (1.0, 2.0)
+        )
+        return near - slope * np.log(distance / d) + (distance / d - 1.0) * (twice - near + slope * np.log(2.0))
+
+    def _regular(self, arc: Array, width: Array, patch: float) -> Array:
+        """What contacts leave of c_0 beside what depends on their width in closed form, shape (P,)."""
+        room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
+        wide = np.maximum(np.minimum(patch, _ROOM_SHARE * room), self.corner_distance)
+        wide = np.maximum(wide, width)
+        narrow = _NARROWER * wide
+        places, widths = np.concatenate([arc, arc]), np.concatenate([wide, narrow])
         loads = self.flank.patches(places, widths)
         mean = np.einsum("ip,ip->p", loads, self.compliance[0] @ loads)
-        bend = self.curvature_slope * _MEAN * np.tile(curvature, 2) * widths
+        bend = self.curvature_slope * _MEAN * np.tile(self._curvature(arc), 2) * widths
         both = mean + self.log_slope * (0.25 + np.log(widths)) - bend
-        return both[: arc.size], both[arc.size :]
+        by_wide, by_narrow = both[: arc.size], both[arc.size :]
+        return np.asarray(by_narrow + (by_wide - by_narrow) * (width**2 - narrow**2) / (wide**2 - narrow**2))
 
     @property
     def curvature_slope(self) -> float:
@@ -198,11 +234,11 @@ class Influence:
         run = self.flank.arc[self.flank.first_flank_edge : self.flank.after_flank_edge + 1]
         return np.asarray(1.0 / (self.flank.base_radius * np.sqrt(np.interp(inside, run, self.flank.roll_squared))))
 
-    def centre_compliance(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
-        """c_0 read at the centre of a patch as wide as the contact itself, as far as the mesh resolves it: a check."""
-        arc, _ = self._room(radius)
-        loads = self.flank.patches(arc, np.broadcast_to(half_width, arc.shape))
-        return np.asarray(np.einsum("ip,ip->p", self.flank.deflections_at(arc), self.compliance[0] @ loads))
+    def mean_compliance(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
+        """c_0 straight from a pressure as wide as the contact itself, as far as the mesh resolves it: a check."""
+        arc, width = self.place(radius, half_width)
+        loads = self.flank.patches(arc, width)
+        return np.asarray(np.einsum("ip,ip->p", loads, self.compliance[0] @ loads)) + 0.25 * self.log_slope
 
     def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike, patch: float) -> Array:
         """c_k(p, q): deflection at p of tooth k under a unit line load at q of tooth 0, shape (P, Q) [1/E].
@@ -211,27 +247,29 @@ class Influence:
         """
         return self._remote(radius_p, patch).T @ self.compliance[k] @ self._remote(radius_q, patch)
 
-    def fillet_stress(self, k: int, side: Side, radius_q: ArrayLike, patch: float) -> Array:
+    def fillet_stress(
+        self, k: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
+    ) -> Array:
         """Tangential stress along a fillet of tooth k per unit line load at q of tooth 0, shape (points, Q) [1/module].
 
         The tension fillet is the one below the loaded flank.
         """
-        return self.stress[k, side] @ self._beside_fillet(radius_q, patch)
+        return self.stress[k, side] @ self._above_fillet(radius_q, half_width)[0]
 
-    def largest_root_stress(self, k: int, side: Side, radius_q: ArrayLike, patch: float) -> tuple[Array, Array]:
+    def largest_root_stress(
+        self, k: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
+    ) -> tuple[Array, Array]:
         """Largest tension (or compression) of a fillet and the arc length where it sits, shape (Q,) each.
 
-        Within a tenth of a module of the contact the fillet feels its pressure, which is no root stress: there the
-        largest value is not looked for.
+        It is looked for beside the contact: where the contact itself presses on the fillet the stress is its pressure,
+        which is no root stress.
         """
         fillet = self.fillets[side]
-        end = np.full(np.size(radius_q), fillet.length)
+        loads, above, width = self._above_fillet(radius_q, half_width)
+        end = np.full(above.shape, fillet.length)
         if k == 0 and side == "tension":
-            above = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius_q, dtype=float))) - self.flank.flank_start
-            end -= np.maximum(_BESIDE_CONTACT - above, 0.0)
-        return extreme(
-            self.fillet_stress(k, side, radius_q, patch), fillet.arc, 1.0 if side == "tension" else -1.0, end
-        )
+            end -= np.maximum(width + self.corner_distance - above, 0.0)
+        return extreme(self.stress[k, side] @ loads, fillet.arc, 1.0 if side == "tension" else -1.0, end)
 
 
 @tallied("tooth shapes")
@@ -243,7 +281,7 @@ def solve_influence(
     *,
     order: int = 2,
     reach: int = 1,
-    corner_distance: float = 0.02,
+    corner_distance: float = 0.006,
     margin: float = 0.15,
     sector_teeth: int = 0,
 ) -> Influence:
@@ -259,7 +297,8 @@ def solve_influence(
     reach : int
         K: neighbours -K..K; at most (z - 1) // 2.
     corner_distance : float
-        Contacts nearer than this to a corner of the flank are modelled at this distance [modules].
+        Nearer than this to a corner of the flank the exact wedge tells c_0; the narrowest pressure that loads the
+        mesh [modules].
     margin : float
         How far below the flank a patch may reach into the fillet [modules].
     sector_teeth : int

@@ -31,7 +31,8 @@ class MeshSettings:
     rim_fraction : float
         Longest edge in the body as a fraction of the rim's thickness (outline to bore).
     corner_distance : float
-        Contacts nearer than this to a corner of the flank are modelled at this distance.
+        Nearer than this to a corner of the flank the exact wedge tells the deflection; the narrowest pressure that
+        loads the mesh.
     patch_half_width : float
         Half-width of the wider of the two semi-elliptic pressures that load the mesh.
     order : int
@@ -41,15 +42,15 @@ class MeshSettings:
     root_edge_length: float = 0.055
     root_fraction: float = 0.2
     flank_edge_length: float = 0.055
-    tip_edge_length: float = 0.008
-    junction_edge_length: float = 0.008
+    tip_edge_length: float = 0.003
+    junction_edge_length: float = 0.003
     back_edge_length: float = 0.3
     growth: float = 0.28
-    tip_growth: float = 0.2
+    tip_growth: float = 0.22
     side_growth: float = 0.4
     body_fraction: float = 1.4
     rim_fraction: float = 0.45
-    corner_distance: float = 0.02
+    corner_distance: float = 0.006
     patch_half_width: float = 0.13
     order: int = 4
 
@@ -63,7 +64,10 @@ class MeshSettings:
             raise InputError("accuracy.order", self.order, "must be 2, 3 or 4")
 
     def scaled(self, factor: float) -> MeshSettings:
-        """Return a coarser (factor > 1) or finer set: every edge length times `factor`; patch and order stay."""
+        """Return a coarser (factor > 1) or finer set: every edge length and the corner distance times `factor`.
+
+        Patch and order stay.
+        """
         return replace(
             self,
             root_edge_length=self.root_edge_length * factor,
@@ -77,6 +81,7 @@ class MeshSettings:
             side_growth=self.side_growth * factor,
             body_fraction=self.body_fraction * factor,
             rim_fraction=self.rim_fraction * factor,
+            corner_distance=self.corner_distance * factor,
         )
 
     def refined(self, factor: float) -> MeshSettings:

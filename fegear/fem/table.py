@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import RangeError
+from fegear.fem.contact_width import check_half_widths
 from fegear.fem.gear import solve_gear
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ def stiffness_table(
     Raises
     ------
     RangeError
-        If a radius lies off the flank or a half-width is not positive.
+        If a radius lies off the flank, or a half-width is one that no flank holds (`check_half_widths`).
     """
     started = time.perf_counter()
     r = np.atleast_1d(np.asarray(radii, dtype=float))
@@ -113,8 +114,7 @@ def stiffness_table(
             f"{r[off][0] * 1e3:.6g} mm",
             f"lies off the involute flank, which runs from {low * 1e3:.6g} to {high * 1e3:.6g} mm",
         )
-    if not (np.isfinite(b) & (b > 0.0)).all():
-        raise RangeError("contact_half_width", f"{b[~(b > 0.0)][:1]}", "must be positive and finite")
+    check_contacts(gear, r, b)
     known = influence or solve_gear(gear, settings, progress=progress)
     c_self = known.self_compliance(r, b)
     neighbours = {k: np.diagonal(known.neighbour(k, r, r)) for k in (-1, 1)}
@@ -124,7 +124,7 @@ def stiffness_table(
     }
     places = {}
     for side in ("tension", "compression"):
-        value, arc = known.largest_root_stress(0, side, r)
+        value, arc = known.largest_root_stress(0, side, r, b)
         fillet = known.fine.fillets[side]
         arc_modules = arc / gear.module
         places[side] = (
@@ -132,7 +132,7 @@ def stiffness_table(
             np.interp(arc_modules, fillet.arc, fillet.radius) * gear.module,
             np.interp(arc_modules, fillet.arc, fillet.tangent_angle),
         )
-        errors[f"root_{side}"] = known.root_stress_error(0, side, r)
+        errors[f"root_{side}"] = known.root_stress_error(0, side, r, b)
     for array in (r, b, c_self, *neighbours.values(), *errors.values()):
         array.flags.writeable = False
     return StiffnessTable(
@@ -140,3 +140,24 @@ def stiffness_table(
         c_self, neighbours[-1], neighbours[1], b,
         *places["tension"], *places["compression"], errors, known, time.perf_counter() - started,
     )  # fmt: skip
+
+
+def check_contacts(gear: Gear, radii: ArrayLike, half_width: ArrayLike, key: str = "contact_half_width") -> None:
+    """Refuse contacts that the gear's flank cannot hold, in millimetres.
+
+    Parameters
+    ----------
+    gear : Gear
+    radii, half_width : array_like, shape (P,)
+        [m].
+    key : str
+        What the refusal is about.
+
+    Raises
+    ------
+    RangeError
+    """
+    r, m = np.asarray(radii, dtype=float), gear.module
+    # On an involute the squared radius grows by twice the base radius times the arc length.
+    room = np.minimum(r**2 - gear.form_radius**2, gear.involute_tip_radius**2 - r**2) / (2.0 * gear.base_radius)
+    check_half_widths(np.asarray(half_width) / m, room / m, unit="mm", scale=1e3 * m, key=key)

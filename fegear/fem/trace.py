@@ -7,7 +7,9 @@ of the square roots at the ends of the patch.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -122,6 +124,13 @@ class LoadedFlank:
         """Length of the run beyond the flank's end, on a tip rounding [modules]; 0 at a corner."""
         return 0.0 if self.upper_corner else float(self.arc[-1]) - self.flank_end
 
+    @cached_property
+    def base_half_angle(self) -> float:
+        """Angle from the tooth's centre line at which the involute leaves the base circle [rad]."""
+        x, y = self.points[:, 1, self.after_flank_edge - 1]
+        roll = math.sqrt(self.roll_squared[-1])
+        return math.atan2(x, y) + roll - math.atan(roll)
+
     @property
     def nodes(self) -> int:
         """Number of Lagrange nodes along the run."""
@@ -166,7 +175,15 @@ class LoadedFlank:
         """Unit vectors into the material at places of edges, shape (2, *xi.shape)."""
         slope = np.stack([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
         tangent = np.einsum("cin,in...->cn...", self.points[:, :, edge], slope)
-        return np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
+        normal = np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
+        on_flank = (edge >= self.first_flank_edge) & (edge < self.after_flank_edge)
+        # The involute's own: tangent to the base circle, so that a load's torque is exactly the base radius times it.
+        e = edge[on_flank] - self.first_flank_edge
+        along = xi[on_flank]
+        low, high = (self.roll_squared[i].reshape(-1, *[1] * (along.ndim - 1)) for i in (e, e + 1))
+        phi = self.base_half_angle - np.sqrt(np.maximum(low + (high - low) * along, 0.0))
+        normal[:, on_flank] = np.stack([-np.cos(phi), np.sin(phi)])
+        return normal
 
     def patches(self, arc: Array, half_width: Array) -> Array:
         """Unknown-wise loads of unit contacts centred at `arc` with half-widths a.

@@ -20,7 +20,7 @@ from fegear.engine.figure import (
 )
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.errors import InputError, RangeError
+from fegear.errors import InputError
 from fegear.models.assumed import bore_remarks
 from fegear.models.tooth_influence import solution_settings
 from fegear.results.drawn_gear import deformed_figure, tooth_figure
@@ -44,8 +44,6 @@ _USUAL_LINE_LOAD = 100e3
 _ISO_TANGENT = 30.0
 #: Half-width of the contact in modules when the case gives neither a width nor a load.
 USUAL_HALF_WIDTH = 0.02
-#: Wider contacts than this [modules] are refused where a case gives them: the flank is too short to hold them.
-LARGEST_HALF_WIDTH = 0.5
 #: Reading off one position of a solved gear [s].
 _SECONDS_PER_POSITION = 3e-4
 #: The error estimates of a table [s].
@@ -77,13 +75,6 @@ def _check(scene: Scene, name: str) -> None:
             f"describe a pair with gear {name}, or give contact_half_width",
         )
     gear = scene.gears[name]
-    if part.contact_half_width is not None and part.contact_half_width > LARGEST_HALF_WIDTH * gear.module:
-        raise RangeError(
-            "stiffness.contact_half_width",
-            f"{part.contact_half_width * 1e3:.6g} mm",
-            f"is no contact on a flank: it exceeds half a module, {LARGEST_HALF_WIDTH * gear.module * 1e3:.6g} mm",
-            f"{USUAL_HALF_WIDTH * gear.module * 1e3:.6g} mm is usual",
-        )
     for i, radius in enumerate(part.radii or ()):
         low, high = gear.form_radius, gear.involute_tip_radius
         if not low * (1 - 1e-9) <= radius <= high * (1 + 1e-9):
@@ -93,6 +84,10 @@ def _check(scene: Scene, name: str) -> None:
                 f"lies off the involute flank of gear {name}",
                 f"it runs from {low * 1e3:.9g} mm to {high * 1e3:.9g} mm",
             )
+    if part.contact_half_width is not None:
+        from fegear.fem.table import check_contacts
+
+        check_contacts(gear, load_radii(scene, name), part.contact_half_width, "stiffness.contact_half_width")
 
 
 def load_radii(scene: Scene, name: str) -> Array:

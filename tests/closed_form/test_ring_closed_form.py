@@ -83,7 +83,7 @@ def energy(known):
 
 @pytest.mark.parametrize(
     ("order", "factors", "slope"),
-    [(2, (2.8, 2.0, 1.4, 1.0), 2.6), (3, (4.0, 2.8, 2.0, 1.4), 3.6), (4, (5.6, 4.0, 2.8), 4.0)],
+    [(2, (2.8, 2.0, 1.4, 1.0), 2.6), (3, (4.0, 2.8, 2.0, 1.4), 3.6), (4, (4.8, 3.4, 2.4), 4.0)],
 )
 def test_observed_order_of_convergence_in_energy(order, factors, slope):
     # 2 p on smooth problems; the sharp tip corner and meshes drawn anew for each size cost some of it.
@@ -101,7 +101,7 @@ def test_observed_order_of_convergence_of_the_root_stress(order, factors, slope)
     # p for a derivative; the surface's own strain at Gauss points does a little better on the average over positions.
     def stress(p, factor):
         known, radii = four_square(p, factor), np.linspace(13.5, 14.9, 15)
-        return np.concatenate([known.largest_root_stress(0, s, radii, 0.1)[0] for s in ("tension", "compression")])
+        return np.concatenate([known.largest_root_stress(0, s, radii)[0] for s in ("tension", "compression")])
 
     reference = stress(4, 0.8)
     errors = [np.sqrt(np.mean((stress(order, f) / reference - 1.0) ** 2)) for f in factors]
@@ -117,11 +117,11 @@ def test_plane_strain_is_plane_stress_with_changed_constants():
         assert np.allclose(strain.compliance[k], stress.compliance[k] * (1 - nu**2), rtol=1e-9, atol=1e-12)
 
 
-def test_deflection_at_the_centre_and_weighted_with_the_pressure_tell_the_same_story():
-    # The centre of a wide patch itself, against mean deflections of wider and narrower ones and closed forms.
+def test_deflection_is_the_mean_over_the_contact_and_a_quarter_of_the_half_plane_s_logarithm():
+    # The pressure of a wide contact itself, against mean deflections of wider and narrower ones and closed forms.
     known = four_square(4, 0.7)
     radii = np.linspace(13.4, 14.7, 9)
-    assert np.allclose(known.self_compliance(radii, 0.12, 0.08), known.centre_compliance(radii, 0.08), rtol=1e-4)
+    assert np.allclose(known.self_compliance(radii, 0.12, 0.08), known.mean_compliance(radii, 0.08), rtol=1e-5)
 
 
 def test_self_compliance_does_not_depend_on_the_patch_from_root_to_tip():
@@ -221,9 +221,9 @@ def test_hard_gears_give_finite_monotone_answers(teeth, shift, bore, nu):
     ) or np.allclose(
         known.neighbour(1, radii, radii, 0.08), known.neighbour(-1, radii, radii, 0.08).T, rtol=1e-9, atol=1e-12
     )
-    tension = known.largest_root_stress(0, "tension", radii[5:], 0.08)[0]
+    tension = known.largest_root_stress(0, "tension", radii[5:])[0]
     assert (tension > 0.0).all()
-    assert (known.largest_root_stress(0, "compression", radii, 0.08)[0] < 0.0).all()
+    assert (known.largest_root_stress(0, "compression", radii)[0] < 0.0).all()
 
 
 @pytest.mark.parametrize("short_by", [1e-9, 1e-6, 1e-4, 1e-3])
@@ -235,7 +235,7 @@ def test_racks_that_are_all_but_full_lead_to_the_full_fillet(short_by):
         known = solve_influence(tooth, mesh_sector(tooth, 0.5 * tooth.root_radius, MeshSettings()), 0.3, "strain")
         radii = np.array([14.0, 14.8])
         assert known.mesh.triangles.shape[1] < 4000
-        return known.self_compliance(radii, 0.08), known.largest_root_stress(0, "tension", radii, 0.08)[0]
+        return known.self_compliance(radii, 0.08), known.largest_root_stress(0, "tension", radii)[0]
 
     full = BasicRack.full_fillet()
     nearly = answers(BasicRack(tip_radius=full.tip_radius - short_by, addendum=1.0, dedendum=1.25))

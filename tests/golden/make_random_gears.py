@@ -87,8 +87,8 @@ def converged(tooth, bore, nu, plane, positions=POSITIONS, settings=FINE):
         "radii": radii.tolist(),
         "c_self": known.self_compliance(radii, patch, HALF_WIDTH).tolist(),
         "c_next": np.diagonal(known.neighbour(1, radii, radii, patch)).tolist(),
-        "root_tension": known.largest_root_stress(0, "tension", radii, patch)[0].tolist(),
-        "root_compression": known.largest_root_stress(0, "compression", radii, patch)[0].tolist(),
+        "root_tension": known.largest_root_stress(0, "tension", radii)[0].tolist(),
+        "root_compression": known.largest_root_stress(0, "compression", radii)[0].tolist(),
     }
 
 

@@ -120,12 +120,12 @@ def test_the_limit_of_undercut_is_crossed_without_a_jump():
 
 
 def test_at_the_start_of_the_involute_the_limit_is_crossed_within_the_reported_error():
-    """There the corner of an undercut flank holds the contact at the corner distance, a smooth fillet carries it on."""
+    """There a contact just ends at the corner of an undercut flank; a smooth fillet carries it on."""
     found = []
     for beside in (-1e-6, 1e-6):
         tooth = Tooth(14, RACK, undercut_limit(14) + beside)
         known, roll = solve_gear(gear(tooth)), tooth.roll(tooth.form_radius)
-        held = np.sqrt(roll**2 + 2.0 * known.settings.corner_distance / tooth.base_radius)
+        held = np.sqrt(roll**2 + 2.0 * HALF_WIDTH / tooth.base_radius)
         place = np.array([tooth.form_radius if tooth.undercut else tooth.radius_of_roll(held)])
         found.append((known.self_compliance(place, HALF_WIDTH)[0], known.self_error(place, HALF_WIDTH)[0]))
     (below, its_error), (above, other_error) = found
