@@ -138,10 +138,10 @@ class Influence:
     def _above_fillet(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array, Array]:
         """Loads for the stress in the fillet, how far above it they stand and their half-width.
 
-        In their exact place, for it decides about the bending; narrowed where they would reach past a corner.
+        In their exact place, for it decides about the bending; narrowed where they would reach past tip or corner.
         """
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
-        above, room = arc - self.flank.flank_start, self.flank.flank_end + self.flank.beyond - arc
+        above, room = arc - self.flank.flank_start, self.flank.flank_end - arc
         if self.flank.lower_corner:
             room = np.minimum(above, room)
         width = np.minimum(np.asarray(half_width, dtype=float), np.maximum(room, _POINT))
