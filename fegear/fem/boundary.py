@@ -39,6 +39,9 @@ _FEWEST_FILLET_EDGES = 4
 _SMALLEST_BORE, _THINNEST_RIM = 1e-4, 5e-3
 #: Widest angle of an edge on the bore [rad]: a cubic edge misses its circle by the fourth power of it over 384.
 _WIDEST_BORE_EDGE = 0.25
+#: An edge on a tip rounding that turns by more than this [rad] is shorter than what matters there and stays straight:
+#: gmsh draws triangles over two such edges, whose corner between two tangents would be flat.
+_SHARPEST_TURN = 0.26
 #: The shortest edges on a sharp fillet, as a share of the usual ones.
 _SHARPEST = 0.1
 
@@ -93,7 +96,11 @@ def _on_curve(name: str, curve: Curve, size: Law) -> Chain:
     points = curve.points(np.interp(halves, length, parameter))
     points[:, 0], points[:, -1] = curve.points(curve.start), curve.points(curve.end)
     normals = curve.normals(np.interp(nodes, length, parameter))
-    return Chain(name, points[:, ::2], points[:, 1::2], np.stack([-normals[1], normals[0]]))
+    vertices, middles, tangents = points[:, ::2], points[:, 1::2], np.stack([-normals[1], normals[0]])
+    if name == "tip_rounding":
+        sharp = np.einsum("cn,cn->n", tangents[:, 1:], tangents[:, :-1]) < math.cos(_SHARPEST_TURN)
+        middles = np.where(sharp, 0.5 * (vertices[:, 1:] + vertices[:, :-1]), middles)
+    return Chain(name, vertices, middles, tangents)
 
 
 def _mirrored(chain: Chain, name: str) -> Chain:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 #: What gmsh's wheel needs from the system, for the error message.
 SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
 
+#: A middle node this near to the middle of its edge, as a share of the edge, leaves the edge straight.
+_STRAIGHT = 1e-12
 #: How often, and by which factor, edges are shortened when elements turn inside out.
 _MOST_REFINEMENTS, _FINER = 4, 0.6
 
@@ -116,7 +118,9 @@ def _bends(chain: Chain) -> NDArray[np.float64]:
     # Twice the way over the middle node, less what the chord is shorter: the arc's length to fourth order.
     halves = np.hypot(*(chain.middles - chain.vertices[:, :-1])) + np.hypot(*(chain.vertices[:, 1:] - chain.middles))
     length = (4.0 * halves - np.hypot(*chord)) / 3.0
-    return np.stack([length * chain.tangents[:, :-1] - chord, chord - length * chain.tangents[:, 1:]], axis=1)
+    bends = np.stack([length * chain.tangents[:, :-1] - chord, chord - length * chain.tangents[:, 1:]], axis=1)
+    off = np.hypot(*(chain.middles - 0.5 * (chain.vertices[:, 1:] + chain.vertices[:, :-1])))
+    return np.where(off > _STRAIGHT * np.hypot(*chord), bends, 0.0)
 
 
 def _ignore_closed_pipes() -> None:
