@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 #: Part of the difference from the coarser solution of the error estimate that is taken for the error of the finer one:
 #: of c_0, of neighbours, of stresses. Smooth errors of order four leave a third; gmsh draws every mesh anew, positions
 #: differ, and a neighbour's deflection, a small error anyway, differs least regularly.
-_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 2.4, 1.0
+_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 2.4, 0.9
 _HIGHEST_ORDER = 4
 #: Edges half as long for a tenth of the error; and how often at most a solution is refined.
 _LEVELS_PER_DECADE, _MOST_ROUNDS = 2.0, 4
