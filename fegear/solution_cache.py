@@ -70,7 +70,7 @@ class SolutionCache:
     disk : Store, optional
         Where solutions of kinds that have a `Codec` are kept beyond this process.
     most : int
-        Solutions in memory; the ones unused for longest go first.
+        Solutions in memory; the ones unused for longest go first. A gear's influence functions take some 10 MB.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class SolutionCache:
         Whole results, and the tooth shapes among what they are made of.
     """
 
-    def __init__(self, disk: Store | None = None, most: int = 512) -> None:
+    def __init__(self, disk: Store | None = None, most: int = 128) -> None:
         self.disk = disk
         self.solutions, self.shapes = Account(), Account()
         self._memory: OrderedDict[str, tuple[Any, float]] = OrderedDict()
