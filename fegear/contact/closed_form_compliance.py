@@ -14,13 +14,12 @@ from fegear.errors import InputError
 from fegear.formulas.sources import source as formula_source
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.compliance import Side
     from fegear.formulas.compliance import ComplianceSource
     from fegear.geometry.gear import Gear
-
-    Array = NDArray[np.float64]
 
 _POINTS = 81
 

@@ -26,11 +26,10 @@ from fegear.geometry.involute import polar_angle
 from fegear.tally import tallied
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry.pair import GearPair, Member
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -22,14 +22,13 @@ from fegear.formulas.sources import SOURCES
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.fem import GearInfluence
     from fegear.formulas.compliance import ComplianceSource
     from fegear.geometry import Gear, GearPair, Tooth
     from fegear.geometry.pair import Member
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

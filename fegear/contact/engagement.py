@@ -15,12 +15,11 @@ from fegear.geometry.relief import UNMODIFIED, Relief
 from fegear.tally import note
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.pair_compliance import PairCompliance, PairMatrices
     from fegear.geometry.pair import GearPair
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

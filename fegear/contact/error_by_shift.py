@@ -19,13 +19,10 @@ from fegear.contact.mesh_curve import mean_secant_stiffness
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact.engagement import Engagement
     from fegear.contact.pair_history import PairHistory
     from fegear.contact.transmission_error import TransmissionError
-
-    Array = NDArray[np.float64]
 
 
 def solve_again(other: Engagement, loaded: Loaded) -> Loaded:

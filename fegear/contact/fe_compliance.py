@@ -15,12 +15,11 @@ from fegear.errors import RangeError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.compliance import Side
     from fegear.fem.gear import GearInfluence
-
-    Array = NDArray[np.float64]
 
 #: Interpolation points over the flank: splines for the loaded tooth, Chebyshev polynomials for its smooth neighbours.
 _OWN_POINTS = 97

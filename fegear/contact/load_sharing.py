@@ -25,8 +25,7 @@ from fegear.tally import note, tallied
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Array = NDArray[np.float64]
-    Mask = NDArray[np.bool_]
+    from fegear.arrays import Array, Mask
 
 #: Share below which the logarithm is continued by its tangent: W ln W has an infinite slope at zero. Its effect on any
 #: share is below its own size.

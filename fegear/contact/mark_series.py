@@ -16,9 +16,9 @@ from fegear.contact.fourier import FourierSeries, Panels, fourier_series
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact.engagement import Engagement, Loaded
     from fegear.contact.transmission_error import TransmissionError
-
-    Array = NDArray[np.float64]
 
 #: Distance from a jump at which both sides of it are looked at [base pitches].
 _BESIDE = 1e-7

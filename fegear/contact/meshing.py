@@ -15,9 +15,8 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.geometry.pair import GearPair
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,12 +17,11 @@ from fegear.contact.root_stress_history import root_stress_history
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.engagement import Engagement, Loaded
     from fegear.geometry.pair import Member
-
-    Array = NDArray[np.float64]
 
 Answer = Literal["transmission error", "load on a tooth pair", "root tension"]
 

@@ -13,13 +13,10 @@ from fegear.errors import InputError
 from fegear.tally import tallied
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact.compliance import GearCompliance
     from fegear.contact.meshing import Contacts
     from fegear.geometry.pair import GearPair, Member
-
-    Array = NDArray[np.float64]
 
 Hertz = Literal["load-dependent", "linear", "none"]
 

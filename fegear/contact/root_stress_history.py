@@ -10,14 +10,12 @@ import numpy as np
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact.compliance import Side
     from fegear.contact.engagement import Engagement, Loaded
     from fegear.contact.meshing import Contacts
     from fegear.geometry.pair import Member
 
-    Array = NDArray[np.float64]
     Kernels = dict[int, Array]
 
 

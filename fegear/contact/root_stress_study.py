@@ -15,12 +15,9 @@ from fegear.geometry import Gear, Tooth
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.fem.settings import MeshSettings
     from fegear.solution_cache import SolutionCache
-
-    Array = NDArray[np.float64]
 
 #: Half-width of the band that counts as agreement: what Cornell's abstract claims.
 BAND = 0.05

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.compliance import Side
     from fegear.contact.fe_compliance import FiniteElementCompliance
-
-    Array = NDArray[np.float64]
 
 _POINTS = 25
 

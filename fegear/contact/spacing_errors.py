@@ -12,9 +12,8 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.contact.transmission_error import PairStiffness
-
-    Array = NDArray[np.float64]
 
 
 def spacing_spectrum(errors: ArrayLike) -> NDArray[np.complex128]:

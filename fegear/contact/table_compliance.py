@@ -14,12 +14,11 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.compliance import GearCompliance, Side
     from fegear.geometry.pair import GearPair, Member
-
-    Array = NDArray[np.float64]
 
 Fit = Literal["linear", "cubic"]
 

@@ -16,9 +16,8 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array
     from fegear.contact.engagement import Engagement, Loaded
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

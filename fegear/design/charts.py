@@ -13,11 +13,10 @@ from fegear.errors import InputError
 from fegear.geometry.relief import Shape, roll_of_radius
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.engagement import Loaded
-
-    Array = NDArray[np.float64]
 
 Metric = Literal["effective_error", "peak_to_peak"]
 

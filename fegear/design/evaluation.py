@@ -13,12 +13,11 @@ from fegear.contact.load_sharing import share_load
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.engagement import Engagement, RollGrid
     from fegear.geometry.relief import Relief
-
-    Array = NDArray[np.float64]
 
 _BATCH = 40_000
 

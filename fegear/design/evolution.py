@@ -9,14 +9,12 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.floating]
+    from fegear.arrays import Floats
 
 
 def evolve(
-    objective: Callable[[Array], Array], population: Array, low: Array, high: Array, generations: int
-) -> tuple[Array, Array]:
+    objective: Callable[[Floats], Floats], population: Floats, low: Floats, high: Floats, generations: int
+) -> tuple[Floats, Floats]:
     """Find the least of an objective with kinks near each of B starts (Storn and Price, "current to best").
 
     Every generation of all islands is evaluated at once. The random numbers are always the same.

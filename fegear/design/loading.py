@@ -20,7 +20,7 @@ from fegear.errors import InputError, RangeError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

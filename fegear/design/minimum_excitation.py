@@ -19,14 +19,13 @@ from fegear.errors import InputError, RangeError
 from fegear.geometry.relief import TabulatedRelief
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.engagement import Engagement
     from fegear.contact.pair_compliance import PairCompliance
     from fegear.design.loading import LoadingFunction
     from fegear.geometry.pair import Member
-
-    Array = NDArray[np.float64]
 
 #: The extrapolation takes its slope from the end of the design zone to this fraction of the ramp inside it: the slope
 #: at the very end is infinite with a load-dependent contact (W ln W).

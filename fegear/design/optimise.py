@@ -15,13 +15,12 @@ from fegear.errors import InputError
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.engagement import Engagement
     from fegear.design.charts import Metric
     from fegear.geometry.gear import Gear
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -17,11 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Floats
     from fegear.contact.engagement import RollGrid
-
-    Array = NDArray[np.floating]
 
 
 @dataclass(frozen=True)
@@ -42,10 +39,10 @@ class LoadedSet:
 
     pairs: range
     states: slice
-    base: Array
-    weight: Array
+    base: Floats
+    weight: Floats
 
-    def approach(self, m: Array) -> Array:
+    def approach(self, m: Floats) -> Floats:
         """zeta_S [m], shape (..., M), for modifications (..., n, N) [m]."""
         first = m[..., self.pairs[0], self.states]
         if len(self.pairs) == 1:  # the weight of a pair alone is one
@@ -71,7 +68,7 @@ class QuickSharing:
     sets: tuple[LoadedSet, ...]
     size: int
 
-    def approach(self, m: Array) -> Array:
+    def approach(self, m: Floats) -> Floats:
         """Zeta [m], shape (..., N), for modifications m [m], shape (..., n, N)."""
         least = np.full((*m.shape[:-2], self.size), np.inf, dtype=m.dtype)
         for s in self.sets:
@@ -79,7 +76,7 @@ class QuickSharing:
             np.minimum(part, s.approach(m), out=part)
         return least
 
-    def weights(self, m: Array) -> Array:
+    def weights(self, m: Floats) -> Floats:
         """D zeta / d m_j of the set that decides, shape (..., n, N)."""
         least = np.full((*m.shape[:-2], self.size), np.inf)
         weight = np.zeros(m.shape)
@@ -94,7 +91,7 @@ class QuickSharing:
         return weight
 
 
-def quick_sharing(grid: RollGrid, loads: Array) -> QuickSharing:
+def quick_sharing(grid: RollGrid, loads: Floats) -> QuickSharing:
     """Set up at the P roll positions of a grid under loads [N], shape (L,): N = P L states, loads fastest."""
     contacts, matrices = grid.contacts, grid.matrices
     n, positions = contacts.x.shape

@@ -13,12 +13,11 @@ from fegear.errors import RangeError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.design.minimum_excitation import MinimumExcitationRelief
     from fegear.geometry.gear import Gear
-
-    Array = NDArray[np.float64]
 
 #: Deepest relief in modules. Deflections reach it only under line loads that no steel carries (some 1.5 GPa times the
 #: module), and the influence functions, which are those of the unrelieved tooth, no longer hold there.

@@ -17,8 +17,7 @@ from fegear.geometry.relief import UNMODIFIED
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact import Engagement, Loaded, TransmissionError
     from fegear.design.charts import Metric
     from fegear.design.loading import LoadingFunction
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
     from fegear.design.root_stress_loading import StressOptimum
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Shape
-
-    Array = NDArray[np.float64]
 
 MEMBERS: tuple[Member, Member] = ("driver", "driven")
 

@@ -12,12 +12,11 @@ from fegear.design.evaluation import bench
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.contact.engagement import Engagement
     from fegear.design.charts import Metric
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,9 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact.pair_compliance import PairCompliance
     from fegear.geometry.pair import Member
-
-    Array = NDArray[np.float64]
 
 MEMBERS: tuple[Member, Member] = ("driver", "driven")
 

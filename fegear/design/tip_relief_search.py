@@ -27,10 +27,10 @@ from fegear.geometry.relief import roll_of_radius
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Floats
     from fegear.contact.engagement import Engagement
 
     #: Of double precision, or of single where the quick sharing is at work.
-    Array = NDArray[np.floating]
 
 #: Lengths of relief over the path of contact.
 SHORTEST, LONGEST = 0.02, 1.0
@@ -76,7 +76,7 @@ class Stand:
     """
 
     bench: Bench
-    loads: Array
+    loads: Floats
     power: float
     metric: str
 
@@ -86,7 +86,7 @@ class Stand:
         return quick_sharing(self.bench.grid, self.loads)
 
     @cached_property
-    def _depths(self) -> Array:
+    def _depths(self) -> Floats:
         """Distance of each contact from the tips of both gears over the path, shape (2, n, P)."""
         pair, contacts = self.bench.engagement.pair, self.bench.grid.contacts
         found = []
@@ -99,7 +99,7 @@ class Stand:
     def _rough_depths(self) -> NDArray[np.float32]:
         return self._depths.astype(np.float32)
 
-    def one_gear(self, gear: int, amount: Array, length: Array) -> Array:
+    def one_gear(self, gear: int, amount: Floats, length: Floats) -> Floats:
         """Removal by one gear's relief [m], shape (..., n, N), in the precision of amount and length."""
         depth = self._depths if length.dtype == np.float64 else self._rough_depths
         s = depth[gear] * (-1.0 / length)[..., None, None]
@@ -110,20 +110,20 @@ class Stand:
         s *= amount[..., None, None]
         return s if self.loads.size == 1 else np.repeat(s, self.loads.size, axis=-1)
 
-    def removal(self, p: Array) -> Array:
+    def removal(self, p: Floats) -> Floats:
         """Removal of candidates p = (amount, length, amount, length) in [m] and paths, shape (..., n, N) [m]."""
         first = self.one_gear(0, p[..., 0], p[..., 1])
         first += self.one_gear(1, p[..., 2], p[..., 3])
         return first
 
     @cached_property
-    def _kernel(self) -> Array:
+    def _kernel(self) -> Floats:
         n, x = np.arange(1, _HARMONICS + 1), self.bench.points.x
         phase = 2.0 * math.pi / self.bench.points.period * np.multiply.outer(x, n)
         weighed = 2.0 * self.bench.points.weights[:, None] / self.bench.points.period
         return np.concatenate([weighed * np.cos(phase), weighed * np.sin(phase)], axis=1)
 
-    def left(self, zeta: Array) -> Array:
+    def left(self, zeta: Floats) -> Floats:
         """Worst metric over the loads, each in proportion to its load, of approaches (..., N): shape (...) [m]."""
         te = np.ascontiguousarray(np.moveaxis(zeta.reshape(*zeta.shape[:-1], -1, self.loads.size), -1, -2))
         if self.metric == "peak_to_peak":
@@ -134,7 +134,7 @@ class Stand:
             values = np.sqrt(square[..., 0]) + np.sqrt(square.sum(axis=-1))
         return np.asarray((values * (self.loads.max() / self.loads)).max(axis=-1))
 
-    def exact(self, p: Array) -> tuple[Array, Array]:
+    def exact(self, p: Floats) -> tuple[Floats, Floats]:
         """Approach, shape (C, N) [m], and its derivatives by the removals, (C, n, N), of candidates (C, 4)."""
         contacts, m = self.bench.grid.contacts, self.bench.grid.matrices
         n, positions = contacts.x.shape
@@ -161,11 +161,11 @@ class Stand:
 class Limits:
     """Box of the four numbers, shape (4,): amounts [m] and lengths over the path."""
 
-    low: Array
-    high: Array
+    low: Floats
+    high: Floats
 
 
-def scan(stand: Stand, scale: float, limits: Limits, budget: float, finest: int) -> tuple[Array, int]:
+def scan(stand: Stand, scale: float, limits: Limits, budget: float, finest: int) -> tuple[Floats, int]:
     """Try every combination of amounts and lengths on a grid.
 
     Parameters
@@ -218,21 +218,21 @@ def scan(stand: Stand, scale: float, limits: Limits, budget: float, finest: int)
     return np.stack([axis[lowest[:, i]] for i, axis in enumerate(axes)], axis=1), grid.size
 
 
-def settle(stand: Stand, starts: Array, limits: Limits, scale: float, generations: int = 60) -> tuple[Array, Array]:
+def settle(stand: Stand, starts: Floats, limits: Limits, scale: float, generations: int = 60) -> tuple[Floats, Floats]:
     """Lead starts, shape (B, 4), to minima of the quick sharing: best, values."""
     unit = np.array([scale, 1.0, scale, 1.0])
     spread = 0.3 * np.maximum(starts, 0.3 * unit)
     first = starts[:, None] + spread[:, None] * _CLOUD
 
-    def left(p: Array) -> Array:
+    def left(p: Floats) -> Floats:
         return stand.left(stand.quick.approach(stand.removal(p.astype(np.float32))))
 
     return evolve(left, first, limits.low, limits.high, generations)
 
 
 def descend(
-    stand: Stand, starts: Array, limits: Limits, scale: float, trust: float = 0.2, generations: int = 28
-) -> tuple[Array, Array]:
+    stand: Stand, starts: Floats, limits: Limits, scale: float, trust: float = 0.2, generations: int = 28
+) -> tuple[Floats, Floats]:
     """Lead starts, shape (B, 4), to minima of the exact load sharing; values never grow.
 
     In every round the quick sharing is corrected to first order at each search's present best, searched within a region
@@ -254,7 +254,7 @@ def descend(
         constant = (off[:, 0] - (m * slope).sum(axis=-2))[:, None].astype(np.float32)
         slopes = slope[:, None].astype(np.float32)
 
-        def model(trial: Array, constant: Array = constant, slopes: Array = slopes) -> Array:
+        def model(trial: Floats, constant: Floats = constant, slopes: Floats = slopes) -> Floats:
             tried = stand.removal(trial.astype(np.float32))
             total = stand.quick.approach(tried)
             total += constant
@@ -295,7 +295,7 @@ class Found:
         The least that the others leave [m]; the most that any leaves where all agree.
     """
 
-    best: Array
+    best: Floats
     left: float
     candidates: int
     evaluations: int
@@ -304,7 +304,7 @@ class Found:
     runner_up: float
 
 
-def search(engagement: Engagement, loads: Array, power: float, metric: str) -> Found:
+def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> Found:
     """Find the tip reliefs of both gears that leave the least over all amounts and lengths.
 
     Parameters
@@ -351,7 +351,7 @@ def search(engagement: Engagement, loads: Array, power: float, metric: str) -> F
     )  # fmt: skip
 
 
-def _even(engagement: Engagement, positions: int, kinks: Array) -> Bench:
+def _even(engagement: Engagement, positions: int, kinks: Floats) -> Bench:
     """Set up at even roll positions, at both sides of every change of pairs, and crowded about given places."""
     pair = engagement.pair
     pitch, start = pair.base_pitch, pair.x_start
@@ -369,7 +369,7 @@ def _even(engagement: Engagement, positions: int, kinks: Array) -> Bench:
     return Bench(engagement, points, engagement.grid(x))
 
 
-def _kinks(stand: Stand, p: Array) -> Array:
+def _kinks(stand: Stand, p: Floats) -> Floats:
     """Roll positions [m] where the reliefs of candidates (C, 4) start and, under a single load, where pairs part."""
     pair, points = stand.bench.engagement.pair, stand.bench.points
     places = [pair.x_end - p[:, 1] * pair.path_length, pair.x_start + p[:, 3] * pair.path_length]

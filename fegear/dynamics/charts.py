@@ -17,10 +17,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.dynamics.excitation import MeshExcitation
     from fegear.dynamics.lin_model import FourInertia
-
-    Array = NDArray[np.float64]
 
 Direction = Literal["up", "down", "static", "rest"]
 

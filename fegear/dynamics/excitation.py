@@ -19,9 +19,9 @@ from fegear.errors import InputError, RangeError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -15,12 +15,11 @@ from fegear.tally import tallied
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.dynamics.excitation import MeshExcitation
     from fegear.dynamics.train import Mesh
-
-    Array = NDArray[np.float64]
 
 _INCH = 0.0254
 _POUND_PER_INCH = 4.4482216152605 / _INCH

@@ -8,13 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.periodic import Periodic
     from fegear.dynamics.train import Train
     from fegear.dynamics.train_mesh import TrainMesh
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

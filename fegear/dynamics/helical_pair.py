@@ -22,11 +22,8 @@ from fegear.dynamics.natural_modes import undamped_modes
 from fegear.errors import GeometryError, InputError, RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.mesh_parameters import MeshParameters
-
-    Array = NDArray[np.float64]
 
 #: Signs that carry the motion of gear j into the mesh deflection.
 P = np.diag([-1.0, -1.0, -1.0, 1.0, 1.0])

@@ -34,10 +34,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Complex
     from fegear.dynamics.train import Train
 
     Reals = NDArray[np.floating]
-    ComplexArray = NDArray[np.complexfloating]
 
 #: Estimated relative round-off beyond which a frequency is solved again.
 DOUBTFUL = 1e-13
@@ -49,7 +49,7 @@ BLOCK = 16, 2048
 ORDERS = 5
 
 
-def dynamic_increments(train: Train, omega: ArrayLike, sources: Sequence[int] | None = None) -> ComplexArray:
+def dynamic_increments(train: Train, omega: ArrayLike, sources: Sequence[int] | None = None) -> Complex:
     """Dynamic increment functions of every ordered pair of meshes.
 
     Parameters
@@ -92,7 +92,7 @@ def dynamic_increments(train: Train, omega: ArrayLike, sources: Sequence[int] | 
 class _Column:
     """Q[i] for one mesh that excites, with its doubt, shape (meshes, frequencies), and where there is none."""
 
-    q: ComplexArray
+    q: Complex
     doubt: Reals
     resonance: NDArray[np.bool_]
 
@@ -136,7 +136,7 @@ class _Solver:
             self.orders[mesh, variant] = self.plain.order(mesh, variant)
         return self.orders[mesh, variant]
 
-    def column(self, w: Reals, mesh: int) -> ComplexArray:
+    def column(self, w: Reals, mesh: int) -> Complex:
         """Q[i, mesh] at frequencies that are all positive or all zero, shape (meshes, frequencies)."""
         found = self._solve(self.plain, w, mesh)
         weak = found.weak()
@@ -177,7 +177,7 @@ class _Solver:
         q[i], doubt[i] = back.q[mesh] * scale, back.doubt[mesh] * np.abs(scale)
         return _Column(q, doubt, back.resonance)
 
-    def _scale(self, w: Reals, i: int, j: int) -> ComplexArray:
+    def _scale(self, w: Reals, i: int, j: int) -> Complex:
         """From the difference of approach at mesh i per force at mesh j to Q_ij: k_j (1 + i w c_i / k_i)."""
         one, other = self.train.meshes[i], self.train.meshes[j]
         return np.asarray(other.stiffness * (1.0 + 1j * w * (one.damping / one.stiffness)))

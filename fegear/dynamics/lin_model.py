@@ -12,11 +12,10 @@ from fegear.dynamics.train import Body, Mesh, Shaft, Torque, Train, mesh_damping
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.dynamics.parts import DampingLaw
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

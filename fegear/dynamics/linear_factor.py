@@ -13,11 +13,8 @@ from fegear.dynamics.single_tooth import force_history
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.gear_train import GearTrain
-
-    Array = NDArray[np.float64]
 
 
 def linear_chart(

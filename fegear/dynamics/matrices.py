@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.train import Train
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,8 @@ from fegear.errors import RangeError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array
     from fegear.contact import Engagement, Loaded, RollGrid
-
-    Array = NDArray[np.float64]
 
 #: Accuracy of the fitted stiffness, separation and transmission error beside their largest value.
 FIT = 1e-9

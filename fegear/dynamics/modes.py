@@ -12,12 +12,10 @@ from fegear.dynamics.matrices import damping_matrix, elements
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array, Complex
     from fegear.dynamics.train import Train
-
-    Array = NDArray[np.float64]
-    ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -70,7 +68,7 @@ def modes(train: Train) -> Modes:
     return Modes(omega / (2.0 * math.pi), shapes, share)
 
 
-def damped_eigenvalues(train: Train) -> ComplexArray:
+def damped_eigenvalues(train: Train) -> Complex:
     """Eigenvalues [rad/s] of the damped train with mean mesh stiffness, sorted by modulus, shape (2 size,).
 
     In modal coordinates, with the free turning taken out beforehand: as a double zero it would come back as a pair of

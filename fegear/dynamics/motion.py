@@ -22,9 +22,8 @@ from fegear.tally import note, tallied
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.dynamics.motion_model import MotionModel
-
-    Array = NDArray[np.float64]
 
 #: Order of the Taylor series; high, because a longer step costs less than a second one.
 ORDER = 20

@@ -14,12 +14,9 @@ from fegear.dynamics.matrices import static_forces
 from fegear.errors import InputError, RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.excitation import MeshExcitation
     from fegear.dynamics.train import Train
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

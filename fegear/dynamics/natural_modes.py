@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 #: A squared frequency below this part of the largest one counts as rigid-body motion.
 RIGID = 1e-12

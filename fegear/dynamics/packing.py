@@ -19,10 +19,9 @@ from fegear.dynamics.segments import segment_shapes
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array
     from fegear.dynamics.motion_model import MotionModel
     from fegear.dynamics.train import Train
-
-    Array = NDArray[np.float64]
 
 #: Bodies beyond which the coordinates are segments of the train and not modes: the work of a step then grows with the
 #: number of bodies and not with its square.

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Array = NDArray[np.float64]
-    ComplexArray = NDArray[np.complex128]
+    from fegear.arrays import Array, Complex
 
 
 @dataclass(frozen=True)
@@ -215,7 +214,7 @@ class Periodic:
         even = self.coefficients[:, ::2] / (2.0 * np.arange((self.coefficients.shape[1] + 1) // 2) + 1.0)
         return float(np.diff(self.breaks) @ even.sum(axis=1))
 
-    def fourier(self, n: ArrayLike) -> ComplexArray:
+    def fourier(self, n: ArrayLike) -> Complex:
         """Complex Fourier coefficients: f(s) = sum alpha_n exp(2 pi i n s), exact for every n.
 
         Each piece is taken in Legendre polynomials, whose transforms are spherical Bessel functions, so that large
@@ -270,7 +269,7 @@ def combine(
 
 
 @lru_cache(maxsize=16)
-def _fourier(breaks: bytes, coefficients: bytes, shape: tuple[int, int], order: bytes) -> ComplexArray:
+def _fourier(breaks: bytes, coefficients: bytes, shape: tuple[int, int], order: bytes) -> Complex:
     """Coefficients of `Periodic.fourier`; spectra, forces and stresses of one train ask for the same ones."""
     from scipy.special import spherical_jn
 

@@ -11,11 +11,8 @@ from fegear.dynamics.spectra import mesh_force_spectrum
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.gear_train import GearTrain
-
-    Array = NDArray[np.float64]
 
 
 class Pull(NamedTuple):

@@ -11,14 +11,11 @@ from fegear.dynamics.single_tooth import force_at
 from fegear.dynamics.tooth_force import root_stress
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact.fe_compliance import FiniteElementCompliance
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.tooth_force import ToothForce
     from fegear.geometry.pair import GearPair, Member
-
-    Array = NDArray[np.float64]
 
 #: Positions over the flank at which the finite elements' own error is asked for.
 _FEW = 9

@@ -16,11 +16,8 @@ import numpy as np
 from fegear.dynamics.matrices import elements
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.train import Train
-
-    Array = NDArray[np.float64]
 
 
 def segment_shapes(train: Train) -> Array:

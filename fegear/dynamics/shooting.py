@@ -14,10 +14,8 @@ from fegear.errors import ConvergenceError, RangeError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array, Complex
     from fegear.dynamics.packing import Packed
-
-    Array = NDArray[np.float64]
-    ComplexArray = NDArray[np.complex128]
 
 #: How far a multiplier may exceed one before the motion counts as unstable.
 UNSTABLE = 1e-6
@@ -67,7 +65,7 @@ class Orbit:
         return self.passage.tangent[np.ix_(use, use)]
 
     @property
-    def multipliers(self) -> ComplexArray:
+    def multipliers(self) -> Complex:
         """Floquet multipliers, largest first."""
         values = np.asarray(np.linalg.eigvals(self.monodromy), dtype=complex)
         return values[np.argsort(-np.abs(values), kind="stable")]
@@ -198,7 +196,7 @@ def leads_to(orbit: Orbit, x: Array, v: Array, step: float) -> bool:
     return way.far <= NEAR and way.bent <= BENT and way.shrinks <= 0.5 * (1.0 + min(orbit.radius, 1.0))
 
 
-def floquet_frame(monodromy: Array) -> ComplexArray:
+def floquet_frame(monodromy: Array) -> Complex:
     """Matrix into Floquet directions, in each of which a period multiplies; the identity if they all but coincide."""
     _, directions = np.linalg.eig(monodromy)
     if np.linalg.cond(directions) > 1e8:

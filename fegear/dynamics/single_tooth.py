@@ -10,12 +10,9 @@ from fegear.dynamics.mesh_excitation import tooth_pair_at
 from fegear.dynamics.tooth_force import tooth_force
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.tooth_force import ToothForce
-
-    Array = NDArray[np.float64]
 
 #: Lines that tooth forces are summed from, at least.
 _LINES = 256

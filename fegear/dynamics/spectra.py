@@ -16,11 +16,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array, Complex
     from fegear.dynamics.periodic import Periodic
     from fegear.dynamics.train import Train
-
-    Array = NDArray[np.float64]
-    ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -48,7 +46,7 @@ class MeshForceSpectrum:
     orders: Array
     present: NDArray[np.bool_]
     frequencies: Array
-    coefficients: ComplexArray
+    coefficients: Complex
     static: Array
 
     @property

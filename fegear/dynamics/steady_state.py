@@ -34,12 +34,8 @@ from fegear.tally import tallied
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array, Complex
     from fegear.dynamics.motion_model import MotionModel
-
-    Array = NDArray[np.float64]
-    ComplexArray = NDArray[np.complex128]
 
 #: Most periods of excitation that one period of the motion may take.
 LONGEST_MULTIPLE = 32
@@ -90,7 +86,7 @@ class SteadyState:
     model: MotionModel
     kind: str
     periods: int
-    multipliers: ComplexArray
+    multipliers: Complex
     growth: float
     largest: Array
     smallest: Array

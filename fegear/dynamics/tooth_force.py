@@ -20,11 +20,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.dynamics.periodic import Periodic
     from fegear.dynamics.train import Train
-
-    Array = NDArray[np.float64]
-
 
 #: Harmonics summed at once.
 _BLOCK = 256

@@ -18,9 +18,7 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 __all__ = [
     "Body",

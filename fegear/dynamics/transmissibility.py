@@ -16,10 +16,10 @@ from fegear.dynamics.natural_modes import undamped_modes
 from fegear.errors import ConvergenceError, InputError, RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
+    from fegear.arrays import Array, Complex
+
     Model = HelicalPairModel | ReducedPairModel
 
 Method = Literal["direct", "modal", "state-space"]

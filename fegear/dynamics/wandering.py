@@ -16,11 +16,8 @@ from fegear.dynamics.motion import Passage, propagate
 from fegear.dynamics.shooting import moving
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.dynamics.packing import Packed
-
-    Array = NDArray[np.float64]
 
 #: Periods of the first and of the longest window, how many may be followed for a transient to die, and over how many
 #: growth is averaged.

@@ -19,12 +19,10 @@ from fegear.geometry.curves import Curve, arc_length
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.fem.settings import MeshSettings
     from fegear.geometry.tooth import Tooth
 
-    Array = NDArray[np.float64]
     #: Edge length as a function of arc length, both in modules.
     Law = Callable[[Array], Array]
 

@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 
 def chain_coupling(condensed: Array, teeth: int, reach: int) -> tuple[dict[int, Array], dict[int, Array]]:

@@ -17,12 +17,8 @@ import numpy as np
 from fegear.errors import FegearError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array, Index
     from fegear.fem.elasticity import SectorElasticity
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 #: Unknowns that a smallest part has about, with its elements' own ones gone: fewer cost calls, more cost arithmetic.
 _SMALLEST_PART = 160

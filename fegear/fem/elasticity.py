@@ -14,13 +14,9 @@ import numpy as np
 from fegear.fem.elements import sector_elements
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array, Index
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.gear import Plane
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,8 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array, Index
     from fegear.fem.mesh import SectorMesh
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 #: An edge that leaves its chord by no more than this share of it is straight.
 _STRAIGHT = 1e-12

@@ -13,13 +13,10 @@ from fegear.fem.ring import close_ring
 from fegear.fem.trace import loaded_flank
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.gear import Plane
     from fegear.geometry.tooth import Tooth
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.gear import Plane
     from fegear.geometry.tooth import Tooth
 
-    Array = NDArray[np.float64]
     Progress = Callable[[str], None]
 
 #: Part of the difference from the coarser solution of the error estimate that is taken for the error of the finer one:

@@ -21,10 +21,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array, Index
     from fegear.geometry.tooth import Tooth
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 GROUPS = ("flank", "fillet", "bore", "side_a", "side_b")
 #: A flank farther than this from the gear's involute belongs to another gear [modules].

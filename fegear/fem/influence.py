@@ -19,13 +19,12 @@ from fegear.tally import tallied
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.gear import Plane
     from fegear.geometry.tooth import Tooth
-
-    Array = NDArray[np.float64]
 
 Side = Literal["tension", "compression"]
 SIDES: tuple[Side, ...] = ("tension", "compression")

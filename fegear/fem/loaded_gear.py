@@ -13,13 +13,10 @@ from fegear.fem.whole_gear import WholeGear, whole_gear
 from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.fem import MeshSettings
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry import Gear
-
-    Array = NDArray[np.float64]
 
 _MM = 1e3
 #: Six-node triangles are of this order, and want edges so much shorter than those of fourth order.

@@ -12,10 +12,7 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
+    from fegear.arrays import Array, Index
 
 #: Where fegear's own meshes come from.
 GENERATED = "generated"

@@ -24,13 +24,9 @@ from fegear.fem.chain import chain_coupling
 from fegear.fem.condensation import Condensed, condense
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array, Index
     from fegear.fem.elasticity import SectorElasticity
     from fegear.fem.mesh import SectorMesh
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 #: Inverses of this many complex numbers are held at once while the harmonics are summed.
 _BATCH = 2_000_000

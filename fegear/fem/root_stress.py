@@ -16,13 +16,11 @@ import numpy as np
 from fegear.fem.trace import lagrange, lagrange_slope
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array, Index
     from fegear.fem.elasticity import SectorElasticity
     from fegear.fem.mesh import SectorMesh
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -15,13 +15,12 @@ from fegear.fem.gear import solve_gear
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.fem.gear import GearInfluence, Progress
     from fegear.fem.settings import MeshSettings
     from fegear.geometry.gear import Gear
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -17,14 +17,10 @@ import numpy as np
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array, Index
     from fegear.fem.elasticity import SectorElasticity
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.tooth import Tooth
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 _GAUSS = np.polynomial.legendre.leggauss(6)
 

@@ -13,12 +13,8 @@ from fegear.geometry.outline import turned
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array, Index
     from fegear.fem.mesh import SectorMesh
-
-    Array = NDArray[np.float64]
-    Index = NDArray[np.int64]
 
 #: Boundaries that vanish when the sectors are joined.
 SIDES = ("side_a", "side_b")

@@ -11,12 +11,10 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry import Gear
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,12 +26,11 @@ from fegear.formulas.fillet_section import fillet_parameter, tangent_range
 from fegear.formulas.load_line import load_line
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.formulas.hertz import Plane
     from fegear.geometry import Gear
-
-    Array = NDArray[np.float64]
 
 #: Tangent angle of the fillet at which Cornell builds the beam in [rad].
 FOUNDATION_TANGENT = math.radians(75.0)

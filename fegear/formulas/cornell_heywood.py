@@ -23,11 +23,10 @@ from fegear.formulas.load_line import load_line
 from fegear.formulas.root_stress import RootStress, RootStressSource
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry import Tooth
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,11 +19,10 @@ from fegear.formulas.lewis import lewis_section
 from fegear.formulas.root_stress import RootStress, RootStressSource
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry import Tooth
-
-    Array = NDArray[np.float64]
 
 #: Pressure angle [deg]: constant, exponent of t/r, exponent of t/h.
 CONSTANTS = {14.5: (0.22, 0.20, 0.40), 20.0: (0.18, 0.15, 0.45)}

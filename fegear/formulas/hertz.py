@@ -15,9 +15,9 @@ import numpy as np
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 Plane = Literal["strain", "stress"]
 

@@ -24,11 +24,10 @@ from fegear.formulas.load_line import load_line
 from fegear.formulas.root_stress import RootStress, RootStressSource
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry import Tooth
-
-    Array = NDArray[np.float64]
 
 
 def concentration_factor(half_thickness: ArrayLike, fillet_radius: ArrayLike) -> Array:

@@ -16,11 +16,10 @@ import numpy as np
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry import Tooth
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

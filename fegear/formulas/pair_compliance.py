@@ -15,12 +15,11 @@ from fegear.errors import RangeError
 from fegear.formulas import hertz
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.formulas.compliance import ComplianceSource
     from fegear.geometry import GearPair
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

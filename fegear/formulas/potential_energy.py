@@ -24,11 +24,10 @@ from fegear.formulas.compliance import ComplianceSource, ToothCompliance
 from fegear.formulas.load_line import load_line
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry import Gear
-
-    Array = NDArray[np.float64]
 
 
 def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> ToothCompliance:

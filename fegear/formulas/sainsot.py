@@ -19,9 +19,9 @@ import numpy as np
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 #: Table 1: rows L, M, P, Q; columns A to F of A/theta^2 + B h^2 + C h/theta + D/theta + E h + F.
 TABLE_1 = np.array(

@@ -25,12 +25,11 @@ from fegear.formulas.compliance import ComplianceSource, ToothCompliance
 from fegear.formulas.load_line import load_line
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.formulas.hertz import Plane
     from fegear.geometry import Gear
-
-    Array = NDArray[np.float64]
 
 
 def coefficients(poisson_ratio: float, plane: Plane) -> dict[str, float]:

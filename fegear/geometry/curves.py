@@ -16,9 +16,9 @@ import numpy as np
 from fegear.geometry.involute import polar_angle
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
 
 
 class Curve(Protocol):

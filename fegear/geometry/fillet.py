@@ -19,11 +19,10 @@ from fegear.geometry.curves import Involute, Trochoid
 from fegear.geometry.involute import inv, polar_angle
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry.rack import BasicRack
-
-    Array = NDArray[np.float64]
 
 #: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.
 _SLIGHT_UNDERCUT = 1e-4

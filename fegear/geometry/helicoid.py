@@ -12,11 +12,10 @@ from fegear.errors import RangeError
 from fegear.geometry.involute import polar_angle
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry.helical_gear import HelicalGear
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,12 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.geometry import Gear, Tooth
     from fegear.geometry.curves import Curve
-
-    Array = NDArray[np.float64]
 
 _LARGEST_COUNT = 1 << 14
 

@@ -13,11 +13,10 @@ from fegear.errors import GeometryError
 from fegear.geometry.involute import inv, pressure_angle_of_inv
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry.gear import Gear
-
-    Array = NDArray[np.float64]
 
 Member = Literal["driver", "driven"]
 

@@ -12,12 +12,10 @@ import numpy as np
 from fegear.errors import GeometryError, InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array, Complex
     from fegear.geometry.helical_gear import HelicalGear
-
-    Array = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,11 @@ from fegear.errors import InputError
 from fegear.tally import note
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
+    from fegear.arrays import Array
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair, Member
-
-    Array = NDArray[np.float64]
 
 Shape = Literal["linear", "parabolic"]
 Interpolation = Literal["linear", "cubic"]

@@ -16,10 +16,9 @@ from fegear.geometry.involute import inv, polar_angle, roll_of_polar_angle
 from fegear.geometry.rack import BasicRack
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
-
+    from fegear.arrays import Array
 
 #: Half the thickness of the thinnest neck that undercut may leave [modules].
 _THINNEST_NECK = 0.02

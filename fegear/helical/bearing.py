@@ -14,10 +14,9 @@ from fegear.helical.separation import Placement
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array
     from fegear.helical.contact import PairContact
     from fegear.helical.pair import HelicalPair
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

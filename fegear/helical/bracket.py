@@ -11,7 +11,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
+
     Parameters = tuple[NDArray[np.generic], ...]
 
 _EPS = 4.0 * np.finfo(float).eps

@@ -19,9 +19,8 @@ from fegear.helical.separation import Placement
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.helical.pair import HelicalPair
-
-    Array = NDArray[np.float64]
 
 #: Gap that counts as touching when the length of an ill-defined contact is reported [m].
 TOUCHING = 1e-9

@@ -13,10 +13,9 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.geometry.rack_flank import RackFlank
     from fegear.helical.separation import Placement
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

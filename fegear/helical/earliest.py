@@ -22,12 +22,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array, Complex
     from fegear.geometry.rack_flank import RackFlank
     from fegear.helical.separation import Placement
 
-    Array = NDArray[np.float64]
     Codes = NDArray[np.int8]
-    Complex = NDArray[np.complex128]
 
 #: Samples over the height of the flank that bracket the outer maximum.
 SAMPLES = 13

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
+
     #: Angles [rad] -> values, slopes, and a number for the smooth piece that each angle belongs to.
     Pieces = Callable[[Array], tuple[Array, ...]]
 

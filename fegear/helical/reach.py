@@ -13,13 +13,11 @@ from fegear.helical.bracket import falling_root
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array, Complex, Mask
     from fegear.geometry.rack_flank import RackFlank
     from fegear.helical.separation import Placement
 
-    Array = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
     Codes = NDArray[np.int8]
-    Mask = NDArray[np.bool_]
 
 
 class Bound(IntEnum):

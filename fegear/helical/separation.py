@@ -20,10 +20,8 @@ from fegear.tally import note
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array, Complex
     from fegear.helical.pair import HelicalPair
-
-    Array = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ _spec.loader.exec_module(source_tree)
 LAYERS = {
     "fegear": 0,
     "errors": 0,
+    "arrays": 0,
     "plain": 0.5,
     "units": 0.5,
     "tally": 0.5,
