@@ -105,7 +105,7 @@ def least_root_stress(
     loading : LoadingFunction
         Contact ratio above 2; its first ramp's slope s is kept, its exponent and peak are replaced.
     exponents : sequence of int or None
-        r to try; None is the sinusoidal family. Those too low for the slope are left out.
+        r to try; None is the sinusoidal family. Those too low for the slope are skipped.
     """
     from scipy.optimize import minimize_scalar
 

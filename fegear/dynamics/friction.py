@@ -103,7 +103,7 @@ def with_friction(
     tolerance : float
         Accuracy of the fitted torques beside the largest.
     a_drives : bool
-        Whether the mesh's body `a` drives, and not body `b` (`train_mesh.a_drives` tells).
+        Whether the mesh's body `a` drives, and not body `b` (see `train_mesh.a_drives`).
 
     Raises
     ------

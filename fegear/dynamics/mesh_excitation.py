@@ -161,7 +161,7 @@ def _by_slot(state: Loaded, s: Array, slots: range, pitch: float) -> tuple[Array
     if np.any(tangent[loads > 0.0] <= 0.0):
         raise RangeError(
             "compliance", "a coupled tooth pair", "carries less load as the gears approach: it is no spring",
-            "leave out neighbour_coupling, or give the gears thicker rims",
+            "switch neighbour_coupling off, or give the gears thicker rims",
         )  # fmt: skip
     apart = error - np.divide(loads, tangent, out=np.zeros_like(loads), where=loads > 0.0)
     own = np.arange(s.size)

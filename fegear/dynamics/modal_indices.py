@@ -65,20 +65,20 @@ class ModeTable:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader should know of digits lost: where fewer than half of them are left."""
-        told = []
+        remarks = []
         soft = np.flatnonzero((self.frequency > 0.0) & (self.frequency_doubt > HALF_THE_DIGITS)) + 1
         near = np.flatnonzero((self.frequency > 0.0) & (self.shape_doubt > HALF_THE_DIGITS)) + 1
         if soft.size:
-            told.append(
+            remarks.append(
                 f"modes {_listed(soft)} are so soft beside the stiffest that round-off leaves their frequencies "
                 f"{float(self.frequency_doubt[soft - 1].max()):.0e} of doubt"
             )
         if near.size:
-            told.append(
+            remarks.append(
                 f"modes {_listed(near)} share a frequency with another to within round-off: their shapes and indices "
                 "are one choice of many, and only sums over such modes mean something"
             )
-        return tuple(told)
+        return tuple(remarks)
 
 
 def _listed(numbers: NDArray[np.int64]) -> str:

@@ -103,7 +103,7 @@ def friction_loss_torque(model: MotionModel) -> Array:
         if own > 0.0:
             raise InputError(
                 f"mesh.{mesh.name}.friction", f"{own:.6g} W per rad/s", "feeds power into the train: the torques make "
-                "the other body drive", "give with_friction the side that train_mesh.a_drives tells",
+                "the other body drive", "give with_friction the side that train_mesh.a_drives returns",
             )  # fmt: skip
         loss += own
     if loss != 0.0:

@@ -1,4 +1,4 @@
-"""Undamped natural modes with rigid-body motion told apart."""
+"""Undamped natural modes with rigid-body motion kept apart."""
 
 from __future__ import annotations
 

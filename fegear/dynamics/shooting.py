@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: How far a multiplier may exceed one before the motion counts as unstable.
 UNSTABLE = 1e-6
-#: Growth per radian of the fastest mode that integration cannot tell from none (undamped trains: 7e-13).
+#: Growth per radian of the fastest mode that integration cannot distinguish from none (undamped trains: 7e-13).
 RESOLVED = 2e-12
 #: An orbit is where a motion leads if a period takes it there as its multipliers say: to this share of the way, and
 #: not further from it than the static deflection.

@@ -199,7 +199,7 @@ def steady_state(
         x, v = window.x, window.v
         _bounded(packed, window)
         states = np.concatenate([states, window.states])
-        # one seen from the window before: one look tells whether the motion is near it now
+        # one seen from the window before: one look shows whether the motion is near it now
         if ahead is not None and periods % ahead.periods == 0 and leads_to(ahead, x, v, step):
             return _periodic(ahead)
         found, ahead, (x, v) = _settled(packed, states, x, v, step)

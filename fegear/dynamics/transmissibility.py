@@ -1,6 +1,6 @@
 """Mesh and bearing force transmissibility of a helical pair (Blankenship and Singh, Eqs. 13 to 25, 37 to 39).
 
-Rigid-body motion deflects neither mesh nor bearings. It is left out of every matrix here, exactly, so that forces
+Rigid-body motion deflects neither mesh nor bearings. It is removed from every matrix here, exactly, so that forces
 stay accurate down to frequency zero, where the compliance itself does not exist.
 """
 
@@ -142,7 +142,7 @@ def _flexible(model: Model) -> tuple[Array, Array, Array]:
     """Frequencies and shapes of all motions that stiffness or damping resist, and their modal damping matrix.
 
     Modes without stiffness are turned so that damping acts on as few of them as possible; the others are rigid-body
-    motion and left out.
+    motion and removed.
     """
     natural, shapes = undamped_modes(model.mass, model.stiffness)
     rigid = natural == 0.0

@@ -1,4 +1,4 @@
-"""Motion that does not repeat: followed until it settles, told apart from slow transients, and measured.
+"""Motion that does not repeat: followed until it settles, distinguished from slow transients, and measured.
 
 What a motion that never repeats does over N periods is a sample, not a number with a tolerance: the largest force of
 every period is kept, so that the largest over N periods and the quantiles can be reported with N beside them.

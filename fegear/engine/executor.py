@@ -135,7 +135,7 @@ def count_kept(
 
 
 def _silent(fraction: float) -> None:
-    """Report to nobody."""
+    """Report nothing."""
 
 
 def _keys(name: object, points: Sequence[Any], key: Callable[[Any], object] | None, store: Store | None) -> list[str]:

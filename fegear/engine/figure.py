@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Which = Literal["x", "y"]
 
-#: More curves of a family than this cannot be told apart.
+#: More curves of a family than this cannot be distinguished.
 MOST_CURVES = 7
 #: Curves with no more points than this show them.
 _FEW = 15

@@ -25,13 +25,13 @@ class Watcher(Protocol):
     """Who follows the progress of a run (a progress bar, a log)."""
 
     def begin(self, title: str, number: int, count: int) -> None:
-        """Tell that a task starts."""
+        """Report that a task starts."""
 
     def advance(self, fraction: float) -> None:
-        """Tell how far the task is."""
+        """Report how far the task is."""
 
     def end(self, seconds: float) -> None:
-        """Tell that the task is finished."""
+        """Report that the task is finished."""
 
 
 class Silence:

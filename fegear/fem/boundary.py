@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     #: Edge length as a function of arc length, both in modules.
     Law = Callable[[Array], Array]
 
-#: Root lands shorter than this [modules] (a rack tip all but full) are left out: the fillets meet on the sector's
+#: Root lands shorter than this [modules] (a rack tip all but full) are dropped: the fillets meet on the sector's
 #: side. Fillet and root circle are tangent there, so the outline moves by the square of it.
 _SHORTEST_LAND = 2e-4
 #: A fillet turns by up to 70 degrees however short it is: elements with fewer edges along it may turn inside out.
@@ -180,7 +180,7 @@ def check_bore(tooth: Tooth, bore_radius: float, module: float | None = None) ->
     bore_radius : float
         [modules].
     module : float, optional
-        [m]; if given, the refusal is told in millimetres.
+        [m]; if given, the refusal is in millimetres.
 
     Raises
     ------
@@ -192,7 +192,7 @@ def check_bore(tooth: Tooth, bore_radius: float, module: float | None = None) ->
         return
     unit, name = (1.0, "modules") if module is None else (1e3 * module, "mm")
     near = "the centre" if bore_radius < lowest else f"the root circle of radius {root * unit:.6g} {name}"
-    # rounded inward, so that what is told is accepted
+    # rounded inward, so that what is reported is accepted
     step = 10.0 ** (math.floor(math.log10(highest * unit)) - 5)
     raise RangeError(
         "bore_radius",

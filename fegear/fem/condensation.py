@@ -1,7 +1,7 @@
 """Static condensation of a sector onto the few unknowns that matter, by halving it again and again.
 
 The elements are split in two along the longer side of the box around them, each half in two again, down to a handful
-of elements. From the bottom up, each part eliminates the unknowns that no other part shares and that nobody asked for
+of elements. From the bottom up, each part eliminates the unknowns that no other part shares and that no result needs
 (nested dissection, George 1973), by dense Cholesky factors. What is left in the end is the stiffness between the kept
 unknowns, as dense as it must be; no factor of the whole and no right-hand side is needed.
 """
@@ -155,7 +155,7 @@ def _numbered(
 
 
 def _smallest_parts(matrices: Array, number: Index, leaf: Index, depth: int, free: int) -> list[tuple[Index, Array]]:
-    """Unknowns (ascending) and stiffness of each smallest part; held unknowns left out."""
+    """Unknowns (ascending) and stiffness of each smallest part; without the held unknowns."""
     parts: list[tuple[Index, Array]] = []
     order = np.argsort(leaf, kind="stable")
     bounds = np.searchsorted(leaf[order], np.arange((1 << depth) + 1))

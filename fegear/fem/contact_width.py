@@ -11,11 +11,11 @@ from fegear.errors import RangeError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-#: A contact's usual half-width [modules], at which what depends on it is told.
+#: A contact's usual half-width [modules], at which what depends on it is reported.
 REFERENCE_HALF_WIDTH = 0.02
 #: Wider contacts than this [modules] are refused: the flank is too short to hold them.
 LARGEST_HALF_WIDTH = 0.5
-#: A contact that reaches past an end of the flank by no more than this [modules] is told; by more it is refused.
+#: A contact that reaches past an end of the flank by no more than this [modules] is reported; by more it is refused.
 FARTHEST_PAST_END = 0.1
 
 
@@ -31,7 +31,7 @@ def check_half_widths(
     room : array_like
         Length of the flank from the contact's centre to the nearer end [modules], broadcast against `half_width`.
     unit, scale, key : str, float, str
-        Unit in which the refusal is told, modules times `scale`, and what it is about.
+        Unit of the refusal, modules times `scale`, and what it is about.
 
     Raises
     ------

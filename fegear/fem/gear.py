@@ -114,7 +114,7 @@ class GearInfluence:
     fine : Influence
         The solution that every number comes from.
     coarse : Influence
-        A cheaper (or, on a user's own mesh, a higher-order) one whose difference tells the error of `fine`.
+        A cheaper (or, on a user's own mesh, a higher-order) one whose difference shows the error of `fine`.
     settings : MeshSettings
     coarse_patch : float
         Half-width of the wider pressure of `coarse` [modules].
@@ -265,7 +265,7 @@ class GearInfluence:
         return {key: float(np.max(values)) for key, values in errors.items()}
 
     def _known(self, estimate: Array) -> Array:
-        """The estimate, if there is a second solution to tell it from."""
+        """The estimate, if there is a second solution to derive it from."""
         return np.full(np.shape(estimate), np.nan) if self.coarse is None else estimate
 
     @property
@@ -404,7 +404,7 @@ def solve_to_tolerance(
     Returns
     -------
     GearInfluence
-        Its `rounds` tell what was tried; the last one may miss the tolerance at the finest level or after the last
+        Its `rounds` list what was tried; the last one may miss the tolerance at the finest level or after the last
         round.
     """
     level, rounds = level_for(tolerance), []

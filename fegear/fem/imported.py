@@ -134,7 +134,7 @@ def _named_edges(six: Index, groups: dict[str, NDArray[np.bool_]], points: Array
     named: dict[str, Index] = {}
     for name, member in groups.items():
         inside = member[outer[0]] & member[outer[1]]
-        # In quadratic meshes the middle node tells an edge of the group from a chord between its ends.
+        # In quadratic meshes the middle node distinguishes an edge of the group from a chord between its ends.
         if member[outer[2]].any():
             inside &= member[outer[2]]
         if not inside.any():

@@ -76,7 +76,7 @@ class Influence:
     stress : mapping of (int, side) to ndarray, shape (points, 2n)
         Tangential fillet stress of tooth k under forces on tooth 0's run.
     corner_distance : float
-        Nearer than this to a corner of the flank the exact wedge tells c_0; the narrowest pressure that loads the
+        Nearer than this to a corner of the flank the exact wedge gives c_0; the narrowest pressure that loads the
         mesh [modules].
     reach : int
         K: neighbours -K..K are known. Tooth k = +1 lies clockwise of tooth 0, on the side that the load comes from.
@@ -169,7 +169,7 @@ class Influence:
         What depends on the width of a narrow contact is known in closed form: the half-plane's logarithm and, on a
         flank of curvature 1/rho, `curvature_slope` times width / rho. What is left varies with the square of the
         width; two pressures that the mesh resolves give that, and the value at the true width follows. Nearer to a
-        corner than `corner_distance` the exact wedge tells how the deflection grows.
+        corner than `corner_distance` the exact wedge says how the deflection grows.
         """
         wanted = np.asarray(patch if half_width is None else half_width, dtype=float)
         arc, width = self.place(radius, wanted)
@@ -195,7 +195,7 @@ class Influence:
     def _beside_corner(
         self, corner: float, inward: float, angle: float, distance: Array, width: Array, patch: float
     ) -> Array:
-        """`_regular` nearer to a corner than the mesh tells: scaled contacts on a wedge differ by a logarithm alone.
+        """`_regular` nearer to a corner than the mesh resolves: scaled contacts on a wedge differ by a logarithm alone.
 
         What is left of first order in the distance follows from contacts at once and twice the corner distance.
         """
@@ -296,7 +296,7 @@ def solve_influence(
     reach : int
         K: neighbours -K..K; at most (z - 1) // 2.
     corner_distance : float
-        Nearer than this to a corner of the flank the exact wedge tells c_0; the narrowest pressure that loads the
+        Nearer than this to a corner of the flank the exact wedge gives c_0; the narrowest pressure that loads the
         mesh [modules].
     margin : float
         How far below the flank a patch may reach into the fillet [modules].

@@ -1,4 +1,4 @@
-"""The whole gear at the price of one tooth: condense a sector onto its sides and close the ring by Fourier harmonics.
+"""The whole gear at the cost of one tooth: condense a sector onto its sides and close the ring by Fourier harmonics.
 
 One sector is condensed onto its ports: the unknowns that are loaded or looked at, and those of its sides. Without the
 ports inside, what remains couples only the unknowns of side A and side B, in polar components; harmonic n of the ring

@@ -77,12 +77,12 @@ def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> Sec
         except InputError as problem:
             if problem.key != "mesh":
                 raise
-            told = problem
+            refused = problem
             settings = settings.scaled(_FINER)
     raise FegearError(
         f"No sound mesh of the tooth sector was found: at edges of {settings.root_edge_length:.3g} modules along the "
-        f"fillet it still {told.rule}. Choose a thicker rim or a larger fillet."
-    ) from told
+        f"fillet it still {refused.rule}. Choose a thicker rim or a larger fillet."
+    ) from refused
 
 
 def _mesh(tooth: Tooth, bore_radius: float, settings: MeshSettings, started: float) -> SectorMesh:

@@ -31,7 +31,7 @@ class MeshSettings:
     rim_fraction : float
         Longest edge in the body as a fraction of the rim's thickness (outline to bore).
     corner_distance : float
-        Nearer than this to a corner of the flank the exact wedge tells the deflection; the narrowest pressure that
+        Nearer than this to a corner of the flank the exact wedge gives the deflection; the narrowest pressure that
         loads the mesh.
     patch_half_width : float
         Half-width of the wider of the two semi-elliptic pressures that load the mesh.

@@ -45,7 +45,7 @@ def known_or_solved(
 
 
 def _plain(item: object) -> object:
-    """Dataclasses as dictionaries with their name; the tooth is left out, for the reader knows it."""
+    """Dataclasses as dictionaries with their name; without the tooth, which the reader knows."""
     if dataclasses.is_dataclass(item) and type(item).__name__ in _KINDS:
         fields = {f.name: _plain(getattr(item, f.name)) for f in dataclasses.fields(item) if f.name != "tooth"}
         return {"kind": type(item).__name__, "fields": fields}

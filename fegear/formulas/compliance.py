@@ -81,7 +81,7 @@ class ComplianceSource:
     citation : str
         Where it comes from.
     remark : str
-        What it leaves out.
+        What it neglects.
     """
 
     name: str

@@ -29,7 +29,7 @@ def polar_angle(roll: ArrayLike) -> NDArray[np.float64]:
     t = np.asarray(roll, dtype=float)
     q = np.minimum(t * t, _SERIES_BELOW**2)
     series = np.zeros_like(t)
-    for n in range(21, 1, -2):  # t^3/3 - t^5/5 + ...; the first term left out is below 1e-19 of the sum
+    for n in range(21, 1, -2):  # t^3/3 - t^5/5 + ...; the first neglected term is below 1e-19 of the sum
         series = 1.0 / n - q * series
     return np.where(np.abs(t) < _SERIES_BELOW, t * q * series, t - np.arctan(t))
 

@@ -46,7 +46,7 @@ def linear_error(pair: HelicalPair) -> float:
     Parameters
     ----------
     pair : HelicalPair
-        A drive with a cutter parabola, so that misalignment leaves surface contact; its crown is left out.
+        A drive with a cutter parabola, so that misalignment leaves surface contact; its crown is ignored.
 
     Raises
     ------

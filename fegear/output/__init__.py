@@ -1,1 +1,1 @@
-"""What a run leaves behind: tables, summary, dataset, pictures, report, exports. Nothing numerical imports this."""
+"""What a run writes: tables, summary, dataset, pictures, report, exports. Nothing numerical imports this."""

@@ -1,4 +1,4 @@
-"""What ``fegear effects`` leaves behind: ``tables/effects.csv``, a picture of each effect, report, summary."""
+"""What ``fegear effects`` writes: ``tables/effects.csv``, a picture of each effect, report, summary."""
 
 from __future__ import annotations
 
@@ -95,8 +95,8 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
             pass
     sentences = {found.effect: sentence(found) for found in switched}
     write_page(folder / "report.html", effects_page(scene, switched, fixed, table, curves, figures, sentences))
-    told = list(sentences.values())
-    told += [f"{one.effect} cannot be switched in this case: {one.reason}" for one in fixed]
+    lines = list(sentences.values())
+    lines += [f"{one.effect} cannot be switched in this case: {one.reason}" for one in fixed]
     write_json(
         folder / SUMMARY,
         {
@@ -112,12 +112,12 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
                 }
                 for found in switched
             },
-            "remarks": told,
+            "remarks": lines,
             "files": [*files_in(folder), SUMMARY],
             "version": fegear.__version__,
         },
     )  # fmt: skip
-    return told
+    return lines
 
 
 def sentence(found: Switched) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 _SIGNS = (("um", "µm"), (".", "·"), ("^2", "²"), ("^3", "³"))
-#: Errors below this share of the value are told as a share; digits that a float does not hold are not.
+#: Errors below this share of the value are given as a share; digits that a float does not hold are not.
 _DIGITS = 10
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -55,10 +55,10 @@ def with_error(value: float, error: float) -> tuple[str, str]:
     decimals = 1 - math.floor(math.log10(error))
     decimals = max(0, min(decimals, _DIGITS - (exponent - shift)))
     power = _power(shift) if shift else ""
-    told = f"{value:.{decimals}f}".replace("-", "−")
+    shown = f"{value:.{decimals}f}".replace("-", "−")
     if float(f"{value:.{decimals}f}") == 0.0:
-        told = told.replace("−", "")
+        shown = shown.replace("−", "")
     left = f"{error:.{decimals}f}"
     if float(left) == 0.0:
         left = f"{error:.0e}"
-    return told + power, left + power
+    return shown + power, left + power

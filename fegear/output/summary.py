@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def _finite(number: float | None) -> float | None:
-    """JSON knows no infinity; a value that is not finite is told as null."""
+    """JSON knows no infinity; a value that is not finite is written as null."""
     return number if number is not None and math.isfinite(number) else None
 
 
@@ -65,6 +65,6 @@ def write_summary(path: Path, results: Results, remarks: list[str], files: list[
     write_json(path, summary(results, remarks, files))
 
 
-def write_json(path: Path, told: Mapping[str, object]) -> None:
+def write_json(path: Path, content: Mapping[str, object]) -> None:
     """Write a JSON file that people can read."""
-    path.write_text(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")
+    path.write_text(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")

@@ -1,4 +1,4 @@
-"""What a sweep leaves: ``tables/sweep.csv`` with a row for each point, ``sweep.nc``, report, pictures, summary."""
+"""What a sweep writes: ``tables/sweep.csv`` with a row for each point, ``sweep.nc``, report, pictures, summary."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def sweep_table(results: SweepResults) -> Table:
     where = np.unravel_index(np.arange(len(results.points)), [len(axis) for axis in results.axes])
     columns = []
     for axis, index in zip(results.axes, where, strict=True):
-        told = np.array(axis.values if axis.numbers is None else axis.numbers)
+        values = np.array(axis.values if axis.numbers is None else axis.numbers)
         if axis.numbers is not None and all(isinstance(value, int) for value in axis.values):
-            told = told.astype(int)
-        columns.append(Column(axis_head(axis), told[index]))
+            values = values.astype(int)
+        columns.append(Column(axis_head(axis), values[index]))
     for one in swept_values(results):
         columns.append(Column(one.head, one.number))
         if one.error is not None and np.nan_to_num(one.error).any():
@@ -85,7 +85,7 @@ def write_sweep(results: SweepResults, folder: Path, *, plots: bool = True) -> l
     remarks = [*results.grouped_failures(), *results.remarks(), *drawn]
     write_page(folder / "report.html", sweep_page(results, table, swept, figures, results.remarks()))
     solved, read, spared = results.shapes
-    told = {
+    summary = {
         "title": results.title,
         "case": results.name,
         "sweep": {
@@ -104,5 +104,5 @@ def write_sweep(results: SweepResults, folder: Path, *, plots: bool = True) -> l
         "files": [*files_in(folder), SUMMARY],
         "version": fegear.__version__,
     }
-    write_json(folder / SUMMARY, told)
+    write_json(folder / SUMMARY, summary)
     return remarks

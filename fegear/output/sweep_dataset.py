@@ -94,8 +94,8 @@ def write_sweep_dataset(path: Path, results: SweepResults) -> None:
         file.axes = json.dumps({axis.key: list(axis.values) for axis in results.axes}, ensure_ascii=False).encode()
         for axis in results.axes:
             file.createDimension(axis.key, len(axis))
-            told = np.array([str(value) for value in axis.values] if axis.numbers is None else axis.numbers)
-            put(file, axis.key, (axis.key,), told, axis.unit)
+            places = np.array([str(value) for value in axis.values] if axis.numbers is None else axis.numbers)
+            put(file, axis.key, (axis.key,), places, axis.unit)
         put(file, "failure", names, failures(results).reshape(sizes), "", "why the point has no result")
         for name, unit, meaning, number, error in swept_values(results):
             put(file, name, names, number.reshape(sizes), unit, meaning)

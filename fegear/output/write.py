@@ -1,4 +1,4 @@
-"""Write everything that a run leaves behind into one folder."""
+"""Write everything that a run makes into one folder."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def tooth_contact_figures(
 
 
 def _transmission_error(name: str, contact: ToothContact) -> Figure:
-    """Over two cycles with tooth pairs told apart, and that of one pair alone."""
+    """Over two cycles with each tooth pair on its own, and that of one pair alone."""
     pitch, single = contact.pair.pinion.angular_pitch, contact.single
     numbers, inside = np.unique(contact.leader), single.kind != "none"
     first, last = contact.phi_1[0], contact.phi_1[0] + 2.0 * pitch

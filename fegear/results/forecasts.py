@@ -1,8 +1,8 @@
 """What results take, before they run: processor seconds of one core, within about a factor of three.
 
 The numbers were measured on one core of a server over all the cases (benchmarks/forecasts.py prints the ratios). They
-follow what a result does most of: gears solved, engagements shared, speeds run; below a twentieth of a second nobody
-needs to know more. Each result has its own forecast in its own file; what several of them count stands here.
+follow what a result does most of: gears solved, engagements shared, speeds run; below a twentieth of a second no
+more is needed. Each result has its own forecast in its own file; what several of them count stands here.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def check_motion(scene: Scene, _subject: str = "") -> None:
     if effects.friction and (effects.neighbour_coupling or effects.corner_contact):
         raise InputError(
             "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
-            "leave out neighbour_coupling and corner_contact",
+            "switch neighbour_coupling and corner_contact off",
         )  # fmt: skip
     if effects.friction and not effects.parametric:
         raise InputError(

@@ -307,8 +307,8 @@ def _candidates_figure(name: str, data: ReliefData) -> Figure:
         i = int(np.argmin(np.abs(curve.load - data.design.task.load)))
         te = (curve.transmission_error[:, i] - data.design.te[label].mean) * 1e6
         left = data.design.te[label].peak_to_peak * 1e6
-        told = f"{left:.3g} µm" if left > 1e-6 else "0"
-        curves.append(Curve(curve.x * 1e3, te, f"{label}: {told} peak to peak", label, markers=False))
+        size = f"{left:.3g} µm" if left > 1e-6 else "0"
+        curves.append(Curve(curve.x * 1e3, te, f"{label}: {size} peak to peak", label, markers=False))
     load = f"{data.design.task.load:.5g} N"
     caption = f"Pair {name}: what each relief leaves of the transmission error at the design load, {load}."
     if "diagonal only" in data.design.te:

@@ -226,9 +226,9 @@ def _scatter(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
     points = []
     for number, name in enumerate(names):
         rows = table["formula"] == name
-        told = zip(*(np.asarray(table[key], dtype=float)[rows] for key in _KEYS), strict=True)
+        found = zip(*(np.asarray(table[key], dtype=float)[rows] for key in _KEYS), strict=True)
         notes = tuple(
-            f"{name}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load at {p:.3g}" for z, x, r, p in told
+            f"{name}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load at {p:.3g}" for z, x, r, p in found
         )
         teeth = np.asarray(table["teeth"], dtype=float)[rows] * _APART ** (number - 0.5 * (len(names) - 1))
         points.append(Points(teeth, ratio[rows], name, f"series:{number}", notes=notes))

@@ -130,11 +130,11 @@ def _coordinates(results: SweepResults, axes: tuple[SweepAxis, ...], swept: Sequ
     texts = [[str(axis.values[i]) for i in index[id(axis)]] for axis in axes]
     texts += [[f"{v:.5g} {one.unit}".rstrip() if np.isfinite(v) else "none" for v in one.number] for one in chosen]
     ends = [(float(np.nanmin(column)), float(np.nanmax(column))) for column in columns]
-    told = [(str(axis.values[0]), str(axis.values[-1])) if axis.numbers is None else None for axis in axes]
-    told += [None] * len(chosen)
+    extremes = [(str(axis.values[0]), str(axis.values[-1])) if axis.numbers is None else None for axis in axes]
+    extremes += [None] * len(chosen)
     labels = tuple(
         f"{name}\n{words[0]} to {words[1]}" if words else f"{name}\n{low:.4g} to {high:.4g}"
-        for name, (low, high), words in zip([*names, *(one.name for one in chosen)], ends, told, strict=True)
+        for name, (low, high), words in zip([*names, *(one.name for one in chosen)], ends, extremes, strict=True)
     )
     spans = zip(columns, ends, strict=True)
     heights = np.array([(c - low) / (high - low) if high > low else np.full(c.size, 0.5) for c, (low, high) in spans])

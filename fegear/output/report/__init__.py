@@ -1,4 +1,4 @@
-"""``report.html``: one self-contained page, with plots to point at, every table to take along, and sources.
+"""``report.html``: one self-contained page, with plots to point at, every table to download, and sources.
 
 `write_report` makes the page of a run. Any other command makes a page of its own through the same door::
 

@@ -1,4 +1,4 @@
-"""What accuracy was paid for, and what was got: seconds, errors beside the tolerance, settings."""
+"""Accuracy and its cost: seconds, errors beside the tolerance, settings."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _figure(found: list[tuple[str, float]], tolerance: float) -> Figure:
 
 
 def accuracy_blocks(results: Results) -> tuple[Block, ...]:
-    """Blocks on accuracy and its price, from whatever the stages say of their settings."""
+    """Blocks on accuracy and its cost, from whatever the stages say of their settings."""
     tolerance = results.scene.case.accuracy.tolerance
     found = _errors(results)
     estimated = [value for value in results.values if value.error is not None]
@@ -52,19 +52,19 @@ def accuracy_blocks(results: Results) -> tuple[Block, ...]:
         (exact, "are exact" if exact != 1 else "is exact"),
         (len(results.values) - len(estimated), "have no estimate"),
     )
-    told = f"The case asks for a relative error of {plain_number(tolerance)}. Of its {len(results.values)} values "
-    told += ", ".join(f"{count} {words}" for count, words in kinds if count) + "."
+    summary = f"The case asks for a relative error of {plain_number(tolerance)}. Of its {len(results.values)} values "
+    summary += ", ".join(f"{count} {words}" for count, words in kinds if count) + "."
     if over:
-        told += f" Over the tolerance: {', '.join(over)}."
+        summary += f" Over the tolerance: {', '.join(over)}."
     elif found:
-        told += " None of the estimates exceeds the tolerance."
+        summary += " None of the estimates exceeds the tolerance."
     settings = tuple(
         Folded(f"Settings: {task}", (Facts(outcome.settings),))
         for task, outcome in results.outcomes.items()
         if outcome.settings
     )
     return (
-        *((Paragraph(told),) if results.values else ()),
+        *((Paragraph(summary),) if results.values else ()),
         *((Plot(_figure(found, tolerance)),) if len(found) > 1 else ()),
         Paragraph("Seconds of each task:", "table-title"),
         Bars({str(task): seconds for task, seconds in results.seconds.items()}, "s"),

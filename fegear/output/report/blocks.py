@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: Rows of a table that stand in the page as text; the others are a click away.
 _ROWS = 6
-#: Larger errors than this share of the value are told as absolute numbers alone.
+#: Larger errors than this share of the value are given as absolute numbers alone.
 _MEANINGLESS = 0.5
 
 
@@ -50,8 +50,8 @@ def readable(value: object) -> str:
 
 def _words(key: object) -> str:
     """A name as words; names with dots are keys and stay as they are written."""
-    told = str(key)
-    return text(told if "." in told else told.replace("_", " "))
+    name = str(key)
+    return text(name if "." in name else name.replace("_", " "))
 
 
 def _head(column: Column) -> str:
@@ -217,14 +217,14 @@ class Values:
         )
 
     def _row(self, value: Value) -> str:
-        told, error = value_cells(value)
+        number, error = value_cells(value)
         exact = error in ("exact", "not estimated")
         mark = f"<span class='quiet'>{error}</span>" if exact else f"± {error}{self._share(value)}"
         meaning = f"<span class='quiet'>{text(value.meaning)}</span>" if value.meaning else ""
         unit = pretty_unit(value.unit)
         return (
             f"<tr><th scope='row'><code>{text(value.name)}</code>{meaning}</th>"
-            f"<td class='number'><b>{told}</b></td><td class='error'>{mark}</td><td>{text(unit)}</td></tr>"
+            f"<td class='number'><b>{number}</b></td><td class='error'>{mark}</td><td>{text(unit)}</td></tr>"
         )
 
     def _share(self, value: Value) -> str:
@@ -232,8 +232,10 @@ class Values:
         if share is None:
             return ""
         over = self.tolerance is not None and share > self.tolerance
-        told = plain_number(100.0 * share, 2)
-        return f" <span class='{'over' if over else 'quiet'}'>({told} %{', over the tolerance' if over else ''})</span>"
+        percent = plain_number(100.0 * share, 2)
+        return (
+            f" <span class='{'over' if over else 'quiet'}'>({percent} %{', over the tolerance' if over else ''})</span>"
+        )
 
 
 def relative_error(value: Value) -> float | None:
@@ -246,7 +248,7 @@ def relative_error(value: Value) -> float | None:
 
 @dataclass(frozen=True)
 class DataTable:
-    """The beginning of a table, with what it takes to see all of it, to sort it and to take it along."""
+    """The beginning of a table, with what it takes to see all of it, to sort it and to download it."""
 
     table: Table
 
@@ -277,11 +279,11 @@ class DataTable:
         )
 
 
-def _short(told: str) -> str:
+def _short(cell: str) -> str:
     try:
-        return plain_number(float(told)) if not told.lstrip("-").isdigit() else told.replace("-", "−")
+        return plain_number(float(cell)) if not cell.lstrip("-").isdigit() else cell.replace("-", "−")
     except ValueError:
-        return text(told)
+        return text(cell)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The page of ``fegear effects``: for each effect its most telling curve without and with it, its values, its price."""
+"""The page of ``fegear effects``: for each effect its clearest curve without and with it, its values, its cost."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ def _kernels(found: Switched) -> Block:
     names = sorted({*found.without.kernels, *found.with_it.kernels})
     calls = {name: (found.without.kernels.get(name, 0), found.with_it.kernels.get(name, 0)) for name in names}
     changed = {name: f"{a} without, {b} with" for name, (a, b) in calls.items() if a != b}
-    told = Facts(changed or {"every kernel": "called as often without as with"})
-    return Folded("Calls of the kernels", (told,))
+    facts = Facts(changed or {"every kernel": "called as often without as with"})
+    return Folded("Calls of the kernels", (facts,))
 
 
 def effects_page(
@@ -61,7 +61,7 @@ def effects_page(
     table: Table,
     curves: Mapping[str, EffectCurve | None],
     figures: Mapping[str, Figure],
-    told: Mapping[str, str],
+    sentences: Mapping[str, str],
 ) -> Page:
     """Put the page together.
 
@@ -75,12 +75,12 @@ def effects_page(
     curves : mapping
         The curve of each effect, or None.
     figures : mapping
-    told : mapping
+    sentences : mapping
         One sentence for each effect.
     """
     sections, carried = [], [table]
     for found in switched:
-        blocks: list[Block] = [Paragraph(told[found.effect])]
+        blocks: list[Block] = [Paragraph(sentences[found.effect])]
         curve = curves[found.effect]
         if curve is not None:
             carried += _carried(found.effect, curve)
@@ -112,9 +112,9 @@ def _largest(found: Switched) -> tuple[str, str, str]:
         for a, b in found.values()
         if max(abs(a.shown), abs(b.shown)) > 0.0
     ]
-    price = f"{found.without.seconds:.2f} without, {found.with_it.seconds:.2f} with"
+    cost = f"{found.without.seconds:.2f} without, {found.with_it.seconds:.2f} with"
     share, a, b = max(changes, key=lambda change: change[0], default=(0.0, None, None))
     if a is None or b is None or share <= _ROUND_OFF:
-        return "none", "", price
+        return "none", "", cost
     unit = f" {pretty_unit(a.unit)}".rstrip()
-    return a.name, f"{plain_number(a.shown, 5)} to {plain_number(b.shown, 5)}{unit}", price
+    return a.name, f"{plain_number(a.shown, 5)} to {plain_number(b.shown, 5)}{unit}", cost

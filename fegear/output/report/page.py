@@ -39,7 +39,7 @@ class Block(Protocol):
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what stands below it; empty sections are left out."""
+    """A heading and what stands below it; empty sections are not shown."""
 
     title: str
     blocks: tuple[Block, ...]
@@ -135,10 +135,10 @@ def page_text(page: Page) -> str:
     )
     figures = _figures(page)
     packed = base64.b64encode(archive(files)).decode()
-    told = "all tables" + (" and the case file" if page.files else "")
+    content = "all tables" + (" and the case file" if page.files else "")
     everything = (
         f"<p class='all'><a id='all-files' class='button' download='{html.escape(page.name)}.zip' "
-        f"href='data:application/zip;base64,{packed}'>Download {told} (ZIP)</a></p>"
+        f"href='data:application/zip;base64,{packed}'>Download {content} (ZIP)</a></p>"
         if files
         else ""
     )

@@ -1,4 +1,4 @@
-"""The page of a run: what was asked, the numbers and how sure they are, each stage's plots and tables, plan, price."""
+"""The page of a run: what was asked, the numbers and their errors, each stage's plots and tables, plan, cost."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from fegear.output.figures import Drawn
     from fegear.output.report.page import Block
 
-#: More values than this are folded, task by task: nobody reads forty numbers before the first plot.
+#: More values than this are folded, task by task: forty numbers before the first plot are too many.
 _MOST_OPEN = 16
 
 
@@ -46,11 +46,11 @@ def _title(results: Results, task: Task) -> str:
 def _values(results: Results) -> tuple[Block, ...]:
     """Results of every task: wanted before those that only serve others, estimated before exact ones."""
     wanted = {step.task for step in results.plan.steps if any(r.startswith("results asks") for r in step.reasons)}
-    told = [(task, outcome.values) for task, outcome in results.outcomes.items() if outcome.values]
-    told.sort(key=lambda item: (bool(wanted) and item[0] not in wanted, not any(value.error for value in item[1])))
+    found = [(task, outcome.values) for task, outcome in results.outcomes.items() if outcome.values]
+    found.sort(key=lambda item: (bool(wanted) and item[0] not in wanted, not any(value.error for value in item[1])))
     blocks: list[Block] = []
     shown, tolerance = 0, results.scene.case.accuracy.tolerance
-    for task, values in told:
+    for task, values in found:
         if shown and shown + len(values) > _MOST_OPEN:
             folded = Values(values, tolerance)
             blocks.append(Folded(f"{_title(results, task)} ({len(values)} values)", (folded,)))
@@ -70,10 +70,10 @@ def _citations(results: Results, task: Task) -> tuple[Citation, ...]:
 
 def _sources(results: Results, task: Task) -> tuple[Block, ...]:
     works = bibliography()
-    told = [
+    cited = [
         f"{works[c.key].short}{f', {c.where}' if c.where else ''}: {c.what}" for c in _citations(results, task)
     ]  # fmt: skip
-    return (Folded("Sources of these results", (Notes(told, "sources"),)),) if told else ()
+    return (Folded("Sources of these results", (Notes(cited, "sources"),)),) if cited else ()
 
 
 def _stage(results: Results, task: Task, drawn: Sequence[Drawn]) -> Section:
@@ -149,10 +149,10 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
         note=f"Case {scene.name}: {', '.join(scene.case.results)}. {count} values and {len(results.tables)} tables, "
         f"computed in {total:.2f} s by fegear {fegear.__version__}.",
         sections=(
-            Section("To know first", (Notes(remarks, "warning"),) if remarks else ()),
+            Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),
             Section("Results", _values(results)),
             *(_stage(results, task, [one for one in drawn if one.task == task]) for task in results.outcomes),
-            Section("Accuracy and its price", accuracy_blocks(results)),
+            Section("Accuracy and its cost", accuracy_blocks(results)),
             Section("Plan", _plan(results)),
             Section("Case file", (Code(scene.text), Download(name)) if files else ()),
             Section("References", _references(results)),

@@ -31,7 +31,7 @@ def _title(one: Swept) -> str:
 def sweep_page(
     results: SweepResults, table: Table, swept: Sequence[Swept], figures: Sequence[Figure], remarks: Sequence[str]
 ) -> Page:
-    """Put the page of a sweep together; equal results give equal pages, so it tells no seconds.
+    """Put the page of a sweep together; equal results give equal pages, so it shows no seconds.
 
     Parameters
     ----------
@@ -55,16 +55,16 @@ def sweep_page(
          else f"{axis.values[0]} to {axis.values[-1]}, {len(axis)} values")
         for axis in results.axes
     ]  # fmt: skip
-    told = f"{count - failed} of {count} points have results." if failed else f"All {count} points have results."
+    summary = f"{count - failed} of {count} points have results." if failed else f"All {count} points have results."
     failures = [
         (len(group.members), group.kind, results.place(group.members[0]), group.reason) for group in results.failed()
     ]
     return Page(
         title=f"Sweep: {results.title}",
-        note=f"Case {results.name} over {' and '.join(axis.key for axis in results.axes)}. {told}",
+        note=f"Case {results.name} over {' and '.join(axis.key for axis in results.axes)}. {summary}",
         sections=(
-            Section("To know first", (Notes(remarks, "warning"),) if remarks else ()),
-            Section("What was varied", (Grid(("Key", "Values"), axes), Paragraph(told))),
+            Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),
+            Section("What was varied", (Grid(("Key", "Values"), axes), Paragraph(summary))),
             Section("Values over the axes", tuple(map(Plot, figures))),
             Section("Values that do not change", (Facts(constant),) if constant else ()),
             Section("Failures", (Grid(("Points", "Kind", "First at", "What it says"), failures),) if failures else ()),
