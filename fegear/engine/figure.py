@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Array = NDArray[np.float64]
+    from fegear.arrays import Array
+
 
 Which = Literal["x", "y"]
 

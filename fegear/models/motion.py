@@ -10,8 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.dynamics import FrictionPart
     from fegear.case.reading import Scene
     from fegear.dynamics.charts import Direction
@@ -19,8 +18,6 @@ if TYPE_CHECKING:
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.motion_model import MotionModel
     from fegear.dynamics.steady_state import SteadyState
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -18,15 +18,13 @@ from fegear.models.assumed import bore_remarks, width_remarks
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.pair import CompliancePart
     from fegear.case.reading import Scene
     from fegear.case.relief import ReliefPart, ReliefTablePart
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
 
-    Array = NDArray[np.float64]
 
 MEMBERS: tuple[Member, Member] = ("driver", "driven")
 #: The effects of load sharing, in the order in which they are reported.

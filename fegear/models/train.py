@@ -28,15 +28,11 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from fegear.case.reading import Scene
     from fegear.case.train import BodyPart, ShaftPart, TrainPart
     from fegear.dynamics.excitation import MeshExcitation
     from fegear.geometry import GearPair
 
-    Array = NDArray[np.float64]
 
 #: Mean mesh stiffness of trains of which only the ratios and the static forces matter [N/m].
 _ANY_STIFFNESS = 1e8

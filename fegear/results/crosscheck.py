@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
     from fegear.contact.iso_check import RatedPair
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from fegear.formulas.outcome import Outcome as Answer
     from fegear.geometry import Gear, GearPair
 
-    Array = NDArray[np.float64]
 
 #: Line load of the pairs when the case names none [N/m].
 USUAL_LINE_LOAD = 100e3

@@ -23,8 +23,7 @@ from fegear.results.motion import check_motion
 from fegear.results.train_parts import needs_speeds, own_meshes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.dynamics import DesignChartPart
     from fegear.case.reading import Scene
     from fegear.contact import Engagement
@@ -35,8 +34,6 @@ if TYPE_CHECKING:
     from fegear.models.pair_inputs import PairInputs
     from fegear.models.tooth_influence import GearToSolve
     from fegear.models.train import TrainInputs
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

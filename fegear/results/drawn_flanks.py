@@ -12,12 +12,10 @@ from fegear.engine.colours import ROLES
 from fegear.engine.figure import Axis, Curve, DeferredFigure, Figure, Panel, Points, Spot, Surface, outline, polylines
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.helical.bearing import Bearing
     from fegear.helical.contact import ToothContact
 
-    Array = NDArray[np.float64]
 
 _ARCSEC = 648000.0 / math.pi
 _PHI = Axis("pinion angle φ_{1}", "deg")

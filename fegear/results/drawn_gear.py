@@ -11,13 +11,11 @@ from fegear.engine.figure import Axis, Figure, MeshField, Panel, TriangleField, 
 from fegear.geometry.outline import rack_in_gear, tooth_outline, turned
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.fem import GearInfluence
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry import Gear
 
-    Array = NDArray[np.float64]
 
 #: Positions of the tool in the picture of a tooth.
 _TOOL_POSITIONS = 31

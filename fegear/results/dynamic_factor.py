@@ -18,16 +18,12 @@ from fegear.results.gear_train import gear_train, needs_train
 from fegear.results.train_parts import meshes, needs_speeds, pull_remarks
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from fegear.case.reading import Scene
     from fegear.dynamics.charts import SpeedChart
     from fegear.dynamics.pull import Pull
     from fegear.engine.stage import Upstream, Work
     from fegear.models.motion import MotionInputs
     from fegear.results.motion import SweepData
-
-    Array = NDArray[np.float64]
 
 
 _RPM = 30.0 / np.pi

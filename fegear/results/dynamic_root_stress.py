@@ -22,15 +22,11 @@ from fegear.results.train_parts import needs_one_speed, own_meshes
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
     from fegear.case.reading import Scene
     from fegear.dynamics.root_stress import ToothRootStress
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import Member
     from fegear.results.tooth_force import ToothForceData
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -17,14 +17,12 @@ from fegear.results.loaded_pair import EFFECTS, LINE_OF_ACTION, drawn_loads, nee
 from fegear.results.sources import HERTZ
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact import PairHistory
     from fegear.engine.stage import Upstream, Work
     from fegear.models.loaded_pair import LoadedPair
 
-    Array = NDArray[np.float64]
 
 _POSITIONS = 200
 

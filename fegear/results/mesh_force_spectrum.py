@@ -16,15 +16,13 @@ from fegear.results.gear_train import gear_train, needs_train
 from fegear.results.train_parts import RPM, meshes, needs_one_speed, pull_remarks
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.pull import Pull
     from fegear.dynamics.spectra import MeshForceSpectrum
     from fegear.engine.stage import Upstream, Work
 
-    Array = NDArray[np.float64]
 
 #: Harmonics of the waterfall at most.
 _WATERFALL_LINES = 64

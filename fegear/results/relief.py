@@ -24,8 +24,6 @@ from fegear.results.transmission_error import HARMONICS, POSITIONS
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact import Loaded, TransmissionError
@@ -39,7 +37,6 @@ if TYPE_CHECKING:
     from fegear.models.loaded_pair import LoadedPair
     from fegear.models.pair_inputs import PairInputs
 
-    Array = NDArray[np.float64]
 
 #: What the design knows of the effects; the gears' own reliefs are what it replaces.
 DESIGN_EFFECTS = ("neighbour_coupling", "hertz", "corner_contact")

@@ -18,16 +18,12 @@ from fegear.results.relief import DESIGN_EFFECTS, ReliefData, design_pairs, desi
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
     from fegear.case.design import ChartPart, RobustnessPart
     from fegear.case.reading import Scene
     from fegear.design import ReliefChart, Robustness, TipReliefPair
     from fegear.design.charts import Metric
     from fegear.engine.stage import Upstream, Work
     from fegear.models.loaded_pair import LoadedPair
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -22,15 +22,11 @@ from fegear.results.transmission_error import POSITIONS
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
     from fegear.case.reading import Scene
     from fegear.contact.tooth_stress import ToothStress
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import Member
     from fegear.models.loaded_pair import LoadedPair
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -19,16 +19,13 @@ from fegear.results import forecasts
 from fegear.results.sources import RING, ROOT_STRESS_FORMULAS
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.case.study import StudyPart
     from fegear.contact.root_stress_study import VariantStress
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.settings import MeshSettings
     from fegear.geometry import Gear
-
-    Array = NDArray[np.float64]
 
 
 _KEYS = ("teeth", "profile_shift", "rack_tip_radius", "load_position")

@@ -28,15 +28,13 @@ from fegear.results.gear_solution import needs_solution
 from fegear.results.sources import HERTZ, PATCH, RING
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.engine.stage import Upstream, Work
     from fegear.fem import GearInfluence, StiffnessTable
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
 
-    Array = NDArray[np.float64]
 
 #: Line load of the deformed gear's picture when the case names none [N/m].
 _USUAL_LINE_LOAD = 100e3

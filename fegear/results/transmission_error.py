@@ -16,15 +16,13 @@ from fegear.results import forecasts
 from fegear.results.loaded_pair import BASE_PITCH, EFFECTS, drawn_loads, needs_pair, spur_pairs
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact import FourierSeries, Loaded, TransmissionError
     from fegear.contact.error_by_shift import TransmissionErrorShift
     from fegear.engine.stage import Upstream, Work
     from fegear.models.loaded_pair import LoadedPair
 
-    Array = NDArray[np.float64]
 
 HARMONICS = 64
 #: Roll positions of the table over the base pitch; those on either side of every jump come in addition.

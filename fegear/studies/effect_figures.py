@@ -10,12 +10,10 @@ from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel
 from fegear.studies.effect_study import CURVES
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.engine.outcome import Column, Table
     from fegear.studies.effect_study import Measured, Switched
 
-    Array = NDArray[np.float64]
     #: Tables without and with the effect, abscissa, ordinate.
     EffectCurve = tuple[Table, Table, str, str]
 

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fegear.arrays import Array
     from fegear.studies.axis import Axis as SweepAxis
     from fegear.studies.sweep import SweepResults
     from fegear.studies.swept import Swept
 
-    Array = NDArray[np.float64]
 
 #: Curves with fewer points than this show them.
 _FEW_ENOUGH = 40

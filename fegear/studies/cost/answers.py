@@ -20,8 +20,7 @@ from fegear.results.loaded_pair import LoadedPairData
 from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact import TransmissionError
     from fegear.dynamics.gear_train import GearTrain
     from fegear.models.loaded_pair import LoadedPair
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from fegear.studies.cost.quantities import Quantity
     from fegear.studies.cost.sources import Source
 
-    Array = NDArray[np.float64]
 
 #: Harmonics of the transmission error and of the forces that a run sums.
 HARMONICS, FORCE_HARMONICS = 64, 256

@@ -15,11 +15,9 @@ from fegear.results.stiffness import contact_half_width, load_radii
 from fegear.studies.cost.quantities import OF_GEAR, Quantity
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.case.reading import Scene
 
-    Array = NDArray[np.float64]
 
 #: Quantities that each wanted result stands for.
 _OF_RESULT = {

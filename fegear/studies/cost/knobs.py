@@ -17,8 +17,7 @@ from fegear.studies.cost.sources import FiniteElements
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.configuration import Configuration
     from fegear.studies.cost.ladder import Ladder
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from fegear.studies.cost.quantities import Quantity
     from fegear.studies.cost.result import Knob
 
-    Array = NDArray[np.float64]
 
 #: Widths in equal ratio: their successive differences fall at the order of the error itself.
 _PATCHES = tuple(2.0 * MeshSettings().patch_half_width / 2.0 ** (i / 2.0) for i in range(6))

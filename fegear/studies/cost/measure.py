@@ -24,8 +24,7 @@ from fegear.studies.cost.timing import NOTHING, Seconds, timed
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.fem.influence import Influence
     from fegear.fem.settings import MeshSettings
     from fegear.geometry import Gear
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
     from fegear.studies.cost.result import Knob
     from fegear.studies.cost.sources import Source
 
-    Array = NDArray[np.float64]
 
 #: Gauss points of the reference's transmission error; a run takes 16.
 _REFERENCE_ORDER = 48

@@ -17,14 +17,12 @@ from fegear.studies.cost.timing import timed
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact import Engagement, FourierSeries, TransmissionError
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.result import Knob
     from fegear.studies.cost.sources import Source
 
-    Array = NDArray[np.float64]
 
 #: No powers of two: two jumps may lie as many such steps apart and hide each other.
 _EVEN = (8, 13, 21, 34, 55, 89, 144, 233, 377, 610)

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from fegear.arrays import Array
 
-    Array = NDArray[np.float64]
 
 #: Quantities of one gear, at many load positions; the others are numbers of a pair or a mesh.
 OF_GEAR = ("c_0", "c_1", "root-stress")

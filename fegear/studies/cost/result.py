@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from fegear.arrays import Array
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.configuration import Configuration
     from fegear.studies.cost.quantities import Miss, Quantity
 
-    Array = NDArray[np.float64]
 
 #: Tolerances for which the cheapest settings are reported.
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)

@@ -22,14 +22,12 @@ from fegear.studies.cost.configuration import ISO_STIFFNESS
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
+    from fegear.arrays import Array
     from fegear.contact import GearCompliance
     from fegear.fem import GearInfluence
     from fegear.geometry.pair import Member
     from fegear.studies.cost.asked import Asked
 
-    Array = NDArray[np.float64]
 
 _PAIR = frozenset({"te-peak-to-peak", "tooth-force", "dynamic-factor"})
 
