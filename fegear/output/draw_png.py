@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -46,6 +47,8 @@ _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
 _ALONE, _STACKED = 3.4, 2.3
 _LEFT, _RIGHT, _BOTTOM, _NARROW = 0.45, 0.25, 0.55, 0.22
 _TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
+#: Inches of a letter of a title.
+_TITLE_LETTER = 0.083
 #: Inches of a letter at an axis, of one in a legend, and of the line before the legend's words.
 _LETTER, _SMALL_LETTER, _HANDLE = 0.078, 0.069, 0.6
 _DASHES = {
@@ -142,7 +145,12 @@ class _Sheet:
     """Panels placed on a sheet in rows, all sizes in inches."""
 
     def __init__(self, made: Any, panels: Sequence[tuple[Panel, str]], columns: int) -> None:
-        self.made, self.panels, self.columns = made, panels, columns
+        letters = int(_WIDTHS.get(columns, _WIDTHS[3]) / _TITLE_LETTER)
+        self.made, self.columns = made, columns
+        self.panels = [
+            (panel, "\n".join(line for part in title.split("\n") for line in textwrap.wrap(part, letters)))
+            for panel, title in panels
+        ]
         self.rows = -(-len(panels) // columns)
 
     def _title_room(self, row: int) -> float:

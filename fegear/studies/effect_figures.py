@@ -85,14 +85,14 @@ def effect_figure(found: Switched, curve: EffectCurve | None, title: str) -> Fig
     """
     name = _NAMES.get(found.effect, found.effect.replace("_", " "))
     name = f"{name[0].upper()}{name[1:]}"
-    panels, what = _compared(curve, f"{name}: {title}"), "what it takes" if curve is None else "the change"
+    panels, what = _compared(curve, f"{name}\n{title}"), "what it takes" if curve is None else "the change"
     seconds = (
         Bars([0.0], [found.without.seconds], "", "without"), Bars([1.0], [found.with_it.seconds], "", "with")
     )  # fmt: skip
     labels = tuple(
         f"{word}: {one.seconds:.2g} s" for word, one in (("without", found.without), ("with", found.with_it))
     )
-    none = f"{name}: {title} (no curve of this case changes)" if curve is None else ""
+    none = f"{name}\n{title} (no curve of this case changes)" if curve is None else ""
     panels.append(
         Panel(Axis("processor time of the run", categories=labels), Axis("time", "s", zero=True), seconds,
               title=none, height=0.5, stacked=True)

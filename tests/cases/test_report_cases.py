@@ -157,6 +157,23 @@ def test_the_report_needs_neither_plotly_nor_matplotlib_in_python(tmp_path):
     assert (tmp_path / "report.html").is_file()
 
 
+def test_plane_gears_are_drawn_without_pyvista_and_plotly(tmp_path):
+    probe = (
+        "import sys; from pathlib import Path; from fegear.case.reading import read_scene;"
+        "from fegear.engine.run import *;"
+        "from fegear.engine.plan import make_plan; from fegear.results.catalogue import STAGES;"
+        "from fegear.output.write import write_results;"
+        f"case = {str(CASES / 'lin_table1.toml')!r};"
+        "scene = read_scene(case, ['stiffness.positions=3', 'accuracy.tolerance=0.5']);"
+        f"write_results(run_plan(scene, make_plan(scene, STAGES)), Path({str(tmp_path)!r}), Silence());"
+        "print(*[name for name in ('plotly', 'pyvista', 'vtkmodules') if name in sys.modules])"
+    )
+    run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []
+    assert (tmp_path / "plots" / "deformed_a.png").is_file()
+    assert (tmp_path / "fields" / "a.vtu").is_file()
+
+
 def test_pictures_are_there_and_not_empty(made):
     _, folder = made
     names = {path.stem for path in (folder / "plots").iterdir()}

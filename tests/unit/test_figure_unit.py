@@ -23,13 +23,16 @@ from fegear.engine.figure import (
     Panel,
     Points,
     Scale,
+    Spot,
     Stems,
+    Surface,
     TriangleField,
     View,
     Zone,
     few,
     round_numbers,
 )
+from fegear.errors import MissingLibraryError
 from fegear.output.draw_plotly import darker, notebook_html, plotly_json, template
 from fegear.output.draw_png import draw_pictures
 from fegear.output.shades import shade
@@ -183,6 +186,31 @@ def test_fields_are_pictures_in_pages_and_notebooks(tmp_path):
     assert "&lt;Field&gt;" in shown
     deferred = DeferredFigure("f", "Field", lambda: figure)
     assert deferred.make() is figure
+
+
+def in_space() -> Figure:
+    points = np.stack([*np.meshgrid([0.0, 1.0], [0.0, 2.0], indexing="ij"), np.ones((2, 2))])
+    items = Surface(points, "blue"), Spot([0, 0, 1], "red")
+    return Figure("space", "Space", "c", (Panel(Axis(), Axis(), items, camera=((1, 1, 9), (0, 0, 0), (0, 1, 0))),))
+
+
+def test_surfaces_are_seen_by_their_camera(tmp_path, monkeypatch):
+    asked = []
+    image = np.full((90, 140, 3), 128, dtype=np.uint8)
+    monkeypatch.setattr("fegear.output.draw_space.draw_space", lambda *given: (asked.append(given), image)[1])
+    assert not in_space().drawable_in_page
+    (picture,) = draw_pictures(in_space(), tmp_path)
+    assert picture.path.stat().st_size > 1_000
+    ((items, camera),) = asked
+    assert [type(item).__name__ for item in items] == ["Surface", "Spot"]
+    assert camera == ((1, 1, 9), (0, 0, 0), (0, 1, 0))
+
+
+def test_a_system_that_cannot_draw_in_space_is_told_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.setattr("ctypes.util.find_library", lambda _name: None)
+    with pytest.raises(MissingLibraryError, match="apt-get install libegl1"):
+        list(draw_pictures(in_space(), tmp_path))
 
 
 def test_a_notebook_shows_a_plot():
