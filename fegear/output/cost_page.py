@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.engine.figure import Figure
-    from fegear.output.report.page import Block
+    from fegear.output.report.blocks import Block
     from fegear.studies.cost.result import CostResults
 
 

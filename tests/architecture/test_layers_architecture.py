@@ -61,12 +61,15 @@ DOORS = {
     "vtk": [],
     "matplotlib": ["fegear.output.*"],
     "plotly": ["fegear.output.*"],
+    "jinja2": ["fegear.output.report.rendering"],
     "ezdxf": ["fegear.output.*"],
     "xarray": [],  # a reader of what a run leaves behind
 }
 
 #: What `import fegear` may not load.
-HEAVY = ("gmsh", "pyvista", "matplotlib", "dask", "skfem", "pint", "meshio", "plotly", "numba", "xarray", "scipy")
+HEAVY = (
+    "gmsh", "pyvista", "matplotlib", "dask", "skfem", "pint", "meshio", "plotly", "numba", "xarray", "scipy", "jinja2",
+)  # fmt: skip
 
 
 def _package(module: str) -> str:

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import ast
 import base64
+import html
+import html.parser
 import json
+import re
+from importlib import resources
 from pathlib import Path
 
+import jinja2
 import numpy as np
 import pytest
 
@@ -15,9 +20,28 @@ from fegear.engine.citation import bibliography
 from fegear.engine.figure import Axis, Figure, Panel, Points
 from fegear.engine.outcome import Column, Table, Value
 from fegear.engine.plan import make_plan
+from fegear.output.draw_png import Picture
 from fegear.output.numbers import plain_number, pretty_unit, with_error
 from fegear.output.report import Page, Section, write_page
-from fegear.output.report.blocks import DataTable, Facts, Plot, Values
+from fegear.output.report.blocks import (
+    Bars,
+    Block,
+    Code,
+    DataTable,
+    Download,
+    Facts,
+    Folded,
+    Grid,
+    Heading,
+    Listed,
+    Notes,
+    Paragraph,
+    Plot,
+    Still,
+    Values,
+)  # fmt: skip
+from fegear.output.report.page import page_text
+from fegear.output.report.rendering import render
 from fegear.results.catalogue import STAGES
 from fegear.results.loaded_pair import LOADED_PAIR
 
@@ -123,6 +147,77 @@ def test_another_command_can_make_a_page(tmp_path):
     assert trace["name"] == "&lt;/script&gt;&lt;b&gt;finite elements&lt;/b&gt;"  # plotly takes names for HTML
     assert trace["text"] == ["a", "&lt;i&gt;b&lt;/i&gt;"]
     assert "id='plotly'" in text
+
+
+class Parsed(html.parser.HTMLParser):
+    """What a browser makes of a page: its tags with their attributes, its texts, and the texts of its scripts."""
+
+    def __init__(self, text: str):
+        super().__init__()
+        self.tags, self.values, self.texts, self.scripts = [], [], [], []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, tuple(name for name, _ in attrs)))
+        self.values += [value for _, value in attrs if value is not None]
+
+    def handle_data(self, data):
+        (self.scripts if self.cdata_elem == "script" else self.texts).append(data)
+
+
+def page_of_every_block(name: str, folder: Path) -> Page:
+    """A page that holds a text in every place that takes one."""
+    picture = folder / "picture.png"
+    picture.write_bytes(b"no picture")
+    columns = (Column(name, np.array([0.5, 1.0]), "mm", name), Column("text", np.array([name, name])))
+    table = Table("t", columns, name)
+    figure = Figure("key", name, name, (Panel(Axis(name), Axis(name), (Points([1.0], [1.0], name, notes=(name,)),)),))
+    value = Value("v", 2.0, "mm", 0.3e-3, meaning=name)
+    blocks = (
+        Paragraph(name), Heading(name), Notes((name,)), Listed((name, 1.5, True)), Bars({name: 1.0}, name), Code(name),
+        Facts({name: [{name: 1.0}, {name: name}], "list": [name, {name: name}], "none": []}),
+        Grid((name,), ((name,),)), Folded(name, (Paragraph(name),)), Download(f"{name}.toml"), Values((value,), 1e-9),
+        DataTable(table), Plot(figure), Still(Picture(picture, name, name)),
+    )  # fmt: skip
+    return Page(name, name, (Section(name, blocks),), (table,), {f"{name}.toml": b""}, name)
+
+
+HOSTILE = (
+    "<b>a</b>",
+    "a & b &lt; c",
+    "'a' \"b\"",
+    "<!--<script>",
+    "</script></style>",
+    "{{ 7 * 7 }}{% raw %}",
+    "a_b.c",
+)
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_no_name_becomes_part_of_the_page(name, tmp_path):
+    harmless, hostile = (Parsed(page_text(page_of_every_block(each, tmp_path))) for each in ("NAME", name))
+    assert hostile.tags == harmless.tags
+    found = hostile.texts.count(name), sum(name in value for value in hostile.values)
+    assert found == (harmless.texts.count("NAME"), sum("NAME" in value for value in harmless.values))
+    assert min(found) > 5
+    assert len(hostile.scripts) == len(harmless.scripts)
+    figures = json.loads(hostile.scripts[0])
+    assert "<" not in hostile.scripts[0]
+    assert figures[0]["layout"]["xaxis"]["title"]["text"] == html.escape(name, quote=False)  # plotly takes it for HTML
+
+
+def test_every_block_has_its_macro(tmp_path):
+    shown = {type(block) for block in page_of_every_block("name", tmp_path).sections[0].blocks}
+    assert shown == set(Block.__subclasses__())
+    folder = resources.files("fegear.output.report") / "templates"
+    drawn = set(re.findall(r"macro ([A-Z]\w+)\(", (folder / "blocks.html").read_text("utf-8")))
+    assert drawn == {kind.__name__ for kind in shown}
+
+
+def test_a_name_that_a_template_misses_is_an_error():
+    with pytest.raises(jinja2.UndefinedError, match="page"):
+        render("page.html")
 
 
 def test_a_page_without_plots_carries_no_library(tmp_path):

@@ -12,7 +12,7 @@ from fegear.output.report.blocks import Bars, Facts, Folded, Paragraph, Plot, re
 
 if TYPE_CHECKING:
     from fegear.engine.run import Results
-    from fegear.output.report.page import Block
+    from fegear.output.report.blocks import Block
 
 
 def _errors(results: Results) -> list[tuple[str, float]]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.engine.figure import Figure
-    from fegear.output.report.page import Block
+    from fegear.output.report.blocks import Block
     from fegear.studies.effect_figures import EffectCurve
     from fegear.studies.effect_study import Fixed, Switched
 

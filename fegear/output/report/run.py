@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
     from fegear.output.figures import Drawn
-    from fegear.output.report.page import Block
+    from fegear.output.report.blocks import Block
 
 #: More values than this are folded, task by task: forty numbers before the first plot are too many.
 _MOST_OPEN = 16

@@ -1,0 +1,55 @@
+"""The door to Jinja2: templates become a page, every text in it escaped."""
+
+from __future__ import annotations
+
+import base64
+from functools import cache
+from importlib import resources
+from typing import TYPE_CHECKING
+
+from fegear.output.numbers import pretty_unit
+from fegear.output.report.blocks import Block, as_words, readable
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+
+def _resource(name: str) -> str:
+    return resources.files("fegear.output.report").joinpath(name).read_text("utf-8")
+
+
+def _base64(content: bytes) -> str:
+    return base64.b64encode(content).decode()
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined  # takes 20 ms, which only pages should cost
+
+    made = Environment(
+        loader=PackageLoader("fegear.output.report"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, auto_reload=False,
+    )  # fmt: skip
+    # JSON that can stand inside a script: `tojson` writes <, > and & as \u003c, \u003e and \u0026.
+    made.policies["json.dumps_kwargs"] = {"ensure_ascii": False, "separators": (",", ":"), "allow_nan": False}
+
+    def drawn(item: object) -> str:
+        block = item if isinstance(item, Block) else readable(item)
+        if isinstance(block, str):
+            return block
+        return getattr(made.get_template("blocks.html").module, type(block).__name__)(block)
+
+    made.filters.update(base64=_base64, drawn=drawn, resource=_resource, unit=pretty_unit, words=as_words)
+    return made
+
+
+def render(template: str, **content: object) -> str:
+    """Render a template of the folder ``templates``.
+
+    Parameters
+    ----------
+    template : str
+    **content
+        What the template names; a name that is missing is an error (`jinja2.UndefinedError`).
+    """
+    return _environment().get_template(template).render(content)
