@@ -179,7 +179,7 @@ def _check(scene: Scene, subject: str) -> None:
     check_motion(scene)
     pair = train_part(scene).pair_of(_mesh(scene))
     if scene.case.effects.friction:
-        raise InputError("effects.friction", "true", "is not known to design-chart", "leave it out")
+        raise InputError("effects.friction", "true", "is not known to design-chart", "remove it")
     ratio = scene.pairs[pair].contact_ratio
     if not 1.0 <= ratio < 2.0:
         raise InputError(

@@ -161,7 +161,7 @@ def _check(scene: Scene, name: str) -> None:
     if scene.case.effects.contact_loss is False and train_part(scene).mesh[name].backlash is not None:
         raise InputError(
             f"train.mesh.{name}.backlash", "(given)", "has a meaning only with effects.contact_loss = true",
-            "switch the effect on, or leave the backlash out",
+            "switch the effect on, or remove the backlash",
         )  # fmt: skip
 
 

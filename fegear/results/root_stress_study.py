@@ -43,7 +43,7 @@ def _gear(scene: Scene) -> str:
 
 def _study(scene: Scene) -> StudyPart:
     if scene.case.study is None:
-        raise InputError("study", "(not given)", "is what root-stress-study is about", "add a [study] part")
+        raise InputError("study", "(not given)", "is needed for root-stress-study", "add a [study] part")
     return scene.case.study
 
 

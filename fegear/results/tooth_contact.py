@@ -80,7 +80,7 @@ def _check(scene: Scene, name: str) -> None:
     if part.misalignment is not None and not scene.case.effects.misalignment:
         raise InputError(
             f"pair.{name}.misalignment", "(a table)", "is given, but the effect is off",
-            "write misalignment = true under [effects], or leave the table out",
+            "write misalignment = true under [effects], or remove the table",
         )  # fmt: skip
     _check_data(scene)
 
@@ -90,7 +90,7 @@ def _check_data(scene: Scene) -> None:
         name = next(iter(scene.helical_pairs), "NAME")
         raise InputError(
             "effects.misalignment", "true", "finds no pair with a misalignment in this case",
-            f'give pair.{name}.misalignment = {{ shaft_angle = "3 arcmin" }}, or leave the effect out',
+            f'give pair.{name}.misalignment = {{ shaft_angle = "3 arcmin" }}, or remove the effect',
         )  # fmt: skip
 
 

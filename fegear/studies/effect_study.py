@@ -115,7 +115,7 @@ def effect_study(
     only: Sequence[str] = (),
     progress: Callable[[str, float], None] | None = None,
 ) -> tuple[Scene, list[Switched], list[Fixed]]:
-    """Run a case with each effect that its results can feel switched, one at a time.
+    """Run a case with each effect that influences its results switched, one at a time.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def effect_study(
     for effect in only:
         if effect not in felt:
             raise InputError(
-                "--effect", f'"{effect}"', "is no effect that the wanted results can feel", nearest(effect, felt)
+                "--effect", f'"{effect}"', "is no effect that influences the wanted results", nearest(effect, felt)
             )
     effects = tuple(only) or felt
     say = progress or (lambda _title, _fraction: None)

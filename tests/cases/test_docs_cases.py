@@ -159,3 +159,33 @@ def test_the_python_reference_has_every_public_name(package):
     page = (DOCS / "reference" / f"{package}.md").read_text("utf-8")
     names = re.findall(r"^::: \S+\.(\w+)$", page, re.MULTILINE)
     assert set(importlib.import_module(f"fegear.{package}").__all__) <= set(names)
+
+
+def test_every_name_of_the_python_reference_exists_once():
+    names = [
+        n
+        for page in (DOCS / "reference").glob("*.md")
+        for n in re.findall(r"^::: (\S+)$", page.read_text("utf-8"), re.MULTILINE)
+    ]
+    assert len(names) == len(set(names))
+    modules = [name.rpartition(".") for name in names]
+    assert [".".join((m, n)) for m, _, n in modules if not hasattr(importlib.import_module(m), n)] == []
+
+
+def test_the_python_page_names_every_result_and_functions_that_exist():
+    """No result whose numbers a Python user could reach through its stage alone."""
+    from fegear.results.catalogue import STAGES
+
+    page = (DOCS / "how-to" / "python.md").read_text("utf-8")
+    rows = re.findall(r"^\| (`.+?) \| (.+) \|$", page, re.MULTILINE)
+    listed = {name for row, _ in rows for name in re.findall(r"`([\w-]+)`", row)}
+    assert {name for stage in STAGES for name in stage.results} - {"gear-train"} <= listed
+    for _, functions in rows:
+        package = ""
+        for name in re.findall(r"`([\w.]+)`", functions):
+            whole = name if name.startswith("fegear.") else f"fegear.{name}" if "." in name else f"{package}.{name}"
+            package, _, last = whole.rpartition(".")
+            try:
+                importlib.import_module(whole)
+            except ModuleNotFoundError:
+                assert hasattr(importlib.import_module(package), last), whole

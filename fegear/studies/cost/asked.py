@@ -136,12 +136,12 @@ def _pair(scene: Scene, names: list[str]) -> str:
     if chosen is None or chosen not in loaded:
         raise InputError(
             "cost.pair", f'"{chosen}"' if chosen else "(not given)", "must be a pair of spur gears that carries a load",
-            "describe one with load or torque, or leave the quantities of pairs out",
+            "describe one with load or torque, or remove the quantities of pairs",
         )  # fmt: skip
     if scene.case.pair[chosen].compliance.source != "table" and scene.case.effects.hertz == "none":
         raise InputError(
             "effects.hertz", '"none"', "leaves contacts as wide as the pressure that loads the mesh, so that nothing "
-            "converges", 'write hertz = "load-dependent" under [effects], or leave the quantities of pairs out',
+            "converges", 'write hertz = "load-dependent" under [effects], or remove the quantities of pairs',
         )  # fmt: skip
     return chosen
 
