@@ -148,6 +148,8 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
         return (spectrum,)
     size = over.amplitudes[data.mesh]
     strong = size > max(_WEAKEST_OVER_SPEED * float(size.max()), _NO_FORCE)
+    if not strong.any():
+        return (spectrum,)
     speed = np.broadcast_to(over.speeds * train.speed_ratio * RPM, size.shape)[strong]
     points = Points(
         over.frequencies[strong] * 1e-3, speed, shade=size[strong], shade_label="mesh force, 0-peak [N]", size=4.5,

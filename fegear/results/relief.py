@@ -286,7 +286,7 @@ def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: 
         zone = Zone("x", float(loaded.min()), float(loaded.max()))
         reliefs.append(Panel(x, Axis("material to remove", "um"), tuple(curves), (zone,), f"{member}: gear {gear}"))
         load = Curve(roll, shown["load"], "load of the design", "grey", dash="solid", markers=False)
-        loads.append(Panel(x, Axis("load", "N", zero=True), (load,), (zone,), height=0.6))
+        loads.append(Panel(x, Axis("load", "N", zero=True), (load,), (zone,), f"{member}: load", height=0.6))
     return Figure(
         f"relief_{name}",
         f"Profile relief of {name}",

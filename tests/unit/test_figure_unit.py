@@ -188,6 +188,21 @@ def test_fields_are_pictures_in_pages_and_notebooks(tmp_path):
     assert deferred.make() is figure
 
 
+@pytest.mark.parametrize("log", [False, True])
+def test_what_is_empty_or_unknown_is_drawn_empty(tmp_path, log):
+    nothing, unknown = np.empty(0), np.full(3, np.nan)
+    items = (
+        Curve(nothing, nothing, "a"), Curve([1, 2, 3], unknown, "b", error=unknown), Points(nothing, nothing, "c"),
+        Stems(nothing, nothing, "d"), Points([1, 2, 3], unknown, "e", notes=("x", "y", "z")),
+    )  # fmt: skip
+    panel = Panel(Axis("x"), Axis("y", log=log), items, (Mark("y", 1.0, "one"),))
+    tiles = HeatMap([1, 2], [1, 2], np.full((2, 2), np.nan), "z")
+    figure = Figure("k", "t", "c", (panel, Panel(Axis("x"), Axis("y"), (tiles,))))
+    json.dumps(plotly_json(figure), allow_nan=False)
+    (picture,) = draw_pictures(figure, tmp_path)
+    assert picture.path.is_file()
+
+
 def in_space() -> Figure:
     points = np.stack([*np.meshgrid([0.0, 1.0], [0.0, 2.0], indexing="ij"), np.ones((2, 2))])
     items = Surface(points, "blue"), Spot([0, 0, 1], "red")
