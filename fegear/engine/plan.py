@@ -77,7 +77,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
         stage.check(scene, task.subject)
         reasons[task] = [reason]
         for need in stage.needs(scene, task.subject):
-            require(need, f"{task} needs it")
+            require(need, f"needed by {task}")
         order.append(task)
 
     for result in scene.case.results:
@@ -93,7 +93,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
                     "add the gear, pair or train that it is about",
                 )
             for subject in subjects:
-                require(Task(stage.name, subject), f'results asks for "{result}"')
+                require(Task(stage.name, subject), f'requested by results = ["{result}"]')
 
     on = scene.case.effects.on()
     steps = tuple(
@@ -112,7 +112,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
 def _idle(effect: str, stages: Sequence[Stage]) -> str:
     results = dict.fromkeys(f'"{result}"' for stage in stages if effect in stage.effects for result in stage.results)
     who = f"ask for {' or '.join(results)}, or leave the effect out"
-    return f"effects.{effect} is on, but nothing that is wanted uses it; {who}."
+    return f"effects.{effect} is on, but no requested result uses it; {who}."
 
 
 def _require_effects(scene: Scene, stage: Stage) -> None:
@@ -131,5 +131,5 @@ def _require_effects(scene: Scene, stage: Stage) -> None:
 
 def _why_not(stage: Stage) -> str:
     if not stage.results:
-        return "no wanted result needs it"
-    return f'nothing asks for it (results does not name "{stage.results[0]}")'
+        return "needed by no requested result"
+    return f'not requested (results does not list "{stage.results[0]}")'

@@ -57,8 +57,8 @@ def test_run_writes_what_it_says(case, tmp_path):
 def test_plan_tells_what_and_why_and_what_not(case, tmp_path):
     done = fegear("plan", case, cwd=tmp_path)
     assert done.returncode == 0
-    assert 'geometry: results asks for "geometry"' in done.stdout
-    assert 'stiffness: nothing asks for it (results does not name "stiffness")' in done.stdout
+    assert 'geometry: requested by results = ["geometry"]' in done.stdout
+    assert 'stiffness: not requested (results does not list "stiffness")' in done.stdout
     assert "friction" in done.stdout.splitlines()[-1]
     assert "Predicted: about 0.01 s" in done.stdout
     done = fegear("plan", case, "--set", 'results=["stiffness"]', "--set", "accuracy.tolerance=1e-2", cwd=tmp_path)

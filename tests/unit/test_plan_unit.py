@@ -84,9 +84,9 @@ def test_nothing_is_computed_that_nothing_asks_for():
     plan = make_plan(scene("teeth"), shop.stages)
     assert {step.stage.name for step in plan.steps} == {"blank", "tooth"}
     assert dict(plan.skipped).keys() == {"pair", "noise"}
-    assert 'results does not name "noise"' in dict(plan.skipped)["noise"]
-    assert plan.steps[0].reasons == ("tooth of a needs it",)
-    assert plan.steps[1].reasons == ('results asks for "teeth"',)
+    assert 'results does not list "noise"' in dict(plan.skipped)["noise"]
+    assert plan.steps[0].reasons == ("needed by tooth of a",)
+    assert plan.steps[1].reasons == ('requested by results = ["teeth"]',)
 
 
 def test_effects_are_assigned_to_the_steps_that_use_them():
