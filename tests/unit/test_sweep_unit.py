@@ -43,7 +43,7 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path i
 GRID = (
     "--set", 'results=["stiffness"]',
     "--over", "gear.a.profile_shift=-0.1:0.7:5",
-    "--over", "stiffness.contact_half_width=0.02:0.215:40:mm",
+    "--over", "stiffness.contact_half_width=0.02:0.195:40:mm",
     "--no-plots",
 )  # fmt: skip
 
@@ -182,9 +182,11 @@ def test_a_killed_sweep_of_200_points_goes_on_and_equals_an_uninterrupted_one_bi
     whole = fegear(case, *GRID, "--out", "whole", cwd=tmp_path, cache=tmp_path / "one")
     assert whole.returncode == 0, whole.stderr
     assert "200 of 200 points have results." in whole.stdout
-    # 5 shapes, each on two meshes: 200 points and two workers never solved one twice.
+    # 5 shapes on two meshes or more each: 200 points and two workers never solved one twice.
     summary = json.loads((tmp_path / "whole" / "summary.json").read_text())
-    assert summary["timings"]["shapes_solved"] == 10
+    shapes = summary["timings"]["shapes_solved"]
+    assert shapes >= 10
+    assert len(list((tmp_path / "one" / "solutions").rglob("*.entry"))) == 200 + shapes
 
     kept = tmp_path / "two"
     environment = {**ENVIRONMENT, "FEGEAR_CACHE": str(kept)}
@@ -193,7 +195,7 @@ def test_a_killed_sweep_of_200_points_goes_on_and_equals_an_uninterrupted_one_bi
         cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     for _ in range(2000):
-        finished = len(list((kept / "solutions").rglob("*.entry"))) - 10  # less the shapes
+        finished = len(list((kept / "solutions").rglob("*.entry"))) - shapes
         if finished >= 30 or process.poll() is not None:
             break
         time.sleep(0.01)
