@@ -144,7 +144,7 @@ def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> t
         end = "the last is kept."
     else:
         worst = max(last.errors, key=lambda key: last.errors[key])
-        end = f"the last is kept, though {worst} misses the tolerance: it was the finest or the last that is tried."
+        end = f"the last is kept, though {worst} misses the tolerance: it is the finest mesh, or the last one tried."
     times = "once" if len(rounds) == 2 else f"{len(rounds) - 1} times"
     how = f"was refined {times}" if len(rounds) > 1 else "was solved"
     return (f"Gear {name} {how} for the tolerance {tolerance:.2g}; largest estimated errors: {steps}; {end}",)

@@ -123,7 +123,7 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
 def sentence(found: Switched) -> str:
     """The value that an effect changes most, and what that costs."""
     a, b = found.without.seconds, found.with_it.seconds
-    cost = f"{a:.2f} s of processor without, {b:.2f} s with"
+    cost = f"processor time {a:.2f} s without, {b:.2f} s with"
     changes = [(abs(q.shown - p.shown) / max(abs(p.shown), abs(q.shown)), p, q) for p, q in found.values()
                if max(abs(p.shown), abs(q.shown)) > 0.0]  # fmt: skip
     if not changes or max(c for c, _, _ in changes) == 0.0:

@@ -121,8 +121,8 @@ def test_the_command_writes_a_table_a_picture_and_a_summary(tmp_path):
     assert {"tables/relief_without.csv", "tables/relief_with.csv", "lin_tip_relief.toml"} <= set(packed.namelist())
 
 
-def test_an_effect_that_the_results_cannot_feel_is_refused():
-    with pytest.raises(InputError, match="no effect that the wanted results can feel"):
+def test_an_effect_that_influences_no_result_is_refused():
+    with pytest.raises(InputError, match="no effect that influences the wanted results"):
         effect_study(CASES / "lin_tip_relief.toml", TE, ("friction",))
 
 

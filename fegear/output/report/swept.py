@@ -67,7 +67,7 @@ def sweep_page(
             Section("What was varied", (Grid(("Key", "Values"), axes), Paragraph(summary))),
             Section("Values over the axes", tuple(map(Plot, figures))),
             Section("Values that do not change", (Facts(constant),) if constant else ()),
-            Section("Failures", (Grid(("Points", "Kind", "First at", "What it says"), failures),) if failures else ()),
+            Section("Failures", (Grid(("Points", "Kind", "First at", "Message"), failures),) if failures else ()),
             Section("Table", (DataTable(table),)),
         ),
         tables=(table,),
