@@ -157,7 +157,7 @@ class Influence:
         patch : float
             Half-width of the wider of the two pressures that load the mesh [modules].
         half_width : array_like, optional
-            Half-width of the true contact [modules], by default `patch`.
+            Half-width of the true contact [modules], by default `patch`; broadcast against `radius`.
 
         Notes
         -----
@@ -172,6 +172,9 @@ class Influence:
         corner than `corner_distance` the exact wedge says how the deflection grows.
         """
         wanted = np.asarray(patch if half_width is None else half_width, dtype=float)
+        if wanted.ndim > 1:  # several widths at every radius
+            at, widths = np.broadcast_arrays(np.asarray(radius, dtype=float), wanted)
+            return self.self_compliance(at.ravel(), patch, widths.ravel()).reshape(at.shape)
         arc, width = self.place(radius, wanted)
         regular = self._regular(arc, width, patch)
         for corner, inward, angle in self._corners:

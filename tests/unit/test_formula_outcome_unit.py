@@ -43,13 +43,15 @@ def test_the_table_has_a_number_or_a_reason_everywhere(z, rack):
     radii = [0.99 * tooth.form_radius, *np.linspace(tooth.form_radius, tooth.tip_radius, 5)]
     table = root_stress_table(tooth, radii)
     assert list(table) == list(ROOT_STRESS_SOURCES)
-    for outcomes in table.values():
+    for name, outcomes in table.items():
+        # The Lewis parabola of these two may touch the trochoid beyond the fillet, as AGMA 908's own iteration has it.
+        last = tooth.tip_radius if name in ("agma-908", "dolan-broghamer") else tooth.form_radius
         assert not outcomes[0].ok  # below the form circle
         for o in outcomes:
             if o.ok:
                 value = o.unwrap()
                 assert all(map(math.isfinite, (value.stress, value.radius, value.fillet_radius, value.tangent_angle)))
-                assert tooth.root_radius * (1 - 1e-9) <= value.radius <= tooth.form_radius * (1 + 1e-9)
+                assert tooth.root_radius * (1 - 1e-9) <= value.radius <= last * (1 + 1e-9)
             else:
                 assert len(o.reason) > 20
     usable = sum(o.ok for outcomes in table.values() for o in outcomes)
