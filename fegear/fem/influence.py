@@ -270,7 +270,9 @@ class Influence:
         loads, above, width = self._above_fillet(radius_q, half_width)
         end = np.full(above.shape, fillet.length)
         if k == 0 and side == "tension":
-            end -= np.maximum(width + self.corner_distance - above, 0.0)
+            # Beside it by one corner distance more, but by half at most of what a short fillet leaves free.
+            free = np.maximum(fillet.length + above - width, 0.0)
+            end = np.minimum(end, np.maximum(free - self.corner_distance, 0.5 * free))
         return extreme(self.stress[k, side] @ loads, fillet.arc, 1.0 if side == "tension" else -1.0, end)
 
 

@@ -46,6 +46,9 @@ GEARS = {
     "z 60, rack tip .05": {"teeth": 60, "x": 0.9, "tip": 0.05, "bore": 0.7},
     "z 80, sharp rack": {"teeth": 80, "tip": 0.01, "bore": 0.7},
     "z 80, sharp rack, x .8": {"teeth": 80, "x": 0.8, "tip": 0.0, "bore": 0.7},
+    # Drawn after fillet edges followed a radius of curvature of .005 modules: of .009 and .0022 modules.
+    "z 45, sharp rack, x .8": {"teeth": 45, "x": 0.8, "tip": 0.0, "bore": 0.6},
+    "z 36, sharp rack, x 1.05": {"teeth": 36, "x": 1.05, "tip": 0.0, "addendum": 0.7, "bore": 0.5},
 }
 
 
