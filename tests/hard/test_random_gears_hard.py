@@ -140,7 +140,11 @@ def test_finite_elements_keep_the_laws_of_elasticity(gear, a, b):
     assert np.linalg.eigvalsh(0.5 * (c0 + c0.T)).min() > -1e-10 * size
     own = known.self_compliance(radii, 0.02)
     assert (own > 0.0).all()
-    assert (np.diff(known.self_compliance(radii, [[0.1], [0.01], [0.001]]), axis=0) >= 0.0).all()
+    # Narrower contacts give way more, where the widest fits: nearer to an end of the flank it stands elsewhere.
+    flank = known.fine.flank
+    arc = flank.arc_of_radius(radii / gear.module)
+    at = radii[np.minimum(arc - flank.flank_start, flank.flank_end - arc) >= 0.1]
+    assert (np.diff(known.self_compliance(at, np.array([[0.1], [0.01], [0.001]]) * gear.module), axis=0) >= 0.0).all()
     # Load turned round, stress turned round: tension of one fillet is compression of the same, mirrored in sign.
     for side in ("tension", "compression"):
         stress = known.fillet_stress(0, side, radii)
