@@ -147,8 +147,9 @@ def _canonical(item: object) -> object:
     if isinstance(item, Mapping):
         pairs = [[_canonical(k), _canonical(v)] for k, v in item.items()]
         return ["map", *sorted(pairs, key=lambda pair: json.dumps(pair[0]))]
-    if callable(getattr(item, "model_dump", None)):  # a part of a case
-        return ["part", type(item).__qualname__, _canonical(item.model_dump())]  # type: ignore[attr-defined]
+    dump = getattr(item, "model_dump", None)
+    if callable(dump):  # a part of a case
+        return ["part", type(item).__qualname__, _canonical(dump())]
     if dataclasses.is_dataclass(item) and not isinstance(item, type):
         fields = [[f.name, _canonical(getattr(item, f.name))] for f in dataclasses.fields(item) if f.compare]
         return ["data", type(item).__qualname__, *fields]
