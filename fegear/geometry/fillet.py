@@ -135,10 +135,9 @@ def meeting(trochoid: Trochoid, flank: RackFlankLine, tangent_roll: float) -> tu
     tangent_roll : float
         See `RackFlankLine.tangent_roll`; without undercut the curves touch at the trochoid's end.
     """
-    from scipy.optimize import brentq
-
     if tangent_roll >= 0.0:
         return trochoid.end, tangent_roll
+    from scipy.optimize import brentq  # late: a gear without undercut does without, and it takes a third of a second
 
     def radius(beta: float) -> float:
         return float(np.hypot(*trochoid.points(beta)))

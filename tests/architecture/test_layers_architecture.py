@@ -200,7 +200,8 @@ def test_a_plan_needs_none_of_the_mechanics_libraries():
     """What results could be asked for is known without loading what computes them: `fegear plan` stays quick."""
     late = ("scipy.", "fegear.contact.", "fegear.fem.", "fegear.formulas.")
     probe = (
-        "import sys, fegear.case.reading, fegear.engine.run, fegear.results.catalogue;"
+        "import sys, fegear.engine.run, fegear.results.catalogue; from fegear.case.reading import build_scene;"
+        "build_scene({'results': ['geometry'], 'gear': {'a': {'teeth': 28, 'module': '1 mm'}}}, 'case', None);"
         f"print(*[name for name in sys.modules if name.startswith({late!r})],"
         f"*[name for name in {HEAVY!r} if name in sys.modules and name not in ('pint', 'scipy')])"
     )
