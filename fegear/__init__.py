@@ -1,3 +1,3 @@
 """fegear: a finite-element workbench for gear teeth."""
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
