@@ -1,0 +1,49 @@
+"""``fegear cost``: what accuracy costs in time."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fegear.commands.common import INTERRUPTED, CaseFile, NoPlots, Overrides, leave
+
+
+def cost(
+    case: CaseFile,
+    overrides: Overrides = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>-cost.")] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A few configurations instead of all, for a first look.")
+    ] = False,
+    no_plots: NoPlots = False,
+) -> None:
+    """Show what accuracy costs in time: every closed form, sectors, whole gears from coarse to fine."""
+    from fegear.case.reading import read_scene
+    from fegear.output.cost import cheapest_lines, write_cost
+    from fegear.output.folder import check_target, whole_or_nothing
+    from fegear.studies.cost import asked, forecast, ladder_of, study_cost
+    from fegear.terminal import watcher
+
+    try:
+        studied = asked(read_scene(case, overrides or ()))
+        target = out or Path("results") / f"{case.stem}-cost"
+        check_target(target)
+        ladder = ladder_of(studied, quick=quick)
+        quantities = ", ".join(q.name for q in studied.quantities)
+        typer.echo(f"Cost study: {len(ladder.configurations)} configurations for {quantities}.")
+        typer.echo(f"Predicted: about {forecast(studied, ladder):.2g} s of one core, measured on a usual machine.")
+        with watcher(sys.stderr) as watching:
+            results = study_cost(studied, quick=quick, watcher=watching)
+        with whole_or_nothing(target) as scratch:
+            write_cost(results, scratch, plots=not no_plots)
+    except KeyboardInterrupt:
+        leave(INTERRUPTED, 130)
+    typer.echo("\n".join(cheapest_lines(results)))
+    for remark in results.remarks:
+        typer.echo(f"Note: {remark}")
+    typer.echo(f"Wrote {target} in {results.seconds:.1f} s.")
+    if not results.complete:
+        leave(f"interrupted; {results.finished} of {results.planned} configurations are in {target}.", 130)

@@ -1,0 +1,35 @@
+"""``fegear export``: drawings and meshes for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fegear.commands.common import INTERRUPTED, CaseFile, Out, Overrides, leave
+
+
+def export(
+    case: CaseFile,
+    overrides: Overrides = None,
+    gear: Annotated[list[str] | None, typer.Option("--gear", help="Name of a gear; default all of them.")] = None,
+    formats: Annotated[
+        str, typer.Option("--format", help="Any of dxf, msh, vtu, inp, separated by commas.")
+    ] = "dxf,msh,vtu,inp",
+    out: Out = None,
+) -> None:
+    """Write drawings (DXF) and meshes of the whole gear (gmsh, VTU, Abaqus/CalculiX) for other programs."""
+    from fegear.case.reading import read_scene
+    from fegear.output.export import export_gears
+    from fegear.output.folder import whole_or_nothing
+
+    try:
+        scene = read_scene(case, overrides or ())
+        target = out or Path("results") / scene.name / "export"
+        with whole_or_nothing(target) as scratch:
+            written = export_gears(scene, scratch, gear or list(scene.gears), formats)
+    except KeyboardInterrupt:
+        leave(INTERRUPTED, 130)
+    for name in written:
+        typer.echo(f"Wrote {target / name}")

@@ -1,0 +1,59 @@
+"""``fegear run``: compute what a case asks for."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fegear.commands.common import INTERRUPTED, CaseFile, NoPlots, Out, Overrides, Scheduler, leave
+
+
+def run(
+    case: CaseFile,
+    overrides: Overrides = None,
+    out: Out = None,
+    no_plots: NoPlots = False,
+    scheduler: Scheduler = None,
+    cache: Annotated[
+        bool,
+        typer.Option(
+            "--cache", help="Recall tooth shapes and chart points from the disk cache, and keep new ones there."
+        ),
+    ] = False,
+) -> None:
+    """Compute what a case asks for and write tables, pictures and a report."""
+    from fegear.case.reading import read_scene
+    from fegear.engine.executor import Executor
+    from fegear.engine.plan import make_plan
+    from fegear.engine.run import run_plan
+    from fegear.output.folder import whole_or_nothing
+    from fegear.output.write import STEPS, write_results
+    from fegear.results.catalogue import STAGES
+    from fegear.solution_cache import SolutionCache, cache_on_disk
+    from fegear.terminal import watcher
+
+    start = time.perf_counter()
+    try:
+        scene = read_scene(case, overrides or ())
+        planned = make_plan(scene, STAGES)
+        target = out or Path("results") / scene.name
+        with contextlib.ExitStack() as stack:
+            scratch = stack.enter_context(whole_or_nothing(target))
+            watching = stack.enter_context(watcher(sys.stderr))
+            # Nothing is recalled by default: the seconds of a run are one of its results.
+            known = cache_on_disk() if cache else SolutionCache()
+            results = run_plan(scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler))
+            remarks = write_results(results, scratch, watching, plots=not no_plots)
+    except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
+        leave(INTERRUPTED, 130)
+    for value in results.values:
+        error = f" +- {value.shown_error:.2g}" if value.shown_error else ""
+        typer.echo(f"{value.name} = {value.shown:.9g}{error} {value.unit}".rstrip())
+    for remark in remarks:
+        typer.echo(f"Note: {remark}")
+    typer.echo(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")

@@ -1,0 +1,78 @@
+"""``fegear sweep``: a case over a grid of values."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fegear.commands.common import CaseFile, NoPlots, Overrides, Scheduler, leave
+
+
+def sweep(
+    case: CaseFile,
+    over: Annotated[
+        list[str],
+        typer.Option(
+            "--over",
+            metavar="KEY=START:STOP:COUNT",
+            help="An axis, e.g. gear.a.profile_shift=-0.4:0.8:25, =10:20:6:mm, =1:1000:4:log or =0.1,0.2,0.5.",
+        ),
+    ],
+    overrides: Overrides = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_sweep.")] = None,
+    scheduler: Scheduler = None,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, help="Processes on this machine; default one for each core.")
+    ] = None,
+    no_plots: NoPlots = False,
+    no_cache: Annotated[
+        bool,
+        typer.Option("--no-cache", help="Recompute everything and keep nothing: a killed sweep starts again."),
+    ] = False,
+) -> None:
+    """Run a case over a grid of values; killed and started again, it resumes where it stopped."""
+    from fegear.engine.executor import Executor
+    from fegear.output.folder import check_target, whole_or_nothing
+    from fegear.output.sweep import write_sweep
+    from fegear.solution_cache import SolutionCache, cache_on_disk
+    from fegear.studies.axis import read_axis
+    from fegear.studies.sweep import sweep_case
+    from fegear.terminal import watcher
+
+    try:
+        axes = [read_axis(text) for text in over]
+        target = out or Path("results") / f"{case.stem}_sweep"
+        check_target(target)
+        with contextlib.ExitStack() as stack:
+            watching = stack.enter_context(watcher(sys.stderr, remaining=True))
+            count = math.prod(len(axis) for axis in axes)
+            watching.begin(f"{count} points", 1, 1)
+            results = sweep_case(
+                case,
+                axes,
+                overrides or (),
+                cache=SolutionCache() if no_cache else cache_on_disk(),
+                executor=Executor(scheduler, workers),
+                progress=watching.advance,
+            )
+            watching.end(results.seconds)
+        with whole_or_nothing(target) as scratch:
+            remarks = write_sweep(results, scratch, plots=not no_plots)
+    except KeyboardInterrupt:
+        leave("interrupted; started again, the sweep resumes where it stopped.", 130)
+    for remark in remarks:
+        typer.echo(f"Note: {remark}")
+    solved, read, spared = results.shapes
+    typer.echo(f"{count - len(results.failures)} of {count} points have results.")
+    if results.kept:
+        typer.echo(f"{results.kept} points were finished by an earlier sweep.")
+    if read:
+        typer.echo(f"Tooth shapes: {solved} solved now; {read} recalled ({spared:.2f} s when solved).")
+    typer.echo(f"Wrote {target} in {results.seconds:.2f} s.")
+    if len(results.failures) == count:
+        raise typer.Exit(1)
