@@ -1,48 +1,77 @@
-# Shared set-up, sourced by run.sh, test.sh and .ci/run; it never touches the system's own Python.
+# Shared set-up, sourced by run.sh, test.sh, docs.sh and .ci/run; it never touches the system's own Python.
 #   fegear_setup VENV EXTRA   makes the virtual environment VENV, installs fegear[EXTRA] into it (an empty EXTRA
 #                             means the program alone) and looks after the system libraries. Quick when all is there.
+# What only some tests need (CalculiX, Chromium) is installed where that is allowed; otherwise those tests are skipped.
 
-fegear_system_packages() { # prints the Debian packages whose libraries are missing
+fegear_libraries() { # prints the Debian packages whose libraries are missing
     libraries=$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null || true)
     [ -n "$libraries" ] || return 0 # no ldconfig, no Debian: the program itself then says what it misses
     for pair in libGLU.so.1:libglu1-mesa libXcursor.so.1:libxcursor1 libXft.so.2:libxft2 libXinerama.so.1:libxinerama1 \
         libGL.so.1:libgl1 libEGL.so.1:libegl1 libXrender.so.1:libxrender1 libXfixes.so.3:libxfixes3 libgomp.so.1:libgomp1; do
         case "$libraries" in *"${pair%%:*}"*) ;; *) printf ' %s' "${pair##*:}" ;; esac
     done
-    [ "${1:-}" = test ] || return 0
+}
+
+fegear_test_programs() { # prints the Debian packages of programs that only tests need
     command -v ccx >/dev/null 2>&1 || printf ' calculix-ccx'
     command -v chromium >/dev/null 2>&1 || command -v chromium-browser >/dev/null 2>&1 || printf ' chromium'
 }
 
+fegear_apt_get() { # installs Debian packages, if this user may
+    [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1 || return 1
+    echo "Installing system packages:$*" >&2
+    { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@"; } >&2
+}
+
+fegear_pip() { # runs pip; what it says goes to a file, of which only the reason of a failure is shown
+    if "$venv/bin/python" -m pip install --disable-pip-version-check --quiet "$@" >"$venv/pip.log" 2>&1; then
+        return 0
+    fi
+    reason=$(grep '^ERROR' "$venv/pip.log" | tail -n 1)
+    [ -n "$reason" ] || reason=$(grep -v '^ *$' "$venv/pip.log" | tail -n 1)
+    echo "fegear: the libraries could not be installed (${reason#ERROR: }); pip's own words are in $venv/pip.log" >&2
+    return 1
+}
+
 fegear_setup() {
     venv=$1 extra=${2:-}
-    case "$extra" in test | dev) wants=test ;; *) wants= ;; esac
-    missing=$(fegear_system_packages "$wants")
+    missing=$(fegear_libraries)
     if ! command -v python3 >/dev/null 2>&1 || ! python3 -c 'import ensurepip, venv' >/dev/null 2>&1; then
         missing="$missing python3-venv"
     fi
-    if [ -n "$missing" ]; then
-        if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
-            echo "Installing system packages:$missing" >&2
-            { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing; } >&2 || {
-                echo "fegear: apt-get could not install:$missing" >&2
-                return 1
-            }
-        else
-            echo "fegear needs system packages that are missing; install them with: sudo apt-get install$missing" >&2
-            return 1
-        fi
+    if [ -n "$missing" ] && ! fegear_apt_get $missing; then
+        echo "fegear needs system packages that are missing; install them with: sudo apt-get install$missing" >&2
+        return 1
     fi
+    case "$extra" in test | dev)
+        missing=$(fegear_test_programs)
+        if [ -n "$missing" ] && ! fegear_apt_get $missing; then
+            echo "Tests that need these are skipped; to run them too: sudo apt-get install$missing" >&2
+        fi
+        ;;
+    esac
     if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))'; then
         echo "fegear needs Python 3.11 or newer; python3 here is $(python3 --version 2>&1)" >&2
         return 1
     fi
     stamp="$venv/.fegear-${extra:-program}"
     state="$(cksum <"$root/pyproject.toml") $root"
-    if [ ! -x "$venv/bin/fegear" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$state" ]; then
-        echo "Setting up $venv (once; a minute or two)" >&2
-        [ -x "$venv/bin/python" ] || python3 -m venv "$venv" || return 1
-        "$venv/bin/python" -m pip install --quiet --editable "$root${extra:+[$extra]}" >&2 || return 1
-        printf '%s\n' "$state" >"$stamp"
+    if [ "$(cat "$stamp" 2>/dev/null)" = "$state" ] && "$venv/bin/python" -I -c 'import fegear' 2>/dev/null; then
+        return 0
     fi
+    echo "Setting up $venv (once; a minute or two)" >&2
+    # An environment is of no use without its Python (removed or replaced by another since) or without pip.
+    if ! "$venv/bin/python" -I -c 'import pip' 2>/dev/null; then
+        if [ -e "$venv" ] && [ ! -e "$venv/pyvenv.cfg" ] && [ -n "$(ls -A "$venv")" ]; then
+            echo "fegear: $venv is there and is no virtual environment; move it away" >&2
+            return 1
+        fi
+        rm -rf "$venv"
+        if ! python3 -m venv "$venv" >&2; then
+            echo "fegear: python3 could not make the virtual environment $venv" >&2
+            return 1
+        fi
+    fi
+    fegear_pip --editable "$root${extra:+[$extra]}" || return 1
+    printf '%s\n' "$state" >"$stamp"
 }

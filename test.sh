@@ -1,5 +1,6 @@
 #!/bin/sh
-# All tests: ./test.sh [options of pytest]. Sets itself up in .venv on first use.
+# All tests: ./test.sh [options of pytest]. Sets itself up in .venv on first use. What cannot run here is skipped, and named at
+# the end; with --no-skips that counts as a failure.
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 . "$root/setup.sh"

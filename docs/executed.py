@@ -7,6 +7,7 @@ names the pages to run as it names the cases.
 
 from __future__ import annotations
 
+import logging
 import os
 import re
 from concurrent.futures import ThreadPoolExecutor
@@ -20,6 +21,7 @@ from fegear.plain import code_version, content_key
 
 DOCS = Path(__file__).resolve().parent
 MADE = DOCS.parent / "results" / "pages"
+log = logging.getLogger("mkdocs.plugins.executed")
 _MADE_LINK = re.compile(r"\]\((results/[^)#]+)\)")
 
 
@@ -40,6 +42,7 @@ def _run(page: Path) -> None:
     key = content_key(code_version(), page.read_text("utf-8"), (DOCS / "snippets.py").read_text("utf-8"))
     if stamp.is_file() and stamp.read_text() == key:
         return
+    log.info("Running the commands of docs/%s", page.relative_to(DOCS))
     stamp.unlink(missing_ok=True)
     if fault := execute(page, folder):
         raise PluginError(f"{page.relative_to(DOCS.parent)} does not do what it says: {fault}")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import logging
 import os
 import re
 import shutil
@@ -26,6 +27,8 @@ from fegear.plain import code_version, content_key
 
 ROOT = Path(__file__).resolve().parents[1]
 MADE = ROOT / "results" / "gallery"
+#: What mkdocs prints while it works; a gallery takes minutes, and says where it is.
+log = logging.getLogger("mkdocs.plugins.gallery")
 #: Rows of a table's beginning that a page shows.
 _ROWS = 8
 #: Characters of a case's comment after which no further sentence of it is on the gallery's first page.
@@ -55,6 +58,7 @@ def _run(path: Path) -> None:
     key = content_key(code_version(), path.read_text("utf-8"), named)
     if stamp.is_file() and stamp.read_text() == key and (out / "summary.json").is_file():
         return
+    log.info("Running cases/%s", path.name)
     shutil.rmtree(out, ignore_errors=True)
     command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(path), "--out", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -188,3 +192,8 @@ def on_page_markdown(markdown, page, **_others):
     top = "../" * page.file.src_uri.count("/")
     markdown = re.sub(r"\]\((?:\.\./)+meshes/README\.md\)", f"]({top}meshes.md)", markdown)
     return re.sub(r"\]\((?:\.\./)*cases/(\w+)\.toml\)", rf"]({top}gallery/\1.md)", markdown)
+
+
+def on_post_build(config):
+    """Say where the site is."""
+    log.info("The site starts at %s", Path(config.site_dir) / "index.html")

@@ -1,6 +1,11 @@
-"""How many random cases a property is tried on: 50 in the ordinary run, always the same; 1000 in the long run."""
+"""How many random cases a property is tried on: 50 in the ordinary run, always the same; 1000 in the long run.
+
+Tests that run another program ask the fixture `program` for it: where it is missing they are skipped, with the line
+that installs it. ``--no-skips`` lets no test be skipped.
+"""
 
 import re
+import shutil
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -11,6 +16,44 @@ _SHARED = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, Hea
 
 settings.register_profile("ordinary", max_examples=ORDINARY, derandomize=True, database=None, **_SHARED)
 settings.register_profile("long", max_examples=LONG, print_blob=True, **_SHARED)
+
+#: Programs that some tests run: the names they go by, and the Debian package that has them.
+PROGRAMS = {"ccx": (("ccx",), "calculix-ccx"), "chromium": (("chromium", "chromium-browser"), "chromium")}
+
+
+@pytest.fixture(scope="session")
+def program():
+    """Find a program by name, or skip the test that asks for it."""
+
+    def find(name):
+        names, package = PROGRAMS[name]
+        for known in names:
+            if path := shutil.which(known):
+                return path
+        pytest.skip(f"{name} is missing; on Debian or Ubuntu run: apt-get install {package}")
+
+    return find
+
+
+def pytest_addoption(parser):
+    parser.addoption("--no-skips", action="store_true", help="a test that cannot run here has failed")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    return _not_skipped(item.config, (yield))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    return _not_skipped(collector.config, (yield))
+
+
+def _not_skipped(config, report):
+    if config.getoption("no_skips") and report.skipped and not hasattr(report, "wasxfail"):
+        reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
+        report.outcome, report.longrepr = "failed", f"{reason} (with --no-skips no test may be skipped)"
+    return report
 
 
 def is_long_run(config):

@@ -7,14 +7,11 @@ import contextlib
 import json
 import os
 import select
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
-
-from fegear.errors import MissingLibraryError
 
 #: Seconds after which a browser that does not answer counts as hung.
 _PATIENCE = 20.0
@@ -32,6 +29,13 @@ os.execv(sys.argv[3], sys.argv[3:])
 class Browser:
     """One headless browser with one page; close it, or use it as a context.
 
+    Parameters
+    ----------
+    program : str
+        Path of chromium.
+    width, height : int
+        Of the window.
+
     Attributes
     ----------
     requests : list of str
@@ -42,10 +46,7 @@ class Browser:
         Folder where downloads arrive.
     """
 
-    def __init__(self, width: int = 1300, height: int = 900):
-        program = shutil.which("chromium") or shutil.which("chromium-browser")
-        if program is None:
-            raise MissingLibraryError("chromium is missing; on Debian or Ubuntu run: apt-get install chromium")
+    def __init__(self, program: str, width: int = 1300, height: int = 900):
         self._folder = tempfile.TemporaryDirectory(prefix="fegear-browser-", ignore_cleanup_errors=True)
         self.downloads = Path(self._folder.name) / "downloads"
         self.downloads.mkdir()

@@ -53,8 +53,8 @@ def relief(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def browser():
-    with chromium.Browser() as opened:
+def browser(program):
+    with chromium.Browser(program("chromium")) as opened:
         yield opened
 
 

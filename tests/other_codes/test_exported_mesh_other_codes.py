@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 import subprocess
 from dataclasses import replace
 
@@ -12,7 +11,6 @@ import meshio
 import numpy as np
 import pytest
 
-from fegear.errors import MissingLibraryError
 from fegear.fem import MeshSettings
 from fegear.fem.field import gear_field
 from fegear.fem.gear import solve_gear
@@ -88,12 +86,10 @@ def test_the_field_is_the_influence_functions_own_solution():
 
 
 @pytest.mark.parametrize(("plane", "face_width"), [("strain", 25.4e-3), ("stress", 1e-5)])
-def test_calculix_solves_the_deck_to_the_same_displacements(plane, face_width, tmp_path):
+def test_calculix_solves_the_deck_to_the_same_displacements(plane, face_width, tmp_path, program):
     # CalculiX makes solid wedges of plane elements. In plane stress these bulge with the in-plane stress, and a thick
     # gear resists the slope of that bulge (4 % at 25 mm): only a thin slice is in plane stress there.
-    ccx = shutil.which("ccx")
-    if ccx is None:
-        raise MissingLibraryError("CalculiX is missing; on Debian or Ubuntu run: apt-get install calculix-ccx")
+    ccx = program("ccx")
     gear = Gear(GEAR.tooth, GEAR.module, GEAR.bore_radius, face_width, GEAR.material, plane)
     (path,) = write_meshes(gear, tmp_path, "g", {"inp"}, COARSE)
     subprocess.run([ccx, path.stem], cwd=tmp_path, check=True, capture_output=True, timeout=300)

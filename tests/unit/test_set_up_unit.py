@@ -1,0 +1,112 @@
+"""The scripts' set-up where something is missing, on machines made of stand-ins for the system's programs."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LIBRARIES = (
+    "libGLU.so.1 libXcursor.so.1 libXft.so.2 libXinerama.so.1 libGL.so.1 libEGL.so.1 libXrender.so.1 libXfixes.so.3 "
+    "libgomp.so.1"
+)
+#: The environment's Python: fegear can be imported once pip has succeeded.
+PYTHON = """#!/bin/sh
+here=${0%/*}
+case "$*" in
+*"import fegear"*) [ -e "$here/installed" ] ;;
+*"pip install"*) SAYS && : >"$here/installed" ;;
+*pytest*) echo "pytest $*" ;;
+esac
+"""
+SYSTEM = """#!/bin/sh
+if [ "$1 $2" = "-m venv" ]; then
+    /bin/mkdir -p "$3/bin"
+    : >"$3/pyvenv.cfg"
+    /bin/cp "${0%/*}/environment" "$3/bin/python"
+fi
+"""
+
+
+@pytest.fixture
+def machine(tmp_path):
+    """A machine with all libraries, neither CalculiX nor Chromium, and a user without rights; runs a script on it."""
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    stand_ins = {"ldconfig": f"echo {LIBRARIES}", "id": "echo 1000"}
+    for name in ("dirname", "cksum", "cat", "grep", "tail", "rm", "ls"):
+        stand_ins[name] = f'exec /usr/bin/{name} "$@"'
+    for name, line in stand_ins.items():
+        (programs / name).write_text(f"#!/bin/sh\n{line}\n")
+    (programs / "python3").write_text(SYSTEM)
+
+    def run(script: str, venv: Path, pip: str = "true") -> subprocess.CompletedProcess:
+        (programs / "environment").write_text(PYTHON.replace("SAYS", f"{{ {pip}; }}"))
+        for path in programs.iterdir():
+            path.chmod(0o755)
+        environment = {"PATH": str(programs), "FEGEAR_VENV": str(venv)}
+        command = ["/bin/sh", str(ROOT / script)]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=60)
+
+    return run
+
+
+def test_without_rights_the_tests_run_without_calculix_and_chromium(machine, tmp_path):
+    done = machine("test.sh", tmp_path / "venv")
+    assert done.returncode == 0, done.stderr
+    assert "Tests that need these are skipped" in done.stderr
+    assert "sudo apt-get install calculix-ccx chromium" in done.stderr
+    assert done.stdout.startswith("pytest ")
+
+
+def test_a_failing_pip_ends_in_one_sentence(machine, tmp_path):
+    wall = "for line in Traceback: 'ERROR: No matching distribution found for gmsh>=4' ''; do echo \"$line\"; done"
+    done = machine("test.sh", tmp_path / "venv", f"{wall}; false")
+    assert done.returncode != 0
+    (said,) = [line for line in done.stderr.splitlines() if line.startswith("fegear:")]
+    assert "could not be installed (No matching distribution found for gmsh>=4)" in said
+    assert said.endswith(f"pip's own words are in {tmp_path / 'venv'}/pip.log")
+    assert "Traceback" not in done.stderr + done.stdout
+    assert "Traceback" in (tmp_path / "venv" / "pip.log").read_text()
+    assert "Setting up" in machine("test.sh", tmp_path / "venv").stderr  # the next attempt is a whole one
+
+
+def test_an_environment_whose_python_is_gone_is_made_again(machine, tmp_path):
+    venv = tmp_path / "venv"
+    assert machine("test.sh", venv).returncode == 0
+    assert "Setting up" not in machine("test.sh", venv).stderr
+    (venv / "bin" / "python").unlink()
+    (venv / "bin" / "python").symlink_to(tmp_path / "gone" / "python3.11")
+    (venv / "left").write_text("of the former Python")
+    done = machine("test.sh", venv)
+    assert done.returncode == 0, done.stderr
+    assert "Setting up" in done.stderr
+    assert not (venv / "left").exists()
+
+
+def test_a_folder_that_is_no_environment_is_left_alone(machine, tmp_path):
+    venv = tmp_path / "thesis"
+    venv.mkdir()
+    (venv / "chapter1.tex").write_text("dear")
+    done = machine("test.sh", venv)
+    assert done.returncode != 0
+    assert "is no virtual environment" in done.stderr
+    assert (venv / "chapter1.tex").read_text() == "dear"
+
+
+@pytest.mark.parametrize("strict", [False, True])
+def test_a_missing_program_skips_its_test_or_fails_it(strict, tmp_path):
+    (tmp_path / "test_program.py").write_text("def test_it(program):\n    program('ccx')\n")
+    options = ["-rs", "-p", "no:cacheprovider", "--rootdir", str(tmp_path), *(["--no-skips"] if strict else [])]
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "conftest", *options, str(tmp_path)],
+        env=os.environ | {"PATH": str(tmp_path), "PYTHONPATH": str(ROOT / "tests")},
+        capture_output=True, text=True, check=False, cwd=tmp_path, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == (1 if strict else 0), done.stdout + done.stderr
+    assert "apt-get install calculix-ccx" in done.stdout
+    assert ("1 failed" if strict else "1 skipped") in done.stdout
