@@ -30,8 +30,8 @@ from fegear.engine.figure import (
     View,
     Zone,
     few,
-    round_numbers,
 )
+from fegear.engine.figure.axes import round_numbers
 from fegear.errors import MissingLibraryError
 from fegear.output.draw_plotly import darker, notebook_html, plotly_json, template
 from fegear.output.draw_png import draw_pictures

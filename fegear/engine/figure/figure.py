@@ -1,0 +1,126 @@
+"""A figure: its panels or views, its title and the sentence below it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.engine.figure.items import Surface, TriangleField
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.arrays import Array
+    from fegear.engine.figure.panel import Panel
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """One choice of a figure: the page shows one at a time behind a menu, paper shows them side by side.
+
+    Parameters
+    ----------
+    label : str
+        In the menu.
+    panels : tuple of Panel
+    key : str
+        Where every view is a picture of its own: the stem of its file.
+    """
+
+    label: str
+    panels: tuple[Panel, ...]
+    key: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class MeshField:
+    """Values at the nodes of six-node triangles, for other programs: written to ``fields/<name>.vtu``.
+
+    Parameters
+    ----------
+    name : str
+    points : array_like, shape (2, N)
+        [mm].
+    triangles : ndarray of int, shape (6, M)
+    values : mapping of str to ndarray
+    """
+
+    name: str
+    points: ArrayLike
+    triangles: NDArray[np.int64]
+    values: Mapping[str, Array]
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """What one figure shows.
+
+    Parameters
+    ----------
+    key : str
+        Unique among the figures of a run; stem of the picture's file.
+    title, caption : str
+    panels : tuple of Panel
+        One above the other.
+    views : tuple of View
+        In place of `panels`, where there is a choice; all have the same number of panels.
+    columns : int
+        How many panels paper has side by side.
+    most_views : int
+        How many views paper has at most, evenly chosen.
+    field : MeshField, optional
+        What it shows a part of.
+    """
+
+    key: str
+    title: str
+    caption: str
+    panels: tuple[Panel, ...] = ()
+    views: tuple[View, ...] = ()
+    columns: int = 1
+    most_views: int = 4
+    field: MeshField | None = None
+
+    def __post_init__(self) -> None:
+        """Give a figure without a choice its only view."""
+        if not self.views:
+            object.__setattr__(self, "views", (View("", self.panels),))
+
+    @property
+    def all_panels(self) -> tuple[Panel, ...]:
+        """The panels of every view."""
+        return tuple(panel for view in self.views for panel in view.panels)
+
+    @property
+    def drawable_in_page(self) -> bool:
+        """Whether a page can draw it itself; fields and surfaces stand there as pictures."""
+        still = (TriangleField, Surface)
+        return not any(isinstance(item, still) for panel in self.all_panels for item in panel.items)
+
+    def _repr_html_(self) -> str | None:
+        """Show it in a notebook, where a renderer has been imported (``import fegear.output.draw_plotly``)."""
+        return NOTEBOOK[0](self) if NOTEBOOK else None
+
+
+#: What shows a figure in a notebook; the renderer puts itself here.
+NOTEBOOK: list[Callable[[Figure], str]] = []
+
+
+@dataclass(frozen=True, slots=True)
+class DeferredFigure:
+    """A figure that costs something to describe: made only where pictures are drawn.
+
+    Parameters
+    ----------
+    key, title : str
+        As the figure's.
+    make : callable
+        Without arguments -> `Figure`.
+    """
+
+    key: str
+    title: str
+    make: Callable[[], Figure]

@@ -1,0 +1,79 @@
+"""Figures as PNG or SVG, by matplotlib: margins are set in inches, legends stand above the panels, off the curves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from fegear.engine.figure import Figure, View, few
+from fegear.output.draw_png.sheet import Sheet
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+DPI = 150
+#: So many views stand two by two, others three abreast.
+_SQUARE = 4
+_SETTINGS = {
+    "font.size": 10.0,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "grid.color": "0.88",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 10.5,
+    "axes.titlelocation": "left",
+    "legend.frameon": False,
+    "svg.hashsalt": "fegear",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture on disk and the sentence below it in the report."""
+
+    path: Path
+    title: str
+    caption: str
+
+
+def draw_pictures(figure: Figure, folder: Path, kind: str = "png") -> Iterator[Picture]:
+    """Draw a figure into ``<key>.png``, or every view of it into a file of its own where views have keys.
+
+    Parameters
+    ----------
+    figure : Figure
+    folder : Path
+    kind : {"png", "svg"}
+    """
+    alone = [view for view in figure.views if view.key]
+    for view in alone:
+        path = folder / f"{view.key}.{kind}"
+        _draw(figure, (view,), path)
+        yield Picture(path, view.label, figure.caption)
+    if not alone:
+        path = folder / f"{figure.key}.{kind}"
+        chosen = few(len(figure.views), most=figure.most_views)
+        _draw(figure, tuple(figure.views[i] for i in chosen), path)
+        yield Picture(path, figure.title, figure.caption)
+
+
+def _draw(figure: Figure, views: tuple[View, ...], path: Path) -> None:
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure as Canvas
+
+    panels = [
+        (panel, view.label if len(views) > 1 and not panel.title else panel.title)
+        for view in views
+        for panel in view.panels
+    ]
+    columns = figure.columns if len(views) == 1 else min(len(views), 2 if len(views) == _SQUARE else 3)
+    with rc_context(_SETTINGS):
+        made = Canvas()
+        FigureCanvasAgg(made)
+        Sheet(made, panels, min(columns, len(panels))).draw()
+        options: dict[str, Any] = {"metadata": {"Date": None}} if path.suffix == ".svg" else {}
+        made.savefig(path, dpi=DPI, **options)

@@ -1,0 +1,156 @@
+"""Panels placed on a sheet in rows: margins in inches, legends above the panels, off the curves."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.engine.figure import Panel, TriangleField
+from fegear.output.draw_png.axes import draw_marks, dress, plain_numbers, set_scales
+from fegear.output.draw_png.items import draw_items
+from fegear.output.draw_png.legend import columns_that_fit, legend_entries
+from fegear.output.draw_png.words import bar_label, lines_of, longest_number, maps_of, words
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Inches: a panel alone, panels above each other, and around them.
+_WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
+_ALONE, _STACKED = 3.4, 2.3
+_LEFT, _RIGHT, _BOTTOM, _NARROW = 0.45, 0.25, 0.55, 0.22
+_TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
+#: Inches of a letter of a title.
+_TITLE_LETTER = 0.083
+#: Inches of a letter at an axis.
+_LETTER = 0.078
+
+
+class Sheet:
+    """Panels placed on a sheet in rows, all sizes in inches."""
+
+    def __init__(self, made: Any, panels: Sequence[tuple[Panel, str]], columns: int) -> None:
+        letters = int(_WIDTHS.get(columns, _WIDTHS[3]) / _TITLE_LETTER)
+        self.made, self.columns = made, columns
+        self.panels = [
+            (panel, "\n".join(line for part in title.split("\n") for line in textwrap.wrap(part, letters)))
+            for panel, title in panels
+        ]
+        self.rows = -(-len(panels) // columns)
+
+    def _title_room(self, row: int) -> float:
+        here = self.panels[row * self.columns : (row + 1) * self.columns]
+        second = any(panel.x.second for panel, _ in here)
+        return _TITLE * max(title.count("\n") + 1 if title else 0 for _, title in here) + _SECOND * second
+
+    def _joined(self, row: int, column: int) -> bool:
+        """Whether the panel below has the same abscissa, which then names it for both."""
+        i = row * self.columns + column
+        below = i + self.columns
+        return below < len(self.panels) and self.panels[i][0].x.like(self.panels[below][0].x) and not any(
+            panel.equal for panel, _ in self.panels
+        )  # fmt: skip
+
+    def _beside(self, i: int) -> bool:
+        """Whether the panel to the left has the same ordinate, which then names it for both."""
+        if i % self.columns == 0:
+            return False
+        here, left = self.panels[i][0], self.panels[i - 1][0]
+        if here.equal and here.y.limits != left.y.limits:
+            return False
+        return here.y.like(left.y) and (not maps_of(here) or self._one_bar())
+
+    def _one_bar(self) -> bool:
+        """Whether all panels are maps of one quantity, which have one scale of colours."""
+        return len({bar_label(item) for panel, _ in self.panels for item in maps_of(panel)}) == 1
+
+    def _row(self, row: int) -> range:
+        return range(row * self.columns, min((row + 1) * self.columns, len(self.panels)))
+
+    def _column(self, column: int) -> range:
+        return range(column, len(self.panels), self.columns)
+
+    def draw(self) -> None:
+        """Draw every panel, then give it the room that its numbers need."""
+        drawn, images = [], []
+        for i, (panel, title) in enumerate(self.panels):
+            axes = self.made.add_axes((0.1, 0.1, 0.8, 0.8), label=str(i))
+            set_scales(axes, panel)
+            images.append(draw_items(axes, panel))
+            axes.set_title(words(title), pad=6 + 72 * _SECOND * bool(panel.x.second))
+            joined = self._joined(*divmod(i, self.columns))
+            dress(axes, panel, joined=joined, beside=self._beside(i))
+            drawn.append(axes)
+        self._share(drawn)
+        for axes, (panel, _) in zip(drawn, self.panels, strict=True):
+            plain_numbers(axes, panel)
+            draw_marks(axes, panel)
+        self._place(drawn, images)
+
+    def _place(self, drawn: Sequence[Any], images: Sequence[Any]) -> None:
+        panels, count = [panel for panel, _ in self.panels], self.columns
+        base, width = _ALONE if self.rows == 1 else _STACKED, _WIDTHS.get(count, _WIDTHS[3])
+        heights = [base * max(panels[i].height for i in self._row(r)) for r in range(self.rows)]
+        bottoms = [
+            _NARROW if all(self._joined(r, i % count) for i in self._row(r))
+            else _BOTTOM + 0.14 * max(lines_of(panels[i].x) - 1 for i in self._row(r))
+            for r in range(self.rows)
+        ]  # fmt: skip
+        tops = [self._title_room(r) for r in range(self.rows)]
+        lefts = [
+            _NARROW if all(self._beside(i) for i in self._column(c))
+            else _LEFT + _LETTER * max(longest_number(drawn[i].yaxis) for i in self._column(c) if not self._beside(i))
+            for c in range(count)
+        ]  # fmt: skip
+        one = self._one_bar()
+        bars = [
+            _BAR * (any(maps_of(panels[i]) for i in self._column(c)) and (not one or c == count - 1))
+            for c in range(count)
+        ]
+        whole = sum(lefts) + count * width + sum(bars) + _RIGHT
+        legend = legend_entries(panels)
+        across = columns_that_fit(list(legend), whole - lefts[0])
+        lines = -(-len(legend) // across) if len(legend) > 1 else 0
+        tall = 0.18 + lines * _LINE + sum(heights) + sum(bottoms) + sum(tops)
+        self.made.set_size_inches(whole, tall)
+        y = tall - 0.18 - lines * _LINE
+        for i, axes in enumerate(drawn):
+            row, column = divmod(i, count)
+            if column == 0:
+                y -= heights[row] + tops[row] + (bottoms[row - 1] if row else 0.0)
+            x = sum(lefts[: column + 1]) + column * width + sum(bars[:column])
+            axes.set_position((x / whole, y / tall, width / whole, heights[row] / tall))
+            axes.yaxis.set_label_coords(-(lefts[column] - 0.18) / width, 0.5)
+            if images[i] is not None and (not one or i == len(drawn) - 1):
+                room = ((x + width + 0.15) / whole, y / tall, 0.14 / whole, heights[row] / tall)
+                self._bar(images[i], panels[i], room)
+        if lines:
+            self.made.legend(
+                list(legend.values()), [words(name) for name in legend], loc="upper left", ncols=across, fontsize=9,
+                bbox_to_anchor=((lefts[0] - 0.06) / whole, 1.0 - 0.03 / tall), borderaxespad=0.0, columnspacing=1.4,
+            )  # fmt: skip
+
+    def _bar(self, image: Any, panel: Panel, place: tuple[float, float, float, float]) -> None:
+        room, item = self.made.add_axes(place), maps_of(panel)[0]
+        ends = {"extend": "max"} if isinstance(item, TriangleField) else {}
+        self.made.colorbar(image, cax=room, label=bar_label(item), **ends)
+        room.grid(visible=False)
+
+    def _share(self, drawn: Sequence[Any]) -> None:
+        """Give panels with the same axes the same range."""
+        for c in range(self.columns):
+            column = list(self._column(c))
+            if len(column) > 1 and all(self._joined(i // self.columns, c) for i in column[:-1]):
+                _span("x", [drawn[i] for i in column])
+        for r in range(self.rows):
+            row = list(self._row(r))
+            if len(row) > 1 and all(self._beside(i) for i in row[1:]) and not self.panels[row[0]][0].equal:
+                _span("y", [drawn[i] for i in row])
+
+
+def _span(which: str, drawn: Sequence[Any]) -> None:
+    """Give axes the range that holds all of theirs."""
+    ends = np.array([getattr(axes, f"get_{which}lim")() for axes in drawn])
+    for axes in drawn:
+        getattr(axes, f"set_{which}lim")(ends.min(), ends.max())
