@@ -39,6 +39,14 @@ class RangeError(InputError):
     """An argument outside the range in which a formula or a method holds."""
 
 
+class UnknownNameError(InputError, KeyError):
+    """A name that nothing here has; the text names the nearest that there is."""
+
+    def __str__(self) -> str:
+        """Return the sentence, which `KeyError` would put in quotes."""
+        return str(self.args[0])
+
+
 class MissingLibraryError(FegearError):
     """A system library or an optional package is missing; the text names what to install."""
 

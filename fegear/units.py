@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import math
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fegear.errors import InputError
 
@@ -164,3 +164,19 @@ PER_SI: dict[str, float] = {
 def from_si(unit: str) -> float:
     """Factor that turns an SI number into `unit`, one of the units used in tables."""
     return PER_SI[unit]
+
+
+def quantity(value: Any, unit: str) -> Any:
+    """A number or array in one of the units of tables, as pint's quantity.
+
+    Parameters
+    ----------
+    value : float or ndarray
+    unit : str
+        A key of `PER_SI`, or empty.
+
+    Returns
+    -------
+    pint.Quantity
+    """
+    return registry().Quantity(value, unit.replace(".", "*"))

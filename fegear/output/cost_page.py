@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fegear.output.report import Page, Section
 from fegear.output.report.blocks import DataTable, Facts, Grid, Notes, Paragraph, Plot
 from fegear.studies.cost.result import TOLERANCES
@@ -54,7 +52,7 @@ def cost_page(results: CostResults, figures: Sequence[Figure]) -> Page:
     by_key = {figure.key: figure for figure in figures}
     sections += [Section(f"Cost of {q.name}", (Plot(by_key[f"cost_{q.name}"]),)) for q in results.quantities]
     knobs_drawn = (Plot(by_key["cost_knobs"]),) if "cost_knobs" in by_key else ()
-    if np.size(orders.columns[0].values):
+    if len(orders.columns[0]):
         sections.append(Section("What each setting does", (*knobs_drawn, DataTable(orders), DataTable(knobs))))
     reference = Facts({"reference": results.reference.label, **settings})
     sections.append(Section("Every configuration", (DataTable(cost), reference)))

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 def _add_table(file: netcdf_file, table: Table) -> None:
     rows = table.name
-    file.createDimension(rows, len(table.columns[0].values))
+    file.createDimension(rows, len(table.columns[0]))
     first = f"{table.name}.{table.columns[0].name}"
     for column in table.columns:
         name = f"{table.name}.{column.name}"
-        variable = put(file, name, (rows,), column.shown, column.unit, column.meaning)
+        variable = put(file, name, (rows,), column.values, column.unit, column.meaning)
         if name != first:
             variable.coordinates = first
 
@@ -53,10 +53,10 @@ def write_dataset(path: Path, results: Results) -> None:
             _add_table(file, table)
         for value in results.values:
             variable = file.createVariable(value.name, "f8", ())
-            variable.data[...] = value.shown
+            variable.data[...] = value.value
             if value.unit:
                 variable.units = value.unit
-            if value.shown_error is not None:
-                variable.error = value.shown_error
+            if value.error is not None:
+                variable.error = value.error
             if value.meaning:
                 variable.long_name = value.meaning.encode()

@@ -34,10 +34,10 @@ def effects_table(switched: Sequence[Switched]) -> Table:
     for found in switched:
         kernels = kernel_changes(found)
         for a, b in found.values():
-            change = b.shown - a.shown
-            scale = max(abs(a.shown), abs(b.shown))
+            change = b.value - a.value
+            scale = max(abs(a.value), abs(b.value))
             rows.append(
-                (found.effect, "on" if found.named else "off", a.name, a.unit, a.shown, b.shown, change,
+                (found.effect, "on" if found.named else "off", a.name, a.unit, a.value, b.value, change,
                  change / scale if scale > 0.0 else 0.0, found.without.seconds, found.with_it.seconds, kernels)
             )  # fmt: skip
     columns = list(zip(*rows, strict=True)) if rows else [()] * 11
@@ -124,9 +124,9 @@ def sentence(found: Switched) -> str:
     """The value that an effect changes most, and what that costs."""
     a, b = found.without.seconds, found.with_it.seconds
     cost = f"processor time {a:.2f} s without, {b:.2f} s with"
-    changes = [(abs(q.shown - p.shown) / max(abs(p.shown), abs(q.shown)), p, q) for p, q in found.values()
-               if max(abs(p.shown), abs(q.shown)) > 0.0]  # fmt: skip
+    changes = [(abs(q.value - p.value) / max(abs(p.value), abs(q.value)), p, q) for p, q in found.values()
+               if max(abs(p.value), abs(q.value)) > 0.0]  # fmt: skip
     if not changes or max(c for c, _, _ in changes) == 0.0:
         return f"{found.effect} changes no value; {cost}."
     _, p, q = max(changes, key=lambda c: c[0])
-    return f"{found.effect} changes {p.name} most: {p.shown:.5g} -> {q.shown:.5g} {p.unit}; {cost}.".replace(" ;", ";")
+    return f"{found.effect} changes {p.name} most: {p.value:.5g} -> {q.value:.5g} {p.unit}; {cost}.".replace(" ;", ";")

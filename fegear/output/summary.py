@@ -35,7 +35,7 @@ def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str,
         "title": case.title,
         "case": results.scene.name,
         "results": {
-            value.name: {"value": _finite(value.shown), "unit": value.unit, "error": _finite(value.shown_error)}
+            value.name: {"value": _finite(value.value), "unit": value.unit, "error": _finite(value.error)}
             for value in results.values
         },
         "settings": {

@@ -39,7 +39,7 @@ def _found_tables(results: SweepResults) -> dict[str, dict[int, Table]]:
 
 def _stacked(columns: dict[int, Column], points: int, rows: int) -> Array:
     """One column of all points, shape (points, rows); what is missing is NaN or an empty text."""
-    parts = {i: column.shown for i, column in columns.items()}
+    parts = {i: column.values for i, column in columns.items()}
     kinds = {part.dtype.kind for part in parts.values()}
     if kinds & set("US"):
         parts = {i: part.astype(str) for i, part in parts.items()}
@@ -59,7 +59,7 @@ def _put_table(
     file: netcdf_file, name: str, found: dict[int, Table], axes: tuple[str, ...], sizes: tuple[int, ...]
 ) -> None:
     points = int(np.prod(sizes))
-    rows = {i: len(table.columns[0].values) for i, table in found.items()}
+    rows = {i: len(table.columns[0]) for i, table in found.items()}
     file.createDimension(f"{name}.row", max(rows.values()))
     if len(rows) < points or len(set(rows.values())) > 1:
         count = np.array([rows.get(i, 0) for i in range(points)]).reshape(sizes)

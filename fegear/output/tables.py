@@ -24,7 +24,7 @@ def table_text(table: Table) -> str:
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(column.head for column in table.columns)
-    writer.writerows(zip(*([cell(v) for v in column.shown] for column in table.columns), strict=True))
+    writer.writerows(zip(*([cell(v) for v in column.values] for column in table.columns), strict=True))
     return stream.getvalue()
 
 

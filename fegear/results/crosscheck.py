@@ -201,18 +201,18 @@ def _compliance_table(
     answers: Mapping[str, ComplianceAnswers],
     parts: tuple[str, ...],
 ) -> tuple[Table, tuple[Value, ...]]:
-    times, count = len(answers), len(first[0].values)
+    times, count = len(answers), len(first[0].si)
     total = np.concatenate([a.total for a in answers.values()])
-    ratio = total / np.tile(reference[0].values, times)
+    ratio = total / np.tile(reference[0].si, times)
     split = [
         np.concatenate([a.parts[i] if len(a.parts) > i else a.parts[0] for a in answers.values()])
         for i in range(len(parts))
     ]
     columns = (
         Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources"),
-        *(Column(c.name, np.tile(c.values, times), c.unit, c.meaning) for c in first),
+        *(Column(c.name, np.tile(c.si, times), c.unit, c.meaning) for c in first),
         Column("compliance", total, _COMPLIANCE, "by the formula, deflection along the line of action per line load"),
-        *(Column(c.name, np.tile(c.values, times), c.unit, c.meaning) for c in reference),
+        *(Column(c.name, np.tile(c.si, times), c.unit, c.meaning) for c in reference),
         Column("ratio_to_fe", ratio, "", "formula over FE"),
         *(Column(p, s, _COMPLIANCE, "part of the formula's sum") for p, s in zip(parts, split, strict=True)),
         Column("reason", _words(answers), "", "why the formula gives nothing; empty where it does"),
@@ -369,7 +369,7 @@ def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
 
 def _figure(table: Table) -> Figure:
     """Every formula of a table beside the finite elements, their ratio, and of a root stress its place."""
-    shown = {column.name: column.shown for column in table.columns}
+    shown = {column.name: column.values for column in table.columns}
     formulas = list(dict.fromkeys(str(name) for name in shown["formula"]))
     stress = "root_tension" in shown
     first = "x" if "x" in shown else "roll_angle"

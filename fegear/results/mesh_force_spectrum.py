@@ -119,7 +119,7 @@ def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrai
     speeds = found.speeds.size
     columns = (
         Column("speed", np.tile(found.speeds * data.speed_ratio, found.present.sum()), "rpm", f"of {data.speed_of}"),
-        *(Column(c.name, np.repeat(c.values, speeds), c.unit, c.meaning) for c in _lines(found, data)[:2]),
+        *(Column(c.name, np.repeat(c.si, speeds), c.unit, c.meaning) for c in _lines(found, data)[:2]),
         Column("frequency", found.frequencies[found.present].ravel(), "Hz", "n times the mesh frequency"),
         Column("force", found.amplitudes[i][found.present].ravel(), "N", "0-peak"),
     )

@@ -273,14 +273,14 @@ def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: 
     """Reliefs of both gears (`tables` and `gears` of driver and driven) and the loads that they were designed for."""
     x, reliefs, loads = Axis("roll angle", "deg"), [], []
     for member, table, gear in zip(data.design.reliefs, tables, gears, strict=True):
-        shown = {column.name: np.asarray(column.shown, dtype=float) for column in table.columns}
+        shown = {column.name: np.asarray(column.values, dtype=float) for column in table.columns}
         roll = shown["roll_angle"]
         curves = [Curve(roll, shown["relief"], "designed", "designed", shown.get("relief_error"), markers=False)]
         if "relief_diagonal" in shown:
             curves.append(Curve(roll, shown["relief_diagonal"], "diagonal only", "diagonal only", markers=False))
         for shape, ground in data.design.ground.items():
             label = f"{shape} tip relief"
-            removal = getattr(ground, member).removal(table["roll_angle"]) * 1e6
+            removal = getattr(ground, member).removal(table.column("roll_angle").si) * 1e6
             curves.append(Curve(roll, removal, label, label, markers=False))
         loaded = roll[shown["load"] > 0.0]
         zone = Zone("x", float(loaded.min()), float(loaded.max()))

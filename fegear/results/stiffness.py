@@ -407,7 +407,7 @@ def _present_curves(found: FilletCurves, asked: FilletInputs) -> Outcome:
 
 def _fillet_figure(name: str, radius: float, table: Table) -> Figure:
     panels = []
-    columns = {column.name: column.shown for column in table.columns}
+    columns = {column.name: column.values for column in table.columns}
     for side, title in (("tension", "Fillet below the loaded flank"), ("compression", "Fillet of the other flank")):
         here = columns["side"] == side
         arc, tangent = (np.asarray(columns[key][here], dtype=float) for key in ("arc", "tangent_angle"))

@@ -127,7 +127,7 @@ def _tables(name: str, t: ToothContact, bearing: Bearing | None) -> tuple[Table,
             (
                 Column("phi1", t.single.phi_1[reach], "deg", "pinion angle"),
                 Column("te", t.single.error[reach], "arcsec", error),
-                *(Column(c.name, c.values[reach], c.unit, c.meaning) for c in _contact_columns(t.single)),
+                *(Column(c.name, c.si[reach], c.unit, c.meaning) for c in _contact_columns(t.single)),
             ),
             f"Tooth contact of pair {name}, one tooth pair alone",
         ),

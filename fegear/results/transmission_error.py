@@ -159,7 +159,7 @@ def _present(data: TransmissionErrorData, inputs: Subject) -> Outcome:
         tables.append(_summary_over_loads(name, pair, data.exact))
         parts = [_curve_table("", "", curve, stiffness, k) for k in range(len(pair.loads))]
         joined = (
-            Column(c.name, np.concatenate([np.asarray(p.columns[k].values) for p in parts]), c.unit, c.meaning)
+            Column(c.name, np.concatenate([np.asarray(p.columns[k].si) for p in parts]), c.unit, c.meaning)
             for k, c in enumerate(parts[0].columns)
         )
         total = Column("total_load", np.repeat(pair.loads, curve.x.size), "N", "along the line of action")

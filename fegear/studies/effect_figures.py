@@ -11,7 +11,7 @@ from fegear.studies.effect_study import CURVES
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
-    from fegear.engine.outcome import Column, Table
+    from fegear.engine.outcome import Table
     from fegear.studies.effect_study import Measured, Switched
 
     #: Tables without and with the effect, abscissa, ordinate.
@@ -64,12 +64,8 @@ def _change(before: Table, after: Table, x: str, y: str) -> float:
     return change / scale if scale > 0.0 else change
 
 
-def _column(table: Table, name: str) -> Column:
-    return next(column for column in table.columns if column.name == name)
-
-
 def _shown(table: Table, name: str) -> Array:
-    return np.asarray(_column(table, name).shown, dtype=float)
+    return np.asarray(table[name], dtype=float)
 
 
 def effect_figure(found: Switched, curve: EffectCurve | None, title: str) -> Figure:
@@ -110,8 +106,8 @@ def _compared(curve: EffectCurve | None, title: str) -> list[Panel]:
     if curve is None:
         return []
     before, after, x, y = curve
-    unit = _column(after, y).unit
-    axis = Axis(_ABSCISSAE.get(x, x), _column(after, x).unit)
+    unit = after.column(y).unit
+    axis = Axis(_ABSCISSAE.get(x, x), after.column(x).unit)
     both = tuple(
         Curve(_shown(table, x), _shown(table, y), word, word, markers=False)
         for table, word in ((before, "without"), (after, "with"))

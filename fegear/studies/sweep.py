@@ -197,9 +197,9 @@ def compute_point(point: Mapping[str, Any], cache: SolutionCache) -> dict[str, o
     scene = build_scene(point["document"], point["name"], Path(point["folder"]))
     results = run_plan(scene, make_plan(scene, STAGES), cache=cache, executor=Executor(here=True))
     return {
-        "values": [(v.name, float(v.value), v.unit, v.error, v.meaning) for v in results.values],
+        "values": [(v.name, float(v.si), v.unit, v.si_error, v.meaning) for v in results.values],
         "tables": [
-            (t.name, t.title, [(c.name, np.asarray(c.values), c.unit, c.meaning) for c in t.columns])
+            (t.name, t.title, [(c.name, np.asarray(c.si), c.unit, c.meaning) for c in t.columns])
             for t in results.tables
         ],
         "remarks": list(results.remarks),

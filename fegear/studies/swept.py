@@ -70,7 +70,7 @@ def swept_values(results: SweepResults) -> Iterator[Swept]:
         number, error = np.full(len(results.points), np.nan), np.full(len(results.points), np.nan)
         same = [(i, v) for i, v in found if (v.name, v.unit) == (name, unit)]
         for i, v in same:
-            number[i], error[i] = v.shown, np.nan if v.shown_error is None else v.shown_error
+            number[i], error[i] = v.value, np.nan if v.error is None else v.error
         yield Swept(
             name, unit, shared_clauses(v.meaning for _, v in same), number, None if np.isnan(error).all() else error
         )

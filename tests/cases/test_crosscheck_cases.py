@@ -35,8 +35,8 @@ CASES = ROOT / "cases"
 def run(name, *overrides):
     scene = read_scene(CASES / f"{name}.toml", overrides)
     results = run_plan(scene, make_plan(scene, STAGES))
-    tables = {table.name: {column.name: column.shown for column in table.columns} for table in results.tables}
-    return tables, {value.name: value.shown for value in results.values}, results
+    tables = {table.name: {column.name: column.values for column in table.columns} for table in results.tables}
+    return tables, {value.name: value.value for value in results.values}, results
 
 
 @pytest.fixture(scope="module")

@@ -22,8 +22,8 @@ POUND = 4.4482216152605
 def run(name, *overrides):
     scene = read_scene(CASES / f"{name}.toml", overrides)
     results = run_plan(scene, make_plan(scene, STAGES))
-    tables = {table.name: {column.head: column.shown for column in table.columns} for table in results.tables}
-    return tables, {value.name: value.shown for value in results.values}, results
+    tables = {table.name: {column.head: column.values for column in table.columns} for table in results.tables}
+    return tables, {value.name: value.value for value in results.values}, results
 
 
 def test_four_square_increments():
@@ -182,7 +182,7 @@ def test_a_mesh_like_another_is_one_without_modification(tmp_path):
     for into, overrides in ((values, ()), (plain, ("results=['transmission-error']", "effects.relief=false",
                                                    "pair.I.load='3500 N'"))):  # fmt: skip
         scene = read_scene(path, overrides)
-        into.update({v.name: v.shown for v in run_plan(scene, make_plan(scene, STAGES)).values})
+        into.update({v.name: v.value for v in run_plan(scene, make_plan(scene, STAGES)).values})
     assert values["II.mean_force"] == pytest.approx(7000.0, rel=1e-6)
     assert values["II.static_te_peak_to_peak"] == pytest.approx(plain["I.te_peak_to_peak"], rel=1e-3)
     assert values["I.static_te_peak_to_peak"] != pytest.approx(plain["I.te_peak_to_peak"], rel=0.1)
@@ -298,8 +298,8 @@ def test_lin_design_chart(tmp_path):
     )
     scene = read_scene(CASES / "lin_design_chart.toml", overrides)
     results = run_plan(scene, make_plan(scene, STAGES), cache=cache_on_disk(tmp_path))
-    tables = {table.name: {column.head: column.shown for column in table.columns} for table in results.tables}
-    values = {value.name: value.shown for value in results.values}
+    tables = {table.name: {column.head: column.values for column in table.columns} for table in results.tables}
+    values = {value.name: value.value for value in results.values}
     table = tables["design_chart_I"]
     assert list(table)[:5] == ["amount", "length", "dynamic_factor", "speed [rpm]", "effective_error [um]"]
     assert values["design_chart.best_length_0.75"] == pytest.approx(1.1)

@@ -40,8 +40,8 @@ STIFFNESS_HEADS = [
 def run(name: str, *overrides: str):
     scene = read_scene(CASES / f"{name}.toml", overrides)
     results = run_plan(scene, make_plan(scene, STAGES))
-    tables = {table.name: {column.name: column.shown for column in table.columns} for table in results.tables}
-    return tables, {value.name: value.shown for value in results.values}, results
+    tables = {table.name: {column.name: column.values for column in table.columns} for table in results.tables}
+    return tables, {value.name: value.value for value in results.values}, results
 
 
 def test_four_square_test_gears():

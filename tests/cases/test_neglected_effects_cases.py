@@ -46,7 +46,7 @@ def run(name: str, *overrides: str):
 
 def columns(results, table: str) -> dict[str, np.ndarray]:
     found = next(t for t in results.tables if t.name == table)
-    return {column.name: np.asarray(column.values) for column in found.columns}
+    return {column.name: column.si for column in found.columns}
 
 
 def true_change(before, after, answer: str, load: float) -> float:

@@ -197,7 +197,7 @@ def test_fields_and_dataset_hold_the_same_run(made):
         assert data["stiffness_a.c_self"].sizes == {"stiffness_a": 12}
         assert data["stiffness_a.c_self"].attrs["units"] == "um.mm/N"
         for value in results.values:
-            assert float(data[value.name]) == pytest.approx(value.shown, rel=1e-15)
+            assert float(data[value.name]) == pytest.approx(value.value, rel=1e-15)
 
 
 def test_the_summary_lists_every_file(made):

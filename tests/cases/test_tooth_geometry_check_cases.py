@@ -38,7 +38,7 @@ def test_a_sound_drawing_breaks_no_rule():
     broken, table, results = checked()
     assert broken == set()
     assert results.remarks == ()
-    assert {value.name: value.shown for value in results.values}["rules_broken"] == 0.0
+    assert {value.name: value.value for value in results.values}["rules_broken"] == 0.0
     assert len(table["of"]) == 3 * 2 + 2 + 2 * 2
 
 

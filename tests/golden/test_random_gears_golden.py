@@ -109,10 +109,10 @@ def solved_case(g, tolerance):
     results = run_plan(scene, make_plan(scene, STAGES))
     (table,) = results.tables
     found = {
-        "c_self": table["c_self"] * 200e9,
-        "c_next": table["c_next"] * 200e9,
-        "root_tension": table["root_tension"] * module,
-        "root_compression": table["root_compression"] * module,
+        "c_self": table.column("c_self").si * 200e9,
+        "c_next": table.column("c_next").si * 200e9,
+        "root_tension": table.column("root_tension").si * module,
+        "root_compression": table.column("root_compression").si * module,
     }
     (name,) = scene.gears
     return found, replace(results.outcomes[Task("stiffness", name)], remarks=results.remarks)

@@ -76,7 +76,7 @@ def test_needs_come_first_and_each_task_runs_once():
     assert [entry[:2] for entry in shop.log] == [tuple(task) for task in tasks]
     assert shop.log[-1][2] == (Task("tooth", "a"), Task("tooth", "b"))
     assert list(results.seconds) == tasks
-    assert {value.name: value.shown for value in results.values}["pair.I"] == 2.0
+    assert {value.name: value.value for value in results.values}["pair.I"] == 2.0
 
 
 def test_nothing_is_computed_that_nothing_asks_for():
@@ -108,9 +108,9 @@ def test_a_result_about_something_that_is_not_there_is_refused():
 def test_tables_are_read_only_and_rectangular():
     column = Column("r", np.array([1e-3, 2e-3]), "mm")
     assert column.head == "r [mm]"
-    assert column.shown == pytest.approx([1.0, 2.0])
+    assert column.values == pytest.approx([1.0, 2.0])
     with pytest.raises(ValueError, match="read-only"):
-        column.values[0] = 0.0
+        column.si[0] = 0.0
     with pytest.raises(ValueError, match="different length"):
         Table("t", (column, Column("n", np.arange(3))))
 

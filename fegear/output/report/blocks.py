@@ -132,12 +132,12 @@ class Values(Block):
 
 def value_cells(value: Value) -> tuple[str, str]:
     """Value and error of a result as two texts."""
-    error = value.shown_error
+    error = value.error
     if error is None:
-        return plain_number(value.shown), "not estimated"
+        return plain_number(value.value), "not estimated"
     if error <= 0.0:
-        return plain_number(value.shown), "exact"
-    return with_error(value.shown, error)
+        return plain_number(value.value), "exact"
+    return with_error(value.value, error)
 
 
 def relative_error(value: Value) -> float | None:
@@ -157,7 +157,7 @@ class DataTable(Block):
     @property
     def count(self) -> int:
         """Number of rows of the whole table."""
-        return len(self.table.columns[0].values)
+        return len(self.table.columns[0])
 
     @property
     def heads(self) -> list[tuple[str, str, str]]:
@@ -167,7 +167,7 @@ class DataTable(Block):
     @property
     def rows(self) -> list[tuple[str, ...]]:
         """The first rows."""
-        columns = [[_short(cell(value)) for value in column.shown[:_ROWS]] for column in self.table.columns]
+        columns = [[_short(cell(value)) for value in column.values[:_ROWS]] for column in self.table.columns]
         return list(zip(*columns, strict=True))
 
 

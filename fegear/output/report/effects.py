@@ -35,10 +35,10 @@ def _carried(effect: str, found: EffectCurve) -> tuple[Table, Table]:
 def _values(found: Switched) -> Block:
     rows = []
     for a, b in found.values():
-        scale = max(abs(a.shown), abs(b.shown))
-        share = (b.shown - a.shown) / scale if scale > 0.0 else 0.0
+        scale = max(abs(a.value), abs(b.value))
+        share = (b.value - a.value) / scale if scale > 0.0 else 0.0
         if abs(share) > _ROUND_OFF:
-            rows.append((abs(share), (a.name, a.shown, b.shown, pretty_unit(a.unit), f"{100.0 * share:+.3g} %")))
+            rows.append((abs(share), (a.name, a.value, b.value, pretty_unit(a.unit), f"{100.0 * share:+.3g} %")))
     rows.sort(key=lambda row: -row[0])
     if not rows:
         return Paragraph("It changes no value.")
@@ -108,13 +108,13 @@ def effects_page(
 def _largest(found: Switched) -> tuple[str, str, str]:
     """The value that an effect changes most, by how much, and what the effect costs."""
     changes = [
-        (abs(b.shown - a.shown) / max(abs(a.shown), abs(b.shown)), a, b)
+        (abs(b.value - a.value) / max(abs(a.value), abs(b.value)), a, b)
         for a, b in found.values()
-        if max(abs(a.shown), abs(b.shown)) > 0.0
+        if max(abs(a.value), abs(b.value)) > 0.0
     ]
     cost = f"{found.without.seconds:.2f} without, {found.with_it.seconds:.2f} with"
     share, a, b = max(changes, key=lambda change: change[0], default=(0.0, None, None))
     if a is None or b is None or share <= _ROUND_OFF:
         return "none", "", cost
     unit = f" {pretty_unit(a.unit)}".rstrip()
-    return a.name, f"{plain_number(a.shown, 5)} to {plain_number(b.shown, 5)}{unit}", cost
+    return a.name, f"{plain_number(a.value, 5)} to {plain_number(b.value, 5)}{unit}", cost
