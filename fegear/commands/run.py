@@ -52,8 +52,7 @@ def run(
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
     for value in results.values:
-        error = f" +- {value.shown_error:.2g}" if value.shown_error else ""
-        typer.echo(f"{value.name} = {value.shown:.9g}{error} {value.unit}".rstrip())
+        typer.echo(repr(value))
     for remark in remarks:
         typer.echo(f"Note: {remark}")
     typer.echo(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")

@@ -115,6 +115,29 @@ def test_tables_are_read_only_and_rectangular():
         Table("t", (column, Column("n", np.arange(3))))
 
 
+def test_a_number_and_its_unit_belong_together():
+    speed = Column("speed", np.array([10.0 * np.pi, 20.0 * np.pi]), "rpm", "of the motor")
+    table = Table("dynamic_factor_I", (speed, Column("motion", np.array(["periodic", "chaotic"]))))
+    assert table["speed"] == pytest.approx([300.0, 600.0])
+    assert table["speed [rpm]"] == pytest.approx([300.0, 600.0])
+    assert table.column("speed").si == pytest.approx([10.0 * np.pi, 20.0 * np.pi])
+    assert table.column("speed").quantity.to("rad/s").magnitude == pytest.approx(speed.si)
+    assert repr(speed) == "<column speed [rpm]: 2 rows, 300, 600>"
+    length = Value("I.te", 1.12e-4, "mm", 1e-6)
+    assert (length.value, length.error, length.si) == pytest.approx((0.112, 0.001, 1.12e-4))
+    assert repr(length) == "I.te = 0.112 +- 0.001 mm"
+    assert length.quantity.to("um").magnitude == pytest.approx(112.0)
+    with pytest.raises(KeyError, match=r'the nearest known name is "speed \[rpm\]"'):
+        table["sped"]
+
+
+def test_every_unit_of_the_tables_is_pint_s_too():
+    from fegear.units import PER_SI, quantity
+
+    for unit, size in PER_SI.items():
+        assert quantity(size, unit).to_base_units().magnitude == pytest.approx(1.0, rel=1e-12), unit
+
+
 def test_a_result_without_an_effect_that_it_needs_is_refused_with_the_remedy():
     stages = tuple(
         replace(stage, requires=needs)
