@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.errors import RangeError
 from fegear.fem.contact_width import check_half_widths
-from fegear.fem.gear import solve_gear
+from fegear.fem.solution import solve_gear
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.fem.gear import GearInfluence, Progress
+    from fegear.fem.gear import GearInfluence
     from fegear.fem.settings import MeshSettings
+    from fegear.fem.solution import Progress
     from fegear.geometry.gear import Gear
 
 

@@ -13,9 +13,9 @@ import pytest
 
 from fegear.fem import MeshSettings
 from fegear.fem.field import gear_field
-from fegear.fem.gear import solve_gear
 from fegear.fem.loaded_gear import loaded_gear, nodal_fields
 from fegear.fem.sector import mesh_sector
+from fegear.fem.solution import solve_gear
 from fegear.fem.whole_gear import whole_gear
 from fegear.geometry import BasicRack, Gear, Tooth
 from fegear.output.mesh_export import write_meshes

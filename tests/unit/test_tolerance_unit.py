@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-import fegear.fem.gear as fem_gear
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.fem import MeshSettings, settings_at, solve_to_tolerance
+from fegear.fem import MeshSettings, settings_at, solution, solve_to_tolerance
 from fegear.geometry import Gear, Tooth
 from fegear.models.settings import settings_for
 from fegear.results.catalogue import STAGES
@@ -43,7 +42,7 @@ def test_finer_tolerances_start_with_finer_settings_of_one_ladder():
 
 
 def test_a_missed_tolerance_is_refined_and_no_solution_is_wasted(monkeypatch):
-    monkeypatch.setattr(fem_gear, "level_for", lambda _tolerance: -3)
+    monkeypatch.setattr(solution, "level_for", lambda _tolerance: -3)
     cache = SolutionCache()
     known = solve_to_tolerance(steel_gear(), 3e-3, cache=cache)
     assert len(known.rounds) > 1
@@ -51,7 +50,7 @@ def test_a_missed_tolerance_is_refined_and_no_solution_is_wasted(monkeypatch):
     assert [one.error <= 3e-3 for one in known.rounds] == [False] * (len(known.rounds) - 1) + [True]
     assert known.rounds[-1].errors == pytest.approx(known.largest_errors(), rel=1e-6)
     assert known.settings == settings_at(-3 + len(known.rounds) - 1)
-    assert known.coarse is fem_gear.influence_of_shape(
+    assert known.coarse is solution.influence_of_shape(
         known.gear.tooth, 5.0, 0.3, "strain", settings_at(-3 + len(known.rounds) - 2), 1, cache
     )
     sizes = [one.unknowns for one in known.rounds]
@@ -60,8 +59,8 @@ def test_a_missed_tolerance_is_refined_and_no_solution_is_wasted(monkeypatch):
 
 
 def test_refinement_ends_at_the_finest_level_and_says_so(monkeypatch, tmp_path):
-    monkeypatch.setattr(fem_gear, "level_for", lambda _tolerance: -3)
-    monkeypatch.setattr(fem_gear, "FINEST_LEVEL", -2)
+    monkeypatch.setattr(solution, "level_for", lambda _tolerance: -3)
+    monkeypatch.setattr(solution, "FINEST_LEVEL", -2)
     outcome = run(tmp_path, tolerance=1e-6)
     assert len(outcome.settings["rounds"]) == 2
     said = [remark for remark in outcome.remarks if "was refined once for the tolerance 1e-06" in remark]

@@ -10,8 +10,8 @@ import numpy as np
 
 from fegear.errors import InputError
 from fegear.models.motion import motion_inputs
+from fegear.results.gear_contacts import contact_half_width, load_radii
 from fegear.results.loaded_pair import spur_pairs
-from fegear.results.stiffness import contact_half_width, load_radii
 from fegear.studies.cost.quantities import OF_GEAR, Quantity
 
 if TYPE_CHECKING:

@@ -1,0 +1,92 @@
+"""Figures of a designed relief: the reliefs, what they leave, and Harris maps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.figure import Axis, Curve, Figure, Panel, View, Zone
+from fegear.results.loaded_pair import BASE_PITCH, drawn_loads
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.engine.outcome import Table
+    from fegear.results.relief import ReliefData
+
+
+def relief_figures(name: str, data: ReliefData, tables: Sequence[Table], gears: Sequence[str]) -> tuple[Figure, ...]:
+    """Every figure of a design; `tables` and `gears` are of driver and driven."""
+    return _relief_figure(name, data, tables, gears), _candidates_figure(name, data), _harris_figure(name, data)
+
+
+def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: Sequence[str]) -> Figure:
+    """Reliefs of both gears (`tables` and `gears` of driver and driven) and the loads that they were designed for."""
+    x, reliefs, loads = Axis("roll angle", "deg"), [], []
+    for member, table, gear in zip(data.design.reliefs, tables, gears, strict=True):
+        shown = {column.name: np.asarray(column.values, dtype=float) for column in table.columns}
+        roll = shown["roll_angle"]
+        curves = [Curve(roll, shown["relief"], "designed", "designed", shown.get("relief_error"), markers=False)]
+        if "relief_diagonal" in shown:
+            curves.append(Curve(roll, shown["relief_diagonal"], "diagonal only", "diagonal only", markers=False))
+        for shape, ground in data.design.ground.items():
+            label = f"{shape} tip relief"
+            removal = getattr(ground, member).removal(table.column("roll_angle").si) * 1e6
+            curves.append(Curve(roll, removal, label, label, markers=False))
+        loaded = roll[shown["load"] > 0.0]
+        zone = Zone("x", float(loaded.min()), float(loaded.max()))
+        reliefs.append(Panel(x, Axis("material to remove", "um"), tuple(curves), (zone,), f"{member}: gear {gear}"))
+        load = Curve(roll, shown["load"], "load of the design", "grey", dash="solid", markers=False)
+        loads.append(Panel(x, Axis("load", "N", zero=True), (load,), (zone,), f"{member}: load", height=0.6))
+    return Figure(
+        f"relief_{name}",
+        f"Profile relief of {name}",
+        f"Pair {name}: relief of both gears for {data.design.task.load:.5g} N over the active profile, and the load of "
+        "the tooth. Shaded: the design zone, where the tooth is loaded at the design load. Ground reliefs are at the "
+        "tips only; a constant over the whole flank makes no difference.",
+        (*reliefs, *loads),
+        columns=2,
+    )
+
+
+def _candidates_figure(name: str, data: ReliefData) -> Figure:
+    curves = []
+    for label, curve in data.design.curves.items():
+        i = int(np.argmin(np.abs(curve.load - data.design.task.load)))
+        te = (curve.transmission_error[:, i] - data.design.te[label].mean) * 1e6
+        left = data.design.te[label].peak_to_peak * 1e6
+        size = f"{left:.3g} µm" if left > 1e-6 else "0"
+        curves.append(Curve(curve.x * 1e3, te, f"{label}: {size} peak to peak", label, markers=False))
+    load = f"{data.design.task.load:.5g} N"
+    caption = f"Pair {name}: what each relief leaves of the transmission error at the design load, {load}."
+    if "diagonal only" in data.design.te:
+        caption += (
+            " Diagonal only: relief designed without the neighbours' loads (Mark, Eq. 5.4), on teeth that do deflect "
+            "each other."
+        )
+    return Figure(
+        f"relief_candidates_{name}",
+        f"Transmission error with and without relief, {name}",
+        caption,
+        (Panel(BASE_PITCH, Axis("transmission error less its mean", "um"), tuple(curves)),),
+    )
+
+
+def _harris_figure(name: str, data: ReliefData) -> Figure:
+    views = []
+    order = sorted(data.design.curves, key=lambda label: label == "diagonal only")
+    for label in order:
+        curve = data.design.curves[label]
+        loads = [float(w) for w in curve.load]
+        curves = tuple(
+            Curve(curve.x * 1e3, curve.transmission_error[:, i] * 1e6, text, role)
+            for i, text, role in drawn_loads(loads, data.design.task.load, "design")
+        )
+        views.append(View(label, (Panel(BASE_PITCH, Axis("transmission error", "um", zero=True), curves),)))
+    return Figure(
+        f"harris_map_{name}",
+        f"Harris map of {name}",
+        f"Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief.",
+        views=tuple(views),
+    )

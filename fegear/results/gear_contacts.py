@@ -1,0 +1,92 @@
+"""Where and how widely the teeth of one gear are loaded: ``[stiffness]``, read and checked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.geometry import GearPair
+    from fegear.geometry.pair import Member
+
+#: Half-width of the contact in modules when the case gives neither a width nor a load.
+USUAL_HALF_WIDTH = 0.02
+
+
+def chosen_gears(scene: Scene) -> tuple[str, ...]:
+    """The gear that ``[stiffness]`` names; every gear of the case if it names none."""
+    return (scene.case.stiffness.gear,) if scene.case.stiffness.gear else tuple(scene.gears)
+
+
+def _pair_of(scene: Scene, name: str) -> tuple[GearPair, Member] | None:
+    """The pair in which the gear's contact is looked at, and its role there; None if it meshes with nothing."""
+    for key, part in scene.case.pair.items():
+        if scene.case.stiffness.pair in (None, key) and name in (part.driver, part.driven):
+            return scene.pairs[key], "driver" if part.driver == name else "driven"
+    return None
+
+
+def check_contacts_of(scene: Scene, name: str) -> None:
+    """Refuse loads without a mate, and contacts that lie off the flank or are wider than it."""
+    part = scene.case.stiffness
+    if part.pair is not None and _pair_of(scene, name) is None:
+        raise InputError("stiffness.pair", f'"{part.pair}"', f"does not hold gear {name}", "name a pair of that gear")
+    if part.load is not None and _pair_of(scene, name) is None:
+        raise InputError(
+            "stiffness.load",
+            f"{part.load * 1e-3:.6g} N/mm",
+            "gives a contact width only together with the mating flank",
+            f"describe a pair with gear {name}, or give contact_half_width",
+        )
+    gear = scene.gears[name]
+    for i, radius in enumerate(part.radii or ()):
+        low, high = gear.form_radius, gear.involute_tip_radius
+        if not low * (1 - 1e-9) <= radius <= high * (1 + 1e-9):
+            raise InputError(
+                f"stiffness.radii[{i}]",
+                f"{radius * 1e3:.9g} mm",
+                f"lies off the involute flank of gear {name}",
+                f"it runs from {low * 1e3:.9g} mm to {high * 1e3:.9g} mm",
+            )
+    if part.contact_half_width is not None:
+        from fegear.fem.table import check_contacts
+
+        check_contacts(gear, load_radii(scene, name), part.contact_half_width, "stiffness.contact_half_width")
+
+
+def load_radii(scene: Scene, name: str) -> Array:
+    """Radii of the table [m]: those of the case, or positions equally spaced in roll angle over the active profile."""
+    part, gear = scene.case.stiffness, scene.gears[name]
+    if part.radii is not None:
+        return np.array(part.radii)
+    found = _pair_of(scene, name)
+    if found:
+        pair, member = found
+        ends = np.sort(pair.radius(np.array([pair.x_start, pair.x_end]), member))
+    else:
+        ends = np.array([gear.form_radius, gear.involute_tip_radius])
+    low, high = np.clip(ends, gear.form_radius, gear.involute_tip_radius)
+    first, last = (float(np.sqrt((r - gear.base_radius) * (r + gear.base_radius))) for r in (low, high))
+    return np.clip(np.hypot(gear.base_radius, np.linspace(first, last, part.positions)), low, high)
+
+
+def contact_half_width(scene: Scene, name: str, radii: Array) -> Array:
+    """Half-width of the contact at every radius [m]: given, from Hertz for a load and a mate, or 0.02 modules."""
+    part, gear = scene.case.stiffness, scene.gears[name]
+    if part.contact_half_width is not None:
+        return np.full(radii.shape, part.contact_half_width)
+    if part.load is None:
+        return np.full(radii.shape, USUAL_HALF_WIDTH * gear.module)
+    from fegear.formulas.hertz import line_contact, relative_curvature
+
+    pair, member = cast("tuple[GearPair, Member]", _pair_of(scene, name))
+    mate: Member = "driven" if member == "driver" else "driver"
+    x = np.clip(pair.x_of_radius(radii, member), pair.x_start, pair.x_end)
+    curvature = relative_curvature(pair.flank_curvature_radius(x, member), pair.flank_curvature_radius(x, mate))
+    modulus = 1.0 / (1.0 / gear.plane_modulus + 1.0 / pair.gear(mate).plane_modulus)
+    return line_contact(part.load, curvature, modulus).half_width

@@ -1,0 +1,119 @@
+"""Tables and single values of a designed relief."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.outcome import Column, Table, Value
+from fegear.models.pair_inputs import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.contact import Loaded, TransmissionError
+    from fegear.design import TipReliefPair
+    from fegear.design.relief_design import ReliefDesign
+    from fegear.design.root_stress_loading import StressOptimum
+    from fegear.geometry import GearPair
+    from fegear.geometry.relief import Shape
+    from fegear.results.relief import ReliefInputs
+
+
+def least_stress_table(name: str, best: StressOptimum, load: float) -> tuple[Table, Value]:
+    """Loadings that were tried for the least root stress, and the least."""
+    labels = ["sinusoidal" if r is None else f"polynomial, r = {r}" for r, _, _ in best.candidates]
+    table = Table(
+        f"loading_candidates_{name}",
+        (
+            Column("family", np.array(labels), "", "of the ramps"),
+            Column("peak", np.array([f for _, f, _ in best.candidates]), "", "F, best of its family"),
+            Column("root_tension", np.array([s * load for _, _, s in best.candidates]), "MPa", "largest of both gears"),
+        ),
+        f"Loadings of {name} tried for the least root stress",
+    )
+    return table, Value(
+        f"{name}.design_root_tension", best.stress * load, "MPa", None, "largest of both gears, design load"
+    )
+
+
+def relief_tables(name: str, design: ReliefDesign, inputs: ReliefInputs) -> list[Table]:
+    """Relief over the flank of both gears."""
+    tables = []
+    for member, label in inputs.labels.items():
+        found = design.reliefs[member]
+        t = found.table
+        columns = [
+            Column("x", t.x, "mm", "position on the line of action, positive toward the driver's tip"),
+            Column("radius", t.radius, "mm", "radius of the flank point"),
+            Column("roll_angle", t.roll_angle, "deg", "roll angle of the flank point"),
+            Column("load", t.load, "N", "design load on the pair there"),
+            Column("relief", t.relief, "um", "material to remove, along the normal"),
+        ]
+        if found.diagonal is not None:
+            columns.append(Column("relief_diagonal", found.diagonal, "um", "without the neighbours' loads (Mark 5.4)"))
+        if found.error is not None:
+            columns.append(Column("relief_error", found.error, "um", "estimated error of relief"))
+        title = f"Relief of gear {inputs.gears[member]} in pair {name}"
+        tables.append(Table(f"relief_{label}", tuple(columns), title))
+    return tables
+
+
+def grindable_table(
+    name: str, ground: Mapping[Shape, TipReliefPair], te: Mapping[str, TransmissionError], p: GearPair
+) -> Table:
+    """Tip reliefs that come nearest, and what they leave."""
+    # What is left comes from the same evaluation as the single values, not from the search's coarser one.
+    rows = [(shape, m, te[f"{shape} tip relief"], getattr(g, m)) for shape, g in ground.items() for m in MEMBERS]
+    start = np.array([r.start for *_, r in rows])
+    runner_up = np.array([ground[shape].runner_up for shape, *_ in rows])
+    base = np.array([p.gear(m).base_radius for _, m, *_ in rows])
+    return Table(
+        f"grindable_{name}",
+        (
+            Column("shape", np.array([shape for shape, *_ in rows]), "", "of the tip relief"),
+            Column("gear", np.array([m for _, m, *_ in rows]), "", "driver or driven"),
+            Column("amount", np.array([r.amount for *_, r in rows]), "um", "removal at the tip"),
+            Column("start_roll_angle", start, "deg", "where the relief starts"),
+            Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius"),
+            Column("te_peak_to_peak", np.array([t.peak_to_peak for _, _, t, _ in rows]), "um", "left at design load"),
+            Column("te_effective", np.array([t.effective_error for _, _, t, _ in rows]), "um", "A_e left"),
+            Column("candidates", np.array([ground[shape].candidates for shape, *_ in rows]), "", "reliefs scanned"),
+            Column("starts", np.array([ground[shape].starts for shape, *_ in rows]), "", "valleys searched to the end"),
+            Column("agreeing", np.array([ground[shape].agreeing for shape, *_ in rows]), "", "of them, within 5 %"),
+            Column("runner_up", runner_up, "um", "the least that the other valleys leave"),
+        ),
+        f"Tip reliefs of {name} that a shop can grind",
+    )
+
+
+def harris_table(name: str, curves: Mapping[str, Loaded]) -> Table:
+    """Transmission error over the mesh cycle for a family of loads, with each relief."""
+    first = next(iter(curves.values()))
+    n, loads = first.x.size, first.load
+    columns = [
+        Column("total_load", np.repeat(loads, n), "N", "along the line of action"),
+        Column("x", np.tile(first.x, loads.size), "mm", "roll position over one base pitch"),
+    ]
+    for label, curve in curves.items():
+        head = "te_" + label.replace(" ", "_")
+        columns.append(Column(head, curve.transmission_error.T.ravel(), "um", f"transmission error, {label}"))
+    return Table(f"harris_map_{name}", tuple(columns), f"Harris map of {name}")
+
+
+def relief_values(name: str, design: ReliefDesign) -> list[Value]:
+    """What each relief leaves at the design load, and the largest removals."""
+    values = []
+    for label, t in design.te.items():
+        key = label.replace(" ", "_")
+        error = design.left if label == "designed" else None
+        values.append(Value(f"{name}.te_peak_to_peak.{key}", t.peak_to_peak, "um", error, f"{label}, design load"))
+        values.append(Value(f"{name}.te_effective.{key}", t.effective_error, "um", None, f"A_e, {label}, design load"))
+    about = "designed, its relief tables read back linearly, design load"
+    values.append(Value(f"{name}.te_peak_to_peak.relief_tables", design.tables_leave, "um", None, about))
+    values.append(Value(f"{name}.te_mean.designed", design.te["designed"].mean, "um", None, "design load"))
+    for member, found in design.reliefs.items():
+        largest = float(found.table.relief.max())
+        values.append(Value(f"{name}.{member}.largest_relief", largest, "um", None, "over the path"))
+    return values
