@@ -13,7 +13,15 @@ from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Subject
 from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
-from fegear.results.loaded_pair import EFFECTS, LINE_OF_ACTION, drawn_loads, needs_pair, path_ends, spur_pairs
+from fegear.results.loaded_pair import (
+    EFFECTS,
+    LINE_OF_ACTION,
+    drawn_loads,
+    needs_pair,
+    over_loads,
+    path_ends,
+    spur_pairs,
+)
 from fegear.results.sources import HERTZ
 
 if TYPE_CHECKING:
@@ -86,7 +94,9 @@ def _present(data: LoadSharingData, inputs: Subject) -> Outcome:
         columns.append(Column("load_error", load_error, "N", "estimated error of load"))
     tables = [Table(f"load_sharing_{name}", tuple(columns), f"Load on one tooth pair of {name}, {pair.nominal:.6g} N")]
     if len(pair.loads) > 1:
-        tables.append(_all_loads(name, pair, history))
+        columns_of = over_loads(pair.loads, [_columns(history, k) for k in range(len(pair.loads))])
+        title = f"Load on one tooth pair of {name} for every load"
+        tables.append(Table(f"load_sharing_loads_{name}", columns_of, title))
     largest = int(np.argmax(history.load[:, i]))
     pressure = history.hertz_pressure[:, i] * (1.0 - off_path)
     hardest = int(np.argmax(pressure))
@@ -110,17 +120,6 @@ def _present(data: LoadSharingData, inputs: Subject) -> Outcome:
         )
     figures = (_figure(name, data, load_error),)
     return Outcome(data, tuple(tables), values, {"positions": _POSITIONS}, tuple(remarks), figures)
-
-
-def _all_loads(name: str, pair: LoadedPair, h: PairHistory) -> Table:
-    n = h.x.size
-    parts = [_columns(h, i) for i in range(len(pair.loads))]
-    joined = (
-        Column(c.name, np.concatenate([np.asarray(part[k].values) for part in parts]), c.unit, c.meaning)
-        for k, c in enumerate(parts[0])
-    )
-    total = Column("total_load", np.repeat(pair.loads, n), "N", "along the line of action")
-    return Table(f"load_sharing_loads_{name}", (total, *joined), f"Load on one tooth pair of {name} for every load")
 
 
 def _figure(name: str, data: LoadSharingData, load_error: Array | None) -> Figure:

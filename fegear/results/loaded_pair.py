@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from fegear.engine.figure import Axis, Mark, few, ramp
-from fegear.engine.outcome import Outcome
+from fegear.engine.outcome import Column, Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.models.loaded_pair import LoadedPair, build_loaded_pair, compliance_sources
 from fegear.models.neglected_effects import Neglected, neglected_effects, neglected_remarks
@@ -52,6 +54,15 @@ def drawn_loads(loads: Sequence[float], nominal: float, word: str = "nominal") -
     chosen = few(len(loads), (near,))
     labels = [f"{loads[i]:.5g} N" + (f" ({word})" if loads[i] == nominal and len(loads) > 1 else "") for i in chosen]
     return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
+
+
+def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tuple[Column, ...]:
+    """Columns of one load each, joined below each other behind a column of the load."""
+    rows = [len(part[0]) for part in parts]
+    return (
+        Column("total_load", np.repeat(loads, rows), "N", "along the line of action"),
+        *(replace(same[0], si=np.concatenate([column.si for column in same])) for same in zip(*parts, strict=True)),
+    )
 
 
 def path_ends(pair: LoadedPair) -> tuple[Mark, ...]:

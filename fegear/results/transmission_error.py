@@ -13,7 +13,7 @@ from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Subject
 from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
-from fegear.results.loaded_pair import BASE_PITCH, EFFECTS, drawn_loads, needs_pair, spur_pairs
+from fegear.results.loaded_pair import BASE_PITCH, EFFECTS, drawn_loads, needs_pair, over_loads, spur_pairs
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
@@ -67,18 +67,13 @@ class TransmissionErrorData:
     mesh_compliance: float
 
 
-def _curve_table(name: str, title: str, curve: Loaded, stiffness: Array, i: int) -> Table:
-    te = np.asarray(curve.transmission_error[:, i])
-    return Table(
-        name,
-        (
-            Column("x", curve.x, "mm", "roll position: the pair that is last to come into contact"),
-            Column("te", te, "um", "loaded transmission error"),
-            Column("mesh_stiffness", stiffness[:, i], "N/um", "secant, sum over the pairs in contact"),
-            Column("pairs_in_contact", (curve.loads[:, :, i] > 0.0).sum(axis=0), "", "tooth pairs that carry load"),
-            Column("local_stiffness", curve.local_stiffness[:, i], "N/um", "slope of load over transmission error"),
-        ),
-        title,
+def _curve_columns(curve: Loaded, stiffness: Array, i: int) -> tuple[Column, ...]:
+    return (
+        Column("x", curve.x, "mm", "roll position: the pair that is last to come into contact"),
+        Column("te", curve.transmission_error[:, i], "um", "loaded transmission error"),
+        Column("mesh_stiffness", stiffness[:, i], "N/um", "secant, sum over the pairs in contact"),
+        Column("pairs_in_contact", (curve.loads[:, :, i] > 0.0).sum(axis=0), "", "tooth pairs that carry load"),
+        Column("local_stiffness", curve.local_stiffness[:, i], "N/um", "slope of load over transmission error"),
     )
 
 
@@ -147,7 +142,7 @@ def _present(data: TransmissionErrorData, inputs: Subject) -> Outcome:
     te = data.exact[i]
     title = f"Transmission error of {name} over one base pitch"
     tables = [
-        _curve_table(f"transmission_error_{name}", f"{title}, {pair.nominal:.6g} N", curve, stiffness, i),
+        Table(f"transmission_error_{name}", _curve_columns(curve, stiffness, i), f"{title}, {pair.nominal:.6g} N"),
         _harmonics_table(
             f"transmission_error_harmonics_{name}",
             f"Harmonics of the transmission error of {name}",
@@ -157,13 +152,9 @@ def _present(data: TransmissionErrorData, inputs: Subject) -> Outcome:
     ]
     if len(pair.loads) > 1:
         tables.append(_summary_over_loads(name, pair, data.exact))
-        parts = [_curve_table("", "", curve, stiffness, k) for k in range(len(pair.loads))]
-        joined = (
-            Column(c.name, np.concatenate([np.asarray(p.columns[k].si) for p in parts]), c.unit, c.meaning)
-            for k, c in enumerate(parts[0].columns)
-        )
-        total = Column("total_load", np.repeat(pair.loads, curve.x.size), "N", "along the line of action")
-        tables.append(Table(f"transmission_error_loads_{name}", (total, *joined), f"{title}, every load (Harris map)"))
+        parts = [_curve_columns(curve, stiffness, k) for k in range(len(pair.loads))]
+        all_loads = over_loads(pair.loads, parts)
+        tables.append(Table(f"transmission_error_loads_{name}", all_loads, f"{title}, every load (Harris map)"))
     values = [*_te_values(name, te, shifts)]
     relative = None if shifts is None else shifts.mean / te.mean
     values.append(

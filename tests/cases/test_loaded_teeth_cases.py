@@ -98,6 +98,11 @@ def test_the_pair_compared_with_calculix_as_it_really_is():
     assert np.ptp(history["x"]) / np.ptp(history["t"]) == pytest.approx(speed, rel=1e-9)
     assert any("tip corners touch off the path" in remark for remark in results.remarks)
     assert set(np.unique(tables["load_sharing_loads_I"]["total_load"])) == {50.0, 150.0, 250.0, 350.0}
+    # The rows of the nominal load are those of the pair's own table, in its units.
+    for key in ("load_sharing", "transmission_error"):
+        rows = tables[f"{key}_loads_I"]["total_load"] == 350.0
+        for name in set(tables[f"{key}_loads_I"]) - {"total_load"}:
+            np.testing.assert_array_equal(tables[f"{key}_loads_I"][name][rows], tables[f"{key}_I"][name])
 
 
 def values_of(results, pair):
