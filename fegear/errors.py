@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+#: How to install what only notebooks need.
+NOTEBOOK_EXTRA = "install it with: pip install 'fegear[notebook]'"
+
 
 class FegearError(Exception):
     """Base of every error that fegear raises on purpose; its text is meant for the user as it is."""

@@ -54,7 +54,7 @@ class Bar:
 
 
 @contextlib.contextmanager
-def watcher(stream: TextIO, *, remaining: bool = False) -> Iterator[Watcher]:
+def watcher(stream: TextIO, *, remaining: bool = False, notebook: bool = False) -> Iterator[Watcher]:
     """Give the watcher that suits a stream.
 
     Parameters
@@ -62,8 +62,10 @@ def watcher(stream: TextIO, *, remaining: bool = False) -> Iterator[Watcher]:
     stream : text stream
     remaining : bool
         Whether a bar predicts the time that is left, which makes sense for many alike steps.
+    notebook : bool
+        Whether the bars go into the output of a notebook's cell and not to the stream.
     """
-    if not stream.isatty():
+    if not notebook and not stream.isatty():
         yield PlainLines(stream)
         return
     from rich.console import Console
@@ -71,5 +73,6 @@ def watcher(stream: TextIO, *, remaining: bool = False) -> Iterator[Watcher]:
 
     columns = (TextColumn("{task.description}"), BarColumn(bar_width=30), TimeElapsedColumn())
     ahead = (TextColumn("remaining"), TimeRemainingColumn(elapsed_when_finished=False)) if remaining else ()
-    with Progress(*columns, *ahead, console=Console(file=stream)) as progress:
+    console = Console(force_jupyter=True) if notebook else Console(file=stream)
+    with Progress(*columns, *ahead, console=console) as progress:
         yield Bar(progress)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from fegear.errors import InputError
@@ -166,8 +167,39 @@ def from_si(unit: str) -> float:
     return PER_SI[unit]
 
 
+def as_text(value: Any, dimension: str, *, bare_si: bool = False) -> Any:
+    """A quantity of pint as text with its unit, so that it is read like any other; everything else as it is.
+
+    Parameters
+    ----------
+    value : object
+        What a user gave.
+    dimension : str
+        A key of `DIMENSIONS`.
+    bare_si : bool
+        Whether numbers are SI and become text with their unit too.
+
+    Raises
+    ------
+    InputError
+        If a quantity of pint has the wrong dimension.
+    """
+    unit, example = DIMENSIONS[dimension][:2]
+    if callable(getattr(value, "to", None)) and hasattr(value, "magnitude"):
+        import pint
+
+        try:
+            return f"{float(value.to(unit or 'dimensionless').magnitude)!r} {unit}"
+        except pint.DimensionalityError:
+            kind = dimension.replace("_", " ")
+            raise InputError("value", str(value), f"is not a {kind}", f'write for example "{example}"') from None
+    if bare_si and not isinstance(value, (bool, str)) and isinstance(value, Real):
+        return f"{float(value)!r} {unit}"
+    return value
+
+
 def quantity(value: Any, unit: str) -> Any:
-    """A number or array in one of the units of tables, as pint's quantity.
+    """A number or array in one of the units of tables, as a quantity of pint's own (application) registry.
 
     Parameters
     ----------
@@ -179,4 +211,6 @@ def quantity(value: Any, unit: str) -> Any:
     -------
     pint.Quantity
     """
-    return registry().Quantity(value, unit.replace(".", "*"))
+    import pint
+
+    return pint.Quantity(value, unit.replace(".", "*"))

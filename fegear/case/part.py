@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
 
 from fegear.errors import FegearError, InputError
-from fegear.units import to_si
+from fegear.units import as_text, to_si
+
+#: Key of the context of validation: whether numbers without a unit are SI (arguments of Python functions are).
+BARE_SI = "bare_si"
 
 
 class Part(BaseModel):
@@ -37,10 +40,9 @@ def plausible(number: float) -> bool:
 def quantity(dimension: str, *, positive: bool = False, not_negative: bool = False) -> BeforeValidator:
     """Validator that reads a quantity of `dimension` into SI and holds it against its range."""
 
-    def read(value: object) -> float:
-        if not isinstance(value, (str, int, float)):
-            value = str(value)
+    def read(value: Any, info: ValidationInfo) -> float:
         try:
+            value = as_text(value, dimension, bare_si=bool(info.context and info.context.get(BARE_SI)))
             number = to_si(value, dimension, "value")
         except InputError as error:
             raise refuse(error.rule, error.remedy, value=error.value) from None

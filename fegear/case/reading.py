@@ -12,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from fegear.case import Case
 from fegear.case.names import nearest
+from fegear.case.part import BARE_SI
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
@@ -114,10 +115,25 @@ def read_document(path: Path, overrides: Sequence[str] = ()) -> dict[str, Any]:
     return document
 
 
-def build_scene(document: Mapping[str, object], name: str, folder: Path) -> Scene:
-    """Check a case given as a plain mapping and build its gears and pairs."""
+def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare_si: bool = False) -> Scene:
+    """Check a case given as a plain mapping and build its gears and pairs.
+
+    Parameters
+    ----------
+    document : mapping
+    name : str
+    folder : Path
+        Where relative file names in the case start.
+    bare_si : bool
+        Whether numbers without a unit are SI; a case file has none.
+
+    Raises
+    ------
+    InputError
+        If anything in it breaks a rule.
+    """
     try:
-        case = Case.model_validate(document)
+        case = Case.model_validate(document, context={BARE_SI: bare_si})
     except ValidationError as error:
         found = error.errors(include_url=False)
         # A misspelt key comes first: what is said to be missing is often its right spelling.

@@ -5,107 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from fegear.case.names import nearest
-from fegear.errors import UnknownNameError
+from fegear.engine.table import Column, Table
 from fegear.units import from_si, quantity
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import pint
-    from numpy.typing import NDArray
 
     from fegear.engine.figure import DeferredFigure, Figure
 
 
-@dataclass(frozen=True, slots=True)
-class Column:
-    """One column of a table.
-
-    Parameters
-    ----------
-    name : str
-        Name of the quantity, as in the table's head.
-    si : ndarray, shape (N,)
-        In SI; integers and texts stay as they are.
-    unit : str
-        Unit of the column; empty for dimensionless.
-    meaning : str
-        One clause for reports and datasets.
-    """
-
-    name: str
-    si: NDArray[np.generic]
-    unit: str = ""
-    meaning: str = ""
-
-    def __post_init__(self) -> None:
-        """Make the array read-only."""
-        si = np.array(self.si)
-        si.setflags(write=False)
-        object.__setattr__(self, "si", si)
-
-    def __len__(self) -> int:
-        """Return the number of rows."""
-        return len(self.si)
-
-    def __repr__(self) -> str:
-        """Name, unit, rows, first and last."""
-        shown = self.values if len(self) < 2 else self.values[[0, -1]]
-        ends = ", ".join(f"{value:.6g}" if shown.dtype.kind == "f" else str(value) for value in shown)
-        return f"<column {self.head}: {len(self)} rows, {ends}>"
-
-    @property
-    def head(self) -> str:
-        """``name [unit]``."""
-        return f"{self.name} [{self.unit}]" if self.unit else self.name
-
-    @property
-    def values(self) -> NDArray[np.generic]:
-        """The values in the column's unit."""
-        if not self.unit or not np.issubdtype(self.si.dtype, np.number):
-            return self.si
-        return np.asarray(self.si, dtype=float) * from_si(self.unit)
-
-    @property
-    def quantity(self) -> pint.Quantity[NDArray[np.float64]]:
-        """The values with their unit, as pint has it."""
-        return quantity(self.values, self.unit)
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """A named table; the first column is what the rows are ordered by."""
-
-    name: str
-    columns: tuple[Column, ...]
-    title: str = ""
-
-    def __post_init__(self) -> None:
-        """Refuse columns of different length: that would be a bug of a stage."""
-        lengths = {column.name: len(column) for column in self.columns}
-        if len(set(lengths.values())) > 1:
-            raise ValueError(f"table {self.name} has columns of different length: {lengths}")
-
-    def column(self, name: str) -> Column:
-        """Column of a name or a head (``speed`` or ``speed [rpm]``).
-
-        Raises
-        ------
-        UnknownNameError
-            With the nearest name.
-        """
-        for column in self.columns:
-            if name in (column.name, column.head):
-                return column
-        heads = [column.head for column in self.columns]
-        raise UnknownNameError("column", f'"{name}"', f"is none of table {self.name}", nearest(name, heads))
-
-    def __getitem__(self, name: str) -> NDArray[np.generic]:
-        """Return the values of a column in its unit; ``column(name).si`` has them in SI."""
-        return self.column(name).values
+__all__ = ["Column", "Outcome", "Table", "Value"]
 
 
 @dataclass(frozen=True, slots=True)

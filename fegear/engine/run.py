@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from fegear.engine.executor import Executor
+from fegear.engine.named import Named
 from fegear.engine.stage import Work
 from fegear.plain import content_key
 from fegear.solution_cache import SolutionCache
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.case.reading import Scene
+    from fegear.engine.figure import DeferredFigure, Figure
     from fegear.engine.outcome import Outcome, Table, Value
     from fegear.engine.plan import Plan, Step
     from fegear.engine.stage import Task
@@ -103,14 +105,19 @@ class Results:
         return {task: timing.seconds for task, timing in self.timings.items()}
 
     @property
-    def tables(self) -> tuple[Table, ...]:
-        """All tables."""
-        return tuple(table for outcome in self.outcomes.values() for table in outcome.tables)
+    def tables(self) -> Named[Table]:
+        """All tables, in order and by name."""
+        return Named(table for outcome in self.outcomes.values() for table in outcome.tables)
 
     @property
-    def values(self) -> tuple[Value, ...]:
-        """All single values."""
-        return tuple(value for outcome in self.outcomes.values() for value in outcome.values)
+    def values(self) -> Named[Value]:
+        """All single values, in order and by name."""
+        return Named(value for outcome in self.outcomes.values() for value in outcome.values)
+
+    @property
+    def figures(self) -> Named[Figure | DeferredFigure]:
+        """All figures, in order and by name."""
+        return Named(figure for outcome in self.outcomes.values() for figure in outcome.figures)
 
     @property
     def remarks(self) -> tuple[str, ...]:

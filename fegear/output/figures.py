@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.engine.figure import DeferredFigure, Figure
+from fegear.engine.figure import Figure
 from fegear.errors import MissingLibraryError
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def draw_all(results: Results, folder: Path, advance: Callable[[float], None]) -
     missing: list[str] = []
     for number, (task, figure) in enumerate(found, start=1):
         try:
-            made = figure.make() if isinstance(figure, DeferredFigure) else figure
+            made = figure.made()
             if made.field is not None:
                 _write_field(made.field, folder.parent / "fields")
             drawn.append(Drawn(task, made, tuple(draw_pictures(made, folder))))

@@ -54,7 +54,7 @@ class MeshField:
     values: Mapping[str, Array]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Figure:
     """What one figure shows.
 
@@ -90,6 +90,19 @@ class Figure:
             object.__setattr__(self, "views", (View("", self.panels),))
 
     @property
+    def name(self) -> str:
+        """Its key."""
+        return self.key
+
+    def __repr__(self) -> str:
+        """Key and title."""
+        return f"<figure {self.key}: {self.title}>"
+
+    def made(self) -> Figure:
+        """Itself, as a deferred figure makes one."""
+        return self
+
+    @property
     def all_panels(self) -> tuple[Panel, ...]:
         """The panels of every view."""
         return tuple(panel for view in self.views for panel in view.panels)
@@ -109,7 +122,7 @@ class Figure:
 NOTEBOOK: list[Callable[[Figure], str]] = []
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class DeferredFigure:
     """A figure that costs something to describe: made only where pictures are drawn.
 
@@ -124,3 +137,20 @@ class DeferredFigure:
     key: str
     title: str
     make: Callable[[], Figure]
+
+    @property
+    def name(self) -> str:
+        """Its key."""
+        return self.key
+
+    def __repr__(self) -> str:
+        """Key and title."""
+        return f"<figure {self.key}: {self.title}>"
+
+    def made(self) -> Figure:
+        """Describe it."""
+        return self.make()
+
+    def _repr_html_(self) -> str | None:
+        """Show it in a notebook."""
+        return self.make()._repr_html_()

@@ -15,8 +15,15 @@ if TYPE_CHECKING:
     from fegear.engine.figure import Figure
 
 
-def notebook_html(figure: Figure) -> str:
-    """A figure as HTML for a notebook, by plotly's Python; fields and surfaces as a picture."""
+def notebook_html(figure: Figure, *, library: bool = True) -> str:
+    """A figure as HTML for a notebook, by plotly's Python; fields and surfaces as a picture.
+
+    Parameters
+    ----------
+    figure : Figure
+    library : bool
+        Whether plotly.js comes with it; the first of several figures on one page brings it for all.
+    """
     if not figure.drawable_in_page:
         return _still(figure)
     from plotly.io import to_html
@@ -24,7 +31,7 @@ def notebook_html(figure: Figure) -> str:
     spec = plotly_json(figure)
     layout = spec["layout"] | {"template": template() | {"data": {}}, "paper_bgcolor": LIGHT["paper"]}
     plot: str = to_html(json.loads(json.dumps({"data": spec["data"], "layout": layout})), full_html=False,
-                        include_plotlyjs=True, validate=False)  # fmt: skip
+                        include_plotlyjs=library, validate=False)  # fmt: skip
     return f"<b>{html.escape(figure.title)}</b>{plot}<p>{html.escape(figure.caption)}</p>"
 
 

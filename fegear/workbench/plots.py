@@ -1,0 +1,77 @@
+"""Figures of a run: a notebook shows them, a script writes or opens them."""
+
+from __future__ import annotations
+
+import tempfile
+import webbrowser
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import os
+
+    from fegear.engine.figure import DeferredFigure, Figure
+
+
+@dataclass(frozen=True, repr=False)
+class Plots:
+    """Some figures of a run.
+
+    Parameters
+    ----------
+    figures : tuple of Figure or DeferredFigure
+    """
+
+    figures: tuple[Figure | DeferredFigure, ...]
+
+    def __repr__(self) -> str:
+        """What they are, and how a script sees them."""
+        names = "\n".join(f"  {figure!r}" for figure in self.figures)
+        count = f"{len(self.figures)} figure{'' if len(self.figures) == 1 else 's'}"
+        return f"{count}; .show() opens them, .save(folder) writes them\n{names}"
+
+    def _repr_html_(self) -> str:
+        """Show them in a notebook, plotly.js once for all."""
+        from fegear.output.draw_plotly import notebook_html
+
+        shown, library = [], True
+        for figure in self.figures:
+            made = figure.made()
+            shown.append(notebook_html(made, library=library))
+            library = library and not made.drawable_in_page
+        return "".join(shown)
+
+    def show(self) -> None:
+        """Open them in the browser, as one page."""
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8", suffix=".html", delete=False) as file:
+            file.write(f"<!doctype html><meta charset='utf-8'><title>fegear</title>{self._repr_html_()}")
+        webbrowser.open(Path(file.name).as_uri())
+
+    def save(self, folder: str | os.PathLike[str], kind: str = "png") -> list[Path]:
+        """Draw them into a folder as ``<name>.png`` or ``.svg``.
+
+        Parameters
+        ----------
+        folder : path
+            Made if needed.
+        kind : {"png", "svg"}
+
+        Returns
+        -------
+        list of Path
+            The pictures.
+
+        Raises
+        ------
+        InputError
+            If the kind is another.
+        """
+        from fegear.errors import InputError
+        from fegear.output.draw_png import draw_pictures
+
+        if kind not in ("png", "svg"):
+            raise InputError("kind", f'"{kind}"', "is no kind of picture that fegear draws", 'choose "png" or "svg"')
+        target = Path(folder)
+        target.mkdir(parents=True, exist_ok=True)
+        return [picture.path for figure in self.figures for picture in draw_pictures(figure.made(), target, kind)]

@@ -1,0 +1,173 @@
+"""What a run found, in a script or a notebook: shown, turned into tables of other libraries, drawn, saved."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fegear.engine.named import Named
+from fegear.engine.run import Results as Found
+from fegear.engine.run import Silence
+from fegear.engine.shown import html_table
+from fegear.errors import NOTEBOOK_EXTRA, MissingLibraryError
+from fegear.output.numbers import pretty_unit
+from fegear.output.report.blocks import value_cells
+from fegear.workbench.plots import Plots
+
+if TYPE_CHECKING:
+    import os
+
+    import xarray as xr
+
+    from fegear.engine.outcome import Table, Value
+
+#: Values that the short form shows, and characters of a remark.
+_FEW, _CLAUSE = 12, 140
+
+
+class Results(Found):
+    """Everything that a run found: single values, tables, figures and remarks, each by its name.
+
+    A number is in the unit that stands beside it; ``.si`` has it in SI, ``.quantity`` with the unit attached.
+
+    Attributes
+    ----------
+    values, tables, figures : Named
+        In order and by name: ``values["I.te_mean"]``, ``tables["transmission_error_I"]``.
+    remarks : tuple of str
+        What the user should know: assumptions, effects left out.
+    scene : Scene
+        The case with its gears and pairs.
+    timings : mapping of Task to Timing
+    """
+
+    @classmethod
+    def of(cls, found: Found) -> Results:
+        """The same results with the handles of this class."""
+        return cls(found.scene, found.plan, found.outcomes, found.timings)
+
+    def __getitem__(self, name: str) -> Value | Table:
+        """Return a single value or a table by its name.
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest name.
+        """
+        both: Named[Value | Table] = Named((*self.values, *self.tables))
+        return both[name]
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return [*self.values.keys(), *self.tables.keys()]
+
+    def __repr__(self) -> str:
+        """Values, and what else there is."""
+        lines = [f"  {value!r}" for value in self.values[:_FEW]]
+        if len(self.values) > _FEW:
+            lines.append(f"  ... {len(self.values) - _FEW} more in .values")
+        lines += [f"  Note: {textwrap.shorten(remark, _CLAUSE, placeholder=' ...')}" for remark in self.remarks]
+        return "\n".join([self._headline(), *lines])
+
+    def _headline(self) -> str:
+        found = {word: len(getattr(self, word)) for word in ("values", "tables", "figures", "remarks")}
+        counts = ", ".join(f"{count} {word if count > 1 else word[:-1]}" for word, count in found.items() if count)
+        return f"{self.scene.case.title or self.scene.name}: {counts} ({sum(self.seconds.values()):.2g} s)"
+
+    def _repr_html_(self) -> str:
+        """Show values with errors, the names of tables and figures, and the remarks in a notebook."""
+        from html import escape
+
+        rows = [(value.name, *value_cells(value), pretty_unit(value.unit), value.meaning) for value in self.values]
+        parts = [f"<b>{escape(self._headline())}</b>"]
+        if rows:
+            parts.append(html_table(("value", "", "error", "unit", "meaning"), rows))
+        for word, names in (("tables", self.tables.keys()), ("figures", self.figures.keys())):
+            if names:
+                parts.append(f"<p>{word}: {', '.join(f'<code>{escape(name)}</code>' for name in names)}</p>")
+        parts += [f"<p>{escape(remark)}</p>" for remark in self.remarks]
+        return "".join(parts)
+
+    def to_xarray(self) -> xr.Dataset:
+        """All tables and values as one labelled dataset: what ``results.nc`` holds.
+
+        Raises
+        ------
+        MissingLibraryError
+            If xarray is not installed.
+        """
+        try:
+            import xarray as xr
+        except ImportError:
+            raise MissingLibraryError(f"xarray is not installed; {NOTEBOOK_EXTRA}.") from None
+        from fegear.output.dataset import write_dataset
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "results.nc"
+            write_dataset(path, self)
+            content = io.BytesIO(path.read_bytes())
+        return xr.load_dataset(content, engine="scipy")
+
+    def plot(self, *names: str) -> Plots:
+        """Figures by name, or all: a notebook shows them; ``.show()`` opens them, ``.save(folder)`` writes them.
+
+        Raises
+        ------
+        UnknownNameError
+            With the nearest name.
+        """
+        return Plots(tuple(self.figures[name] for name in names) if names else tuple(self.figures))
+
+    def save(self, folder: str | os.PathLike[str], *, plots: bool = True) -> Path:
+        """Write everything into a folder, as ``fegear run`` does: tables, dataset, pictures, report, summary.
+
+        Parameters
+        ----------
+        folder : path
+            Files of an earlier run in it are replaced; the others stay.
+        plots : bool
+            Whether to draw the pictures, too.
+
+        Returns
+        -------
+        Path
+            The folder.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be made or written to.
+        """
+        from fegear.output.folder import whole_or_nothing
+        from fegear.output.write import write_results
+
+        target = Path(folder)
+        with whole_or_nothing(target, "folder") as scratch:
+            write_results(self, scratch, Silence(), plots=plots)
+        return target
+
+    def export(self, folder: str | os.PathLike[str], formats: str = "dxf", gears: tuple[str, ...] = ()) -> list[Path]:
+        """Write drawings and meshes of the gears, as ``fegear export`` does.
+
+        Parameters
+        ----------
+        folder : path
+        formats : str
+            Any of dxf, msh, vtu, inp, separated by commas.
+        gears : tuple of str
+            Names of gears; all of them by default.
+
+        Returns
+        -------
+        list of Path
+            The files.
+        """
+        from fegear.output.export import export_gears
+        from fegear.output.folder import whole_or_nothing
+
+        target = Path(folder)
+        with whole_or_nothing(target, "folder") as scratch:
+            written = export_gears(self.scene, scratch, gears or tuple(self.scene.gears), formats)
+        return [target / name for name in written]

@@ -1,0 +1,117 @@
+"""``fegear.run``: what ``fegear run`` does, from Python and without files."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import os
+import sys
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fegear.case.reading import build_scene, case_text, read_document, set_key
+from fegear.engine.executor import Executor
+from fegear.engine.plan import make_plan
+from fegear.engine.run import Silence, run_plan
+from fegear.errors import InputError
+from fegear.results.catalogue import STAGES
+from fegear.solution_cache import SolutionCache
+from fegear.terminal import watcher
+from fegear.workbench.results import Results
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from fegear.case.reading import Scene
+    from fegear.engine.run import Watcher
+
+
+def run(
+    case: str | os.PathLike[str] | Mapping[str, Any],
+    changes: Mapping[str, Any] | None = None,
+    *,
+    results: Sequence[str] | None = None,
+    progress: bool | None = None,
+    scheduler: str | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """Compute what a case asks for.
+
+    Parameters
+    ----------
+    case : path, TOML text or mapping
+        A case file, its text (which has more than one line), or its tables as a mapping.
+    changes : mapping of str to object, optional
+        Keys of the case that are changed, ``{"pair.I.torque": "100 N*m", "gear.a.teeth": 30}``.
+    results : sequence of str, optional
+        What to ask for in place of the case's own ``results``.
+    progress : bool, optional
+        Whether a progress bar is shown; by default on a terminal and in a notebook.
+    scheduler : str, optional
+        Address of a running Dask scheduler; by default points are computed on this machine.
+    cache : SolutionCache, optional
+        Where results are recalled from and kept. By default nothing is recalled, so that the seconds of a run are its
+        own; give the same cache to several runs, or ``fegear.solution_cache.cache_on_disk()``.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    InputError
+        If the case cannot be read or anything in it breaks a rule: key, value, rule, remedy.
+
+    Examples
+    --------
+    >>> import fegear
+    >>> found = fegear.run("case.toml", {"pair.I.torque": "100 N*m"})
+    >>> found.values["I.te_peak_to_peak"]
+    >>> found.tables["transmission_error_I"].to_pandas()
+    """
+    wanted = dict(changes or {}) | ({} if results is None else {"results": list(results)})
+    return run_scene(_scene(case, wanted), progress=progress, scheduler=scheduler, cache=cache)
+
+
+def run_scene(
+    scene: Scene, *, progress: bool | None = None, scheduler: str | None = None, cache: SolutionCache | None = None
+) -> Results:
+    """Compute what a scene asks for; see `run`."""
+    from threadpoolctl import threadpool_limits
+
+    plan = make_plan(scene, STAGES)
+    known = SolutionCache() if cache is None else cache
+    # The dense blocks of a sector are too small for threads: two take twice the work of one for no gain in time.
+    with threadpool_limits(limits=1), _watching(progress) as watching:
+        return Results.of(run_plan(scene, plan, watching, cache=known, executor=Executor(scheduler)))
+
+
+def _scene(case: str | os.PathLike[str] | Mapping[str, Any], changes: Mapping[str, Any]) -> Scene:
+    name, folder, text = "case", Path.cwd(), ""
+    if isinstance(case, str) and "\n" in case:
+        try:
+            document, text = tomllib.loads(case), case
+        except tomllib.TOMLDecodeError as error:
+            raise InputError("case", "(a text)", f"is no valid TOML: {error}", "quantities stand in quotes") from None
+    elif isinstance(case, (str, os.PathLike)):
+        path = Path(case)
+        document, name, folder, text = read_document(path), path.stem, path.parent, case_text(path)
+    else:
+        document = copy.deepcopy(dict(case))
+    for key, value in changes.items():
+        set_key(document, key, value, "changes")
+    changed = "".join(f"# changed: {key} = {value}\n" for key, value in changes.items())
+    return replace(build_scene(document, name, folder), text=changed + text if text else "")
+
+
+@contextlib.contextmanager
+def _watching(progress: bool | None) -> Iterator[Watcher]:
+    """Who shows the progress: a bar on a terminal and in a notebook, nobody elsewhere."""
+    notebook = "ipykernel" in sys.modules
+    if progress is False or (progress is None and not notebook and not sys.stderr.isatty()):
+        yield Silence()
+        return
+    with watcher(sys.stderr, notebook=notebook) as watching:
+        yield watching

@@ -1,0 +1,195 @@
+"""fegear from Python: what a run gives, and how it is refused; no finite elements are solved here."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fegear
+from fegear.errors import InputError, MissingLibraryError
+from fegear.units import from_si
+
+CASE = Path(__file__).parents[2] / "cases" / "pinion_and_wheel.toml"
+QUICK = {"pair.I.compliance": {"source": "weber-banaschek"}, "effects.neighbour_coupling": False}
+WANTED = ["geometry", "tooth-geometry-check", "load-sharing", "transmission-error"]
+
+
+@pytest.fixture(scope="module")
+def found():
+    return fegear.run(CASE, QUICK, results=WANTED)
+
+
+@pytest.fixture(scope="module")
+def folder(found, tmp_path_factory):
+    return found.save(tmp_path_factory.mktemp("saved") / "run", plots=False)
+
+
+def test_the_top_shows_its_names_and_each_is_there():
+    assert dir(fegear) == sorted(fegear.__all__)
+    for name in fegear.__all__:
+        assert getattr(fegear, name) is not None
+    with pytest.raises(AttributeError, match="has no attribute 'runn'"):
+        fegear.runn  # noqa: B018
+
+
+def test_importing_fegear_loads_none_of_its_own_packages():
+    probe = "import sys, fegear; dir(fegear); print([name for name in sys.modules if name.startswith('fegear.')])"
+    ran = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    assert ran.stdout.strip() == "[]"
+
+
+def test_a_case_is_a_file_a_text_or_a_mapping(found):
+    text = CASE.read_text("utf-8")
+    for case in (str(CASE), text, tomllib.loads(text)):
+        again = fegear.run(case, QUICK, results=["transmission-error"])
+        assert again.values["I.te_mean"].si == found.values["I.te_mean"].si
+    assert fegear.run(text, {"gear.pinion.teeth": 24}, results=["geometry"]).scene.text.startswith("# changed: gear.")
+
+
+def test_the_mapping_of_the_caller_stays_as_it_was():
+    document = tomllib.loads(CASE.read_text("utf-8"))
+    before = json.dumps(document)
+    fegear.run(document, {**QUICK, "gear.pinion.teeth": 24}, results=["geometry"])
+    assert json.dumps(document) == before
+
+
+def test_changes_take_numbers_texts_and_pint(found):
+    import pint
+
+    torque = pint.UnitRegistry().Quantity(90.0, "newton * meter")
+    again = fegear.run(CASE, {**QUICK, "pair.I.torque": torque}, results=["transmission-error"])
+    assert again.values["I.te_mean"].si == found.values["I.te_mean"].si
+    with pytest.raises(InputError, match="is not a torque"):
+        fegear.run(CASE, {**QUICK, "pair.I.torque": pint.UnitRegistry().Quantity(90.0, "newton")})
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"pair.I.torqe": "90 N*m"}, r'"torqe" is an unknown key; the nearest known name is "torque"'),
+        ({"pair.I.torque": 90.0}, "is a bare number, but a torque needs a unit"),
+        ({"results": ["transmision-error"]}, 'the nearest known name is "transmission-error"'),
+    ],
+)
+def test_a_slip_is_refused_with_the_remedy(changes, sentence):
+    with pytest.raises(InputError, match=sentence):
+        fegear.run(CASE, changes)
+
+
+def test_things_are_found_by_name_and_place(found):
+    assert found.tables["geometry"] is not None
+    assert found.tables["geometry"].name == found.tables[0].name == found["geometry"].name
+    assert found["I.contact_ratio"].value == found.values["I.contact_ratio"].value
+    assert "geometry" in found.tables
+    assert "nothing" not in found.tables
+    assert found.figures["load_sharing_I"].made().title
+    for wrong, right in (("I.contact_rato", "I.contact_ratio"), ("geomtry", "geometry")):
+        with pytest.raises(KeyError, match=f'the nearest known name is "{right}"'):
+            found[wrong]
+
+
+def test_short_forms_are_short(found):
+    assert len(repr(found).splitlines()) < 25
+    assert repr(found).startswith("Pinion and wheel")
+    assert "I.centre_distance = 120.589262 mm" in repr(found)
+    assert all(len(repr(table)) < 400 for table in found.tables)
+    assert "Note: " in repr(found)
+    assert repr(found.plot("load_sharing_I")).startswith("1 figure; ")
+
+
+def test_a_notebook_shows_values_tables_and_figures(found):
+    page = found._repr_html_()
+    assert "I.centre_distance" in page
+    assert all(table.name in page for table in found.tables)
+    table = found.tables["transmission_error_I"]._repr_html_()
+    assert table.count("<tr>") == 11
+    assert "x [mm]" in table
+    shown = found.plot("load_sharing_I", "transmission_error_I")._repr_html_()
+    assert shown.count("plotly.js v") == 1  # the library once for both
+    assert shown.count("Plotly.newPlot(") == 2
+
+
+def test_pandas_has_what_the_csv_has(found, folder):
+    pandas = pytest.importorskip("pandas")
+    for table in found.tables:
+        written = pandas.read_csv(folder / "tables" / f"{table.name}.csv", keep_default_na=False, na_values=["nan"])
+        pandas.testing.assert_frame_equal(
+            table.to_pandas(), written, check_dtype=False, check_exact=False, rtol=1e-11, atol=0.0
+        )
+
+
+def test_every_number_is_in_the_unit_beside_it(found, folder):
+    """The contract's files and what Python hands out agree, number for number."""
+    summary = json.loads((folder / "summary.json").read_text("utf-8"))["results"]
+    assert set(summary) == set(found.values.keys())
+    for value in found.values:
+        assert (summary[value.name]["value"], summary[value.name]["unit"]) == (value.value, value.unit)
+        assert summary[value.name]["error"] == value.error
+        assert value.value == pytest.approx(value.si * (from_si(value.unit) if value.unit else 1.0), rel=1e-15)
+        assert value.quantity.to_base_units().magnitude == pytest.approx(value.si, rel=1e-12)
+    for table in found.tables:
+        head, *rows = (folder / "tables" / f"{table.name}.csv").read_text("utf-8").splitlines()
+        assert head.split(",")[0] == table.columns[0].head
+        for column in table.columns:
+            if column.unit:
+                written = [float(row.split(",")[table.columns.index(column)]) for row in rows]
+                assert written == pytest.approx(table[column.name], rel=1e-11)
+                assert column.si * from_si(column.unit) == pytest.approx(table[column.name], rel=1e-15)
+
+
+def test_xarray_has_every_table_and_value(found):
+    pytest.importorskip("xarray")
+    data = found.to_xarray()
+    for value in found.values:
+        assert float(data[value.name]) == pytest.approx(value.value, rel=1e-15)
+    te = found.tables["transmission_error_I"]
+    assert np.array_equal(data["transmission_error_I.te"].values, te["te"])
+
+
+@pytest.mark.parametrize(
+    ("library", "ask"), [("pandas", lambda r: r.tables[0].to_pandas()), ("xarray", lambda r: r.to_xarray())]
+)
+def test_a_missing_library_is_one_sentence(found, library, ask, monkeypatch):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(MissingLibraryError, match=rf"^{library} is not installed; install it with: pip install"):
+        ask(found)
+
+
+def test_figures_are_written_and_opened(found, tmp_path, monkeypatch):
+    made = found.plot("load_sharing_I").save(tmp_path / "pictures", "svg")
+    assert [path.name for path in made] == ["load_sharing_I.svg"]
+    assert made[0].read_text("utf-8").lstrip().startswith("<?xml")
+    with pytest.raises(InputError, match='choose "png" or "svg"'):
+        found.plot("load_sharing_I").save(tmp_path, "pdf")
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    found.plot("load_sharing_I").show()
+    assert opened[0].startswith("file://")
+    Path(opened[0].removeprefix("file://")).unlink()
+
+
+def test_drawings_are_exported(found, tmp_path):
+    made = found.export(tmp_path / "drawings", "dxf", ("pinion",))
+    assert [path.name for path in made] == [
+        "pinion_tooth_polyline.dxf", "pinion_gear_polyline.dxf", "pinion_tooth_spline.dxf", "pinion_gear_spline.dxf",
+    ]  # fmt: skip
+    assert all(path.is_file() for path in made)
+
+
+def test_a_silent_run_writes_nothing(capfd):
+    fegear.run(CASE, QUICK, results=["geometry"])
+    assert capfd.readouterr() == ("", "")
+    fegear.run(CASE, QUICK, results=["geometry"], progress=True)
+    assert "Geometry" in capfd.readouterr().err
+
+
+def test_an_exact_value_has_an_error_of_zero(found):
+    assert found.values["I.contact_ratio"].error == 0.0
+    assert math.isfinite(found.values["I.te_mean"].value)
