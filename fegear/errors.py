@@ -4,6 +4,17 @@ from __future__ import annotations
 
 #: How to install what only notebooks need.
 NOTEBOOK_EXTRA = "install it with: pip install 'fegear[notebook]'"
+#: Most characters of an input that a message repeats.
+_SHOWN = 60
+
+
+def shown(value: object) -> str:
+    """Return an input as messages repeat it: on one line, texts in quotes, long ones cut short."""
+    text = value if isinstance(value, str) else repr(value)
+    if len(text) > _SHOWN:
+        text = f"{text[:_SHOWN]}..."
+    text = "".join(sign if sign.isprintable() else " " for sign in text)
+    return f'"{text}"' if isinstance(value, str) else text
 
 
 class FegearError(Exception):

@@ -8,95 +8,178 @@ from __future__ import annotations
 
 import functools
 import math
-import re
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fegear.errors import InputError
+from fegear.errors import InputError, shown
+from fegear.unit_text import UnreadableError, canonical, names, split
 
 if TYPE_CHECKING:
     import pint
 
-#: SI unit of each dimension that a case file may ask for, with an example for error messages.
-DIMENSIONS: dict[str, tuple[str, str]] = {
-    "length": ("m", "3.175 mm"),
-    "angle": ("rad", "20 deg"),
-    "force": ("N", "1615 N"),
-    "torque": ("N*m", "68 N*m"),
-    "pressure": ("Pa", "206.8 GPa"),
-    "density": ("kg/m^3", "7850 kg/m^3"),
-    "line_load": ("N/m", "250 N/mm"),
-    "speed": ("rad/s", "10000 rpm"),
-    "frequency": ("Hz", "3500 Hz"),
-    "inertia": ("kg*m^2", "0.002 kg*m^2"),
-    "mass": ("kg", "2.882 kg"),
-    "torsional_stiffness": ("N*m/rad", "2.18e4 N*m/rad"),
-    "torsional_damping": ("N*m*s/rad", "12.6 N*m*s"),
-    "stiffness": ("N/m", "300 N/um"),
-    "damping": ("N*s/m", "1000 N*s/m"),
-    "inverse_length": ("1/m", "8 / inch"),
-    "compliance": ("m/N", "1.26e-8 m/N"),
-    "time": ("s", "0.1 s"),
-    "viscosity": ("Pa*s", "0.02 Pa*s"),
-    "temperature": ("K", "350 K"),
-    "dimensionless": ("", "0.3"),
+
+class Dimension(NamedTuple):
+    """What may be asked for.
+
+    Attributes
+    ----------
+    si : str
+        Unit inside fegear.
+    example : str
+        For messages.
+    also : dict of str to float
+        Units of other dimensions in which engineers give it, with their size in `si`: the revolutions that a
+        rotational speed in 1/min leaves out, the radian that a stiffness in N*m leaves out.
+    """
+
+    si: str
+    example: str
+    also: dict[str, float] = {}  # noqa: RUF012  (nobody changes it)
+
+
+_TURN = 2.0 * math.pi
+
+DIMENSIONS: dict[str, Dimension] = {
+    "length": Dimension("m", "3.175 mm"),
+    "angle": Dimension("rad", "20 deg"),
+    "force": Dimension("N", "1615 N"),
+    "torque": Dimension("N*m", "68 N*m"),
+    "pressure": Dimension("Pa", "206.8 GPa"),
+    "density": Dimension("kg/m^3", "7850 kg/m^3"),
+    "line_load": Dimension("N/m", "250 N/mm"),
+    "speed": Dimension("rad/s", "10000 rpm", {"1/s": _TURN}),
+    "frequency": Dimension("1/s", "3500 Hz", {"rad/s": 1.0 / _TURN}),
+    "inertia": Dimension("kg*m^2", "0.002 kg*m^2"),
+    "mass": Dimension("kg", "2.882 kg"),
+    "torsional_stiffness": Dimension("N*m/rad", "2.18e4 N*m/rad", {"N*m": 1.0}),
+    "torsional_damping": Dimension("N*m*s/rad", "12.6 N*m*s", {"N*m*s": 1.0}),
+    "stiffness": Dimension("N/m", "300 N/um"),
+    "damping": Dimension("N*s/m", "1000 N*s/m"),
+    "inverse_length": Dimension("1/m", "8 / inch"),
+    "compliance": Dimension("m/N", "1.26e-8 m/N"),
+    "viscosity": Dimension("Pa*s", "0.02 Pa*s"),
 }
 
-_INCH = 0.0254
+_INCH, _LBF, _PSI = 0.0254, 4.4482216152605, 6894.757293168361
 
 #: Everyday units and their size in SI, by dimension. A case file written in these is read without pint, whose import
-#: alone would take a quarter of a cold run; any other unit goes to pint. A test holds every entry against pint.
+#: alone would take a quarter of a cold run; any other unit goes to pint. A test holds every entry against pint. The
+#: first four are named where a unit is missing or wrong.
 EVERYDAY: dict[str, dict[str, float]] = {
-    "length": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "cm": 1e-2, "inch": _INCH, "in": _INCH},
-    "angle": {"rad": 1.0, "deg": math.pi / 180.0, "degree": math.pi / 180.0, "arcmin": math.pi / 10800.0},
-    "force": {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605},
-    "torque": {"N*m": 1.0, "kN*m": 1e3},
-    "pressure": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
-    "density": {"kg/m^3": 1.0, "g/cm^3": 1e3},
-    "line_load": {"N/m": 1.0, "N/mm": 1e3},
-    "speed": {"rad/s": 1.0, "rpm": math.pi / 30.0},
-    "frequency": {"Hz": 1.0, "kHz": 1e3},
-    "inertia": {"kg*m^2": 1.0},
+    "length": {"mm": 1e-3, "um": 1e-6, "m": 1.0, "inch": _INCH, "in": _INCH, "cm": 1e-2},
+    "angle": {"deg": math.pi / 180.0, "rad": 1.0, "arcmin": math.pi / 10800.0, "arcsec": math.pi / 648000.0},
+    "force": {"N": 1.0, "kN": 1e3, "lbf": _LBF},
+    "torque": {"N*m": 1.0, "kN*m": 1e3, "N*mm": 1e-3, "lbf*inch": _LBF * _INCH, "Nm": 1.0, "kNm": 1e3, "Nmm": 1e-3},
+    "pressure": {"GPa": 1e9, "MPa": 1e6, "N/mm^2": 1e6, "psi": _PSI, "Pa": 1.0, "bar": 1e5},
+    "density": {"kg/m^3": 1.0, "g/cm^3": 1e3, "kg/dm^3": 1e3},
+    "line_load": {"N/mm": 1e3, "kN/m": 1e3, "N/m": 1.0},
+    "speed": {"rpm": _TURN / 60.0, "1/min": _TURN / 60.0, "Hz": _TURN, "rad/s": 1.0, "1/s": _TURN},
+    "frequency": {"Hz": 1.0, "kHz": 1e3, "rpm": 1.0 / 60.0, "1/s": 1.0, "1/min": 1.0 / 60.0},
+    "inertia": {"kg*m^2": 1.0, "kg*mm^2": 1e-6, "kg*cm^2": 1e-4, "kgm^2": 1.0, "kgmm^2": 1e-6},
     "mass": {"kg": 1.0, "g": 1e-3},
-    "torsional_stiffness": {"N*m/rad": 1.0},
-    "torsional_damping": {"N*m*s/rad": 1.0, "N*m*s": 1.0},
-    "stiffness": {"N/m": 1.0, "N/mm": 1e3, "N/um": 1e6},
-    "damping": {"N*s/m": 1.0},
-    "inverse_length": {"/inch": 1.0 / _INCH, "/in": 1.0 / _INCH, "/mm": 1e3, "/m": 1.0},
-    "compliance": {"m/N": 1.0, "um/N": 1e-6},
-    "time": {"s": 1.0, "ms": 1e-3},
-    "viscosity": {"Pa*s": 1.0},
-    "temperature": {"K": 1.0},
-    "dimensionless": {},
+    "torsional_stiffness": {"N*m/rad": 1.0, "kN*m/rad": 1e3, "Nm/rad": 1.0, "kNm/rad": 1e3},
+    "torsional_damping": {"N*m*s/rad": 1.0, "N*m*s": 1.0, "Nms/rad": 1.0, "Nms": 1.0},
+    "stiffness": {"N/um": 1e6, "N/mm": 1e3, "N/m": 1.0},
+    "damping": {"N*s/m": 1.0, "N*s/mm": 1e3, "Ns/m": 1.0},
+    "inverse_length": {"1/inch": 1.0 / _INCH, "1/in": 1.0 / _INCH, "1/mm": 1e3, "1/m": 1.0},
+    "compliance": {"um/N": 1e-6, "mm/N": 1e-3, "m/N": 1.0},
+    "viscosity": {"Pa*s": 1.0, "mPa*s": 1e-3},
 }
 
-_NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)\s*")
-
-
-def _everyday(text: str, dimension: str) -> float | None:
-    """Return the quantity in SI if it is a number and one of the everyday units of its dimension."""
-    match = _NUMBER_AND_UNIT.fullmatch(text)
-    size = EVERYDAY[dimension].get(match[2].replace(" ", "")) if match else None
-    return None if match is None or size is None else float(match[1]) * size
+#: Every unit that is known, in words of pint; there are no prefixes but these. The radian is a dimension of its own
+#: here, so that a torque is no stiffness and a number no angle. Units of other trades are left out on purpose: whoever
+#: writes Mm, nm or mN has slipped.
+UNITS: dict[str, str] = {
+    "m": "[length]", "cm": "1e-2*m", "mm": "1e-3*m", "um": "1e-6*m", "micron": "um",
+    "inch": "0.0254*m", "in": "inch", "inches": "inch", "thou": "1e-3*inch", "uin": "1e-6*inch",
+    "ft": "12*inch", "foot": "ft", "feet": "ft",
+    "rad": "[angle]", "mrad": "1e-3*rad", "urad": "1e-6*rad", "deg": f"{math.pi / 180.0!r}*rad", "degree": "deg",
+    "degrees": "deg", "arcmin": "deg/60", "arcsec": "deg/3600", "rev": f"{_TURN!r}*rad", "turn": "rev", "U": "rev",
+    "s": "[time]", "min": "60*s", "Hz": "1/s", "kHz": "1e3/s", "rpm": "rev/min",
+    "kg": "[mass]", "g": "1e-3*kg", "t": "1e3*kg", "lb": "0.45359237*kg",
+    "N": "kg*m/s^2", "kN": "1e3*N", "MN": "1e6*N", "daN": "10*N", "kgf": "9.80665*N", "lbf": "4.4482216152605*N",
+    "Pa": "N/m^2", "kPa": "1e3*Pa", "MPa": "1e6*Pa", "GPa": "1e9*Pa", "bar": "1e5*Pa",
+    "psi": "lbf/inch^2", "ksi": "1e3*psi", "Mpsi": "1e6*psi",
+    "Nm": "N*m", "kNm": "kN*m", "MNm": "MN*m", "Nmm": "N*mm", "Ncm": "N*cm", "Ns": "N*s", "Nms": "N*m*s",
+    "Pas": "Pa*s", "mPas": "1e-3*Pa*s", "cP": "1e-3*Pa*s",
+}  # fmt: skip
 
 
 @functools.lru_cache(maxsize=1)
 def registry() -> pint.UnitRegistry[float]:
-    """Pint's registry, made at first use (importing it costs a fifth of a second)."""
+    """Pint with the units of `UNITS` and no others, made at first use: its import costs a fifth of a second.
+
+    Nothing is kept on disk: these definitions are read in a hundredth of a second.
+    """
     import pint
 
-    return pint.UnitRegistry(cache_folder=":auto:", autoconvert_offset_to_baseunit=True)
+    made: pint.UnitRegistry[float] = pint.UnitRegistry(None)
+    made.load_definitions([f"{name} = {meaning}" for name, meaning in UNITS.items()])
+    return made
 
 
-def to_si(text: str | float, dimension: str, key: str = "value") -> float:
+@functools.lru_cache(maxsize=256)
+def _size(unit: str, dimension: str) -> float:
+    """Size in SI of a unit in its canonical spelling."""
+    everyday = EVERYDAY[dimension].get(unit)
+    if everyday is not None:
+        return everyday
+    if not unit:
+        raise UnreadableError(f"has no unit, but {_kind(dimension)} needs one", _choices(dimension))
+    unknown = [name for name in names(unit) if name not in UNITS]
+    if unknown:
+        raise UnreadableError(f"has the unknown unit {shown(unknown[0])}", _choices(dimension))
+    quantity = registry().parse_expression(unit)
+    wanted = DIMENSIONS[dimension]
+    for si, size in {wanted.si: 1.0, **wanted.also}.items():
+        if quantity.check(registry().parse_expression(si).dimensionality):
+            return float(quantity.to(si).magnitude) * size
+    pound = ' ("lb" is a mass, the force is lbf)' if "lb" in names(unit) else ""
+    raise UnreadableError(f"is not {_kind(dimension)}{pound}", _choices(dimension))
+
+
+def _kind(dimension: str) -> str:
+    """``a length``, ``an inverse length``."""
+    return f"{'an' if dimension[0] in 'aei' else 'a'} {dimension.replace('_', ' ')}"
+
+
+def _choices(dimension: str) -> str:
+    some = ", ".join(list(EVERYDAY[dimension])[:4])
+    return f'{_kind(dimension)} is expected, e.g. in {some}; write for example "{DIMENSIONS[dimension].example}"'
+
+
+def unit_size(unit: str, dimension: str, key: str = "unit") -> float:
+    """Size of a unit in SI.
+
+    Parameters
+    ----------
+    unit : str
+        As a column head holds it, ``um`` or ``N/mm``.
+    dimension : str
+        A key of `DIMENSIONS`.
+    key : str
+        Name of the input for the error message.
+
+    Raises
+    ------
+    InputError
+        If the unit is not known or of another dimension.
+    """
+    try:
+        return _size(canonical(unit) if unit.strip() else "", dimension)
+    except UnreadableError as error:
+        raise InputError(key, shown(unit), error.rule, error.remedy) from None
+
+
+def to_si(text: object, dimension: str, key: str = "value") -> float:
     """Parse a quantity written by a user and return it in SI.
 
     Parameters
     ----------
-    text : str or float
-        For example ``"3.175 mm"``. A bare number is accepted for dimensionless values only.
+    text : str
+        ``number unit``, for example ``"3.175 mm"``, and nothing else.
     dimension : str
-        A key of `DIMENSIONS`.
+        A key of `DIMENSIONS`. A rotational speed in 1/min, 1/s or Hz counts revolutions.
     key : str
         Name of the input for the error message.
 
@@ -108,33 +191,20 @@ def to_si(text: str | float, dimension: str, key: str = "value") -> float:
     Raises
     ------
     InputError
-        If the text is no quantity, has no unit, or has the wrong dimension.
+        If the text is no number with a unit, or the unit has the wrong dimension.
     """
-    unit, example = DIMENSIONS[dimension]
-    kind = dimension.replace("_", " ")
+    kind, remedy = _kind(dimension), f'write for example "{DIMENSIONS[dimension].example}"'
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
-        raise InputError(key, repr(text), f"must be a {kind} with its unit", f'write for example "{example}"')
+        raise InputError(key, shown(text), f"must be {kind} with its unit", remedy)
     if isinstance(text, (int, float)):
-        if dimension == "dimensionless":
-            return float(text)
-        raise InputError(key, text, f"is a bare number, but a {kind} needs a unit", f'write for example "{example}"')
-    everyday = _everyday(text, dimension)
-    if everyday is not None and math.isfinite(everyday):
-        return everyday
-    import pint
-
+        raise InputError(key, shown(text), f"is a bare number, but {kind} needs a unit", remedy)
     try:
-        quantity: pint.Quantity[float] = registry().Quantity(text)
-        value = float(quantity.to(unit or "dimensionless").magnitude)
-    except pint.DimensionalityError:
-        raise InputError(key, f'"{text}"', f"is not a {kind}", f'write for example "{example}"') from None
-    except Exception as problem:  # noqa: BLE001  (pint raises a dozen kinds, tokenizer errors among them)
-        detail = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
-        raise InputError(
-            key, f'"{text}"', f"is not a quantity that can be read ({detail})", f'write for example "{example}"'
-        ) from None
+        number, unit = split(text)
+        value = number * _size(unit, dimension)
+    except UnreadableError as error:
+        raise InputError(key, shown(text), error.rule, error.remedy or remedy) from None
     if not math.isfinite(value):
-        raise InputError(key, f'"{text}"', "must be finite")
+        raise InputError(key, shown(text), "must be finite")
     return value
 
 
@@ -184,15 +254,16 @@ def as_text(value: Any, dimension: str, *, bare_si: bool = False) -> Any:
     InputError
         If a quantity of pint has the wrong dimension.
     """
-    unit, example = DIMENSIONS[dimension][:2]
+    unit = DIMENSIONS[dimension].si
     if callable(getattr(value, "to", None)) and hasattr(value, "magnitude"):
         import pint
 
+        if dimension in ("angle", "speed", "frequency"):  # pint's radian, cycle and revolution are plain numbers
+            return f"{float(value.magnitude)!r} {value.units:~C}"
         try:
-            return f"{float(value.to(unit or 'dimensionless').magnitude)!r} {unit}"
+            return f"{float(value.to(unit).magnitude)!r} {unit}"
         except pint.DimensionalityError:
-            kind = dimension.replace("_", " ")
-            raise InputError("value", str(value), f"is not a {kind}", f'write for example "{example}"') from None
+            raise InputError("value", str(value), f"is not {_kind(dimension)}", _choices(dimension)) from None
     if bare_si and not isinstance(value, (bool, str)) and isinstance(value, Real):
         return f"{float(value)!r} {unit}"
     return value

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
-from fegear.units import to_si
+from fegear.units import unit_size
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,7 +48,7 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
         if match is None or match["name"] not in dimensions:
             continue
         name, unit = match["name"], match["unit"] or ""
-        scale = to_si(f"1 {unit}", dimensions[name], f"{key}, column {name}")
+        scale = unit_size(unit, dimensions[name], f"{key}, column {name}")
         try:
             values = np.array([float(row[i]) for row in rows[1:]])
         except (ValueError, IndexError):

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
 
-from fegear.errors import FegearError, InputError
+from fegear.errors import FegearError, InputError, shown
 from fegear.units import as_text, to_si
 
 #: Key of the context of validation: whether numbers without a unit are SI (arguments of Python functions are).
@@ -46,13 +46,12 @@ def quantity(dimension: str, *, positive: bool = False, not_negative: bool = Fal
             number = to_si(value, dimension, "value")
         except InputError as error:
             raise refuse(error.rule, error.remedy, value=error.value) from None
-        shown = f'"{value}"' if isinstance(value, str) else value
         if not plausible(number):
-            raise refuse(f"is {number:.3g} in SI units, beyond any machine", "check the unit", value=shown)
+            raise refuse(f"is {number:.3g} in SI units, beyond any machine", "check the unit", value=shown(value))
         if positive and number <= 0.0:
-            raise refuse("must be greater than zero", value=shown)
+            raise refuse("must be greater than zero", value=shown(value))
         if not_negative and number < 0.0:
-            raise refuse("must not be negative", value=shown)
+            raise refuse("must not be negative", value=shown(value))
         return number
 
     return BeforeValidator(read)
