@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import signal
+import sys
 from typing import Annotated
 
 import typer
@@ -15,7 +17,8 @@ from fegear.commands.export import export
 from fegear.commands.plan import plan
 from fegear.commands.run import run
 from fegear.commands.sweep import sweep
-from fegear.errors import FegearError
+from fegear.errors import NO_ROOM, FegearError
+from fegear.streams import give_up
 
 app = typer.Typer(
     help="Finite-element workbench for gear teeth.",
@@ -50,9 +53,40 @@ def main() -> None:
     # on a busy machine they wait for each other. Set before numpy is loaded; a user's own choice stands.
     for library in ("OMP", "OPENBLAS", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    _heed_requests_to_stop()
     try:
         app()
+        sys.stdout.flush()
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)
+    except _Stopped as request:
+        leave(f"stopped by {request.name}; results of earlier runs are as they were.", 128 + request.number)
     except FegearError as error:
         leave(str(error), 2)
+    except MemoryError:
+        leave("out of memory; results of earlier runs are as they were. Ask for less at once, or allow more.", 2)
+    except OSError as error:
+        give_up(sys.stdout)
+        if error.errno not in NO_ROOM:
+            raise
+        where = f" to {error.filename}" if error.filename else ""
+        leave(f"cannot write{where} ({error.strerror}); what stands in output folders is whole.", 2)
+
+
+class _Stopped(BaseException):
+    """Somebody asked the program to end: a batch system, a terminal that was closed."""
+
+    def __init__(self, number: int) -> None:
+        self.number, self.name = number, signal.Signals(number).name
+
+
+def _heed_requests_to_stop() -> None:
+    """Let a request to stop end the program as Ctrl-C does, so that it clears away what is unfinished."""
+
+    def stop(number: int, _frame: object) -> None:
+        signal.signal(number, signal.SIG_IGN)  # once is enough
+        raise _Stopped(number)
+
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name) and signal.getsignal(getattr(signal, name)) == signal.SIG_DFL:
+            signal.signal(getattr(signal, name), stop)

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import errno
+
+#: What the system says of a disk that takes no more: full, over a quota or a limit, failing, read-only.
+NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO})
 #: How to install what only notebooks need.
 NOTEBOOK_EXTRA = "install it with: pip install 'fegear[notebook]'"
 #: Most characters of an input that a message repeats.

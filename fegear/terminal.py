@@ -28,8 +28,9 @@ class PlainLines:
 
     def end(self, seconds: float) -> None:
         """Write the line."""
-        self._stream.write(f"{self._title}: {seconds:.2f} s\n")
-        self._stream.flush()
+        with contextlib.suppress(OSError, ValueError):  # a log that is full or closed takes no run with it
+            self._stream.write(f"{self._title}: {seconds:.2f} s\n")
+            self._stream.flush()
 
 
 class Bar:

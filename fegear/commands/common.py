@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
+
+from fegear.streams import complain
 
 INTERRUPTED = "interrupted; results of earlier runs are as they were."
 
@@ -25,5 +26,5 @@ Scheduler = Annotated[
 
 def leave(message: str, code: int) -> NoReturn:
     """End the program with a sentence on stderr and an exit code."""
-    sys.stderr.write(f"fegear: {message}\n")
+    complain(f"fegear: {message}")
     raise SystemExit(code)

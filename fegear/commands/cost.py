@@ -23,21 +23,20 @@ def cost(
     """Show what accuracy costs in time: every closed form, sectors, whole gears from coarse to fine."""
     from fegear.case.reading import read_scene
     from fegear.output.cost import cheapest_lines, write_cost
-    from fegear.output.folder import check_target, whole_or_nothing
+    from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.studies.cost import asked, forecast, ladder_of, study_cost
     from fegear.terminal import watcher
 
     try:
         studied = asked(read_scene(case, overrides or ()))
-        target = out or Path("results") / f"{case.stem}-cost"
-        check_target(target)
+        target = out or default_folder(case.stem, "-cost")
         ladder = ladder_of(studied, quick=quick)
         quantities = ", ".join(q.name for q in studied.quantities)
         typer.echo(f"Cost study: {len(ladder.configurations)} configurations for {quantities}.")
         typer.echo(f"Predicted: about {forecast(studied, ladder):.2g} s of one core, measured on a usual machine.")
-        with watcher(sys.stderr) as watching:
-            results = study_cost(studied, quick=quick, watcher=watching)
         with whole_or_nothing(target) as scratch:
+            with watcher(sys.stderr) as watching:
+                results = study_cost(studied, quick=quick, watcher=watching)
             write_cost(results, scratch, plots=not no_plots)
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)

@@ -23,21 +23,20 @@ def effects(
 ) -> None:
     """Run a case with each effect switched, one at a time: what it changes, the time it costs, one picture for each."""
     from fegear.output.effects import write_effects
-    from fegear.output.folder import check_target, whole_or_nothing
+    from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.studies.effect_study import effect_study
     from fegear.terminal import watcher
 
     start = time.perf_counter()
     try:
-        target = out or Path("results") / f"{case.stem}_effects"
-        check_target(target)
-        with watcher(sys.stderr) as watching:
-            watching.begin("Each effect switched", 1, 1)
-            scene, switched, fixed = effect_study(
-                case, overrides or (), only or (), lambda _effect, fraction: watching.advance(fraction)
-            )
-            watching.end(time.perf_counter() - start)
+        target = out or default_folder(case.stem, "_effects")
         with whole_or_nothing(target) as scratch:
+            with watcher(sys.stderr) as watching:
+                watching.begin("Each effect switched", 1, 1)
+                scene, switched, fixed = effect_study(
+                    case, overrides or (), only or (), lambda _effect, fraction: watching.advance(fraction)
+                )
+                watching.end(time.perf_counter() - start)
             sentences = write_effects(scene, switched, fixed, scratch)
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)

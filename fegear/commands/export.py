@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -22,11 +21,11 @@ def export(
     """Write drawings (DXF) and meshes of the whole gear (gmsh, VTU, Abaqus/CalculiX) for other programs."""
     from fegear.case.reading import read_scene
     from fegear.output.export import export_gears
-    from fegear.output.folder import whole_or_nothing
+    from fegear.output.folder import default_folder, whole_or_nothing
 
     try:
         scene = read_scene(case, overrides or ())
-        target = out or Path("results") / scene.name / "export"
+        target = out or default_folder(scene.name) / "export"
         with whole_or_nothing(target) as scratch:
             written = export_gears(scene, scratch, gear or list(scene.gears), formats)
     except KeyboardInterrupt:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import sys
 import time
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -31,7 +30,7 @@ def run(
     from fegear.engine.executor import Executor
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan
-    from fegear.output.folder import whole_or_nothing
+    from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.write import STEPS, write_results
     from fegear.results.catalogue import STAGES
     from fegear.solution_cache import SolutionCache, cache_on_disk
@@ -41,7 +40,7 @@ def run(
     try:
         scene = read_scene(case, overrides or ())
         planned = make_plan(scene, STAGES)
-        target = out or Path("results") / scene.name
+        target = out or default_folder(scene.name)
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))
             watching = stack.enter_context(watcher(sys.stderr))

@@ -37,7 +37,7 @@ def sweep(
 ) -> None:
     """Run a case over a grid of values; killed and started again, it resumes where it stopped."""
     from fegear.engine.executor import Executor
-    from fegear.output.folder import check_target, whole_or_nothing
+    from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.sweep import write_sweep
     from fegear.solution_cache import SolutionCache, cache_on_disk
     from fegear.studies.axis import read_axis
@@ -46,9 +46,9 @@ def sweep(
 
     try:
         axes = [read_axis(text) for text in over]
-        target = out or Path("results") / f"{case.stem}_sweep"
-        check_target(target)
+        target = out or default_folder(case.stem, "_sweep")
         with contextlib.ExitStack() as stack:
+            scratch = stack.enter_context(whole_or_nothing(target))
             watching = stack.enter_context(watcher(sys.stderr, remaining=True))
             count = math.prod(len(axis) for axis in axes)
             watching.begin(f"{count} points", 1, 1)
@@ -61,7 +61,6 @@ def sweep(
                 progress=watching.advance,
             )
             watching.end(results.seconds)
-        with whole_or_nothing(target) as scratch:
             remarks = write_sweep(results, scratch, plots=not no_plots)
     except KeyboardInterrupt:
         leave("interrupted; started again, the sweep resumes where it stopped.", 130)

@@ -83,14 +83,21 @@ def on_cores(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]
 
 def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
     from concurrent.futures import ProcessPoolExecutor, as_completed
-    from multiprocessing import get_context
+    from multiprocessing import active_children, get_context
 
     with _one_thread_each():
         # Spawned, not forked: a fork would share gmsh's, numba's and OpenBLAS's state with its parent.
+        others = {child.pid for child in active_children()}
         pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_settle)
         try:
             futures = {pool.submit(job, point): i for i, point in todo.items()}
             for future in as_completed(futures):
                 yield futures[future], future.result()
+        except BaseException:
+            # An interrupt, or whoever asks for the replies has failed: nobody waits for what is under way.
+            for child in active_children():
+                if child.pid not in others:
+                    child.terminate()
+            raise
         finally:
             pool.shutdown(wait=True, cancel_futures=True)

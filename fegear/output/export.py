@@ -9,6 +9,7 @@ from fegear.errors import InputError
 from fegear.models.settings import mesh_settings
 from fegear.models.tooth_mesh import own_sector_mesh
 from fegear.output.dxf import write_dxf
+from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,10 +52,10 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
         if name not in scene.gears:
             raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, scene.gears))
         if "dxf" in wanted:
-            written += write_dxf(scene.gears[name], folder, name)
+            written += write_dxf(scene.gears[name], folder, file_name(name))
         if wanted.difference({"dxf"}):
             from fegear.output.mesh_export import write_meshes
 
             settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
-            written += write_meshes(scene.gears[name], folder, name, wanted, settings, mesh)
+            written += write_meshes(scene.gears[name], folder, file_name(name), wanted, settings, mesh)
     return [path.name for path in written]

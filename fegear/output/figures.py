@@ -8,6 +8,7 @@ import numpy as np
 
 from fegear.engine.figure import Figure
 from fegear.errors import MissingLibraryError
+from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,5 +79,10 @@ def _write_field(field: MeshField, folder: Path) -> None:
 
     folder.mkdir(exist_ok=True)
     write_mesh_file(
-        folder / f"{field.name}.vtu", np.asarray(field.points), field.triangles, {}, field.values, single=True
+        folder / f"{file_name(field.name)}.vtu",
+        np.asarray(field.points),
+        field.triangles,
+        {},
+        field.values,
+        single=True,
     )

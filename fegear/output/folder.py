@@ -3,97 +3,145 @@
 from __future__ import annotations
 
 import contextlib
-import json
+import errno
 import os
-import shutil
 import signal
-import tempfile
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fegear.errors import InputError
+from fegear.errors import NO_ROOM, InputError
+from fegear.output.claim import HeldError, claimed, clear_abandoned, folder_for
+from fegear.output.exchange import JOURNAL, RECORD, check_room, exchange, put_back
+from fegear.output.file_names import file_name
+from fegear.streams import complain
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
-#: The file that lists all others, so that a later run can clear away what it no longer makes; moved in last.
+#: The file that lists all others; with it, a folder's earlier files are replaced as a whole.
 SUMMARY = "summary.json"
+#: What every command writes into, held against the folder before anything is computed.
+_KNOWN = (SUMMARY, RECORD, "report.html", "results.nc", "sweep.nc", "tables/*", "plots/*", "fields/*")
+
+
+def default_folder(name: str, ending: str = "") -> Path:
+    """Where a command writes without ``--out``: ``results/<case><ending>``."""
+    return Path("results") / f"{file_name(name)}{ending}"
+
+
+def _say(sentence: str) -> None:
+    """Tell the user what became of a file of his own."""
+    complain(f"Note: {sentence}")
+
+
+@contextlib.contextmanager
+def whole_or_nothing(target: Path, key: str = "--out", say: Callable[[str], None] = _say) -> Iterator[Path]:
+    """Give a scratch folder whose files replace those of `target` when the block ends well.
+
+    An error or an interrupt inside the block leaves `target` exactly as it was, and no folder behind that was not
+    there before. What a killed process left behind is put right first.
+
+    Parameters
+    ----------
+    target : Path
+        Output folder; made if needed, and held against other processes meanwhile. Files that an earlier run wrote and
+        that this one does not make are removed, if they still are what it wrote. Files of others are left alone;
+        those that stand where a new one must go are kept under another name.
+    key : str
+        Name of the option for error messages.
+    say : callable
+        Receives a sentence for the user about files that were kept.
+
+    Yields
+    ------
+    Path
+        The scratch folder, on the file system of `target`, so that moving is a rename.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written to, or another process writes it.
+    """
+    made: list[Path] = []
+    with contextlib.ExitStack() as held:
+        with _refusals(key, target):
+            target = _real(target, key)
+            made = _made_parents(target.parent)
+            held.callback(_remove_empty, made)
+            base, name = _workplace(target)
+            clear_abandoned(base, JOURNAL)
+            work = held.enter_context(claimed(folder_for(base, name)))
+            put_back(work, target)
+            check_room(target, _KNOWN)
+            scratch = _emptied(work / "new")
+        with _refusals(key, target, NO_ROOM):
+            yield scratch
+        with _undisturbed(), _refusals(key, target):
+            kept = exchange(work, scratch, target, all_of_it=(scratch / SUMMARY).is_file())
+        for old, new in kept.items():
+            say(f"{target / old} was not what a run of fegear had written; it is kept as {new}.")
+
+
+@contextlib.contextmanager
+def _refusals(key: str, target: Path, kinds: frozenset[int] = frozenset()) -> Iterator[None]:
+    """Say what the system refuses as a sentence; with `kinds`, these refusals alone: others are bugs and remain."""
+    try:
+        yield
+    except HeldError as holder:
+        raise InputError(
+            key, f'"{target}"', f"is being written by another run ({holder})",
+            "wait until it has ended, or choose another folder with --out",
+        ) from None  # fmt: skip
+    except OSError as error:
+        if kinds and error.errno not in kinds:
+            raise
+        reason = error.strerror or str(error)
+        remedy = "make room, or " if error.errno in NO_ROOM else ""
+        raise InputError(
+            key, f'"{target}"', f"cannot be written to ({reason})", f"{remedy}choose another folder with --out"
+        ) from None
+
+
+def _real(target: Path, key: str) -> Path:
+    """The folder itself where `target` is a link to one; refuses what can be none."""
+    if target.is_symlink() and not target.exists():
+        raise InputError(key, f'"{target}"', "is a link to something that does not exist", "choose another folder")
+    target = Path(os.path.realpath(target))
+    below = next((folder for folder in target.parents if folder.exists()), target)
+    if not below.is_dir():
+        raise InputError(key, f'"{target}"', f'lies below "{below}", which is a file', "choose another folder")
+    if target.exists() and not target.is_dir():
+        raise InputError(key, f'"{target}"', "is a file, not a folder", "choose another folder")
+    if target.is_dir() and not os.access(target, os.W_OK | os.X_OK):
+        raise PermissionError(errno.EACCES, "the folder is read-only")
+    return target
+
+
+def _workplace(target: Path) -> tuple[Path, str]:
+    """Where the scratch folder goes: beside the target, or in it where it is a mount point or nothing else is ours."""
+    beside = target.parent
+    if target.is_dir() and (
+        target.stat().st_dev != beside.stat().st_dev or not os.access(beside, os.W_OK | os.X_OK) or target == beside
+    ):
+        return target, "work"
+    return beside, file_name(target.name)
 
 
 def _made_parents(target: Path) -> list[Path]:
     """Create the folders above `target`; return those that were not there, innermost first."""
     missing = [folder for folder in [target, *target.parents] if not folder.exists()]
-    target.mkdir(parents=True, exist_ok=True)
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        _remove_empty(missing)
+        raise
     return missing
 
 
-@contextlib.contextmanager
-def whole_or_nothing(target: Path, key: str = "--out") -> Iterator[Path]:
-    """Give a scratch folder whose files replace those of `target` when the block ends well.
-
-    An error or an interrupt inside the block leaves `target` exactly as it was, and no folder behind that was not
-    there before.
-
-    Parameters
-    ----------
-    target : Path
-        Output folder; made if needed. Files that an earlier run listed in its summary and that the new one does not
-        make are removed; files of others are left alone.
-    key : str
-        Name of the option for error messages.
-
-    Yields
-    ------
-    Path
-        The scratch folder, beside `target` so that moving is a rename.
-
-    Raises
-    ------
-    InputError
-        If the folder cannot be made or written to.
-    """
-    target = target.absolute()
-    made: list[Path] = []
-    below = next((folder for folder in target.parents if folder.exists()), target)
-    if not below.is_dir():
-        raise InputError(key, f'"{target}"', f'lies below "{below}", which is a file', "choose another folder")
-    try:
-        made = _made_parents(target.parent)
-        if target.exists() and not target.is_dir():
-            raise InputError(key, f'"{target}"', "is a file, not a folder", "choose another folder")
-        if target.is_dir() and not os.access(target, os.W_OK | os.X_OK):
-            raise PermissionError(13, "the folder is read-only")
-        scratch = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
-    except OSError as error:
-        _remove_empty(made)
-        reason = error.strerror or str(error)
-        raise InputError(
-            key, f'"{target}"', f"cannot be written to ({reason})", "choose another folder with --out"
-        ) from None
-    try:
-        yield scratch
-        with _undisturbed():
-            _move_in(scratch, target)
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
-        _remove_empty(made)
-
-
-def check_target(target: Path) -> None:
-    """Refuse a folder that `whole_or_nothing` could not fill, before long work is begun; leaves nothing behind.
-
-    Raises
-    ------
-    InputError
-        If the folder cannot be made or written to.
-    """
-
-    class Enough(Exception):  # noqa: N818  (no error: it ends the block without moving anything)
-        pass
-
-    with contextlib.suppress(Enough), whole_or_nothing(target):
-        raise Enough
+def _emptied(folder: Path) -> Path:
+    folder.mkdir()
+    return folder
 
 
 def _remove_empty(folders: list[Path]) -> None:
@@ -104,38 +152,20 @@ def _remove_empty(folders: list[Path]) -> None:
 
 @contextlib.contextmanager
 def _undisturbed() -> Iterator[None]:
-    """Hold Ctrl-C back for the few milliseconds in which finished files are moved."""
+    """Hold Ctrl-C and requests to stop back for the few milliseconds in which finished files are moved."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in numbers}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, previous)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def files_in(folder: Path) -> list[str]:
     """Relative names of all files below a folder, sorted."""
     return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
-
-
-def _listed(target: Path) -> set[str]:
-    """Files that an earlier run says it made; none if there was no run or its summary is not ours."""
-    try:
-        listed = json.loads((target / SUMMARY).read_text(encoding="utf-8")).get("files", [])
-        return {name for name in listed if isinstance(name, str) and not Path(name).is_absolute() and ".." not in name}
-    except (OSError, ValueError, AttributeError):
-        return set()
-
-
-def _move_in(scratch: Path, target: Path) -> None:
-    earlier, new = _listed(target), files_in(scratch)
-    for name in sorted(new, key=lambda name: name == SUMMARY):
-        place = target / name
-        place.parent.mkdir(parents=True, exist_ok=True)
-        (scratch / name).replace(place)
-    for name in earlier.difference(new):
-        (target / name).unlink(missing_ok=True)
-        with contextlib.suppress(OSError):
-            (target / name).parent.rmdir()

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.output.file_names import file_name
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -17,6 +19,11 @@ if TYPE_CHECKING:
 def cell(value: np.generic) -> str:
     """Write one cell: floats with 12 significant digits, whole numbers and texts as they are."""
     return f"{value:.12g}" if isinstance(value, np.floating) else str(value)
+
+
+def table_file(table: Table) -> str:
+    """Name of a table's file."""
+    return f"{file_name(table.name)}.csv"
 
 
 def table_text(table: Table) -> str:
@@ -40,6 +47,6 @@ def write_table(folder: Path, table: Table) -> Path:
     -------
     Path
     """
-    path = folder / f"{table.name}.csv"
+    path = folder / table_file(table)
     path.write_text(table_text(table), encoding="utf-8", newline="")
     return path

@@ -21,6 +21,7 @@ _spec.loader.exec_module(source_tree)
 LAYERS = {
     "fegear": 13,  # the top offers the workbench's names and loads them when they are used; __version__ is everyone's
     "errors": 0,
+    "streams": 0,
     "arrays": 0,
     "plain": 0.5,
     "unit_text": 0.4,

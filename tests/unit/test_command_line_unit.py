@@ -102,6 +102,7 @@ def test_export_writes_drawings_and_meshes(case, tmp_path):
     done = fegear("export", case, "--gear", "a", "--format", "dxf, msh", "--out", "o", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert {p.name for p in (tmp_path / "o").iterdir()} == {
+        ".fegear-files.json",
         "a.msh",
         "a_gear_polyline.dxf",
         "a_gear_spline.dxf",

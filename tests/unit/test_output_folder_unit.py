@@ -18,6 +18,7 @@ from fegear.engine.plan import Plan
 from fegear.engine.run import Results, Silence, Timing
 from fegear.engine.stage import Task
 from fegear.errors import InputError
+from fegear.output.exchange import RECORD
 from fegear.output.folder import whole_or_nothing
 from fegear.output.write import write_results
 
@@ -41,7 +42,7 @@ def test_files_appear_together_and_stale_ones_go(tmp_path):
     (out / "mine.txt").write_text("the user's own")
     with whole_or_nothing(out) as scratch:
         fill(scratch, ["tables/b.csv"], "second")
-    assert set(contents(out)) == {"tables/b.csv", "summary.json", "mine.txt"}
+    assert set(contents(out)) == {"tables/b.csv", "summary.json", RECORD, "mine.txt"}
     assert [p.name for p in (tmp_path / "deep").iterdir()] == ["out"]
 
 
@@ -66,6 +67,7 @@ def test_an_error_leaves_earlier_results_whole_and_no_traces(tmp_path, error):
 
 def test_an_interrupt_while_files_are_moved_waits(tmp_path, monkeypatch):
     out = tmp_path / "out"
+    out.mkdir()
     replace, before = Path.replace, signal.getsignal(signal.SIGINT)
 
     def interrupting(self, target):
@@ -75,7 +77,7 @@ def test_an_interrupt_while_files_are_moved_waits(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "replace", interrupting)
     with whole_or_nothing(out) as scratch:
         fill(scratch, ["a.csv", "b.csv"], "first")
-    assert set(contents(out)) == {"a.csv", "b.csv", "summary.json"}
+    assert set(contents(out)) == {"a.csv", "b.csv", "summary.json", RECORD}
     assert signal.getsignal(signal.SIGINT) is before
 
 

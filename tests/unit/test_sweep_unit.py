@@ -116,7 +116,7 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
     done = fegear(case, *axes, "--no-plots", "--out", out, cwd=tmp_path, cache=tmp_path / "cache")
     assert done.returncode == 0, done.stderr
     assert sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()) == [
-        "report.html", "summary.json", "sweep.nc", "tables/sweep.csv",
+        ".fegear-files.json", "report.html", "summary.json", "sweep.nc", "tables/sweep.csv",
     ]  # fmt: skip
     with xarray.open_dataset(out / "sweep.nc") as data:
         assert dict(data.sizes)["gear.a.teeth"] == 3

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fegear.engine.figure import Figure, View, few
 from fegear.output.draw_png.sheet import Sheet
+from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,11 +51,11 @@ def draw_pictures(figure: Figure, folder: Path, kind: str = "png") -> Iterator[P
     """
     alone = [view for view in figure.views if view.key]
     for view in alone:
-        path = folder / f"{view.key}.{kind}"
+        path = folder / f"{file_name(view.key)}.{kind}"
         _draw(figure, (view,), path)
         yield Picture(path, view.label, figure.caption)
     if not alone:
-        path = folder / f"{figure.key}.{kind}"
+        path = folder / f"{file_name(figure.key)}.{kind}"
         chosen = few(len(figure.views), most=figure.most_views)
         _draw(figure, tuple(figure.views[i] for i in chosen), path)
         yield Picture(path, figure.title, figure.caption)

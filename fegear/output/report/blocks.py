@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.output.numbers import plain_number, pretty_unit, with_error
-from fegear.output.tables import cell
+from fegear.output.tables import cell, table_file
 
 if TYPE_CHECKING:
     from fegear.engine.figure import Figure
@@ -153,6 +153,11 @@ class DataTable(Block):
     """The beginning of a table, with what it takes to see all of it, to sort it and to download it."""
 
     table: Table
+
+    @property
+    def file(self) -> str:
+        """Name of the file that holds all of it."""
+        return f"tables/{table_file(self.table)}"
 
     @property
     def count(self) -> int:

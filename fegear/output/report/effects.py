@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fegear.engine.outcome import Table
+from fegear.output.file_names import file_name
 from fegear.output.numbers import plain_number, pretty_unit
 from fegear.output.report.blocks import DataTable, Facts, Folded, Grid, Paragraph, Plot
 from fegear.output.report.page import Page, Section
@@ -100,7 +101,7 @@ def effects_page(
             Section("Table", (DataTable(table),)),
         ),
         tables=tuple(carried),
-        files={f"{scene.name}.toml": scene.text.encode()} if scene.text else {},
+        files={f"{file_name(scene.name)}.toml": scene.text.encode()} if scene.text else {},
         name=f"{scene.name}_effects",
     )
 

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 import fegear
 from fegear.errors import MissingLibraryError
 from fegear.output.draw_plotly import darker, plotly_json, template
+from fegear.output.file_names import file_name
 from fegear.output.report.library import compressed_plotly
 from fegear.output.report.rendering import render
-from fegear.output.tables import table_text
+from fegear.output.tables import table_file, table_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -100,7 +101,7 @@ def page_text(page: Page) -> str:
     str
         HTML without any reference to other files.
     """
-    files = {f"tables/{table.name}.csv": table_text(table).encode() for table in page.tables} | dict(page.files)
+    files = {f"tables/{table_file(table)}": table_text(table).encode() for table in page.tables} | dict(page.files)
     figures = _figures(page)
     return render(
         "page.html",
@@ -109,6 +110,7 @@ def page_text(page: Page) -> str:
         files=archive(files) if files else b"",
         figures=[{"key": figure.key, **plotly_json(figure)} for figure in figures],
         shades={"template": template(), "darker": darker(figures)},
+        archive=file_name(page.name),
         version=fegear.__version__,
         **(_library() if figures else {"plotly": "", "missing": ""}),
     )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import fegear
 from fegear.engine.citation import bibliography
+from fegear.output.file_names import file_name
 from fegear.output.report.accuracy import accuracy_blocks
 from fegear.output.report.blocks import (
     Code,
@@ -140,7 +141,7 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     Page
     """
     scene = results.scene
-    name = f"{scene.name}.toml"
+    name = f"{file_name(scene.name)}.toml"
     files = {name: scene.text.encode()} if scene.text else {}
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())

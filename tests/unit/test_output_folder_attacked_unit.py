@@ -1,0 +1,316 @@
+"""Nothing is lost in an output folder: not the user's own files, not results when a move fails or is killed."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from fegear.errors import InputError
+from fegear.output.claim import claimed, folder_for
+from fegear.output.exchange import JOURNAL, RECORD
+from fegear.output.folder import default_folder, whole_or_nothing
+
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """All files below a folder but fegear's record."""
+    found = (p for p in sorted(folder.rglob("*")) if p.is_file() and p.name != RECORD)
+    return {p.relative_to(folder).as_posix(): p.read_text() for p in found}
+
+
+def write(target: Path, files: dict[str, str], *, summary: str | None = "{}", say=lambda sentence: None) -> None:
+    """What a command does: some files, and a summary unless it is an export."""
+    with whole_or_nothing(target, say=say) as scratch:
+        for name, text in (files | ({} if summary is None else {"summary.json": summary})).items():
+            (scratch / name).parent.mkdir(exist_ok=True)
+            (scratch / name).write_text(text)
+
+
+def test_a_foreign_summary_removes_nothing(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (tmp_path / "precious").write_text("outside")
+    (out / "thesis.tex").write_text("mine")
+    listed = {"files": ["thesis.tex", "../precious", str(tmp_path / "precious"), "summary.json"]}
+    (out / "summary.json").write_text(json.dumps(listed))
+    write(out, {"report.html": "new"})
+    assert contents(out) == {
+        "thesis.tex": "mine", "report.html": "new", "summary.json": "{}", "summary.kept.json": json.dumps(listed),
+    }  # fmt: skip
+    assert (tmp_path / "precious").read_text() == "outside"
+
+
+@pytest.mark.parametrize("content", ["[]", "{", '{"files": 3}', '{"files": {"a": 1, "..": "x", "/etc/passwd": "x"}}'])
+def test_a_record_that_is_not_ours_removes_nothing(tmp_path, content):
+    out = tmp_path / "out"
+    write(out, {"tables/a.csv": "first"})
+    (out / RECORD).write_text(content)
+    write(out, {"tables/b.csv": "second"})
+    found = contents(out)
+    assert (found["tables/a.csv"], found["tables/b.csv"]) == ("first", "second")
+
+
+def test_a_file_that_the_user_put_or_changed_there_is_kept_and_said(tmp_path):
+    out, said = tmp_path / "out", []
+    out.mkdir()
+    (out / "report.html").write_text("the user's own")
+    write(out, {"report.html": "first", "tables/a.csv": "first"}, say=said.append)
+    assert contents(out)["report.kept.html"] == "the user's own"
+    assert len(said) == 1
+    assert "report.html" in said[0]
+    assert "report.kept.html" in said[0]
+    (out / "tables" / "a.csv").write_text("with the user's remarks")
+    write(out, {"report.html": "second", "tables/a.csv": "second"}, say=said.append)
+    write(out, {"report.html": "third"}, say=said.append)
+    assert len(said) == 2
+    assert contents(out) == {
+        "report.html": "third", "report.kept.html": "the user's own", "summary.json": "{}",
+        "tables/a.kept.csv": "with the user's remarks",
+    }  # fmt: skip
+
+
+def test_an_export_leaves_the_results_beside_it(tmp_path):
+    out = tmp_path / "out"
+    write(out, {"report.html": "run"})
+    for text in ("first", "second"):
+        write(out, {"a.msh": text}, summary=None)
+    assert contents(out) == {"report.html": "run", "summary.json": "{}", "a.msh": "second"}
+    write(out, {"report.html": "again"})
+    assert contents(out) == {"report.html": "again", "summary.json": "{}"}
+
+
+@pytest.mark.parametrize("existing", [{}, {"a.csv": "old", "z.csv": "old", "gone.csv": "old"}])
+@pytest.mark.parametrize("moves", range(5))
+def test_a_move_that_fails_half_way_leaves_all_as_it_was(tmp_path, monkeypatch, existing, moves):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "report.html").write_text("the user's own")
+    if existing:
+        write(out, existing)
+    before, replace = contents(tmp_path), Path.replace
+    count = 0
+
+    def failing(self, place):
+        nonlocal count
+        count += str(self).endswith((".csv", ".json")) and "new" in self.parts
+        if count == moves + 1:
+            count += 1
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        return replace(self, place)
+
+    monkeypatch.setattr(Path, "replace", failing)
+    new = {"a.csv": "new", "m.csv": "new", "z.csv": "new", "t/b.csv": "new"}
+    with pytest.raises(InputError, match="cannot be written to"):
+        write(out, new)
+    assert contents(tmp_path) == before
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from fegear.output.folder import whole_or_nothing
+replace, left = Path.replace, int(sys.argv[2])
+def killing(self, place):
+    global left
+    if "new" in self.parts:
+        left -= 1
+        if left < 0:
+            os.kill(os.getpid(), getattr(signal, sys.argv[3]))
+    return replace(self, place)
+Path.replace = killing
+with whole_or_nothing(Path(sys.argv[1])) as scratch:
+    for name in ("a.csv", "b.csv", "summary.json"):
+        (scratch / name).write_text("new")
+    if left == 0:
+        killing(scratch / "a.csv", scratch / "c.csv")
+"""
+
+
+def killed(out: Path, moves: int, by: str = "SIGKILL") -> int:
+    program = [sys.executable, "-c", KILLED, str(out), str(moves), by]
+    return subprocess.run(program, env=ENVIRONMENT, check=False, capture_output=True).returncode
+
+
+@pytest.mark.parametrize("moves", [0, 2])
+def test_what_a_killed_run_left_is_put_right_by_the_next(tmp_path, moves):
+    out = tmp_path / "out"
+    write(out, {"a.csv": "old", "gone.csv": "old"})
+    before = contents(out)
+    assert killed(out, moves) == -signal.SIGKILL
+    assert len(list(tmp_path.iterdir())) == 2
+    with contextlib.suppress(ZeroDivisionError), whole_or_nothing(out):
+        assert contents(out) == before
+        raise ZeroDivisionError
+    assert contents(out) == before
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_the_next_run_beside_it_clears_what_a_killed_one_left(tmp_path):
+    assert killed(tmp_path / "first", 0) == -signal.SIGKILL
+    assert [p.name for p in tmp_path.iterdir()] == [".fegear-first"]
+    write(tmp_path / "second", {})
+    assert [p.name for p in tmp_path.iterdir()] == ["second"]
+
+
+def test_two_runs_at_once_are_refused_with_the_holder(tmp_path):
+    out = tmp_path / "out"
+    program = (
+        "import sys, time\nfrom pathlib import Path\nfrom fegear.output.folder import whole_or_nothing\n"
+        "with whole_or_nothing(Path(sys.argv[1])) as scratch:\n"
+        "    print('at it', flush=True)\n    sys.stdin.read()\n    (scratch / 'summary.json').write_text('{}')\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program, str(out)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=ENVIRONMENT
+    ) as other:
+        assert other.stdout.readline() == b"at it\n"
+        with pytest.raises(InputError, match=f"another run .process {other.pid} on"):
+            write(out, {})
+        write(tmp_path / "elsewhere", {})
+        other.communicate(timeout=30)
+    assert other.returncode == 0
+    write(out, {"a.csv": ""})
+    assert set(contents(out)) == {"a.csv", "summary.json"}
+
+
+def test_folders_of_work_are_held_by_one_at_a_time(tmp_path):
+    """Many processes at once: each sees the folder empty, so no two were ever in it together."""
+    program = (
+        "import sys, time\nfrom pathlib import Path\nfrom fegear.output.claim import HeldError, claimed\n"
+        "done = 0\n"
+        "while done < 20:\n"
+        "    try:\n"
+        "        with claimed(Path(sys.argv[1])) as folder:\n"
+        "            (folder / 'mine').mkdir()\n"
+        "            done += 1\n"
+        "    except HeldError:\n"
+        "        time.sleep(0.0005)\n"
+    )
+    work = str(folder_for(tmp_path, "x"))
+    runs = [subprocess.Popen([sys.executable, "-c", program, work], env=ENVIRONMENT) for _ in range(3)]
+    assert [run.wait(timeout=120) for run in runs] == [0, 0, 0]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_stop_request_clears_the_scratch_folder_away(tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text('results = ["stiffness"]\n[gear.a]\nteeth = 20\nmodule = "1 mm"\n')
+    run = subprocess.Popen(
+        [sys.executable, "-m", "fegear", "run", str(case), "--out", str(tmp_path / "out")],
+        env=ENVIRONMENT, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    for _ in range(600):
+        if (tmp_path / ".fegear-out").is_dir():
+            break
+        time.sleep(0.02)
+    run.terminate()
+    _, said = run.communicate(timeout=60)
+    assert run.returncode == 143
+    assert said.endswith("fegear: stopped by SIGTERM; results of earlier runs are as they were.\n")
+    assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
+
+
+@pytest.mark.parametrize(
+    ("make", "word"),
+    [
+        (lambda out: (out / "tables").write_text(""), "tables is a file"),
+        (lambda out: (out / "tables").symlink_to(out.parent), "tables is a link"),
+        (lambda out: (out / "plots").symlink_to("nowhere"), "plots is a link"),
+        (lambda out: (out / "report.html").mkdir(), "report.html is a folder"),
+        (lambda out: (out / "summary.json" / "deep").mkdir(parents=True), "summary.json is a folder"),
+    ],
+)
+def test_what_could_not_be_filled_is_refused_before_work_begins(tmp_path, make, word):
+    out = tmp_path / "out"
+    out.mkdir()
+    make(out)
+    begun = False
+    with pytest.raises(InputError, match=word), whole_or_nothing(out):
+        begun = True
+    assert not begun
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_links_to_folders_are_followed_and_dangling_ones_refused(tmp_path):
+    real = tmp_path / "deep" / "real"
+    real.mkdir(parents=True)
+    link = tmp_path / "link"
+    link.symlink_to(real)
+    write(link, {"a.csv": "1"})
+    assert set(contents(real)) == {"a.csv", "summary.json"}
+    assert link.is_symlink()
+    link.unlink()
+    link.symlink_to(tmp_path / "nowhere")
+    with pytest.raises(InputError, match="is a link to something that does not exist"):
+        write(link, {})
+    link.unlink()
+    link.symlink_to(link)
+    with pytest.raises(InputError):
+        write(link, {})
+
+
+@pytest.mark.skipif(not os.access("/dev/shm", os.W_OK), reason="there is no second file system")  # noqa: S108
+def test_a_folder_on_another_file_system_works(tmp_path):
+    """A mount point: the scratch folder must lie in it, not beside it. Here it is its parent that lies elsewhere."""
+    import tempfile
+
+    from fegear.output.folder import _workplace
+
+    assert _workplace(Path("/dev/shm"))[0] == Path("/dev/shm")  # noqa: S108
+    with tempfile.TemporaryDirectory(dir="/dev/shm") as other:
+        out = tmp_path / "out"
+        out.symlink_to(other)
+        for text in ("first", "second"):
+            write(out, {"tables/a.csv": text})
+        assert contents(Path(other)) == {"tables/a.csv": "second", "summary.json": "{}"}
+
+
+def test_a_full_disk_is_one_sentence_and_the_old_results_stay(tmp_path):
+    out = tmp_path / "out"
+    write(out, {"a.csv": "old"})
+    before = contents(tmp_path)
+
+    def fill(scratch: Path) -> None:
+        (scratch / "a.csv").write_text("new")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with pytest.raises(InputError, match="No space left on device"), whole_or_nothing(out) as scratch:
+        fill(scratch)
+    assert contents(tmp_path) == before
+
+
+def test_a_journal_that_is_not_ours_does_no_harm(tmp_path):
+    out, precious = tmp_path / "out", tmp_path / "precious"
+    precious.write_text("x")
+    write(out, {"a.csv": "old"})
+    work = folder_for(tmp_path, "out")
+    (work / "old").mkdir(parents=True)
+    journal = {"made": {"../precious": "0" * 64, "a.csv": "0" * 64}, "kept": {"b.csv": "../precious", "c": "a.csv"}}
+    (work / JOURNAL).write_text(json.dumps(journal))
+    write(out, {"b.csv": "new"})
+    assert precious.read_text() == "x"
+    assert "b.csv" in contents(out)
+
+
+def test_a_case_never_writes_into_the_folder_above():
+    for stem in ("..", ".", "", "/", "a/../../b"):
+        folder = default_folder(stem)
+        assert folder.parent == Path("results")
+        assert folder.name not in ("", ".", "..")
+    assert default_folder("nasa_four_square", "_sweep") == Path("results/nasa_four_square_sweep")
+
+
+def test_a_claim_of_a_folder_that_cannot_be_made_is_an_error(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError, match="Not a directory"), claimed(folder_for(tmp_path / "file", "x")):
+        pass
