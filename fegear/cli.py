@@ -14,6 +14,7 @@ from fegear.commands.common import INTERRUPTED, leave
 from fegear.commands.cost import cost
 from fegear.commands.effects import effects
 from fegear.commands.export import export
+from fegear.commands.help import Command, Group, context_settings
 from fegear.commands.plan import plan
 from fegear.commands.run import run
 from fegear.commands.sweep import sweep
@@ -23,8 +24,10 @@ from fegear.streams import give_up
 app = typer.Typer(
     help="Finite-element workbench for gear teeth.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain text: it can be searched, and no option is cut short where the terminal is narrow
+    cls=Group,
+    context_settings=context_settings(),
 )
 
 
@@ -44,7 +47,7 @@ def _options(
 
 
 for _command in (run, plan, cost, sweep, effects, export):  # in the order of ``fegear --help``
-    app.command()(_command)
+    app.command(cls=Command)(_command)
 
 
 def main() -> None:

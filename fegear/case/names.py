@@ -1,4 +1,4 @@
-"""The nearest known name, for messages about unknown ones."""
+"""The known names, the nearest one first, for messages about unknown ones."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ if TYPE_CHECKING:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return a remedy that shows the known name nearest to `name`, or all of them when none is near."""
+    """Return a remedy that lists the known names, and says which is nearest to `name` if one is."""
     names = sorted(known)
     near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.5)
-    if near:
-        return f'the nearest known name is "{near[0]}"'
-    return f"known here: {', '.join(names)}" if names else "none is known here"
+    listed = f"known here: {', '.join(names)}" if names else "none is known here"
+    return f'the nearest known name is "{near[0]}"; {listed}' if near and len(names) > 1 else listed

@@ -5,37 +5,23 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from fegear.case import Case
+from fegear.case.keys import keys_at
 from fegear.case.names import nearest
 from fegear.case.part import BARE_SI
+from fegear.case.refusals import refusal
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from pydantic_core import ErrorDetails
-
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.helical_gear import HelicalGear
     from fegear.helical.pair import HelicalPair
-
-_KINDS = {
-    "int_type": "must be a whole number",
-    "int_from_float": "must be a whole number",
-    "float_type": "must be a number",
-    "string_type": "must be a text in quotes",
-    "bool_type": "must be true or false",
-    "list_type": "must be a list in square brackets",
-    "dict_type": "must be a table",
-    "model_type": "must be a table of keys and values",
-    "finite_number": "must be finite",
-    "too_short": "must not be empty",
-}
 
 
 @dataclass(frozen=True)
@@ -135,10 +121,7 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
     try:
         case = Case.model_validate(document, context={BARE_SI: bare_si})
     except ValidationError as error:
-        found = error.errors(include_url=False)
-        # A misspelt key comes first: what is said to be missing is often its right spelling.
-        unknown = [one for one in found if one["type"] == "extra_forbidden"]
-        raise _sentence((unknown or found)[0]) from None
+        raise refusal(error) from None
     gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items() if not part.is_helical}
     helical_gears = {key: part.build_helical(f"gear.{key}") for key, part in case.gear.items() if part.is_helical}
     for key, pair in case.pair.items():
@@ -172,78 +155,6 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
 def _known(key: str, name: str, known: Iterable[str], kind: str) -> None:
     if name not in known:
         raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known))
-
-
-# ---- errors ------------------------------------------------------------------------------------------------------
-def _sentence(error: ErrorDetails) -> InputError:
-    """Turn one of pydantic's errors into fegear's."""
-    kind, context, value = error["type"], error.get("ctx", {}), error.get("input")
-    loc = [str(step) for step in error["loc"]]
-    if kind == "fegear" and context["key"]:
-        loc.append(context["key"])
-    key = _dotted(loc)
-    if kind == "fegear":
-        shown = context["shown"]
-        if shown is None:
-            shown = value.get(loc[-1], "(not given)") if isinstance(value, dict) and context["key"] else _show(value)
-        return InputError(key, shown, context["rule"], context["remedy"])
-    if kind == "extra_forbidden":
-        known = _keys_at(loc[:-1])
-        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known))
-    if kind == "missing":
-        return InputError(key, "(not given)", "is required")
-    if kind == "literal_error":
-        return InputError(key, _show(value), f"must be {context['expected']}")
-    rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
-    return InputError(key, _show(value), rule[0].lower() + rule[1:])
-
-
-def _dotted(loc: list[str]) -> str:
-    text = ""
-    for step in loc:
-        text += f"[{step}]" if step.isdigit() else f".{step}"
-    return text.removeprefix(".") or "case"
-
-
-def _show(value: object) -> str:
-    if isinstance(value, str):
-        return f'"{value}"'
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, (dict, list)) and len(str(value)) > 60:
-        return "(a table)" if isinstance(value, dict) else "(a list)"
-    return str(value)
-
-
-# ---- what keys exist ---------------------------------------------------------------------------------------------
-def part_models(annotation: object) -> list[type[BaseModel]]:
-    """Tables that an annotation allows: ``Part``, ``Part | None``, ``Annotated[Part, ...]``, ``dict[str, Part]``."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    if get_origin(annotation) is Annotated:
-        return part_models(get_args(annotation)[0])
-    if get_origin(annotation) is dict:
-        return part_models(get_args(annotation)[1])
-    if get_origin(annotation) is list:
-        return part_models(get_args(annotation)[0])
-    if get_origin(annotation) in (Union, UnionType):
-        return [model for argument in get_args(annotation) for model in part_models(argument)]
-    return []
-
-
-def _keys_at(loc: Sequence[str]) -> list[str]:
-    """Known keys of the table at `loc`; an empty list where the tables carry names of the user's choice."""
-    models: list[type[BaseModel]] = [Case]
-    steps = list(loc)
-    while steps:
-        step = steps.pop(0)
-        annotations = [model.model_fields[step].annotation for model in models if step in model.model_fields]
-        if any(get_origin(annotation) is dict for annotation in annotations):
-            if not steps:
-                return []
-            steps.pop(0)  # the name that the user gave
-        models = [model for annotation in annotations for model in part_models(annotation)] or models
-    return sorted({name for model in models for name in model.model_fields})
 
 
 def apply_override(document: dict[str, Any], override: str) -> None:
@@ -282,7 +193,7 @@ def set_key(document: dict[str, Any], path: str, value: object, option: str = "-
     table = document
     for depth, step in enumerate(steps[:-1]):
         if step not in table:
-            known = _keys_at(steps[:depth]) if depth else sorted(Case.model_fields)
+            known = keys_at(steps[:depth]) if depth else sorted(Case.model_fields)
             if not known:  # a misspelt name would otherwise begin a gear, a body or a shaft of its own
                 raise InputError(option, f'"{path}"', f'"{step}" is not in this case', nearest(step, table))
             if step not in known:
@@ -291,7 +202,7 @@ def set_key(document: dict[str, Any], path: str, value: object, option: str = "-
         if not isinstance(table[step], dict):
             raise InputError(option, f'"{path}"', f'"{step}" is no table in this case, so nothing can be set in it')
         table = table[step]
-    known = _keys_at(steps[:-1])
+    known = keys_at(steps[:-1])
     if known and steps[-1] not in known and steps[-1] not in table:
         raise InputError(option, f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known))
     table[steps[-1]] = value

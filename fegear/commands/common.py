@@ -1,20 +1,65 @@
-"""What the commands share: arguments that mean the same everywhere, and how a command is left early."""
+"""What the commands share: arguments that mean the same everywhere, what they print, and how one is left early."""
 
 from __future__ import annotations
 
+import contextlib
+import json
+import sys
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 from fegear.streams import complain
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from contextlib import AbstractContextManager
+
+    from fegear.engine.run import Watcher
+
 INTERRUPTED = "interrupted; results of earlier runs are as they were."
+
+
+def result_names() -> list[str]:
+    """Names of all results, in the order of the catalogue."""
+    from fegear.results.catalogue import STAGES
+
+    return list(dict.fromkeys(name for stage in STAGES for name in stage.results))
+
+
+def effect_names() -> list[str]:
+    """Names of all effects."""
+    from fegear.case.effects import EffectsPart
+
+    return sorted(EffectsPart.model_fields)
+
+
+def _complete_results(incomplete: str) -> list[str]:
+    """What may follow in a list of results that is being typed."""
+    before, comma, last = incomplete.rpartition(",")
+    return [f"{before}{comma}{name}" for name in result_names() if name.startswith(last)]
+
+
+def complete_effects(incomplete: str) -> list[str]:
+    """What an effect that is being typed may become."""
+    return [name for name in effect_names() if name.startswith(incomplete)]
+
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
 Overrides = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key of the case, e.g. --set gear.a.teeth=30."),
+]
+Wanted = Annotated[
+    str | None,
+    typer.Option(
+        "--results",
+        metavar="A,B",
+        help="Compute these results in place of the case's; fegear results lists them.",
+        autocompletion=_complete_results,
+    ),
 ]
 Out = Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>.")]
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw nothing: tables, dataset and report alone.")]
@@ -22,6 +67,62 @@ Scheduler = Annotated[
     str | None,
     typer.Option("--scheduler", metavar="ADDRESS", help="A running Dask scheduler, e.g. tcp://10.0.0.5:8786."),
 ]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print notes and errors alone, on stderr.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print what was found as JSON on stdout, nothing else.")]
+
+
+def changes(overrides: list[str] | None, results: str | None = None) -> list[str]:
+    """Overrides of a case: those of ``--set``, and ``--results a,b`` as one of them."""
+    found = list(overrides or ())
+    if results is not None:
+        names = [name.strip() for name in results.split(",")]
+        found.append(f"results={json.dumps([name for name in names if name])}")
+    return found
+
+
+@dataclass(frozen=True)
+class Voice:
+    """What a command says, and where.
+
+    Parameters
+    ----------
+    quiet : bool
+        Nothing but notes, on stderr.
+    as_json : bool
+        One JSON object on stdout in place of words; notes are part of it.
+    """
+
+    quiet: bool = False
+    as_json: bool = False
+
+    def say(self, line: str) -> None:
+        """Print a line for people."""
+        if not (self.quiet or self.as_json):
+            typer.echo(line)
+
+    def note(self, remark: str) -> None:
+        """Print what the user should read."""
+        if not self.as_json:
+            (complain if self.quiet else typer.echo)(f"Note: {remark}")
+
+    def tell(self, content: Mapping[str, object]) -> None:
+        """Print what programs read."""
+        if self.as_json:
+            typer.echo(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False))
+
+    def tell_folder(self, folder: Path) -> None:
+        """Print the summary of an output folder, for programs."""
+        if self.as_json:
+            from fegear.output.folder import SUMMARY
+
+            self.tell({"folder": str(folder), **json.loads((folder / SUMMARY).read_text("utf-8"))})
+
+    def watcher(self, *, remaining: bool = False) -> AbstractContextManager[Watcher]:
+        """Who shows the progress: a bar or lines on stderr, or nobody."""
+        from fegear.engine.run import Silence
+        from fegear.terminal import watcher
+
+        return contextlib.nullcontext(Silence()) if self.quiet else watcher(sys.stderr, remaining=remaining)
 
 
 def leave(message: str, code: int) -> NoReturn:

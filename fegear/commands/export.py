@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from fegear.commands.common import INTERRUPTED, CaseFile, Out, Overrides, leave
+from fegear.commands.common import INTERRUPTED, AsJson, CaseFile, Overrides, Quiet, Voice, leave
 
 
 def export(
@@ -16,19 +17,23 @@ def export(
     formats: Annotated[
         str, typer.Option("--format", help="Any of dxf, msh, vtu, inp, separated by commas.")
     ] = "dxf,msh,vtu,inp",
-    out: Out = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_export.")] = None,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
 ) -> None:
     """Write drawings (DXF) and meshes of the whole gear (gmsh, VTU, Abaqus/CalculiX) for other programs."""
     from fegear.case.reading import read_scene
     from fegear.output.export import export_gears
     from fegear.output.folder import default_folder, whole_or_nothing
 
+    voice = Voice(quiet, as_json)
     try:
         scene = read_scene(case, overrides or ())
-        target = out or default_folder(scene.name) / "export"
+        target = out or default_folder(scene.name, "_export")
         with whole_or_nothing(target) as scratch:
             written = export_gears(scene, scratch, gear or list(scene.gears), formats)
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)
     for name in written:
-        typer.echo(f"Wrote {target / name}")
+        voice.say(f"Wrote {target / name}")
+    voice.tell({"folder": str(target), "files": written})

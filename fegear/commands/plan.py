@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import typer
-
-from fegear.commands.common import CaseFile, Overrides
+from fegear.commands.common import AsJson, CaseFile, Overrides, Voice, Wanted, changes
 
 
-def plan(case: CaseFile, overrides: Overrides = None) -> None:
+def plan(case: CaseFile, overrides: Overrides = None, wanted: Wanted = None, as_json: AsJson = False) -> None:
     """Show what a case would compute and why, with which settings, in about how long, and what it would not."""
     from fegear.case.reading import read_scene
     from fegear.engine.plan import make_plan
-    from fegear.engine.plan_text import plan_lines
+    from fegear.engine.plan_text import plan_content, plan_lines
     from fegear.results.catalogue import STAGES
 
-    scene = read_scene(case, overrides or ())
-    typer.echo("\n".join(plan_lines(scene, make_plan(scene, STAGES))))
+    voice = Voice(as_json=as_json)
+    scene = read_scene(case, changes(overrides, wanted))
+    planned = make_plan(scene, STAGES)
+    for line in plan_lines(scene, planned):
+        voice.say(line)
+    voice.tell(plan_content(scene, planned))

@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 import contextlib
-import sys
 import time
 from typing import Annotated
 
 import typer
 
-from fegear.commands.common import INTERRUPTED, CaseFile, NoPlots, Out, Overrides, Scheduler, leave
+from fegear.commands.common import (
+    INTERRUPTED,
+    AsJson,
+    CaseFile,
+    NoPlots,
+    Out,
+    Overrides,
+    Quiet,
+    Scheduler,
+    Voice,
+    Wanted,
+    changes,
+    leave,
+)
 
 
 def run(
     case: CaseFile,
     overrides: Overrides = None,
+    wanted: Wanted = None,
     out: Out = None,
     no_plots: NoPlots = False,
     scheduler: Scheduler = None,
@@ -24,6 +37,8 @@ def run(
             "--cache", help="Recall tooth shapes and chart points from the disk cache, and keep new ones there."
         ),
     ] = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
 ) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
     from fegear.case.reading import read_scene
@@ -34,16 +49,16 @@ def run(
     from fegear.output.write import STEPS, write_results
     from fegear.results.catalogue import STAGES
     from fegear.solution_cache import SolutionCache, cache_on_disk
-    from fegear.terminal import watcher
 
+    voice = Voice(quiet, as_json)
     start = time.perf_counter()
     try:
-        scene = read_scene(case, overrides or ())
+        scene = read_scene(case, changes(overrides, wanted))
         planned = make_plan(scene, STAGES)
         target = out or default_folder(scene.name)
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))
-            watching = stack.enter_context(watcher(sys.stderr))
+            watching = stack.enter_context(voice.watcher())
             # Nothing is recalled by default: the seconds of a run are one of its results.
             known = cache_on_disk() if cache else SolutionCache()
             results = run_plan(scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler))
@@ -51,7 +66,8 @@ def run(
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
     for value in results.values:
-        typer.echo(repr(value))
+        voice.say(repr(value))
     for remark in remarks:
-        typer.echo(f"Note: {remark}")
-    typer.echo(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
+        voice.note(remark)
+    voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
+    voice.tell_folder(target)

@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import contextlib
 import math
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from fegear.commands.common import CaseFile, NoPlots, Overrides, Scheduler, leave
+from fegear.commands.common import (
+    AsJson,
+    CaseFile,
+    NoPlots,
+    Overrides,
+    Quiet,
+    Scheduler,
+    Voice,
+    Wanted,
+    changes,
+    leave,
+)
 
 
 def sweep(
@@ -24,6 +34,7 @@ def sweep(
         ),
     ],
     overrides: Overrides = None,
+    wanted: Wanted = None,
     out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_sweep.")] = None,
     scheduler: Scheduler = None,
     workers: Annotated[
@@ -34,6 +45,8 @@ def sweep(
         bool,
         typer.Option("--no-cache", help="Recompute everything and keep nothing: a killed sweep starts again."),
     ] = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
 ) -> None:
     """Run a case over a grid of values; killed and started again, it resumes where it stopped."""
     from fegear.engine.executor import Executor
@@ -42,20 +55,20 @@ def sweep(
     from fegear.solution_cache import SolutionCache, cache_on_disk
     from fegear.studies.axis import read_axis
     from fegear.studies.sweep import sweep_case
-    from fegear.terminal import watcher
 
+    voice = Voice(quiet, as_json)
     try:
         axes = [read_axis(text) for text in over]
         target = out or default_folder(case.stem, "_sweep")
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))
-            watching = stack.enter_context(watcher(sys.stderr, remaining=True))
+            watching = stack.enter_context(voice.watcher(remaining=True))
             count = math.prod(len(axis) for axis in axes)
             watching.begin(f"{count} points", 1, 1)
             results = sweep_case(
                 case,
                 axes,
-                overrides or (),
+                changes(overrides, wanted),
                 cache=SolutionCache() if no_cache else cache_on_disk(),
                 executor=Executor(scheduler, workers),
                 progress=watching.advance,
@@ -65,13 +78,14 @@ def sweep(
     except KeyboardInterrupt:
         leave("interrupted; started again, the sweep resumes where it stopped.", 130)
     for remark in remarks:
-        typer.echo(f"Note: {remark}")
+        voice.note(remark)
     solved, read, spared = results.shapes
-    typer.echo(f"{count - len(results.failures)} of {count} points have results.")
+    voice.say(f"{count - len(results.failures)} of {count} points have results.")
     if results.kept:
-        typer.echo(f"{results.kept} points were finished by an earlier sweep.")
+        voice.say(f"{results.kept} points were finished by an earlier sweep.")
     if read:
-        typer.echo(f"Tooth shapes: {solved} solved now; {read} recalled ({spared:.2f} s when solved).")
-    typer.echo(f"Wrote {target} in {results.seconds:.2f} s.")
+        voice.say(f"Tooth shapes: {solved} solved now; {read} recalled ({spared:.2f} s when solved).")
+    voice.say(f"Wrote {target} in {results.seconds:.2f} s.")
+    voice.tell_folder(target)
     if len(results.failures) == count:
         raise typer.Exit(1)

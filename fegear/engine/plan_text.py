@@ -44,5 +44,24 @@ def plan_lines(scene: Scene, plan: Plan) -> list[str]:
     return lines + [f"Note: {remark}" for remark in plan.remarks]
 
 
+def plan_content(scene: Scene, plan: Plan) -> dict[str, object]:
+    """The same as plain mappings and lists, for programs; ``seconds`` is None where the run time is unknown."""
+    return {
+        "case": scene.name,
+        "steps": [
+            {
+                "task": str(step.task),
+                "reasons": list(step.reasons),
+                "effects": list(step.effects),
+                "settings": dict(step.stage.forecast(scene, step.task.subject).settings),
+                "seconds": predicted,
+            }
+            for step, predicted in zip(plan.steps, forecast_seconds(scene, plan), strict=True)
+        ],
+        "skipped": [{"stage": name, "reason": reason} for name, reason in plan.skipped],
+        "remarks": list(plan.remarks),
+    }
+
+
 def _short(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -89,7 +89,7 @@ def test_without_rights_the_scripts_name_the_apt_get_line(missing, tmp_path):
 
 def test_the_case_file_page_names_every_key():
     from fegear.case import Case
-    from fegear.case.reading import part_models
+    from fegear.case.keys import part_models
 
     page = (ROOT / "docs" / "case-files.md").read_text(encoding="utf-8")
     parts = [Case]

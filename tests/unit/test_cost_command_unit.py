@@ -246,7 +246,7 @@ def test_ctrl_c_leaves_what_is_finished(case, tmp_path):
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "fegear: interrupted; " in errors
-    out = tmp_path / "results" / "pair-cost"
+    out = tmp_path / "results" / "pair_cost"
     summary = json.loads((out / "summary.json").read_text())
     assert 0 < summary["configurations"]["finished"] < summary["configurations"]["planned"]
     assert {row["family"] for row in rows(out, "cost")} == {"ring", "sector", "compliance-formula"}
