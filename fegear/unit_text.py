@@ -43,6 +43,13 @@ class UnreadableError(ValueError):
         super().__init__(rule)
 
 
+def plain_number(text: str) -> float | None:
+    """A number as `split` reads it in front of a unit, or nan and inf; None for anything else."""
+    stripped = text.strip()
+    known = re.fullmatch(rf"{_NUMBER}|[-+]?(?:nan|inf|infinity)", stripped, re.IGNORECASE)
+    return float(stripped) if known and len(stripped) <= _LONGEST else None
+
+
 def split(text: str) -> tuple[float, str]:
     """Take ``number unit`` apart.
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
+from fegear.case.text_file import read_text
+from fegear.errors import InputError, shown
+from fegear.unit_text import plain_number
 from fegear.units import unit_size
 
 if TYPE_CHECKING:
@@ -27,7 +29,8 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
     Parameters
     ----------
     path : Path
-        The first line that does not start with ``#`` holds the heads, ``name [unit]``.
+        The first line that does not start with ``#`` holds the heads, ``name [unit]``; entries are parted by commas,
+        or by what parts the heads: semicolons or tabs.
     key : str
         Where the case names the file, for messages.
     dimensions : mapping
@@ -36,24 +39,51 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
     Raises
     ------
     InputError
-        If a head's unit has another dimension, or an entry is no finite number.
+        If the file is no such table: its encoding, a head's unit, two columns of one name, a line with more or fewer
+        entries than heads, an entry that is no finite number.
     """
-    lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
-    rows = list(csv.reader(line for line in lines if not line.lstrip().startswith("#")))
-    if len(rows) < 2:
-        raise InputError(key, f'"{path.name}"', "has no heads with numbers below them")
-    columns = {}
-    for i, head in enumerate(rows[0]):
+    numbered = _lines(path, key)
+    (_, heads), rows = numbered[0], numbered[1:]
+    for number, row in rows:
+        if len(row) != len(heads):
+            raise InputError(
+                key, f'"{path.name}"', f"has {len(row)} entries in line {number} under {len(heads)} heads",
+                "decimal commas? write points",
+            )  # fmt: skip
+    columns: dict[str, NDArray[np.float64]] = {}
+    for i, head in enumerate(heads):
         match = _HEAD.fullmatch(head)
         if match is None or match["name"] not in dimensions:
             continue
-        name, unit = match["name"], match["unit"] or ""
-        scale = unit_size(unit, dimensions[name], f"{key}, column {name}")
-        try:
-            values = np.array([float(row[i]) for row in rows[1:]])
-        except (ValueError, IndexError):
-            raise InputError(key, f'"{path.name}"', f"has an entry in column {name} that is no number") from None
-        if not all(math.isfinite(v) for v in values):
-            raise InputError(key, f'"{path.name}"', f"has an entry in column {name} that is not finite")
-        columns[name] = values * scale
+        name = match["name"]
+        if name in columns:
+            raise InputError(key, f'"{path.name}"', f"has two columns {name}", "leave one of them out")
+        scale = unit_size(match["unit"] or "", dimensions[name], f"{key}, column {name}")
+        columns[name] = scale * np.array([_entry(row[i], path, key, f"line {number}, {name}") for number, row in rows])
     return columns
+
+
+def _lines(path: Path, key: str) -> list[tuple[int, list[str]]]:
+    """Heads and rows with the numbers of their lines, the last entry of each without the empty one behind a comma."""
+    lines = [(number, line) for number, line in enumerate(read_text(path, key).splitlines(), start=1) if line.strip()]
+    lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
+    if len(lines) < 2:
+        raise InputError(key, f'"{path.name}"', "has no heads with numbers below them")
+    head = lines[0][1]
+    parting = next((sign for sign in ",;\t" if sign in head), ",")
+    try:
+        rows = [(number, next(csv.reader([line], delimiter=parting, strict=True))) for number, line in lines]
+    except csv.Error as error:
+        raise InputError(key, f'"{path.name}"', f"is no table that can be read ({error})") from None
+    if all(not row[-1].strip() for _, row in rows):
+        rows = [(number, row[:-1]) for number, row in rows]
+    return rows
+
+
+def _entry(text: str, path: Path, key: str, where: str) -> float:
+    value = plain_number(text)
+    if value is None:
+        raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is no number")
+    if not math.isfinite(value):
+        raise InputError(key, f'"{path.name}"', f"has {shown(text)} in {where}, which is not finite")
+    return value

@@ -14,6 +14,7 @@ from fegear.case.keys import keys_at
 from fegear.case.names import nearest
 from fegear.case.part import BARE_SI
 from fegear.case.refusals import refusal
+from fegear.case.text_file import read_text
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
@@ -83,22 +84,23 @@ def read_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
 
 def case_text(path: Path, overrides: Sequence[str] = ()) -> str:
     """Return a case file as it is written, with the ``--set`` options as comments in front."""
-    return "".join(f"# --set {override}\n" for override in overrides) + path.read_text(encoding="utf-8")
+    return "".join(f"# --set {override}\n" for override in overrides) + read_text(path, "case")
 
 
 def read_document(path: Path, overrides: Sequence[str] = ()) -> dict[str, Any]:
     """Read a case file as plain tables and apply ``--set`` options, without checking more than that."""
-    try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError("case", f'"{path}"', "does not exist", "check the path of the case file") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError("case", f'"{path}"', f"cannot be read ({error})") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError("case", f'"{path}"', f"is no valid TOML: {error}", "quantities stand in quotes") from None
+    document = parse_document(read_text(path, "case"), f'"{path}"')
     for override in overrides:
         apply_override(document, override)
     return document
+
+
+def parse_document(text: str, name: str) -> dict[str, Any]:
+    """Read the text of a case file, called `name` in messages, as plain tables."""
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # beside what TOML forbids, numbers and nests that Python cannot hold
+        raise InputError("case", name, f"is no valid TOML: {error}", "quantities stand in quotes") from None
 
 
 def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare_si: bool = False) -> Scene:
@@ -171,10 +173,11 @@ def apply_override(document: dict[str, Any], override: str) -> None:
     if not equals or not all(steps):
         raise InputError("--set", f'"{override}"', "must read KEY=VALUE", "for example --set gear.a.teeth=30")
     try:
-        value = tomllib.loads(f"value = {text.strip()}")["value"]
-    except tomllib.TOMLDecodeError:
-        value = text.strip()
-    set_key(document, path.strip(), value)
+        read = tomllib.loads(f"value = {text.strip()}")
+    except (ValueError, RecursionError):
+        read = {}
+    # What is no TOML is a text, and so is what would be TOML of several keys.
+    set_key(document, path.strip(), read["value"] if set(read) == {"value"} else text.strip())
 
 
 def set_key(document: dict[str, Any], path: str, value: object, option: str = "--set") -> None:

@@ -105,7 +105,7 @@ class Crowning:
 
 @dataclass(frozen=True)
 class TabulatedRelief:
-    """A modification given point by point; the end pieces go on as straight lines.
+    """A modification given point by point; beyond its ends it stays as it is there.
 
     Parameters
     ----------
@@ -143,20 +143,13 @@ class TabulatedRelief:
         return tuple(float(t) for t in self.roll)
 
     def removal(self, roll: ArrayLike) -> Array:
-        """Interpolate; extrapolate linearly."""
-        at = np.asarray(roll, dtype=float)
-        t, v = self.roll, self.values
-        if self.interpolation == "cubic" and t.size > 2:
+        """Interpolate; hold the first and the last entry beyond them."""
+        at = np.clip(np.asarray(roll, dtype=float), self.roll[0], self.roll[-1])
+        if self.interpolation == "cubic" and self.roll.size > 2:
             from scipy.interpolate import PchipInterpolator
 
-            inside = PchipInterpolator(t, v)
-            first, last = float(inside(t[0], 1)), float(inside(t[-1], 1))
-            middle = inside(np.clip(at, t[0], t[-1]))
-        else:
-            first, last = (v[1] - v[0]) / (t[1] - t[0]), (v[-1] - v[-2]) / (t[-1] - t[-2])
-            middle = np.interp(at, t, v)
-        below, above = np.minimum(at - t[0], 0.0), np.maximum(at - t[-1], 0.0)
-        return np.asarray(middle + first * below + last * above)
+            return np.asarray(PchipInterpolator(self.roll, self.values)(at))
+        return np.interp(at, self.roll, self.values)
 
 
 @dataclass(frozen=True, slots=True)

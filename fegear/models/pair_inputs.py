@@ -30,6 +30,9 @@ MEMBERS: tuple[Member, Member] = ("driver", "driven")
 #: The effects of load sharing, in the order in which they are reported.
 LOAD_SHARING = ("corner_contact", "neighbour_coupling", "hertz", "relief", "spacing_errors")
 
+#: Share of the active profile that a relief table may leave out unremarked: what rounding its radii takes.
+_UNCOVERED = 1e-3
+
 
 class ComplianceTable(NamedTuple):
     """Positions on the line of action [m] and compliances [m/N] that a file of the case gives."""
@@ -131,9 +134,11 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
     own = EffectsPart(**{effect: getattr(effects, effect) for effect in LOAD_SHARING})
     table = pair_compliance_table(scene, name) if part.compliance.source == "table" else None
     nominal = part.normal_load(pair) or math.nan
+    assumed = effect_remarks(scene, name)
+    if effects.relief:
+        assumed += table_remarks(pair, (first, second))
     return PairInputs(
-        pair, part.compliance, table, own, (first, second), part.all_loads(pair), nominal,
-        effect_remarks(scene, name), name,
+        pair, part.compliance, table, own, (first, second), part.all_loads(pair), nominal, assumed, name
     )  # fmt: skip
 
 
@@ -184,6 +189,26 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
             if interference(pair, member).below_form_circle
         ]
     return tuple(remarks)
+
+
+def table_remarks(pair: GearPair, flanks: tuple[Flanks, Flanks]) -> tuple[str, ...]:
+    """Where relief tables end before the active profile does."""
+    remarks = []
+    for member, flank in zip(MEMBERS, flanks, strict=True):
+        gear = pair.gear(member)
+        low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+        for table in flank.tables:
+            first, last = float(table.roll[0]), float(table.roll[-1])
+            least = _UNCOVERED * (high - low)
+            if first - low <= least and high - last <= least:
+                continue
+            radii = [float(gear.tooth.radius_of_roll(t)) * gear.module * 1e3 for t in (first, last, low, high)]
+            remarks.append(
+                f"Gear {flank.gear}: its relief table runs from radius {radii[0]:.6g} to {radii[1]:.6g} mm, the active "
+                f"profile from {radii[2]:.6g} to {radii[3]:.6g} mm; beyond its ends the table is held at "
+                f"{table.values[0] * 1e6:.4g} and {table.values[-1] * 1e6:.4g} um."
+            )
+    return tuple(dict.fromkeys(remarks))
 
 
 def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:

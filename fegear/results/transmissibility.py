@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.case.csv_columns import read_columns
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel
@@ -32,8 +32,9 @@ if TYPE_CHECKING:
 #: Components of the mesh force in figures; smaller ones than this are none.
 _COMPONENTS = ("y", "z", "θ_{x}", "θ_{y}", "θ_{z}")
 _ROUND_OFF, _TINY = 1e-9, 1e-12
-#: Heads of a load distribution file and the factors to SI.
-_DISTRIBUTION = {"z [mm]": 1e-3, "load [N/mm]": 1e3, "deflection [um]": 1e-6}
+#: Columns of a load distribution file.
+_DISTRIBUTION = {"z": "length", "load": "line_load", "deflection": "length"}
+_HEADS = ("z [mm]", "load [N/mm]", "deflection [um]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,15 +48,11 @@ class TransmissibilityData:
 
 
 def _read_distribution(path: Path, key: str) -> list[NDArray[np.float64]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    missing = [head for head in _DISTRIBUTION if not rows or head not in rows[0]]
-    if missing:
-        raise InputError(key, f'"{path.name}"', f"has no column {missing[0]}", f"heads are {', '.join(_DISTRIBUTION)}")
-    try:
-        return [np.array([float(row[head]) for row in rows]) * factor for head, factor in _DISTRIBUTION.items()]
-    except (TypeError, ValueError):
-        raise InputError(key, f'"{path.name}"', "holds something that is no number") from None
+    columns = read_columns(path, key, _DISTRIBUTION)
+    for name, head in zip(_DISTRIBUTION, _HEADS, strict=True):
+        if name not in columns:
+            raise InputError(key, f'"{path.name}"', f"has no column {head}", f"heads are {', '.join(_HEADS)}")
+    return [columns[name] for name in _DISTRIBUTION]
 
 
 def _mesh(scene: Scene, name: str, part: MeshStiffnessPart) -> MeshParameters:

@@ -6,16 +6,14 @@ import contextlib
 import copy
 import os
 import sys
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fegear.case.reading import build_scene, case_text, read_document, set_key
+from fegear.case.reading import build_scene, case_text, parse_document, read_document, set_key
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
 from fegear.solution_cache import SolutionCache
 from fegear.terminal import watcher
@@ -91,10 +89,7 @@ def run_scene(
 def _scene(case: str | os.PathLike[str] | Mapping[str, Any], changes: Mapping[str, Any]) -> Scene:
     name, folder, text = "case", Path.cwd(), ""
     if isinstance(case, str) and "\n" in case:
-        try:
-            document, text = tomllib.loads(case), case
-        except tomllib.TOMLDecodeError as error:
-            raise InputError("case", "(a text)", f"is no valid TOML: {error}", "quantities stand in quotes") from None
+        document, text = parse_document(case, "(a text)"), case
     elif isinstance(case, (str, os.PathLike)):
         path = Path(case)
         document, name, folder, text = read_document(path), path.stem, path.parent, case_text(path)

@@ -157,7 +157,7 @@ def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(InputError, match="no valid TOML"):
         read_scene(broken)
     broken.write_bytes(b"\xff\xfe")
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="UTF-16"):
         read_scene(broken)
     with pytest.raises(InputError, match="cannot be read"):
         read_scene(tmp_path)

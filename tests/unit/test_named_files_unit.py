@@ -1,0 +1,127 @@
+"""Files that a case names, and the case file itself: encodings, tables that are none, tables that end early."""
+
+from __future__ import annotations
+
+import codecs
+
+import numpy as np
+import pytest
+
+from fegear.case.csv_columns import read_columns
+from fegear.case.reading import read_scene
+from fegear.errors import InputError
+from fegear.models.pair_inputs import pair_inputs
+
+CASE = """
+title = "Zähne"
+results = ["load-sharing"]
+[gear.a]
+teeth = 28
+module = "3 mm"
+face_width = "10 mm"
+[gear.a.relief.table]
+file = "relief.csv"
+[pair.I]
+driver = "a"
+driven = "a"
+load = "1 kN"
+compliance = { source = "cornell" }
+[effects]
+relief = true
+"""
+DIMENSIONS = {"radius": "length", "relief": "length"}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    (tmp_path / "relief.csv").write_text("radius [mm],relief [um]\n39.5,0\n43,0\n45,20\n", encoding="utf-8")
+    return tmp_path
+
+
+def columns(folder, content: bytes):
+    (folder / "table.csv").write_bytes(content)
+    return read_columns(folder / "table.csv", "gear.a.relief.table[0].file", DIMENSIONS)
+
+
+@pytest.mark.parametrize("mark", [b"", codecs.BOM_UTF8])
+@pytest.mark.parametrize("end", [b"\n", b"\r\n"])
+def test_a_case_file_is_read_with_and_without_a_byte_order_mark(folder, mark, end):
+    (folder / "case.toml").write_bytes(mark + CASE.encode().replace(b"\n", end))
+    scene = read_scene(folder / "case.toml")
+    assert scene.case.title == "Zähne"
+    assert scene.text == CASE
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (CASE.encode("utf-16"), "is in UTF-16, not in UTF-8; save it as UTF-8"),
+        (CASE.encode("utf-32"), "is in UTF-16|is no text"),
+        (CASE.encode("latin-1"), "is not in UTF-8: line 2 has the byte 0xe4; save it as UTF-8"),
+        (b"\x7fELF\0\0", "is no text"),
+        (b"a = " + b"9" * 5000, "is no valid TOML"),
+        (b"a = " + b"[" * 100000, "is no valid TOML"),
+    ],
+)
+def test_other_encodings_and_impossible_toml_are_refused_in_a_sentence(folder, data, words):
+    (folder / "case.toml").write_bytes(data)
+    with pytest.raises(InputError, match=words) as refusal:
+        read_scene(folder / "case.toml")
+    assert "\n" not in str(refusal.value)
+
+
+def test_tables_are_parted_by_what_parts_their_heads(folder):
+    for parting in (b",", b";", b"\t"):
+        content = b"# made by hand\nradius [mm],relief [um]\n\n31, 1e1\n33,2.5\n".replace(b",", parting)
+        found = columns(folder, codecs.BOM_UTF8 + content)
+        np.testing.assert_allclose(found["radius"], [0.031, 0.033], rtol=1e-15)
+        np.testing.assert_allclose(found["relief"], [1e-5, 2.5e-6], rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("radius [mm],relief [um],relief [mm]\n31,1,2\n33,2,3\n", "two columns relief"),
+        ("radius [mm],relief [um]\n31,1,5\n33,2\n", "3 entries in line 2 under 2 heads; decimal commas"),
+        ("radius [mm],relief [um]\n31\n33,2\n", "1 entries in line 2"),
+        ("radius [mm];relief [um]\n31,5;1\n", r'has "31,5" in line 2, radius, which is no number'),
+        ("radius [mm],relief [um]\n31,1_0\n", "which is no number"),
+        ("radius [mm],relief [um]\n31,٣\n", "which is no number"),
+        ("radius [mm],relief [um]\n31,0x10\n", "which is no number"),
+        ("radius [mm],relief [um]\n31,\n33,2\n", "which is no number"),
+        ("radius [mm],relief [um]\n31,nan\n", "which is not finite"),
+        ("radius [mm],relief [um]\n31,1e400\n", "which is not finite"),
+        ("radius,relief [um]\n31,1\n", "column radius.*has no unit"),
+        ("radius [N],relief [um]\n31,1\n", "column radius.*is not a length"),
+        ("radius [mm],relief [um]\n", "no heads with numbers"),
+        ("", "no heads with numbers"),
+        ("radius [mm],relief [um]\n31,1\n" + "9" * 200000 + ",1\n", "no table that can be read|no number"),
+        ('radius [mm],relief [um]\n31,"1\n', "no table that can be read"),
+        ("radius [mm],relief [µm]\n31,ä1\n", "which is no number"),
+    ],
+)
+def test_what_is_no_table_is_refused_in_a_sentence(folder, content, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        columns(folder, content.encode())
+    assert str(refusal.value).startswith("gear.a.relief.table[0].file")
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 300
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-16"])
+def test_tables_in_other_encodings_are_refused(folder, encoding):
+    with pytest.raises(InputError, match="UTF-8"):
+        columns(folder, "radius [mm],relief [µm]\n31,1\n".encode(encoding))
+
+
+def test_a_relief_table_that_ends_early_is_held_and_the_result_says_so(folder):
+    assert not any("held" in remark for remark in pair_inputs(read_scene(folder / "case.toml"), "I").assumed)
+    (folder / "relief.csv").write_text("radius [mm],relief [um]\n43,0\n44,5\n", encoding="utf-8")
+    asked = pair_inputs(read_scene(folder / "case.toml"), "I")
+    remarks = [remark for remark in asked.assumed if "held" in remark]
+    assert len(remarks) == 1
+    assert "from radius 43 to 44 mm, the active profile from 40.1" in remarks[0]
+    assert remarks[0].endswith("held at 0 and 5 um.")
+    table, tip = asked.flanks[0].tables[0], asked.pair.roll_angle(asked.pair.x_end, "driver")
+    assert table.removal(float(tip)) == pytest.approx(5e-6, rel=1e-14)
