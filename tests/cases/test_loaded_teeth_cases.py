@@ -275,7 +275,7 @@ def test_a_relief_designed_with_finite_elements_survives_its_own_table(tmp_path)
     found = again["I.te_peak_to_peak"].value
     stated = values["I.te_peak_to_peak.relief_tables"].value
     assert found == pytest.approx(stated, rel=0.1)
-    assert 0.0 < found < 1e-10
+    assert 0.0 < found < 1e-4  # um
     assert found < 0.1 * values["I.te_peak_to_peak.designed"].error
 
 
