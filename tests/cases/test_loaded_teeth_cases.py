@@ -63,7 +63,7 @@ def test_marks_gears_designed_for_least_excitation():
 def test_marks_gears_with_tip_relief():
     tables, values, results = run("mark_tip_relief")
     # C_I = 1.26312e-8 m/N for L = 1.37450 cm; 0.1 %: the paper's own fit and quadrature are not stated.
-    assert values["I.mesh_compliance_mean"].value == pytest.approx(1.26312e-8, rel=1e-3)
+    assert values["I.mesh_compliance_mean"].si == pytest.approx(1.26312e-8, rel=1e-3)
     # Relief starts where a pair is alone, so the pair alone has the deflection of perfect flanks in the middle.
     te = tables["transmission_error_I"]
     single = te["pairs_in_contact"] == 1
@@ -261,7 +261,7 @@ def test_a_designed_relief_can_be_fed_back_as_a_table(tmp_path):
     """The relief table that one run writes is the relief of the next: the transmission error is gone."""
     tables, values, _ = run("mark_minimum_excitation")
     again, found, _ = run("mark_tip_relief", *fed_back(tables, tmp_path))
-    assert found["I.te_peak_to_peak"].value < 1e-9
+    assert found["I.te_peak_to_peak"].value < 1e-3  # um
     assert again["transmission_error_I"]["te"].mean() == pytest.approx(values["I.te_mean.designed"].value, rel=1e-2)
 
 
