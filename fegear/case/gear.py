@@ -23,6 +23,7 @@ from fegear.case.part import (
 from fegear.case.relief import ReliefPart, SpacingErrorsPart
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, Material, Tooth
+from fegear.geometry.over_balls import over_balls
 
 if TYPE_CHECKING:
     from fegear.geometry.helical_gear import HelicalGear
@@ -90,6 +91,7 @@ class GearPart(Part):
     bore_radius: PositiveLength | None = None
     rim_thickness: PositiveLength | None = None
     face_width: PositiveLength | None = None
+    ball_diameter: PositiveLength | None = None
     plane: Literal["strain", "stress", "auto"] = "strain"
     material: MaterialPart = Field(default_factory=MaterialPart)
     tooth_mesh: str | None = None
@@ -180,9 +182,12 @@ class GearPart(Part):
             )
             bore = 0.5 * tooth.root_radius * m if self.bore_radius is None else self.bore_radius
             width = 1e-3 if self.face_width is None else self.face_width
-            return Gear(tooth, m, bore, width, self.material.build(), self.plane)
+            gear = Gear(tooth, m, bore, width, self.material.build(), self.plane)
+            if self.ball_diameter is not None:
+                over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
         except InputError as error:
             raise at(prefix, self._in_words_of_the_case(error), _KEYS) from None
+        return gear
 
     def _in_words_of_the_case(self, error: InputError) -> InputError:
         """Report lengths that the tooth takes in modules as the case gave them."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fegear.contact.root_stress_history import root_stress_history
+from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
     from fegear.arrays import Array
     from fegear.contact.engagement import Engagement, Loaded
-    from fegear.geometry.pair import Member
 
 Answer = Literal["transmission error", "load on a tooth pair", "root tension"]
 
@@ -134,8 +134,7 @@ def _worst(answer: Answer, difference: Array, scale: Array, loads: Array, x: Arr
 
 def _largest_tensions(engagement: Engagement, state: Loaded) -> Array:
     """Of the loaded teeth of both gears, shape (L,) [Pa]."""
-    members: tuple[Member, Member] = ("driver", "driven")
-    return np.max([root_stress_history(engagement, state, member).largest for member in members], axis=0)
+    return np.max([root_stress_history(engagement, state, member).largest for member in MEMBERS], axis=0)
 
 
 def _load_changes(before: Loaded, after: Loaded) -> Array:

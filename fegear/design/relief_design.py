@@ -12,6 +12,7 @@ from fegear.contact.mesh_curve import roll_positions
 from fegear.design.minimum_excitation import minimum_excitation, relief_nodes, relief_table
 from fegear.design.optimise import grindable
 from fegear.design.root_stress_loading import design_stress, least_root_stress
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import UNMODIFIED
 
 if TYPE_CHECKING:
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from fegear.design.root_stress_loading import StressOptimum
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Shape
-
-MEMBERS: tuple[Member, Member] = ("driver", "driven")
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.design.loading import LoadingFunction, Ramp
 from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.contact.pair_compliance import PairCompliance
     from fegear.geometry.pair import Member
-
-MEMBERS: tuple[Member, Member] = ("driver", "driven")
 
 
 @dataclass(frozen=True)

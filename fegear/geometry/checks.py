@@ -6,10 +6,11 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from fegear.geometry.interference import interference
+from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
-    from fegear.geometry.pair import GearPair, Member
+    from fegear.geometry.pair import GearPair
 
 #: Least transverse tooth thickness at the tip circle in modules; case-hardened teeth want 0.4.
 LEAST_TIP_THICKNESS = 0.2
@@ -84,7 +85,6 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
     name : str
     pair : GearPair
     """
-    members: tuple[Member, Member] = ("driver", "driven")
     checks = [
         Check(name, "transverse contact ratio", pair.contact_ratio, LEAST_CONTACT_RATIO, "",
               "lengthen the teeth or raise their number"),
@@ -92,7 +92,7 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
               "widen the centre distance or thin the teeth"),
     ]  # fmt: skip
     module = pair.driver.module
-    for member in members:
+    for member in MEMBERS:
         found = interference(pair, member)
         checks.append(
             Check(name, f"tip clearance of the {member}", pair.tip_clearance(member), LEAST_TIP_CLEARANCE * module,

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
 
 Member = Literal["driver", "driven"]
+MEMBERS: tuple[Member, Member] = ("driver", "driven")
 
 
 @dataclass(frozen=True)

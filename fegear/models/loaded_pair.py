@@ -10,8 +10,8 @@ import numpy as np
 
 from fegear.case.part import at
 from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import CombinedRelief, Relief, crowning, normalised_tip_relief, root_relief, tip_relief
-from fegear.models.pair_inputs import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_pair import relieved, spaced
-from fegear.models.pair_inputs import LOAD_SHARING, MEMBERS
+from fegear.models.pair_inputs import LOAD_SHARING
 from fegear.tally import tallying
 
 if TYPE_CHECKING:

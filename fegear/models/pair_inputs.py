@@ -12,6 +12,7 @@ from fegear.case.csv_columns import read_columns
 from fegear.case.effects import EffectsPart
 from fegear.errors import InputError
 from fegear.geometry import interference
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import TabulatedRelief, roll_of_radius
 from fegear.models.assumed import bore_remarks, width_remarks
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import Member
 
 
-MEMBERS: tuple[Member, Member] = ("driver", "driven")
 #: The effects of load sharing, in the order in which they are reported.
 LOAD_SHARING = ("corner_contact", "neighbour_coupling", "hertz", "relief", "spacing_errors")
 

@@ -12,7 +12,8 @@ from fegear.engine.figure import Axis, Curve, Figure, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.errors import InputError
-from fegear.models.pair_inputs import MEMBERS, gear_name
+from fegear.geometry.pair import MEMBERS
+from fegear.models.pair_inputs import gear_name
 from fegear.models.train import train_part
 from fegear.results import forecasts
 from fegear.results.gear_solution import needs_solution, solution_of

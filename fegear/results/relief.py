@@ -11,8 +11,9 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
 from fegear.models.neglected_effects import design_remarks, neglected_in_design
-from fegear.models.pair_inputs import MEMBERS, gear_name, pair_inputs
+from fegear.models.pair_inputs import gear_name, pair_inputs
 from fegear.results import forecasts
 from fegear.results.drawn_relief import relief_figures
 from fegear.results.loaded_pair import needs_pair

@@ -12,8 +12,9 @@ from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_checks import check_relief
-from fegear.models.pair_inputs import MEMBERS, gear_name
+from fegear.models.pair_inputs import gear_name
 from fegear.results import forecasts
 from fegear.results.loaded_pair import EFFECTS, needs_pair, path_ends, spur_pairs
 from fegear.results.sources import RING

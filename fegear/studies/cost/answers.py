@@ -10,10 +10,11 @@ from fegear.contact import transmission_error
 from fegear.dynamics.single_tooth import force_history
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
+from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_pair import build_loaded_pair
 from fegear.models.motion import motion_inputs, motion_model
 from fegear.models.neglected_effects import Neglected
-from fegear.models.pair_inputs import MEMBERS, pair_inputs
+from fegear.models.pair_inputs import pair_inputs
 from fegear.models.train import train_inputs
 from fegear.results.gear_train import compute_train
 from fegear.results.loaded_pair import LoadedPairData

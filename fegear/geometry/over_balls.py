@@ -1,0 +1,100 @@
+"""Dimension over two balls or pins in opposite tooth spaces (ISO 21771, 5.6: M_dK and M_dR)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+from fegear.errors import GeometryError
+from fegear.geometry.involute import pressure_angle_of_inv
+
+if TYPE_CHECKING:
+    from fegear.geometry.gear import Gear
+
+#: Preferred numbers R 40 within one decade, rounded as ISO 3 has them for sizes.
+_R40 = (
+    1.0, 1.06, 1.12, 1.18, 1.25, 1.32, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.12, 2.24, 2.36, 2.5, 2.65, 2.8, 3.0, 3.15,
+    3.35, 3.55, 3.75, 4.0, 4.25, 4.5, 4.75, 5.0, 5.3, 5.6, 6.0, 6.3, 6.7, 7.1, 7.5, 8.0, 8.5, 9.0, 9.5, 10.0,
+)  # fmt: skip
+
+
+class OverBalls(NamedTuple):
+    """What a gauge reads over two balls or pins; spur gears read the same over either.
+
+    Attributes
+    ----------
+    dimension : float
+        M_dK [m].
+    ball_diameter : float
+        D_M [m].
+    contact_radius : float
+        Where the balls touch the flanks [m].
+    """
+
+    dimension: float
+    ball_diameter: float
+    contact_radius: float
+
+
+def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
+    """Dimension over two balls in opposite tooth spaces, or in the two that are nearest to it with odd teeth.
+
+    Thickness allowances count, as in `span`. With alpha_K the pressure angle at the centre of the ball,
+    inv(alpha_K) = D_M / d_b - (half the angle of a tooth space on the base circle).
+
+    Parameters
+    ----------
+    gear : Gear
+    ball_diameter : float
+        D_M [m].
+
+    Raises
+    ------
+    GeometryError
+        If the balls do not touch both involutes, drop to the root circle or stay below the tip circle.
+    """
+    if not (math.isfinite(ball_diameter) and ball_diameter > 0.0):
+        raise GeometryError("ball_diameter", ball_diameter, "must be positive and finite")
+    base, space = gear.base_radius, math.pi / gear.teeth - gear.tooth.base_half_angle
+    rise = 0.5 * ball_diameter / base - space
+    if rise <= 0.0:
+        raise _refused(gear, ball_diameter, "is so small that it falls between the base circle's points")
+    angle = float(pressure_angle_of_inv(rise))
+    contact = math.hypot(base, base * math.tan(angle) - 0.5 * ball_diameter)
+    if base * math.tan(angle) < 0.5 * ball_diameter or contact < gear.form_radius:
+        raise _refused(gear, ball_diameter, "touches the flanks below the start of the involute")
+    if contact > gear.involute_tip_radius:
+        raise _refused(gear, ball_diameter, "touches no involute: it lies on the tips")
+    centre = base / math.cos(angle)
+    if centre - 0.5 * ball_diameter <= gear.root_radius:
+        raise _refused(gear, ball_diameter, "rests on the root circle")
+    if centre + 0.5 * ball_diameter <= gear.tip_radius:
+        raise _refused(gear, ball_diameter, "stays below the tip circle, where no gauge reaches it")
+    across = centre if gear.teeth % 2 == 0 else centre * math.cos(0.5 * math.pi / gear.teeth)
+    return OverBalls(2.0 * across + ball_diameter, ball_diameter, contact)
+
+
+def _refused(gear: Gear, ball_diameter: float, rule: str) -> GeometryError:
+    remedy = f"choose about {touching_ball(gear) * 1e3:.4g} mm"
+    return GeometryError("ball_diameter", f"{ball_diameter * 1e3:.6g} mm", rule, remedy)
+
+
+def touching_ball(gear: Gear) -> float:
+    """Diameter of the ball that touches both flanks at the V-circle d + 2 x m [m].
+
+    Where that circle lies beyond the involute's ends, the ball touches in the middle of the involute.
+    """
+    tooth = gear.tooth
+    radius = tooth.pitch_radius + tooth.profile_shift
+    if not tooth.form_radius < radius < tooth.involute_tip_radius:
+        radius = 0.5 * (tooth.form_radius + tooth.involute_tip_radius)
+    roll = float(tooth.roll(radius))
+    space = math.pi / tooth.teeth - float(tooth.half_thickness_angle(radius))
+    return 2.0 * gear.base_radius * (math.tan(math.atan(roll) + space) - roll)
+
+
+def usual_ball(gear: Gear) -> float:
+    """The next larger preferred number R 40 [mm] above `touching_ball`, in [m]: a ball that is to be had."""
+    size = touching_ball(gear) * 1e3
+    decade = 10.0 ** math.floor(math.log10(size))
+    return next(step for step in _R40 if step * decade >= size * (1.0 - 1e-9)) * decade * 1e-3

@@ -1,0 +1,173 @@
+"""The gear data of a drawing, gear beside gear: what stands in the corner of a drawing and at the head of a report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.outcome import Column, Table, Value
+from fegear.errors import GeometryError
+from fegear.geometry.checks import tip_thickness
+from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.path_of_contact import active_profile, specific_sliding
+from fegear.geometry.span import span, span_teeth
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from fegear.case.reading import Scene
+    from fegear.geometry import Gear, GearPair
+    from fegear.geometry.over_balls import OverBalls
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Everything that a drawing would carry.
+
+    Parameters
+    ----------
+    gears : mapping of str to Gear
+    pairs : mapping of str to GearPair
+    members : mapping of str to (str, str)
+        Names of the driver and the driven gear of each pair.
+    balls : mapping of str to float
+        Diameters of the measuring balls or pins that the case names, by gear [m].
+    """
+
+    gears: Mapping[str, Gear]
+    pairs: Mapping[str, GearPair]
+    members: Mapping[str, tuple[str, str]]
+    balls: Mapping[str, float]
+
+
+def drawing_of(scene: Scene) -> Drawing:
+    """What a case says of its spur gears and pairs."""
+    parts = scene.case.pair
+    members = {name: (parts[name].driver, parts[name].driven) for name in scene.pairs}
+    balls = {name: d for name in scene.gears if (d := scene.case.gear[name].ball_diameter) is not None}
+    return Drawing(scene.gears, scene.pairs, members, balls)
+
+
+def measured(gear: Gear, ball_diameter: float | None = None) -> OverBalls | None:
+    """Dimension over the given balls, or over usual ones; None where no ball touches the flanks."""
+    if ball_diameter is not None:
+        return over_balls(gear, ball_diameter)
+    for diameter in (usual_ball(gear), touching_ball(gear)):
+        try:
+            return over_balls(gear, diameter)
+        except GeometryError:
+            continue
+    return None
+
+
+def measurement_columns(drawing: Drawing, names: Sequence[str]) -> tuple[Column, ...]:
+    """Thicknesses, span and dimension over balls of some gears."""
+    gears = [drawing.gears[name] for name in names]
+    found = [measured(drawing.gears[name], drawing.balls.get(name)) for name in names]
+    counts = [span_teeth(gear) for gear in gears]
+
+    def thickness(gear: Gear) -> float:
+        tooth = gear.tooth
+        return 2.0 * gear.pitch_radius * float(tooth.half_thickness_angle(tooth.pitch_radius))
+
+    return (
+        Column("tooth_thickness", np.array([thickness(gear) for gear in gears]), "mm",
+               "tooth thickness s on the reference circle"),
+        Column("tip_thickness", np.array([tip_thickness(gear) for gear in gears]), "mm",
+               "tooth thickness where the involute ends"),
+        Column("span_teeth", np.array(counts), "", "number of teeth k in the span"),
+        Column("span", np.array([span(g, k) for g, k in zip(gears, counts, strict=True)]), "mm",
+               "span W_k over k teeth"),
+        Column("ball_diameter", np.array([np.nan if one is None else one.ball_diameter for one in found]), "mm",
+               "diameter D_M of measuring balls or pins"),
+        Column("over_balls", np.array([np.nan if one is None else one.dimension for one in found]), "mm",
+               "dimension M_dK over two balls or pins"),
+    )  # fmt: skip
+
+
+def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
+    """Which gears have no dimension over balls, and why."""
+    return tuple(
+        f"Gear {name} has no dimension over balls: none that touches both flanks stands out of the tooth space."
+        for name, gear in drawing.gears.items()
+        if measured(gear, drawing.balls.get(name)) is None
+    )
+
+
+def _tooth_columns(names: Sequence[str], gears: Sequence[Gear]) -> tuple[Column, ...]:
+    def column(name: str, values: Sequence[float], unit: str, meaning: str) -> Column:
+        return Column(name, np.array(values), unit, meaning)
+
+    def diameter(name: str, attribute: str, meaning: str) -> Column:
+        return column(name, [2.0 * getattr(gear, attribute) for gear in gears], "mm", meaning)
+
+    return (
+        Column("gear", np.array(names), "", "gear"),
+        column("teeth", [gear.teeth for gear in gears], "", "number of teeth z"),
+        column("module", [gear.module for gear in gears], "mm", "module m"),
+        column("pressure_angle", [gear.tooth.rack.pressure_angle for gear in gears], "deg", "pressure angle α"),
+        column("profile_shift", [gear.tooth.profile_shift for gear in gears], "", "profile shift coefficient x"),
+        column("face_width", [gear.face_width for gear in gears], "mm", "face width b"),
+        diameter("reference_diameter", "pitch_radius", "reference diameter d"),
+        diameter("base_diameter", "base_radius", "base diameter d_b"),
+        diameter("tip_diameter", "tip_radius", "tip diameter d_a"),
+        diameter("root_diameter", "root_radius", "root diameter d_f"),
+        diameter("root_form_diameter", "form_radius", "root form diameter d_Ff"),
+        diameter("tip_form_diameter", "involute_tip_radius", "tip form diameter d_Fa"),
+    )
+
+
+def _mesh_columns(pair: GearPair) -> tuple[Column, ...]:
+    profiles = [active_profile(pair, member) for member in MEMBERS]
+    ends = pair.x_start, pair.x_end
+
+    def diameter(name: str, attribute: str, meaning: str) -> Column:
+        return Column(name, np.array([2.0 * getattr(one, attribute) for one in profiles]), "mm", meaning)
+
+    sliding = [[float(specific_sliding(pair, x, member)) for x in ends] for member in MEMBERS]
+    return (
+        diameter("active_root_diameter", "start", "start of active profile d_Nf"),
+        diameter("lpstc_diameter", "lowest_single", "lowest point of single contact (LPSTC)"),
+        diameter("hpstc_diameter", "highest_single", "highest point of single contact (HPSTC)"),
+        diameter("active_tip_diameter", "end", "end of active profile d_Na"),
+        Column("tip_clearance", np.array([pair.tip_clearance(member) for member in MEMBERS]), "mm",
+               "tip clearance c to the mating root"),
+        Column("specific_sliding_start", np.array([one[0] for one in sliding]), "", "specific sliding ζ at A"),
+        Column("specific_sliding_end", np.array([one[1] for one in sliding]), "", "specific sliding ζ at E"),
+    )  # fmt: skip
+
+
+def pair_table(name: str, drawing: Drawing) -> Table:
+    """Gear data of a pair: driver first, driven gear second."""
+    pair, names = drawing.pairs[name], drawing.members[name]
+    gears = [pair.gear(member) for member in MEMBERS]
+    columns = (*_tooth_columns(names, gears), *_mesh_columns(pair), *measurement_columns(drawing, names))
+    return Table(f"gear_data_{name}", columns, f"Gear data of pair {name}")
+
+
+def lone_table(drawing: Drawing) -> Table | None:
+    """Gear data of the gears that are in no pair, if any."""
+    paired = {name for names in drawing.members.values() for name in names}
+    names = [name for name in drawing.gears if name not in paired]
+    if not names:
+        return None
+    columns = (
+        *_tooth_columns(names, [drawing.gears[name] for name in names]),
+        *measurement_columns(drawing, names),
+    )
+    return Table("gear_data", columns, "Gear data")
+
+
+def pair_values(name: str, pair: GearPair) -> tuple[Value, ...]:
+    """The numbers of a pair as a whole."""
+    return (
+        Value(f"{name}.contact_ratio", pair.contact_ratio, "", 0.0, "transverse contact ratio"),
+        Value(f"{name}.centre_distance", pair.centre_distance, "mm", 0.0, "working centre distance"),
+        Value(f"{name}.working_pressure_angle", pair.working_pressure_angle, "deg", 0.0, "working pressure angle"),
+        Value(f"{name}.path_length", pair.path_length, "mm", 0.0, "length of the path of contact"),
+        Value(f"{name}.base_pitch", pair.base_pitch, "mm", 0.0, "base pitch"),
+        Value(f"{name}.normal_backlash", pair.normal_backlash, "mm", 0.0, "backlash along the line of action"),
+    )
