@@ -75,16 +75,16 @@ def measurement_columns(drawing: Drawing, names: Sequence[str]) -> tuple[Column,
 
     return (
         Column("tooth_thickness", np.array([thickness(gear) for gear in gears]), "mm",
-               "tooth thickness s on the reference circle"),
+               "tooth thickness s at d"),
         Column("tip_thickness", np.array([tip_thickness(gear) for gear in gears]), "mm",
-               "tooth thickness where the involute ends"),
-        Column("span_teeth", np.array(counts), "", "number of teeth k in the span"),
+               "tooth thickness at d_Fa"),
+        Column("span_teeth", np.array(counts), "", "teeth in the span k"),
         Column("span", np.array([span(g, k) for g, k in zip(gears, counts, strict=True)]), "mm",
-               "span W_k over k teeth"),
+               "span W_k"),
         Column("ball_diameter", np.array([np.nan if one is None else one.ball_diameter for one in found]), "mm",
-               "diameter D_M of measuring balls or pins"),
+               "ball or pin D_M"),
         Column("over_balls", np.array([np.nan if one is None else one.dimension for one in found]), "mm",
-               "dimension M_dK over two balls or pins"),
+               "over balls or pins M_dK"),
     )  # fmt: skip
 
 
@@ -130,11 +130,11 @@ def _mesh_columns(pair: GearPair) -> tuple[Column, ...]:
     sliding = [[float(specific_sliding(pair, x, member)) for x in ends] for member in MEMBERS]
     return (
         diameter("active_root_diameter", "start", "start of active profile d_Nf"),
-        diameter("lpstc_diameter", "lowest_single", "lowest point of single contact (LPSTC)"),
-        diameter("hpstc_diameter", "highest_single", "highest point of single contact (HPSTC)"),
+        diameter("lpstc_diameter", "lowest_single", "lowest single contact (LPSTC)"),
+        diameter("hpstc_diameter", "highest_single", "highest single contact (HPSTC)"),
         diameter("active_tip_diameter", "end", "end of active profile d_Na"),
         Column("tip_clearance", np.array([pair.tip_clearance(member) for member in MEMBERS]), "mm",
-               "tip clearance c to the mating root"),
+               "tip clearance c"),
         Column("specific_sliding_start", np.array([one[0] for one in sliding]), "", "specific sliding ζ at A"),
         Column("specific_sliding_end", np.array([one[1] for one in sliding]), "", "specific sliding ζ at E"),
     )  # fmt: skip

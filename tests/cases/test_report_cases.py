@@ -118,7 +118,8 @@ def test_the_files_in_the_page_are_the_files(made):
     _, folder = made
     files = carried(report(folder))
     assert list(files) == [
-        "tables/geometry.csv", "tables/stiffness_a.csv", "tables/root_stress_a.csv", "lin_table1.toml",
+        "tables/geometry.csv", "tables/gear_data_I.csv", "tables/stiffness_a.csv", "tables/root_stress_a.csv",
+        "lin_table1.toml",
     ]  # fmt: skip
     for name, content in files.items():
         if name.startswith("tables/"):
@@ -130,7 +131,7 @@ def test_the_files_in_the_page_are_the_files(made):
 def test_curves_are_plots_and_fields_are_pictures(made):
     _, folder = made
     page = report(folder)
-    assert page.plots == ["tooth_a", "compliance_a", "root_stress_a", "fillet_a", "estimated_errors"]
+    assert page.plots == ["gear_data_I", "tooth_a", "compliance_a", "root_stress_a", "fillet_a", "estimated_errors"]
     assert [alt.split(".")[0] for alt in page.images] == ["Deformed gear a"]
 
 
@@ -178,7 +179,7 @@ def test_plane_gears_are_drawn_without_pyvista_and_plotly(tmp_path):
 def test_pictures_are_there_and_not_empty(made):
     _, folder = made
     names = {path.stem for path in (folder / "plots").iterdir()}
-    assert names == {"tooth_a", "compliance_a", "root_stress_a", "fillet_a", "deformed_a"}
+    assert names == {"gear_data_I", "tooth_a", "compliance_a", "root_stress_a", "fillet_a", "deformed_a"}
     for path in (folder / "plots").iterdir():
         image = matplotlib.image.imread(path)
         assert min(image.shape[:2]) > 500

@@ -35,6 +35,7 @@ from fegear.engine.figure.axes import round_numbers
 from fegear.errors import MissingLibraryError
 from fegear.output.draw_plotly import darker, notebook_html, plotly_json, template
 from fegear.output.draw_png import draw_pictures
+from fegear.output.draw_png.sheet import Sheet
 from fegear.output.shades import shade
 
 
@@ -232,3 +233,19 @@ def test_a_notebook_shows_a_plot():
     shown = notebook_html(everything())
     assert "Plotly.newPlot" in shown
     assert "A caption." in shown
+
+
+def test_letters_of_points_and_marks_are_read_on_paper_and_in_pages():
+    from matplotlib.figure import Figure as Canvas
+
+    points = Points([0, 1], [0, 1], "", "ink", written=True, notes=("A", "B_{2}"))
+    long = Points([0, 1], [0, 1], "", "ink", written=True, notes=("0.1 s", "2 s"))
+    assert (points.lettered, long.lettered) == (True, False)
+    panel = Panel(Axis("x"), Axis("y"), (points,), (Mark("x", 0.5, "C"),))
+    spec = plotly_json(Figure("k", "t", "c", (panel,)))
+    (trace,) = (one for one in spec["data"] if "text" in one)
+    assert (trace["mode"], trace["text"]) == ("markers+text", ["A", "B<sub>2</sub>"])
+    assert [one["text"] for one in spec["layout"]["annotations"]] == ["C"]
+    made = Canvas()
+    Sheet(made, [(panel, "")], 1).draw()
+    assert {text.get_text() for text in made.axes[0].texts} == {"A", "B₂", "C"}

@@ -37,6 +37,8 @@ from fegear.output.report.blocks import (
     Notes,
     Paragraph,
     Plot,
+    Sheet,
+    SheetGroup,
     Still,
     Values,
 )  # fmt: skip
@@ -173,12 +175,14 @@ def page_of_every_block(name: str, folder: Path) -> Page:
     columns = (Column(name, np.array([0.5, 1.0]), "mm", name), Column("text", np.array([name, name])))
     table = Table("t", columns, name)
     figure = Figure("key", name, name, (Panel(Axis(name), Axis(name), (Points([1.0], [1.0], name, notes=(name,)),)),))
+    rows = SheetGroup(name, (Column("c", np.array([name]), "", "d_b"),))
+    sheet = Sheet((name,), (rows,), (("what", name, "mm"),))
     value = Value("v", 2.0, "mm", 0.3e-3, meaning=name)
     blocks = (
         Paragraph(name), Heading(name), Notes((name,)), Listed((name, 1.5, True)), Bars({name: 1.0}, name), Code(name),
         Facts({name: [{name: 1.0}, {name: name}], "list": [name, {name: name}], "none": []}),
         Grid((name,), ((name,),)), Folded(name, (Paragraph(name),)), Download(f"{name}.toml"), Values((value,), 1e-9),
-        DataTable(table), Plot(figure), Still(Picture(picture, name, name)),
+        DataTable(table), Plot(figure), sheet, Still(Picture(picture, name, name)),
     )  # fmt: skip
     return Page(name, name, (Section(name, blocks),), (table,), {f"{name}.toml": b""}, name)
 

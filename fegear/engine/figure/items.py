@@ -99,7 +99,7 @@ class Points(_Item):
     notes : tuple of str
         What the reader sees on pointing at each point.
     written : bool
-        Whether paper has the notes beside the points.
+        Whether paper has the notes beside the points; pages have them where they are single letters.
     """
 
     x: ArrayLike
@@ -114,6 +114,11 @@ class Points(_Item):
     notes: tuple[str, ...] = ()
     written: bool = False
     ARRAYS: ClassVar[tuple[str, ...]] = ("x", "y", "shade", "error")
+
+    @property
+    def lettered(self) -> bool:
+        """Whether the points bear letters, which are read beside them on paper and in pages."""
+        return self.written and all(len(note.partition("_")[0]) == 1 for note in self.notes)
 
 
 @dataclass(frozen=True, slots=True)

@@ -127,6 +127,8 @@ def _points(panel: Panel, item: Points) -> list[Spec]:
         trace |= {"error_y": {"type": "data", "array": typed(item.error), "thickness": 1}}
     if item.notes:
         trace |= {"text": [rich(note) for note in item.notes], "hovertemplate": f"%{{text}}<br>{place}"}
+    if item.lettered:
+        trace |= {"mode": "markers+text", "textposition": "top left"}
     return [trace]
 
 

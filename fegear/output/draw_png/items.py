@@ -86,6 +86,10 @@ def _write_notes(axes: Any, item: Points) -> None:
     if log[0]:
         left, right = axes.get_xlim()
         axes.set_xlim(left, _ROOM_FOR_NOTES * right)
+    if item.lettered:
+        for note, a, b in zip(item.notes, x, y, strict=True):
+            axes.annotate(words(note), (a, b), xytext=(-9, 4), textcoords="offset points", fontsize=10, weight="bold")
+        return
     placed: list[tuple[float, float]] = []
     for i in np.argsort(-y):
         a, b = (math.log10(v) if scale else float(v) for v, scale in zip((x[i], y[i]), log, strict=True))

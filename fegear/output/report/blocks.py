@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 #: Rows of a table that stand in the page as text; the others are a click away.
 _ROWS = 6
+#: Tables of so few rows with more columns than this stand on their side.
+_BESIDE = 8
 #: Larger errors than this share of the value are given as absolute numbers alone.
 _MEANINGLESS = 0.5
 
@@ -150,7 +152,10 @@ def relative_error(value: Value) -> float | None:
 
 @dataclass(frozen=True)
 class DataTable(Block):
-    """The beginning of a table, with what it takes to see all of it, to sort it and to download it."""
+    """The beginning of a table, with what it takes to see all of it, to sort it and to download it.
+
+    A table of few rows and many columns stands on its side, so that no column is out of sight.
+    """
 
     table: Table
 
@@ -165,6 +170,16 @@ class DataTable(Block):
         return len(self.table.columns[0])
 
     @property
+    def on_its_side(self) -> bool:
+        """Whether quantities stand below each other."""
+        return self.count <= _ROWS and len(self.table.columns) > _BESIDE
+
+    @property
+    def sides(self) -> list[tuple[str, str, str, tuple[str, ...]]]:
+        """Name, unit, meaning and values of each quantity of a table on its side."""
+        return [(*head, row) for head, row in zip(self.heads, zip(*self.rows, strict=True), strict=True)]
+
+    @property
     def heads(self) -> list[tuple[str, str, str]]:
         """Name, unit and meaning of each column."""
         return [(*_name_and_unit(column), column.meaning) for column in self.table.columns]
@@ -174,6 +189,40 @@ class DataTable(Block):
         """The first rows."""
         columns = [[_short(cell(value)) for value in column.values[:_ROWS]] for column in self.table.columns]
         return list(zip(*columns, strict=True))
+
+
+@dataclass(frozen=True)
+class SheetGroup:
+    """Columns of a table that stand together as rows below a heading."""
+
+    title: str
+    columns: tuple[Column, ...]
+
+    @property
+    def rows(self) -> list[tuple[str, str, tuple[str, ...]]]:
+        """What each row is, its unit and its values."""
+        return [
+            (column.meaning, column.unit, tuple(_short(cell(value)) for value in column.values))
+            for column in self.columns
+        ]
+
+
+@dataclass(frozen=True)
+class Sheet(Block):
+    """A short table on its side: a row for each quantity, a column for each gear.
+
+    Parameters
+    ----------
+    heads : tuple of str
+        Over the columns of values.
+    groups : tuple of SheetGroup
+    shared : tuple of (str, str, str)
+        What belongs to all columns together: what it is, its value, its unit.
+    """
+
+    heads: tuple[str, ...]
+    groups: tuple[SheetGroup, ...]
+    shared: tuple[tuple[str, str, str], ...] = ()
 
 
 def _name_and_unit(column: Column) -> tuple[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
@@ -22,6 +23,12 @@ def _base64(content: bytes) -> str:
     return base64.b64encode(content).decode()
 
 
+def _symbols(text: str) -> list[tuple[str, str]]:
+    """Words of a text that names symbols as d_b: what stands on the line and what stands lower, in turns."""
+    parts = re.split(r"(?<=\b\w)_(\w+)", text)
+    return list(zip(parts[::2], [*parts[1::2], ""], strict=True))
+
+
 @cache
 def _environment() -> Environment:
     from jinja2 import Environment, PackageLoader, StrictUndefined  # takes 20 ms, which only pages should cost
@@ -39,7 +46,9 @@ def _environment() -> Environment:
             return block
         return getattr(made.get_template("blocks.html").module, type(block).__name__)(block)
 
-    made.filters.update(base64=_base64, drawn=drawn, resource=_resource, unit=pretty_unit, words=as_words)
+    made.filters.update(
+        symbols=_symbols, base64=_base64, drawn=drawn, resource=_resource, unit=pretty_unit, words=as_words
+    )
     return made
 
 

@@ -22,6 +22,7 @@ from fegear.output.report.blocks import (
     Still,
     Values,
 )
+from fegear.output.report.gear_data import gear_sections
 from fegear.output.report.page import Page, Section, write_page
 
 if TYPE_CHECKING:
@@ -77,12 +78,14 @@ def _sources(results: Results, task: Task) -> tuple[Block, ...]:
     return (Folded("Sources of these results", (Notes(cited, "sources"),)),) if cited else ()
 
 
-def _stage(results: Results, task: Task, drawn: Sequence[Drawn]) -> Section:
+def _stage(results: Results, task: Task, drawn: Sequence[Drawn], shown: frozenset[str]) -> Section:
     outcome = results.outcomes[task]
     blocks: list[Block] = []
     for one in drawn:
+        if one.figure.key in shown:
+            continue
         blocks += [Plot(one.figure)] if one.figure.drawable_in_page else [Still(picture) for picture in one.pictures]
-    blocks += [DataTable(table) for table in outcome.tables]
+    blocks += [DataTable(table) for table in outcome.tables if table.name not in shown]
     return Section(_title(results, task), (*blocks, *_sources(results, task)) if blocks else ())
 
 
@@ -143,6 +146,8 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     scene = results.scene
     name = f"{file_name(scene.name)}.toml"
     files = {name: scene.text.encode()} if scene.text else {}
+    gears = gear_sections(results)
+    shown = frozenset({"gear_data", *(f"gear_data_{pair}" for pair in scene.pairs)})
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
     return Page(
@@ -150,9 +155,11 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
         note=f"Case {scene.name}: {', '.join(scene.case.results)}. {count} values and {len(results.tables)} tables, "
         f"computed in {total:.2f} s by fegear {fegear.__version__}.",
         sections=(
+            *gears[:1],
             Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),
             Section("Results", _values(results)),
-            *(_stage(results, task, [one for one in drawn if one.task == task]) for task in results.outcomes),
+            *gears[1:],
+            *(_stage(results, task, [one for one in drawn if one.task == task], shown) for task in results.outcomes),
             Section("Accuracy and its cost", accuracy_blocks(results)),
             Section("Plan", _plan(results)),
             Section("Case file", (Code(scene.text), Download(name)) if files else ()),
