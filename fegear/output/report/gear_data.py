@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from fegear.geometry.pair import MEMBERS
 from fegear.output.report.blocks import Download, Paragraph, Plot, Sheet, SheetGroup, value_cells
 from fegear.output.report.page import Section
+from fegear.output.tables import table_file
 from fegear.results.drawn_pair import pair_figure
 from fegear.results.gear_data import drawing_of, lone_table, pair_table, pair_values
 
@@ -58,4 +59,4 @@ def _blocks(table: Table, values: Sequence[Value], written: set[str]) -> tuple[B
     note = "" if table.name in written else 'The table itself is written with results = ["geometry"].'
     if note:
         return sheet, Paragraph(note, "note screen")
-    return sheet, Download(f"tables/{table.name}.csv")
+    return sheet, Download(f"tables/{table_file(table)}")
