@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.outcome import Column, Table, Value
-from fegear.models.pair_inputs import MEMBERS
+from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
