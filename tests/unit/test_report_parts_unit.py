@@ -184,7 +184,7 @@ def page_of_every_block(name: str, folder: Path) -> Page:
         Grid((name,), ((name,),)), Folded(name, (Paragraph(name),)), Download(f"{name}.toml"), Values((value,), 1e-9),
         DataTable(table), Plot(figure), sheet, Still(Picture(picture, name, name)),
     )  # fmt: skip
-    return Page(name, name, (Section(name, blocks),), (table,), {f"{name}.toml": b""}, name)
+    return Page(name, name, (Section(name, blocks),), (table,), {f"{name}.toml": b""})  # the archive has a safe file name
 
 
 HOSTILE = (
@@ -204,7 +204,7 @@ def test_no_name_becomes_part_of_the_page(name, tmp_path):
     assert hostile.tags == harmless.tags
     found = hostile.texts.count(name), sum(name in value for value in hostile.values)
     assert found == (harmless.texts.count("NAME"), sum("NAME" in value for value in harmless.values))
-    assert min(found) > 5
+    assert min(found) > 4
     assert len(hostile.scripts) == len(harmless.scripts)
     figures = json.loads(hostile.scripts[0])
     assert "<" not in hostile.scripts[0]
