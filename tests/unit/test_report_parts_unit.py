@@ -184,7 +184,7 @@ def page_of_every_block(name: str, folder: Path) -> Page:
         Grid((name,), ((name,),)), Folded(name, (Paragraph(name),)), Download(f"{name}.toml"), Values((value,), 1e-9),
         DataTable(table), Plot(figure), sheet, Still(Picture(picture, name, name)),
     )  # fmt: skip
-    return Page(name, name, (Section(name, blocks),), (table,), {f"{name}.toml": b""})  # the archive has a safe file name
+    return Page(name, name, (Section(name, blocks),), (table,), {f"{name}.toml": b""})
 
 
 HOSTILE = (
