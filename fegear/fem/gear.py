@@ -12,7 +12,7 @@ from fegear.fem.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.influence import SIDES, Influence, Side
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -144,42 +144,56 @@ class GearInfluence:
     def self_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
         """Estimated error of `self_compliance` [m^2/N]: what a coarser mesh with wider pressures changes."""
         r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
-
-        def difference(at: Array, width: Array) -> Array:
-            fine = self.fine.self_compliance(at, self.settings.patch_half_width, width)
-            return np.abs(fine - self._other.self_compliance(at, self.coarse_patch, width))
-
-        usual = _root_mean_square(difference(self._samples, np.asarray(REFERENCE_HALF_WIDTH)))
         share = np.where(self._at_an_end(r, b), _END_SHARE, _SHARE)
-        found = np.maximum(share * difference(r, b), _SHARE * _USUAL * usual)
+        reference = np.asarray(REFERENCE_HALF_WIDTH)
+        usual = self._usually("c_self", lambda: self._self_difference(self._samples, reference))
+        found = np.maximum(share * self._self_difference(r, b), _SHARE * _USUAL * usual)
         return self._known(found) / self.gear.material.young_modulus
+
+    def _self_difference(self, radius: Array, half_width: Array) -> Array:
+        fine = self.fine.self_compliance(radius, self.settings.patch_half_width, half_width)
+        return np.abs(fine - self._other.self_compliance(radius, self.coarse_patch, half_width))
 
     def neighbour_error(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """Estimated error of `neighbour` [m^2/N], shape (P, Q)."""
-
-        def difference(p: Array, q: Array) -> Array:
-            fine = self.fine.neighbour(k, p, q, self.settings.patch_half_width)
-            return np.abs(fine - self._other.neighbour(k, p, q, self.coarse_patch))
-
-        usual = _root_mean_square(difference(self._samples, self._samples))
-        own = difference(self._modules(radius_p), self._modules(radius_q))
+        own = self._neighbour_difference(k, self._modules(radius_p), self._modules(radius_q))
+        usual = self._usually(k, lambda: self._neighbour_difference(k, self._samples, self._samples))
         return self._known(_NEIGHBOUR_SHARE * np.maximum(own, _USUAL * usual)) / self.gear.material.young_modulus
+
+    def _neighbour_difference(self, k: int, p: Array, q: Array) -> Array:
+        fine = self.fine.neighbour(k, p, q, self.settings.patch_half_width)
+        return np.abs(fine - self._other.neighbour(k, p, q, self.coarse_patch))
 
     def root_stress_error(self, k: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None) -> Array:
         """Estimated error of `largest_root_stress` [1/m], shape (P,)."""
-
-        def both(side: Side, r: Array, b: ArrayLike) -> tuple[Array, Array]:
-            fine = self.fine.largest_root_stress(k, side, r, b)[0]
-            return fine, np.abs(fine - self._other.largest_root_stress(k, side, r, b)[0])
-
-        def usual(side: Side) -> float:
-            return _root_mean_square(np.divide(*both(side, self._samples, REFERENCE_HALF_WIDTH)[::-1]))
-
         # The back fillet has the loaded one's shape and no shorter edges: it errs no less, should
         # its difference vanish by chance.
-        least = _USUAL * max(usual(at) for at in (SIDES if side == "compression" else (side,)))
-        value, difference = both(side, self._modules(radius), self._half_width(half_width))
+        least = _USUAL * max(self._usual_stress(k, at) for at in (SIDES if side == "compression" else (side,)))
+        value, difference = self._stress_difference(k, side, self._modules(radius), self._half_width(half_width))
         return self._known(_STRESS_SHARE * np.maximum(difference, least * np.abs(value))) / self.gear.module
+
+    def _stress_difference(self, k: int, side: Side, r: Array, b: ArrayLike) -> tuple[Array, Array]:
+        fine = self.fine.largest_root_stress(k, side, r, b)[0]
+        return fine, np.abs(fine - self._other.largest_root_stress(k, side, r, b)[0])
+
+    def _usual_stress(self, k: int, side: Side) -> float:
+        """Of the value."""
+
+        def relative() -> Array:
+            value, difference = self._stress_difference(k, side, self._samples, REFERENCE_HALF_WIDTH)
+            return difference / value
+
+        return self._usually((k, side), relative)
+
+    def _usually(self, key: object, difference: Callable[[], Array]) -> float:
+        """Root mean square of a difference over the flank: asked for with every table, found once."""
+        if key not in self._usual:
+            self._usual[key] = float(np.sqrt(np.mean(difference() ** 2)))
+        return self._usual[key]
+
+    @functools.cached_property
+    def _usual(self) -> dict[object, float]:
+        return {}
 
     def largest_errors(self) -> dict[str, float]:
         """Largest estimated relative error over the flank of each quantity.
@@ -238,7 +252,3 @@ class GearInfluence:
     def _flank_ends(self) -> tuple[float, float]:
         flank, tooth = self.fine.flank, self.gear.tooth
         return max(flank.lowest_radius, tooth.form_radius), min(flank.highest_radius, tooth.involute_tip_radius)
-
-
-def _root_mean_square(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
