@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.arrays import Array
-    from fegear.helical.contact import PairContact
     from fegear.helical.pair import HelicalPair
+    from fegear.helical.pair_contact import PairContact
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import RangeError
-from fegear.helical.contact import pair_contact
+from fegear.helical.pair_contact import pair_contact
 
 if TYPE_CHECKING:
     from fegear.helical.pair import HelicalPair

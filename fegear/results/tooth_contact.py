@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.engine.stage import Upstream, Work
     from fegear.helical.bearing import Bearing
-    from fegear.helical.contact import PairContact, ToothContact
+    from fegear.helical.contact import ToothContact
     from fegear.helical.pair import HelicalPair
+    from fegear.helical.pair_contact import PairContact
     from fegear.helical.predesign import Predesign
 
 

@@ -10,7 +10,7 @@ from scipy.optimize import root
 
 from fegear.errors import GeometryError
 from fegear.geometry.rack_flank import RackFlank
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, pair_contact, tooth_contact
+from fegear.helical import HelicalGear, HelicalPair, Misalignment, mesh_cycle, pair_contact, tooth_contact
 from fegear.helical.bracket import falling_bracket, falling_root
 
 DEG, ARCMIN, ARCSEC = math.pi / 180.0, math.pi / 10800.0, math.pi / 648000.0
@@ -134,7 +134,7 @@ def test_mirrored_hands_with_mirrored_shafts_have_the_same_error(beta, shaft, le
     assume(beta > 0.0 or lead == 0.0)  # a lead error gives a spur gear a hand
     hands = ("left", "right") if beta else ("spur", "spur")
     mirrored = [
-        tooth_contact(make(31, 57, beta, hand, errors=Misalignment(sign * shaft, lead, profile), parabola=parabola), 24)
+        mesh_cycle(make(31, 57, beta, hand, errors=Misalignment(sign * shaft, lead, profile), parabola=parabola), 24)
         for hand, sign in zip(hands, (1.0, -1.0), strict=True)
     ]
     assert mirrored[0].error == pytest.approx(mirrored[1].error, abs=1e-12)
@@ -146,7 +146,7 @@ def test_mirrored_hands_with_mirrored_shafts_have_the_same_error(beta, shaft, le
 def test_error_vanishes_linearly_with_the_misalignment():
     sizes = 3.0 * 10.0 ** -np.arange(0.0, 7.0, 2.0)  # arc-min, down to 3e-6
     for name in ("shaft_angle", "lead_angle", "profile_angle"):
-        results = [tooth_contact(make(errors=Misalignment(**{name: a * ARCMIN})), 32) for a in sizes]
+        results = [mesh_cycle(make(errors=Misalignment(**{name: a * ARCMIN})), 32) for a in sizes]
         scaled = [np.abs(r.error).max() / a for r, a in zip(results, sizes, strict=True)]
         # First order in the misalignment, until round-off (1e-16 rad of some 1e-10) shows.
         assert scaled == pytest.approx([scaled[1]] * 4, rel=2e-3), name
@@ -271,7 +271,7 @@ def test_edge_contact_solves_the_papers_equations_10_and_11():
 def test_spur_gears_with_a_shaft_angle_touch_at_a_face_end(n1, n2, shaft):
     assume(abs(shaft) > 0.1 * ARCMIN)
     pair = make(n1, n2, 0.0, "spur", 0.03, errors=Misalignment(shaft_angle=shaft))
-    result = tooth_contact(pair, 16)
+    result = mesh_cycle(pair, 16)
     assert set(result.mesh.kind) <= {"pinion face end", "gear face end", "corner"}
     # To first order the flank end lies shaft L/2 sin(alpha)... nearer: the separation along the normal.
     expected = 0.5 * 0.03 * abs(shaft) * math.cos(pair.working_pressure_angle) / pair.gear.base_radius

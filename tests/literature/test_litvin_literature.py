@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fegear.errors import RangeError
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, tooth_contact
+from fegear.helical import HelicalGear, HelicalPair, Misalignment, mesh_cycle, tooth_contact
 from fegear.helical.bearing import bearing_contact
 from fegear.helical.predesign import absorb_linear_error, linear_error
 
@@ -79,7 +79,7 @@ def test_profile_angle_error_moves_the_contact_but_makes_no_transmission_error()
 
 def test_shaft_3_and_lead_minus_4_give_edge_contact_with_two_slopes():
     """Figs. 5 and 6."""
-    result = tooth_contact(drive(shaft=3.0, lead=-4.0), 400)
+    result = mesh_cycle(drive(shaft=3.0, lead=-4.0), 400)
     assert "surface" not in result.mesh.kind
     found = slopes(result)
     assert found["pinion tip"] == pytest.approx(-6.5, abs=0.1)
@@ -88,7 +88,7 @@ def test_shaft_3_and_lead_minus_4_give_edge_contact_with_two_slopes():
 
 def test_profile_3_and_lead_minus_2_put_the_contact_on_the_end_of_the_tooth():
     """Figs. 7 and 8: contact on the edge of the tooth length, an almost linear function."""
-    result = tooth_contact(drive(profile=3.0, lead=-2.0), 400)
+    result = mesh_cycle(drive(profile=3.0, lead=-2.0), 400)
     end = result.mesh.kind == "pinion face end"
     assert end.mean() > 0.9
     assert np.ptp(result.mesh.slope[end]) < 2e-3 * np.abs(result.mesh.slope[end]).max()
@@ -108,14 +108,14 @@ def test_shaft_3_and_lead_minus_3_cancel():
     assert single.z1[inner] == pytest.approx(line(single.s[inner]), abs=2e-5)
     assert np.ptp(single.z1[inner]) / np.ptp(single.s[inner]) == pytest.approx(1.29, abs=0.02)
     # "Even a small difference will cause an edge contact and transmission errors".
-    assert "surface" not in tooth_contact(drive(shaft=3.0, lead=-3.001), 50).mesh.kind
+    assert "surface" not in mesh_cycle(drive(shaft=3.0, lead=-3.001), 50).mesh.kind
 
 
 def test_localised_contact_has_an_almost_linear_error_whose_slope_does_not_depend_on_the_parabola():
     """Figs. 12 and 13."""
     found = []
     for a_c in (0.04, 0.06, 0.1):
-        result = tooth_contact(drive(shaft=3.0, parabola=a_c), 200)
+        result = mesh_cycle(drive(shaft=3.0, parabola=a_c), 200)
         inside = result.mesh.kind == "surface"
         found.append(slopes(result)["surface"])
         assert np.ptp(result.mesh.slope[inside]) < 1e-3 * abs(result.mesh.slope[inside].mean())
@@ -127,7 +127,7 @@ def test_localised_contact_has_an_almost_linear_error_whose_slope_does_not_depen
 
 
 def test_a_parabola_too_flat_leaves_the_contact_on_the_edge():
-    result = tooth_contact(drive(shaft=3.0, parabola=0.005), 100)
+    result = mesh_cycle(drive(shaft=3.0, parabola=0.005), 100)
     assert "surface" not in result.mesh.kind
     with pytest.raises(RangeError, match="leaves the contact on the edges"):
         linear_error(drive(shaft=3.0, parabola=0.005))
@@ -165,7 +165,7 @@ def test_predesign_refuses_what_it_cannot_do():
 
 def test_contact_ellipses_lie_along_the_tooth():
     pair = drive(shaft=3.0, parabola=0.08)
-    result = tooth_contact(pair, 50)
+    result = mesh_cycle(pair, 50)
     bearing = bearing_contact(pair, result.mesh, 1000.0, 115e9)
     ellipse = bearing.ellipse
     assert (ellipse.long > 5.0 * ellipse.short).all()
@@ -173,4 +173,4 @@ def test_contact_ellipses_lie_along_the_tooth():
     assert np.abs((bearing.long_axis * bearing.short_axis).sum(0)).max() < 1e-12
     assert point.shape == bearing.long_axis.shape
     with pytest.raises(RangeError, match="no contact ellipse"):
-        bearing_contact(drive(), tooth_contact(drive(), 10).mesh, 1000.0, 115e9)
+        bearing_contact(drive(), mesh_cycle(drive(), 10).mesh, 1000.0, 115e9)
