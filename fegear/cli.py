@@ -16,6 +16,7 @@ from fegear.commands.effects import effects
 from fegear.commands.export import export
 from fegear.commands.help import Command, Group, context_settings
 from fegear.commands.plan import plan
+from fegear.commands.results import results
 from fegear.commands.run import run
 from fegear.commands.sweep import sweep
 from fegear.errors import NO_ROOM, FegearError
@@ -46,8 +47,19 @@ def _options(
     """Options of the program itself."""
 
 
-for _command in (run, plan, cost, sweep, effects, export):  # in the order of ``fegear --help``
-    app.command(cls=Command)(_command)
+#: The commands in the order of ``fegear --help``, and what it says of each.
+COMMANDS = (
+    (results, "What a case can ask for."),
+    (run, "Compute a case: tables, pictures, report."),
+    (plan, "What a run would compute, why, and how long it takes."),
+    (sweep, "A case over a grid of values."),
+    (effects, "What each effect changes in a case."),
+    (cost, "What accuracy costs in time."),
+    (export, "Drawings and meshes for other programs."),
+)
+
+for _command, _short in COMMANDS:
+    app.command(cls=Command, short_help=_short)(_command)
 
 
 def main() -> None:

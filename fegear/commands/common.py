@@ -22,29 +22,19 @@ if TYPE_CHECKING:
 INTERRUPTED = "interrupted; results of earlier runs are as they were."
 
 
-def result_names() -> list[str]:
-    """Names of all results, in the order of the catalogue."""
-    from fegear.results.catalogue import STAGES
-
-    return list(dict.fromkeys(name for stage in STAGES for name in stage.results))
-
-
-def effect_names() -> list[str]:
-    """Names of all effects."""
-    from fegear.case.effects import EffectsPart
-
-    return sorted(EffectsPart.model_fields)
-
-
 def _complete_results(incomplete: str) -> list[str]:
     """What may follow in a list of results that is being typed."""
+    from fegear.results.catalogue import RESULTS
+
     before, comma, last = incomplete.rpartition(",")
-    return [f"{before}{comma}{name}" for name in result_names() if name.startswith(last)]
+    return [f"{before}{comma}{name}" for name in RESULTS if name.startswith(last)]
 
 
 def complete_effects(incomplete: str) -> list[str]:
     """What an effect that is being typed may become."""
-    return [name for name in effect_names() if name.startswith(incomplete)]
+    from fegear.case.effects import EffectsPart
+
+    return [name for name in sorted(EffectsPart.model_fields) if name.startswith(incomplete)]
 
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]

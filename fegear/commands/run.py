@@ -46,6 +46,7 @@ def run(
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan
     from fegear.output.folder import default_folder, whole_or_nothing
+    from fegear.output.tables import sheet_lines
     from fegear.output.write import STEPS, write_results
     from fegear.results.catalogue import STAGES
     from fegear.solution_cache import SolutionCache, cache_on_disk
@@ -65,6 +66,9 @@ def run(
             remarks = write_results(results, scratch, watching, plots=not no_plots)
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
+    for table in results.tables:
+        for line in sheet_lines(table) if table.printed else ():
+            voice.say(line)
     for value in results.values:
         voice.say(repr(value))
     for remark in remarks:

@@ -152,6 +152,8 @@ class Stage:
         ``needs(scene, subject)`` -> tasks that must run first.
     check : callable
         ``check(scene, subject)`` raises `InputError` when the scene lacks something the stage cannot do without.
+    about : str
+        What its results tell, in a line; empty for stages that only serve others.
     effects : tuple of str
         Effects that change what it computes.
     requires : tuple of Need
@@ -171,6 +173,7 @@ class Stage:
     present: Callable[[Any, Any], Outcome]
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
+    about: str = ""
     effects: tuple[str, ...] = ()
     requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown

@@ -75,11 +75,21 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A named table; the first column is what the rows are ordered by."""
+    """A named table; the first column is what the rows are ordered by.
+
+    Parameters
+    ----------
+    name : str
+    columns : tuple of Column
+    title : str
+    printed : bool
+        Whether a run shows it on the terminal, a column for each row: few rows, whose names the first column holds.
+    """
 
     name: str
     columns: tuple[Column, ...]
     title: str = ""
+    printed: bool = False
 
     def __post_init__(self) -> None:
         """Refuse columns of different length: that would be a bug of a stage."""

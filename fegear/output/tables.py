@@ -35,6 +35,17 @@ def table_text(table: Table) -> str:
     return stream.getvalue()
 
 
+def sheet_lines(table: Table) -> list[str]:
+    """Lines for the terminal: a line for each quantity, a column for each row of the table."""
+    rows = [[column.head, *(f"{v:.7g}" if v.dtype.kind == "f" else str(v) for v in column.values)]
+            for column in table.columns]  # fmt: skip
+    first, *widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        f"{row[0]:<{first}}" + "".join(f"  {cell:>{width}}" for cell, width in zip(row[1:], widths, strict=True))
+        for row in rows
+    ]
+
+
 def write_table(folder: Path, table: Table) -> Path:
     """Write ``<name>.csv`` into a folder.
 

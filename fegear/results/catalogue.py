@@ -1,7 +1,8 @@
-"""The stages that fegear knows, in the order in which plans list them."""
+"""The stages that fegear knows, by subject."""
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from fegear.results import (
@@ -31,33 +32,50 @@ from fegear.results import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fegear.engine.stage import Stage
 
-#: Every stage, in the order in which plans list those that they skip.
-STAGES: tuple[Stage, ...] = (
-    geometry.GEOMETRY,
-    tooth_geometry_check.TOOTH_GEOMETRY_CHECK,
-    gear_solution.GEAR_SOLUTION,
-    stiffness.STIFFNESS,
-    root_stress.ROOT_STRESS,
-    crosscheck.CROSSCHECK,
-    root_stress_study.ROOT_STRESS_STUDY,
-    loaded_pair.LOADED_PAIR,
-    load_sharing.LOAD_SHARING,
-    transmission_error.TRANSMISSION_ERROR,
-    root_stress_history.ROOT_STRESS_HISTORY,
-    relief.RELIEF,
-    relief_chart.RELIEF_CHART,
-    relief_chart.ROBUSTNESS,
-    tooth_contact.TOOTH_CONTACT,
-    gear_train.GEAR_TRAIN,
-    train_response.NATURAL_MODES,
-    train_response.DYNAMIC_INCREMENTS,
-    mesh_force_spectrum.MESH_FORCE_SPECTRUM,
-    tooth_force.TOOTH_FORCE,
-    dynamic_root_stress.DYNAMIC_ROOT_STRESS,
-    motion.MOTION,
-    dynamic_factor.DYNAMIC_FACTOR,
-    design_chart.DESIGN_CHART,
-    transmissibility.TRANSMISSIBILITY,
+#: Every stage by the subject of its results, in the order in which plans list those that they skip.
+SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
+    {
+        "A gear and its teeth": (
+            geometry.GEOMETRY,
+            tooth_geometry_check.TOOTH_GEOMETRY_CHECK,
+            gear_solution.GEAR_SOLUTION,
+            stiffness.STIFFNESS,
+            root_stress.ROOT_STRESS,
+            crosscheck.CROSSCHECK,
+            root_stress_study.ROOT_STRESS_STUDY,
+        ),
+        "A pair under load": (
+            loaded_pair.LOADED_PAIR,
+            load_sharing.LOAD_SHARING,
+            transmission_error.TRANSMISSION_ERROR,
+            root_stress_history.ROOT_STRESS_HISTORY,
+        ),
+        "Profile relief": (
+            relief.RELIEF,
+            relief_chart.RELIEF_CHART,
+            relief_chart.ROBUSTNESS,
+        ),
+        "Helical pairs": (tooth_contact.TOOTH_CONTACT, transmissibility.TRANSMISSIBILITY),
+        "Gear trains in motion": (
+            gear_train.GEAR_TRAIN,
+            train_response.NATURAL_MODES,
+            train_response.DYNAMIC_INCREMENTS,
+            mesh_force_spectrum.MESH_FORCE_SPECTRUM,
+            tooth_force.TOOTH_FORCE,
+            dynamic_root_stress.DYNAMIC_ROOT_STRESS,
+            motion.MOTION,
+            dynamic_factor.DYNAMIC_FACTOR,
+            design_chart.DESIGN_CHART,
+        ),
+    }
 )
+
+#: Every stage.
+STAGES: tuple[Stage, ...] = tuple(stage for stages in SUBJECTS.values() for stage in stages)
+
+#: Every name by which a case may ask for a result.
+RESULTS: tuple[str, ...] = tuple(dict.fromkeys(name for stage in STAGES for name in stage.results))

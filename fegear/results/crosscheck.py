@@ -163,6 +163,7 @@ CROSSCHECK = Stage(
     name="crosscheck",
     title="Closed forms against finite elements",
     results=("crosscheck",),
+    about="closed forms for stiffness and root stress (ISO 6336, AGMA 908 and others) beside finite elements",
     subjects=lambda scene: (_WHOLE,) if scene.gears or scene.helical_pairs else (),
     needs=_needs,
     inputs=_inputs,

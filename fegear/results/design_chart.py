@@ -311,6 +311,7 @@ DESIGN_CHART = Stage(
     name="design-chart",
     title="Design chart of tip relief",
     results=("design-chart",),
+    about="dynamic factor over amount and length of tip relief",
     subjects=the_train,
     needs=_needs,
     inputs=_inputs,

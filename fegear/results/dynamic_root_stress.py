@@ -148,6 +148,7 @@ DYNAMIC_ROOT_STRESS = Stage(
     name="dynamic-root-stress",
     title="Dynamic root stress",
     results=("dynamic-root-stress",),
+    about="root stress of one tooth in motion",
     subjects=own_meshes,
     needs=_needs,
     inputs=_inputs,

@@ -57,6 +57,7 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
             *(measures[name] for name in ("tooth_thickness", "tip_thickness")),
         ),
         "Gears",
+        printed=True,
     )
     values = tuple(value for name, pair in pairs.items() for value in pair_values(name, pair))
     remarks = tuple(
@@ -75,6 +76,7 @@ GEOMETRY = Stage(
     name="geometry",
     title="Geometry",
     results=("geometry",),
+    about="what a drawing states and what follows from it: circles, span over teeth, contact ratio, backlash",
     subjects=_everything,
     inputs=lambda scene, _subject: drawing_of(scene),
     compute=lambda drawing, _upstream, _work: drawing,

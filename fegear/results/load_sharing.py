@@ -155,6 +155,7 @@ LOAD_SHARING = Stage(
     name="load-sharing",
     title="Load sharing",
     results=("load-sharing",),
+    about="load, deflection and contact pressure of a tooth pair from first to last contact",
     subjects=spur_pairs,
     needs=needs_pair,
     inputs=Subject.of,

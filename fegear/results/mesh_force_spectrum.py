@@ -176,6 +176,7 @@ MESH_FORCE_SPECTRUM = Stage(
     name="mesh-force-spectrum",
     title="Mesh force spectra",
     results=("mesh-force-spectrum",),
+    about="harmonics of the force in every mesh at a speed, and which mesh each comes from",
     subjects=meshes,
     needs=needs_train,
     inputs=_inputs,

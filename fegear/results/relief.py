@@ -179,6 +179,7 @@ RELIEF = Stage(
     name="relief",
     title="Relief for least excitation",
     results=("relief",),
+    about="profile relief of both gears that leaves the least transmission error, and what a shop can grind",
     subjects=design_pairs,
     needs=needs_pair,
     inputs=_inputs,

@@ -163,6 +163,7 @@ ROOT_STRESS_HISTORY = Stage(
     name="root-stress-history",
     title="Root stress through the mesh",
     results=("root-stress-history",),
+    about="root stress of both gears as a tooth passes through the mesh",
     subjects=spur_pairs,
     needs=needs_pair,
     inputs=_inputs,

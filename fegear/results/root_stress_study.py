@@ -271,6 +271,7 @@ ROOT_STRESS_STUDY = Stage(
     name="root-stress-study",
     title="Root-stress formulas against finite elements over many gears",
     results=("root-stress-study",),
+    about="where each root-stress formula is high or low, over many gears",
     subjects=lambda scene: ("",) if scene.gears else (),
     inputs=_inputs,
     compute=_compute,

@@ -178,6 +178,7 @@ STIFFNESS = Stage(
     name="stiffness",
     title="Compliance and root stress, whole gear",
     results=("stiffness",),
+    about="compliance of a loaded tooth and its neighbours, and its root stress, over load positions",
     subjects=chosen_gears,
     needs=lambda _scene, name: needs_solution(name),
     inputs=_inputs,

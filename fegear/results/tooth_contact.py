@@ -258,6 +258,7 @@ TOOTH_CONTACT = Stage(
     name="tooth-contact",
     title="Tooth contact analysis",
     results=("tooth-contact",),
+    about="unloaded contact of helical flanks, misaligned or not: transmission error, path, ellipses",
     subjects=_pairs,
     inputs=_inputs,
     compute=_compute,

@@ -238,6 +238,7 @@ TRANSMISSIBILITY = Stage(
     name="transmissibility",
     title="Force transmissibility",
     results=("transmissibility",),
+    about="forces that a helical pair passes from its mesh to its bearings, over frequency",
     subjects=lambda scene: tuple(scene.case.transmissibility),
     inputs=_inputs,
     compute=_compute,

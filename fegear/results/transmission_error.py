@@ -281,6 +281,7 @@ TRANSMISSION_ERROR = Stage(
     name="transmission-error",
     title="Transmission error",
     results=("transmission-error",),
+    about="loaded transmission error, mesh stiffness, their harmonics, and both over load",
     subjects=spur_pairs,
     needs=needs_pair,
     inputs=Subject.of,

@@ -11,7 +11,7 @@ import sys
 import pytest
 
 import fegear.cli
-from fegear.commands.common import result_names
+from fegear.results.catalogue import RESULTS
 
 CASE = """
 results = ["geometry"]
@@ -159,4 +159,28 @@ def test_an_error_lists_the_choices(say, change, words):
 
 def test_every_result_is_a_choice_that_the_error_names(say):
     _, _, err = say("plan", "one.toml", "--results", "nothing-of-the-kind")
-    assert all(re.search(rf"\b{name}\b", err) for name in result_names())
+    assert all(re.search(rf"\b{name}\b", err) for name in RESULTS)
+
+
+def test_results_are_listed_by_subject_with_a_line_each(say):
+    code, out, _ = say("results")
+    assert code == 0
+    assert out.startswith("A gear and its teeth:\n")
+    told = json.loads(say("results", "--json")[1])
+    assert set(told) == set(RESULTS)
+    for name, found in told.items():
+        assert re.search(rf"^  {name} +\S", out, re.MULTILINE)
+        assert 15 < len(found["about"]) <= 100
+    assert told["design-chart"]["needs_effects"] == ["contact_loss", "parametric"]
+
+
+def test_a_geometry_run_prints_the_numbers_of_its_gears(say, tmp_path):
+    _, out, _ = say("run", "one.toml", "--no-plots")
+    lines = {line.split("  ")[0]: line.split()[-2:] for line in out.splitlines()[:13]}
+    assert lines["gear"] == ["a", "b"]
+    assert lines["teeth"] == ["28", "35"]
+    table = (tmp_path / "results" / "one" / "tables" / "geometry.csv").read_text().splitlines()
+    rows = list(zip(*(line.split(",") for line in table), strict=True))
+    assert len(rows) == len(lines)
+    for head, *cells in rows[1:]:
+        assert [float(cell) for cell in lines[head]] == pytest.approx([float(cell) for cell in cells], rel=1e-6)
