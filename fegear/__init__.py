@@ -10,17 +10,33 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from fegear.errors import FegearError, InputError
+    from fegear.workbench.gear import Gear
+    from fegear.workbench.pair import Pair
+    from fegear.workbench.questions import dynamic_factor, relief, root_stress, stiffness_table, transmission_error
     from fegear.workbench.results import Results
     from fegear.workbench.run import run
 
 __version__ = "0.2.0"
 
-__all__ = ["Results", "__version__", "run"]
+__all__ = [
+    "FegearError", "Gear", "InputError", "Pair", "Results", "__version__", "dynamic_factor", "relief", "root_stress",
+    "run", "stiffness_table", "transmission_error",
+]  # fmt: skip
 
-#: Where each name of the top is described.
+#: Modules of the names above, besides the version.
 _HOMES = {
-    "Results": "fegear.workbench.results",
-    "run": "fegear.workbench.run",
+    "FegearError": "errors",
+    "Gear": "workbench.gear",
+    "InputError": "errors",
+    "Pair": "workbench.pair",
+    "Results": "workbench.results",
+    "dynamic_factor": "workbench.questions",
+    "relief": "workbench.questions",
+    "root_stress": "workbench.questions",
+    "run": "workbench.run",
+    "stiffness_table": "workbench.questions",
+    "transmission_error": "workbench.questions",
 }
 
 
@@ -28,7 +44,7 @@ def __getattr__(name: str) -> Any:
     """Load a name of the top at its first use."""
     if name not in _HOMES:
         raise AttributeError(f"module 'fegear' has no attribute {name!r}; it has {', '.join(sorted(_HOMES))}")
-    found = getattr(importlib.import_module(_HOMES[name]), name)
+    found = getattr(importlib.import_module(f"fegear.{_HOMES[name]}"), name)
     globals()[name] = found
     return found
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel, Stems
+from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel, Scale, Stems
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Subject
 from fegear.models.pair_checks import check_relief
@@ -196,8 +196,30 @@ def _summary_over_loads(name: str, pair: LoadedPair, exact: tuple[TransmissionEr
             Column("te_peak_to_peak", numbers("peak_to_peak"), "um", "largest less smallest"),
             Column("te_effective", numbers("effective_error"), "um", "A_e of NASA TM-89901"),
             Column("local_stiffness", numbers("average_stiffness"), "N/um", "slope of load, mean over the base pitch"),
+            Column("driver_torque", _torques(pair), "N.m", "torque on the driver under that load"),
         ),
         f"Transmission error of {name} for every load",
+    )
+
+
+def _torques(pair: LoadedPair) -> Array:
+    """Torque on the driver under each load [N m]."""
+    return np.array(pair.loads) * pair.engagement.pair.driver.base_radius
+
+
+def _over_load(name: str, pair: LoadedPair, exact: tuple[TransmissionError, ...]) -> Figure:
+    """Mean and variation of the transmission error over the load."""
+    label, torque = "load along the line of action", Scale("torque on the driver", "N.m", pair.loads, _torques(pair))
+    mean, swing = (np.array([getattr(te, key) for te in exact]) * 1e6 for key in ("mean", "peak_to_peak"))
+    panels = (
+        Panel(Axis(label, "N", second=torque), Axis("mean", "um"), (Curve(pair.loads, mean, "", "blue"),)),
+        Panel(Axis(label, "N"), Axis("peak to peak", "um"), (Curve(pair.loads, swing, "", "blue"),)),
+    )
+    return Figure(
+        f"transmission_error_summary_{name}",
+        f"Transmission error of {name} over load",
+        f"Pair {name}: mean and peak to peak of the loaded transmission error over one base pitch, for every load.",
+        panels,
     )
 
 
@@ -250,8 +272,9 @@ def _figures(name: str, data: TransmissionErrorData, errors: Array | None) -> tu
             )),
         ),
     )  # fmt: skip
+    several = (_over_load(name, pair, data.exact),) if len(pair.loads) > 1 else ()
     if data.rotational is None:
-        return over_pitch, harmonics
+        return over_pitch, harmonics, *several
     cycles = pair.engagement.cycles
     order = np.arange(1, data.rotational.amplitude.size + 1) / cycles
     rotational = Figure(
@@ -265,7 +288,7 @@ def _figures(name: str, data: TransmissionErrorData, errors: Array | None) -> tu
             )),
         ),
     )  # fmt: skip
-    return over_pitch, harmonics, rotational
+    return over_pitch, harmonics, *several, rotational
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:

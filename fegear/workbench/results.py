@@ -8,7 +8,10 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.engine.named import Named
+from fegear.engine.outcome import Column, Table
 from fegear.engine.run import Results as Found
 from fegear.engine.run import Silence
 from fegear.engine.shown import html_table
@@ -20,9 +23,10 @@ from fegear.workbench.plots import Plots
 if TYPE_CHECKING:
     import os
 
+    import pandas as pd
     import xarray as xr
 
-    from fegear.engine.outcome import Table, Value
+    from fegear.engine.outcome import Value
 
 #: Values that the short form shows, and characters of a remark.
 _FEW, _CLAUSE = 12, 140
@@ -89,6 +93,22 @@ class Results(Found):
                 parts.append(f"<p>{word}: {', '.join(f'<code>{escape(name)}</code>' for name in names)}</p>")
         parts += [f"<p>{escape(remark)}</p>" for remark in self.remarks]
         return "".join(parts)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """All single values: value, error, unit and meaning, by name.
+
+        Raises
+        ------
+        MissingLibraryError
+            If pandas is not installed.
+        """
+        name, value, error, unit, meaning = zip(
+            *((v.name, v.value, np.nan if v.error is None else v.error, v.unit, v.meaning) for v in self.values),
+            strict=True,
+        )
+        columns = {"name": name, "value": value, "error": error, "unit": unit, "meaning": meaning}
+        table = Table("values", tuple(Column(head, np.array(made)) for head, made in columns.items()))
+        return table.to_pandas().set_index("name")
 
     def to_xarray(self) -> xr.Dataset:
         """All tables and values as one labelled dataset: what ``results.nc`` holds.

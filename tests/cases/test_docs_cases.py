@@ -19,7 +19,7 @@ DOCS = ROOT / "docs"
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
     "choose-a-tolerance", "corner-contact-warning", "cost", "dynamic-factor", "export", "helical-misalignment",
-    "several-meshes", "sweep-on-a-cluster", "sweeps", "tutorial", "validate-root-stress-formula",
+    "python-mechanics", "several-meshes", "sweep-on-a-cluster", "sweeps", "tutorial", "validate-root-stress-formula",
 }  # fmt: skip
 
 
@@ -154,6 +154,23 @@ def test_a_page_does_what_it_says(page, tmp_path):
     assert snippets.execute(page, tmp_path / "run") == ""
 
 
+def test_the_everyday_tasks_take_at_most_six_lines():
+    page = (DOCS / "how-to" / "python.md").read_text("utf-8")
+    sections = re.findall(r"^## (.+)$\n(.*?)(?=^## )", page, re.MULTILINE | re.DOTALL)
+    tasks = {title: re.findall(r"```python\n(.*?)```", text, re.DOTALL) for title, text in sections[:5]}
+    assert len(tasks) == 5
+    for title, programs in tasks.items():
+        assert [len(program.splitlines()) <= 6 for program in programs] == [True], title
+
+
+def test_the_python_reference_has_every_name_of_the_top():
+    import fegear
+
+    page = (DOCS / "reference" / "top.md").read_text("utf-8")
+    named = set(re.findall(r"^::: fegear\.(\w+)$", page, re.MULTILINE))
+    assert set(fegear.__all__) - {"FegearError", "InputError", "__version__"} == named
+
+
 @pytest.mark.parametrize("package", ["geometry", "fem", "contact", "design", "helical"])
 def test_the_python_reference_has_every_public_name(package):
     page = (DOCS / "reference" / f"{package}.md").read_text("utf-8")
@@ -176,7 +193,7 @@ def test_the_python_page_names_every_result_and_functions_that_exist():
     """No result whose numbers a Python user could reach through its stage alone."""
     from fegear.results.catalogue import STAGES
 
-    page = (DOCS / "how-to" / "python.md").read_text("utf-8")
+    page = (DOCS / "how-to" / "python-mechanics.md").read_text("utf-8")
     rows = re.findall(r"^\| (`.+?) \| (.+) \|$", page, re.MULTILINE)
     listed = {name for row, _ in rows for name in re.findall(r"`([\w-]+)`", row)}
     assert {name for stage in STAGES for name in stage.results} - {"gear-train"} <= listed

@@ -25,7 +25,7 @@ def notebook_html(figure: Figure, *, library: bool = True) -> str:
         Whether plotly.js comes with it; the first of several figures on one page brings it for all.
     """
     if not figure.drawable_in_page:
-        return _still(figure)
+        return still_html(figure)
     from plotly.io import to_html
 
     spec = plotly_json(figure)
@@ -35,7 +35,8 @@ def notebook_html(figure: Figure, *, library: bool = True) -> str:
     return f"<b>{html.escape(figure.title)}</b>{plot}<p>{html.escape(figure.caption)}</p>"
 
 
-def _still(figure: Figure) -> str:
+def still_html(figure: Figure) -> str:
+    """A figure as a picture in HTML."""
     import tempfile
     from pathlib import Path
 

@@ -1,0 +1,135 @@
+"""A gear as a drawing describes it, in a script."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fegear.case.reading import build_scene
+from fegear.errors import InputError
+from fegear.solution_cache import SolutionCache
+from fegear.workbench.keys import brief
+from fegear.workbench.run import run_scene
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.geometry import Gear as SpurGear
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.workbench.keys import Length
+    from fegear.workbench.results import Results
+
+
+class Gear:
+    """A gear by the keys of ``[gear.NAME]`` of a case file; it never changes.
+
+    Quantities are texts with their unit (``"3 mm"``), quantities of pint, or numbers in SI.
+
+    Parameters
+    ----------
+    teeth : int
+    module : str, quantity or float, optional
+        Or give ``diametral_pitch``, or ``normal_module`` with ``helix_angle``.
+    name : str
+        In names of results.
+    **keys
+        ``pressure_angle``, ``profile_shift``, ``rack``, ``bore_radius``, ``face_width``, ``relief``, ... as in a case
+        file: see `fegear.case.gear.GearPart`.
+
+    Attributes
+    ----------
+    known : SolutionCache
+        What has been solved for it; the questions about it recall from there and keep there.
+
+    Raises
+    ------
+    InputError
+        If there is no such gear: key, value, rule, remedy.
+
+    Examples
+    --------
+    >>> pinion = fegear.Gear(23, "3 mm", profile_shift=0.3, bore_radius="15 mm", face_width="10 mm", name="pinion")
+    """
+
+    def __init__(self, teeth: int, module: Length | None = None, *, name: str = "a", **keys: Any) -> None:
+        self.name = name
+        self.keys: Mapping[str, Any] = {"teeth": teeth, **({} if module is None else {"module": module}), **keys}
+        self.known = SolutionCache()
+        self._scene  # noqa: B018  (a gear that cannot be is refused where it is described)
+
+    @classmethod
+    def of(cls, name: str, keys: Mapping[str, Any]) -> Gear:
+        """A gear from its name and its keys, ``teeth`` among them."""
+        return cls(**{**keys, "name": name})
+
+    def changed(self, **keys: Any) -> Gear:
+        """A gear with other keys; None takes one away."""
+        name = keys.pop("name", self.name)
+        return Gear.of(name, {key: value for key, value in {**self.keys, **keys}.items() if value is not None})
+
+    @cached_property
+    def _scene(self) -> Scene:
+        document = {"results": ["geometry"], "gear": {self.name: self.keys}}
+        return build_scene(document, self.name, Path.cwd(), bare_si=True)
+
+    @property
+    def is_spur(self) -> bool:
+        """Whether its teeth are straight."""
+        return self.name in self._scene.gears
+
+    @property
+    def spur(self) -> SpurGear:
+        """The spur gear of the geometry package, in SI throughout.
+
+        Raises
+        ------
+        InputError
+            If the gear is helical.
+        """
+        if not self.is_spur:
+            raise InputError("gear", f'"{self.name}"', "is helical", "its geometry is .helical")
+        return self._scene.gears[self.name]
+
+    @property
+    def helical(self) -> HelicalGear:
+        """The helical gear of the geometry package, in SI throughout.
+
+        Raises
+        ------
+        InputError
+            If the gear is a spur gear.
+        """
+        if self.is_spur:
+            raise InputError("gear", f'"{self.name}"', "is a spur gear", "its geometry is .spur")
+        return self._scene.helical_gears[self.name]
+
+    @cached_property
+    def data(self) -> Results:
+        """What a drawing of it carries: diameters, span."""
+        return run_scene(self._scene, progress=False)
+
+    def export(self, folder: str | os.PathLike[str], formats: str = "dxf") -> list[Path]:
+        """Write drawings and meshes, as ``fegear export`` does; see `Results.export`."""
+        return self.data.export(folder, formats)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether two gears are described alike."""
+        return isinstance(other, Gear) and (self.name, self.keys) == (other.name, other.keys)
+
+    __hash__ = None  # type: ignore[assignment]  # its keys may hold lists
+
+    def __repr__(self) -> str:
+        """As it was described."""
+        rest = {key: value for key, value in self.keys.items() if key not in ("teeth", "module")}
+        given = [brief(self.keys[key]) for key in ("teeth", "module") if key in self.keys]
+        given += [f"{key}={brief(value)}" for key, value in {"name": self.name, **rest}.items()]
+        return f"Gear({', '.join(given)})"
+
+    def _repr_html_(self) -> str:
+        """Show the drawing and its data in a notebook."""
+        from fegear.workbench.drawn import gear_html
+
+        return gear_html(self)

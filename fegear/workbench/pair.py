@@ -1,0 +1,193 @@
+"""Two gears in mesh, in a script."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from fegear.case.reading import build_scene
+from fegear.errors import InputError
+from fegear.results.root_stress_history import table_names
+from fegear.solution_cache import SolutionCache
+from fegear.workbench.gear import Gear
+from fegear.workbench.keys import brief
+from fegear.workbench.run import run_scene
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.geometry import GearPair
+    from fegear.geometry.pair import Member
+    from fegear.helical.pair import HelicalPair
+    from fegear.workbench.keys import Length
+    from fegear.workbench.results import Results
+
+_MEMBERS: tuple[Member, ...] = ("driver", "driven")
+
+
+class Pair:
+    """Two gears in mesh by the keys of ``[pair.NAME]`` of a case file, without their load; it never changes.
+
+    Parameters
+    ----------
+    driver, driven : Gear
+        The gear that pushes and the one that is pushed; the same one twice where a gear meshes with its like.
+    centre_distance : str, quantity or float, optional
+        By default the one that the profile shifts give without backlash.
+    compliance : str or mapping
+        Where tooth compliances come from: ``"fe"`` (finite elements), ``"weber-banaschek"``, ``"cornell"``,
+        ``"potential-energy"``, or a mapping as in a case file.
+    name : str
+        In names of results.
+    **keys
+        ``iso_6336``, ``misalignment``, ``modification``, ``axial_offset``, ... as in a case file: see
+        `fegear.case.pair.PairPart`.
+
+    Attributes
+    ----------
+    known : SolutionCache
+        What has been solved for it; the questions about it recall from there and keep there.
+
+    Raises
+    ------
+    InputError
+        If the gears cannot mesh: key, value, rule, remedy.
+    """
+
+    def __init__(
+        self,
+        driver: Gear,
+        driven: Gear,
+        centre_distance: Length | None = None,
+        *,
+        compliance: str | Mapping[str, Any] = "fe",
+        name: str = "I",
+        **keys: Any,
+    ) -> None:
+        for role, gear in (("driver", driver), ("driven", driven)):
+            if not isinstance(gear, Gear):
+                raise InputError(role, repr(gear), "is no fegear.Gear", f'write {role} = fegear.Gear(20, "3 mm")')
+        self.driver, self.driven, self.name = driver, driven, name
+        source = {"source": compliance} if isinstance(compliance, str) else dict(compliance)
+        given = {} if centre_distance is None else {"centre_distance": centre_distance}
+        self.keys: Mapping[str, Any] = {**given, "compliance": source, **keys}
+        self.known = SolutionCache()
+        self._scene  # noqa: B018  (a pair that cannot be is refused where it is described)
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Names of driver and driven in the results; different gears of one name are called driver and driven."""
+        if self.driver.name == self.driven.name and self.driver != self.driven:
+            return "driver", "driven"
+        return self.driver.name, self.driven.name
+
+    def document(self, **load: Any) -> dict[str, Any]:
+        """Its gears and itself as the tables of a case file, with the keys of its load."""
+        driver, driven = self.names
+        gears = {driver: dict(self.driver.keys), driven: dict(self.driven.keys)}
+        pair = {"driver": driver, "driven": driven, **self.keys, **load}
+        return {"gear": gears, "pair": {self.name: pair}}
+
+    @cached_property
+    def _scene(self) -> Scene:
+        return build_scene({"results": ["geometry"], **self.document()}, self.name, Path.cwd(), bare_si=True)
+
+    @property
+    def is_spur(self) -> bool:
+        """Whether its teeth are straight."""
+        return self.name in self._scene.pairs
+
+    @property
+    def spur(self) -> GearPair:
+        """The spur pair of the geometry package, in SI throughout.
+
+        Raises
+        ------
+        InputError
+            If the pair is helical.
+        """
+        if not self.is_spur:
+            raise InputError("pair", f'"{self.name}"', "is helical", "its geometry is .helical")
+        return self._scene.pairs[self.name]
+
+    @property
+    def helical(self) -> HelicalPair:
+        """The helical pair of the geometry package, in SI throughout.
+
+        Raises
+        ------
+        InputError
+            If the pair is one of spur gears.
+        """
+        if self.is_spur:
+            raise InputError("pair", f'"{self.name}"', "is of spur gears", "its geometry is .spur")
+        return self._scene.helical_pairs[self.name]
+
+    @cached_property
+    def data(self) -> Results:
+        """What a drawing of it carries: contact ratio, centre distance, diameters, span."""
+        return run_scene(self._scene, progress=False)
+
+    def relieved(self, design: Results, shape: Literal["designed", "linear", "parabolic"] = "designed") -> Pair:
+        """The pair with a relief that `fegear.relief` found for it.
+
+        Parameters
+        ----------
+        design : Results
+            Of `fegear.relief` for this pair.
+        shape : {"designed", "linear", "parabolic"}
+            The relief of the tables, or the tip reliefs that a shop can grind.
+
+        Returns
+        -------
+        Pair
+            Its gears carry the relief in place of their own.
+
+        Raises
+        ------
+        InputError
+            If the design has no such relief.
+        """
+        labels = table_names(design.scene, self.name)
+        reliefs = {member: _relief(design, self.name, member, labels[member], shape) for member in _MEMBERS}
+        driver, driven = (
+            Gear.of(name, {**gear.keys, "relief": relief})
+            for name, gear, relief in zip(_apart(self.names), (self.driver, self.driven), reliefs.values(), strict=True)
+        )
+        keys = {key: value for key, value in self.keys.items() if key != "compliance"}
+        made = Pair(driver, driven, compliance=self.keys["compliance"], name=self.name, **keys)
+        made.known = self.known  # relief changes no tooth shape: they are solved already
+        return made
+
+    def __repr__(self) -> str:
+        """As it was described."""
+        given = "".join(f", {key}={brief(value)}" for key, value in {**self.keys, "name": self.name}.items())
+        return f"Pair({self.driver!r}, {self.driven!r}{given})"
+
+    def _repr_html_(self) -> str:
+        """Show the gears and the pair's data in a notebook."""
+        from fegear.workbench.drawn import pair_html
+
+        return pair_html(self)
+
+
+def _apart(names: tuple[str, str]) -> tuple[str, str]:
+    """Names of two gears that were one and no longer are."""
+    return names if names[0] != names[1] else ("driver", "driven")
+
+
+def _relief(design: Results, pair: str, member: Member, label: str, shape: str) -> dict[str, Any]:
+    """One gear's relief as a case file has it, in SI."""
+    if shape == "designed":
+        table = design.tables[f"relief_{label}"]
+        places, removals = table.column("roll_angle").si.tolist(), table.column("relief").si.tolist()
+        return {"table": {"roll_angles": places, "removals": removals}}
+    ground = design.tables[f"grindable_{pair}"]
+    rows = (ground["shape"] == shape) & (ground["gear"] == member)
+    if not rows.any():
+        known = ", ".join(f'"{one}"' for one in ["designed", *dict.fromkeys(ground["shape"].tolist())])
+        raise InputError("shape", f'"{shape}"', "is none of the designed reliefs", f"choose from {known}")
+    amount, start = (float(ground.column(key).si[rows][0]) for key in ("amount", "start_roll_angle"))
+    return {"tip": {"amount": amount, "start_roll_angle": start, "shape": shape}}

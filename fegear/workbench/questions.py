@@ -1,0 +1,287 @@
+"""The everyday questions about gears and pairs, each one case that is composed, run and handed back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.errors import InputError
+from fegear.results.catalogue import STAGES
+from fegear.workbench.gear import Gear
+from fegear.workbench.keys import in_si, listed
+from fegear.workbench.run import run_scene
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.solution_cache import SolutionCache
+    from fegear.workbench.keys import Force, Length, Speed, Torque
+    from fegear.workbench.pair import Pair
+    from fegear.workbench.results import Results
+
+#: Mesh damping ratio when none is given: that of NASA TM-89901's dynamic model.
+DAMPING_RATIO = 0.1
+
+
+#: What each result is called in the title of its case.
+_TITLES = {
+    "stiffness": "Stiffness",
+    "crosscheck": "Root stress and compliance",
+    "transmission-error": "Transmission error",
+    "relief": "Relief",
+    "dynamic-factor": "Dynamic factor",
+}
+
+
+def _scene(wanted: str, document: Mapping[str, Any], tolerance: float | None) -> Scene:
+    """The case that asks for one result of what a document describes."""
+    names = list(document["gear"])
+    of = " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+    more = {} if tolerance is None else {"accuracy": {"tolerance": tolerance}}
+    whole = {"title": f"{_TITLES[wanted]} of {of}", "results": [wanted], **more, **document}
+    return build_scene(whole, wanted, Path.cwd(), bare_si=True)
+
+
+def _ask_of_pair(
+    wanted: str,
+    pair: Pair,
+    document: Mapping[str, Any],
+    effects: Mapping[str, Any] | None,
+    tolerance: float | None,
+    progress: bool | None,
+    cache: SolutionCache | None,
+) -> Results:
+    """Run the case with the effects that the description calls for and the result knows, and with those given."""
+    gears = (pair.driver.keys, pair.driven.keys)
+    called = {
+        "hertz": "load-dependent",
+        "corner_contact": True,
+        "neighbour_coupling": pair.keys["compliance"].get("source", "fe") == "fe",
+        "relief": any("relief" in keys for keys in gears),
+        "spacing_errors": any("spacing_errors" in keys for keys in gears),
+        "parametric": True,
+        "contact_loss": True,
+    }
+    given = dict(effects or {})
+    scene = _scene(wanted, {**document, "effects": {**called, **given}}, tolerance)
+    idle = set(make_plan(scene, STAGES).idle_effects) - set(given)
+    on = {effect: state for effect, state in called.items() if effect not in idle}
+    scene = _scene(wanted, {**document, "effects": {**on, **given}}, tolerance)
+    return run_scene(scene, progress=progress, cache=pair.known if cache is None else cache)
+
+
+def _loaded(
+    pair: Pair, torque: Torque | Iterable[Torque] | None, load: Force | Iterable[Force] | None
+) -> dict[str, Any]:
+    """The pair's document under its load or loads, along the line of action."""
+    if not pair.is_spur:
+        raise InputError(
+            "pair", f'"{pair.name}"', "is helical, and loaded teeth are computed for spur pairs",
+            'ask for "tooth-contact", "transmissibility" or "crosscheck" with fegear.run',
+        )  # fmt: skip
+    if (torque is None) == (load is None):
+        raise InputError(
+            "torque", "(not given)" if torque is None else "(given)", "must be given, or load instead",
+            'write torque="90 N*m" on the driver, or load="3 kN" along the line of action',
+        )  # fmt: skip
+    given, dimension = (load, "force") if torque is None else (torque, "torque")
+    key = "load" if torque is None else "torque"
+    several = listed(given)
+    if several is None:
+        return pair.document(**{key: given})
+    radius = 1.0 if torque is None else pair.spur.driver.base_radius
+    return pair.document(loads=[in_si(one, dimension, key) / radius for one in several])
+
+
+def stiffness_table(
+    gear: Gear,
+    radii: Iterable[Length] | None = None,
+    *,
+    positions: int | None = None,
+    contact_half_width: Length | None = None,
+    tolerance: float | None = None,
+    progress: bool | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """Compliance of a tooth and its neighbours, and the stress at both roots, for loads along the flank.
+
+    Parameters
+    ----------
+    gear : Gear
+    radii : iterable of lengths, optional
+        Where the load stands.
+    positions : int, optional
+        That many over the flank instead; 100 if neither is given.
+    contact_half_width : length, optional
+        Half the width that the load presses on; .02 modules by default.
+    tolerance : float, optional
+        Relative error that the mesh is chosen for.
+    progress, cache
+        As in `run`; by default what was solved for the same gear before is recalled.
+
+    Returns
+    -------
+    Results
+        Table ``stiffness_<gear>``.
+    """
+    part: dict[str, Any] = {"gear": gear.name}
+    given = {"radii": None if radii is None else list(radii), "positions": positions,
+             "contact_half_width": contact_half_width}  # fmt: skip
+    part |= {key: value for key, value in given.items() if value is not None}
+    scene = _scene("stiffness", {"gear": {gear.name: gear.keys}, "stiffness": part}, tolerance)
+    return run_scene(scene, progress=progress, cache=gear.known if cache is None else cache)
+
+
+def root_stress(
+    gears: Gear | Iterable[Gear],
+    *,
+    positions: int = 20,
+    tolerance: float | None = None,
+    progress: bool | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """Root stress by finite elements beside every formula (ISO 6336-3, AGMA 908, ...), for loads along the flank.
+
+    Parameters
+    ----------
+    gears : Gear or iterable of Gear
+        Each with a name of its own.
+    positions : int
+        Loads along the flank.
+    tolerance : float, optional
+        Relative error that the mesh is chosen for.
+    progress, cache
+        As in `run`; by default what was solved for the same gear before is recalled.
+
+    Returns
+    -------
+    Results
+        Tables ``crosscheck_root_stress_<gear>``, values ``<gear>.root_stress.<formula>.highest_ratio``.
+    """
+    found = [gears] if isinstance(gears, Gear) else list(gears)
+    names = [gear.name for gear in found]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("gears", f'"{name}"', "is the name of several gears", 'give each its own: name="z20"')
+    document = {"gear": {gear.name: gear.keys for gear in found}, "stiffness": {"positions": positions}}
+    return run_scene(_scene("crosscheck", document, tolerance), progress=progress, cache=cache)
+
+
+def transmission_error(
+    pair: Pair,
+    *,
+    torque: Torque | Iterable[Torque] | None = None,
+    load: Force | Iterable[Force] | None = None,
+    effects: Mapping[str, Any] | None = None,
+    tolerance: float | None = None,
+    progress: bool | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """Loaded transmission error, mesh stiffness and harmonics over one base pitch.
+
+    Parameters
+    ----------
+    pair : Pair
+    torque : torque or iterable of torques
+        On the driver; single values are for the largest of several.
+    load : force or iterable of forces
+        Along the line of action, in place of the torque.
+    effects : mapping, optional
+        Changes of the effects, which are on as the teeth really are: neighbours deform, contacts widen with load,
+        corners touch early, relief and spacing errors where a gear has them.
+    tolerance : float, optional
+        Relative error that the meshes are chosen for.
+    progress, cache
+        As in `run`; by default what was solved for the same gear before is recalled.
+
+    Returns
+    -------
+    Results
+        Tables ``transmission_error_<pair>``, ``transmission_error_harmonics_<pair>``; for several loads
+        ``transmission_error_summary_<pair>``. Values ``<pair>.te_peak_to_peak``, ...
+    """
+    return _ask_of_pair("transmission-error", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache)
+
+
+def relief(
+    pair: Pair,
+    *,
+    torque: Torque | None = None,
+    load: Force | None = None,
+    design: Mapping[str, Any] | None = None,
+    effects: Mapping[str, Any] | None = None,
+    tolerance: float | None = None,
+    progress: bool | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """The profile relief of both gears that leaves least transmission error under a load, and what a shop can grind.
+
+    Parameters
+    ----------
+    pair : Pair
+    torque, load : torque or force
+        The load that the relief is made for.
+    design : mapping, optional
+        Keys of ``[design]`` of a case file: ``family``, ``peak``, ``grind``, ``metric``, ...
+    effects, tolerance, progress, cache
+        As in `transmission_error`.
+
+    Returns
+    -------
+    Results
+        Tables ``relief_<pair>_<gear>`` and ``grindable_<pair>``; `Pair.relieved` applies them.
+    """
+    document = _loaded(pair, torque, load)
+    document["design"] = {"pair": pair.name, **(design or {})}
+    return _ask_of_pair("relief", pair, document, effects, tolerance, progress, cache)
+
+
+def dynamic_factor(
+    pair: Pair,
+    *,
+    torque: Torque,
+    speeds: Iterable[Speed] | Mapping[str, Any],
+    damping_ratio: float = DAMPING_RATIO,
+    train: Mapping[str, Any] | None = None,
+    dynamics: Mapping[str, Any] | None = None,
+    effects: Mapping[str, Any] | None = None,
+    tolerance: float | None = None,
+    progress: bool | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """Largest force on a tooth pair over the mean mesh force, at each speed; teeth may part.
+
+    Parameters
+    ----------
+    pair : Pair
+    torque : torque
+        On the driver.
+    speeds : iterable of speeds, or mapping
+        Of the driver; a mapping as in a case file, ``{"start": "2000 rpm", "stop": "16000 rpm", "count": 57}``.
+    damping_ratio : float
+        Of the mesh. The default is that of NASA TM-89901; measure or compare before you promise anything.
+    train : mapping, optional
+        ``[train]`` of a case file. By default the two gears turn as discs between steady torques, without shafts.
+    dynamics : mapping, optional
+        More keys of ``[dynamics]``: ``direction``, ``tolerance``, ...
+    effects, tolerance, progress, cache
+        As in `transmission_error`; stiffness varies over the mesh cycle and teeth may part.
+
+    Returns
+    -------
+    Results
+        Table ``dynamic_factor_<pair>``, values ``<pair>.largest_dynamic_factor``, ``<pair>.speed_of_largest``.
+    """
+    driver, driven = pair.names
+    document = _loaded(pair, torque, None)
+    document["train"] = dict(train) if train is not None else {
+        "body": {"driver": {"gears": [driver]}, "driven": {"gears": [driven]}},
+        "mesh": {pair.name: {"driver": "driver", "driven": "driven", "damping_ratio": damping_ratio}},
+        "torque": {"driver": torque}, "balance": "driven",
+    }  # fmt: skip
+    several = None if hasattr(speeds, "keys") else listed(speeds)
+    document["dynamics"] = {"speeds": speeds if several is None else several, **(dynamics or {})}
+    return _ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache)

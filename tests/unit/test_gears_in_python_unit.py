@@ -1,0 +1,214 @@
+"""Gears, pairs and the everyday questions: the numbers are those of the case file that says the same."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pint
+import pytest
+
+import fegear
+from fegear.errors import FegearError, InputError
+
+PINION = {"teeth": 23, "module": "3 mm", "profile_shift": 0.3, "bore_radius": "15 mm", "face_width": "10 mm"}
+WHEEL = {"teeth": 57, "module": "3 mm", "profile_shift": -0.1, "bore_radius": "40 mm", "face_width": "10 mm"}
+#: What the questions switch on for closed-form compliances.
+EFFECTS = {"hertz": "load-dependent", "corner_contact": True}
+CASE = {
+    "gear": {"pinion": PINION, "wheel": WHEEL},
+    "pair": {"I": {"driver": "pinion", "driven": "wheel", "compliance": {"source": "weber-banaschek"}}},
+    "effects": EFFECTS,
+}
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return fegear.Pair(
+        fegear.Gear(**PINION, name="pinion"), fegear.Gear(**WHEEL, name="wheel"), compliance="weber-banaschek"
+    )
+
+
+@pytest.fixture(scope="module")
+def design(pair):
+    return fegear.relief(pair, torque="90 N*m", design={"grind": ["linear"]})
+
+
+def same(found, case, changes, results):
+    """Every value and table of a question are those of the case."""
+    other = fegear.run(case, changes, results=results)
+    assert found.values.keys() == other.values.keys()
+    for one, two in zip(found.values, other.values, strict=True):
+        assert (one.unit, one.si_error) == (two.unit, two.si_error)
+        assert one.si == pytest.approx(two.si, rel=1e-12)
+    for one, two in zip(found.tables, other.tables, strict=True):
+        for a, b in zip(one.columns, two.columns, strict=True):
+            assert a.head == b.head
+            if a.si.dtype.kind == "f":
+                assert a.si == pytest.approx(b.si, rel=1e-9, abs=1e-18, nan_ok=True)
+    assert found.remarks == other.remarks
+
+
+def test_a_gear_is_the_one_of_the_case(pair):
+    assert pair.driver.spur == fegear.run(CASE, results=["geometry"]).scene.gears["pinion"]
+    assert pair.spur.contact_ratio == fegear.run(CASE, results=["geometry"]).scene.pairs["I"].contact_ratio
+    same(pair.data, CASE, {"effects": {}}, ["geometry"])
+
+
+@pytest.mark.parametrize("module", ["3 mm", 3e-3, np.float64(3e-3), pint.UnitRegistry().Quantity(3, "mm")])
+def test_quantities_are_texts_pint_or_si(module, pair):
+    gear = fegear.Gear(**{**PINION, "module": module}, name="pinion")
+    assert gear.spur.module == pytest.approx(3e-3, rel=1e-15)
+    assert gear.spur.pitch_radius == pytest.approx(pair.driver.spur.pitch_radius, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: fegear.Gear(23, "3 mm", profil_shift=0.1), 'the nearest known name is "profile_shift"'),
+        (lambda: fegear.Gear(23), 'write module = "3.175 mm"'),
+        (lambda: fegear.Gear(23, "3"), r'module = "3":'),
+        (lambda: fegear.Gear(23, "3 kg"), "length"),
+        (lambda: fegear.Gear(23, pint.UnitRegistry().Quantity(3, "kg")), "is not a length"),
+        (lambda: fegear.Gear(23, True), "module"),
+        (lambda: fegear.Gear("23", "3 mm"), "must be a whole number"),
+        (lambda: fegear.Gear(23, "3 mm", pressure_angle=20.0), "must lie between 5 and 45 deg"),
+        (lambda: fegear.Pair(fegear.Gear(23, "3 mm"), fegear.Gear(20, "4 mm")), "must be equal for the gears to mesh"),
+        (lambda: fegear.Pair(fegear.Gear(23, "3 mm"), "wheel"), "is no fegear.Gear"),
+        (lambda: fegear.Pair(fegear.Gear(23, "3 mm"), fegear.Gear(30, "3 mm"), "60 mm"), "jams the teeth"),
+        (lambda: fegear.root_stress([fegear.Gear(23, "3 mm")] * 2), "is the name of several gears"),
+    ],
+)
+def test_what_cannot_be_is_refused_where_it_is_described(make, sentence):
+    with pytest.raises(InputError, match=sentence):
+        make()
+
+
+def test_a_load_is_needed_once(pair):
+    with pytest.raises(InputError, match="must be given, or load instead"):
+        fegear.transmission_error(pair)
+    with pytest.raises(InputError, match="must be given, or load instead"):
+        fegear.transmission_error(pair, torque="90 N*m", load="2 kN")
+    with pytest.raises(InputError, match="is not a torque"):
+        fegear.transmission_error(pair, torque="90 N")
+    with pytest.raises(InputError, match='nearest known name is "relief"'):
+        fegear.transmission_error(pair, torque="90 N*m", effects={"relif": True})
+    with pytest.raises(TypeError, match="torqe"):
+        fegear.transmission_error(pair, torqe="90 N*m")
+
+
+def test_transmission_error_is_the_case_s(pair):
+    found = fegear.transmission_error(pair, torque="90 N*m")
+    same(found, CASE, {"pair.I.torque": "90 N*m"}, ["transmission-error"])
+
+
+def test_several_torques_are_several_loads(pair):
+    found = fegear.transmission_error(pair, torque=["50 N*m", 70.0, pint.UnitRegistry().Quantity(90, "N*m")])
+    table = found.tables["transmission_error_summary_I"]
+    assert table["driver_torque [N.m]"] == pytest.approx([50.0, 70.0, 90.0], rel=1e-12)
+    assert np.all(np.diff(table["te_mean"]) > 0.0)
+    alone = fegear.transmission_error(pair, torque="70 N*m")
+    assert table["te_peak_to_peak"][1] == pytest.approx(alone.values["I.te_peak_to_peak"].value, rel=1e-9)
+    assert found.values["I.te_mean"].value == pytest.approx(table["te_mean"][2], rel=1e-12)
+    assert "transmission_error_summary_I" in found.figures
+    loads = fegear.transmission_error(pair, load=table["total_load"])
+    assert loads.tables["transmission_error_summary_I"]["te_mean"] == pytest.approx(table["te_mean"], rel=1e-9)
+
+
+def test_a_question_asked_again_is_recalled(pair):
+    fegear.transmission_error(pair, torque="80 N*m")
+    again = fegear.transmission_error(pair, torque="80 N*m")
+    assert {timing.origin for timing in again.timings.values()} == {"recalled"}
+
+
+def test_relief_is_the_case_s(pair, design):
+    same(design, CASE, {"pair.I.torque": "90 N*m", "design": {"grind": ["linear"]}}, ["relief"])
+
+
+@pytest.mark.parametrize(
+    ("shape", "left"),
+    [("designed", "relief_tables"), ("linear", "linear_tip_relief")],
+)
+def test_a_designed_relief_leaves_what_the_design_says(pair, design, shape, left):
+    relieved = pair.relieved(design, shape)
+    found = fegear.transmission_error(relieved, torque="90 N*m").values["I.te_peak_to_peak"]
+    assert found.si == pytest.approx(design.values[f"I.te_peak_to_peak.{left}"].si, rel=1e-6)
+    assert len(repr(relieved)) < 1000
+    with pytest.raises(InputError, match='choose from "designed", "linear"'):
+        pair.relieved(design, "cubic")
+
+
+def test_twins_get_reliefs_of_their_own():
+    gear = fegear.Gear(28, "3 mm", face_width="10 mm")
+    twins = fegear.Pair(gear, gear, compliance="weber-banaschek")
+    design = fegear.relief(twins, load="2 kN", design={"grind": []})
+    relieved = twins.relieved(design)
+    assert relieved.names == ("driver", "driven")
+    left = fegear.transmission_error(relieved, load="2 kN").values["I.te_peak_to_peak"]
+    assert left.si == pytest.approx(design.values["I.te_peak_to_peak.relief_tables"].si, rel=1e-6)
+
+
+def test_dynamic_factor_is_the_case_s(pair):
+    speeds = ["9000 rpm"]
+    found = fegear.dynamic_factor(pair, torque="90 N*m", speeds=speeds)
+    train = {
+        "body": {"driver": {"gears": ["pinion"]}, "driven": {"gears": ["wheel"]}},
+        "mesh": {"I": {"driver": "driver", "driven": "driven", "damping_ratio": 0.1}},
+        "torque": {"driver": "90 N*m"}, "balance": "driven",
+    }  # fmt: skip
+    more = {"train": train, "dynamics": {"speeds": speeds}, "pair.I.torque": "90 N*m"}
+    same(found, CASE, {**more, "effects": {**EFFECTS, "parametric": True, "contact_loss": True}}, ["dynamic-factor"])
+    assert found.tables["dynamic_factor_I"]["speed [rpm]"] == pytest.approx([9000.0], rel=1e-12)
+
+
+def test_speeds_may_be_a_range(pair):
+    given = {"start": "4000 rpm", "stop": "9000 rpm", "count": 3}
+    linear = {"contact_loss": False, "parametric": False}
+    found = fegear.dynamic_factor(pair, torque="90 N*m", speeds=given, damping_ratio=0.05, effects=linear)
+    assert found.tables["dynamic_factor_I"]["speed"] == pytest.approx([4000.0, 6500.0, 9000.0], rel=1e-12)
+
+
+def test_stiffness_and_root_stress_are_the_case_s():
+    gear = {**PINION, "teeth": 17}
+    found = fegear.root_stress(fegear.Gear(**gear, name="p"), positions=3, tolerance=1e-2)
+    case = {"results": ["crosscheck"], "gear": {"p": gear}, "stiffness": {"positions": 3}}
+    same(found, case, {"accuracy.tolerance": 1e-2}, ["crosscheck"])
+    table = fegear.stiffness_table(fegear.Gear(**gear, name="p"), ["25 mm", 0.026], tolerance=1e-2).tables[0]
+    case["stiffness"] = {"gear": "p", "radii": ["25 mm", "26 mm"]}
+    other = fegear.run(case, {"accuracy.tolerance": 1e-2}, results=["stiffness"]).tables["stiffness_p"]
+    assert table["c_self"] == pytest.approx(other["c_self"], rel=1e-9)
+
+
+def test_a_helical_pair_is_described_and_refused_where_it_cannot_be_loaded():
+    keys = {"normal_module": "3 mm", "helix_angle": "15 deg", "face_width": "20 mm"}
+    helical = fegear.Pair(fegear.Gear(23, hand="right", **keys), fegear.Gear(57, hand="left", **keys))
+    assert helical.helical.overlap_ratio > 0.0
+    assert not helical.driver.is_spur
+    with pytest.raises(InputError, match="is helical"):
+        fegear.transmission_error(helical, torque="90 N*m")
+    with pytest.raises(InputError, match=r"its geometry is \.helical"):
+        helical.driver.spur  # noqa: B018
+    assert "Gear(23" in helical._repr_html_()
+
+
+def test_gears_never_change(pair):
+    other = pair.driver.changed(profile_shift=0.0, bore_radius=None)
+    assert "bore_radius" not in other.keys
+    assert pair.driver.keys["profile_shift"] == 0.3
+    assert other != pair.driver
+    assert pair.driver == fegear.Gear(**PINION, name="pinion")
+
+
+def test_a_notebook_shows_the_drawing_and_its_data(pair):
+    for shown in (pair.driver._repr_html_(), pair._repr_html_()):
+        assert shown.count("data:image/png;base64,") == 1
+        assert "root_radius [mm]" in shown
+
+
+def test_the_functions_say_what_they_take():
+    for name in ("transmission_error", "relief", "dynamic_factor", "root_stress", "stiffness_table", "run"):
+        function = getattr(fegear, name)
+        text = inspect.getdoc(function)
+        for parameter in inspect.signature(function).parameters:
+            assert parameter in text, (name, parameter)
+    assert issubclass(InputError, FegearError)
