@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+#: Heads that the short form of a table shows.
+_HEADS = 8
+
+
 @dataclass(frozen=True, slots=True)
 class Column:
     """One column of a table.
@@ -131,8 +135,10 @@ class Table:
         return list(self.keys())
 
     def __repr__(self) -> str:
-        """Name, rows and heads."""
-        return f"<table {self.name}: {len(self)} rows of {', '.join(column.head for column in self.columns)}>"
+        """Name, rows and the first heads."""
+        heads = [column.head for column in self.columns]
+        more = [f"{len(heads) - _HEADS} more"] if len(heads) > _HEADS else []
+        return f"<table {self.name}: {len(self)} rows of {', '.join(heads[:_HEADS] + more)}>"
 
     def _repr_html_(self) -> str:
         """Show the first rows in a notebook."""
