@@ -45,7 +45,10 @@ def run(
     from fegear.engine.executor import Executor
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan
+    from fegear.output.figures import Drawing
     from fegear.output.folder import default_folder, whole_or_nothing
+    from fegear.output.picture_process import PictureProcess
+    from fegear.output.report.library import begin_compressing
     from fegear.output.tables import sheet_lines
     from fegear.output.write import STEPS, write_results
     from fegear.results.catalogue import STAGES
@@ -56,14 +59,19 @@ def run(
     try:
         scene = read_scene(case, changes(overrides, wanted))
         planned = make_plan(scene, STAGES)
+        begin_compressing()
         target = out or default_folder(scene.name)
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))
             watching = stack.enter_context(voice.watcher())
             # Nothing is recalled by default: the seconds of a run are one of its results.
             known = cache_on_disk() if cache else SolutionCache()
-            results = run_plan(scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler))
-            remarks = write_results(results, scratch, watching, plots=not no_plots)
+            drawing = None if no_plots else Drawing(scratch / "plots", stack.enter_context(PictureProcess()))
+            results = run_plan(
+                scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler),
+                found=drawing.begin if drawing else None,
+            )  # fmt: skip
+            remarks = write_results(results, scratch, watching, plots=not no_plots, begun=drawing)
     except KeyboardInterrupt:  # before typer sees it and ends in words and a code of its own
         leave(INTERRUPTED, 130)
     for table in results.tables:

@@ -14,7 +14,7 @@ from fegear.plain import content_key
 from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from fegear.case.reading import Scene
     from fegear.engine.figure import DeferredFigure, Figure
@@ -154,6 +154,7 @@ def run_plan(
     *,
     cache: SolutionCache | None = None,
     executor: Executor | None = None,
+    found: Callable[[Task, Outcome], None] | None = None,
 ) -> Results:
     """Compute or recall every task of a plan, in order.
 
@@ -168,6 +169,8 @@ def run_plan(
         Where results are recalled from and kept; by default one of this run's own.
     executor : Executor, optional
         Who computes points that do not depend on each other; by default processes on this machine.
+    found : callable, optional
+        Receives every task with its outcome as soon as it is finished; its time is not the task's.
 
     Returns
     -------
@@ -181,6 +184,8 @@ def run_plan(
         watcher.begin(title, number, len(plan.steps) + following)
         done[step.task] = _finish(scene, step, done, work)
         watcher.end(done[step.task].timing.seconds)
+        if found is not None:
+            found(step.task, done[step.task].outcome)
     return Results(scene, plan, {t: one.outcome for t, one in done.items()}, {t: one.timing for t, one in done.items()})
 
 

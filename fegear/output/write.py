@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING
 
 from fegear.output.dataset import write_dataset
-from fegear.output.figures import described, draw_all
+from fegear.output.figures import Drawing, described
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report import write_report
 from fegear.output.summary import write_summary
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 STEPS = 1
 
 
-def write_results(results: Results, folder: Path, watcher: Watcher, *, plots: bool = True) -> list[str]:
+def write_results(
+    results: Results, folder: Path, watcher: Watcher, *, plots: bool = True, begun: Drawing | None = None
+) -> list[str]:
     """Write tables, dataset, pictures, report and summary.
 
     Parameters
@@ -32,6 +34,8 @@ def write_results(results: Results, folder: Path, watcher: Watcher, *, plots: bo
     watcher : Watcher
     plots : bool
         Whether to draw; without, neither matplotlib nor pyvista is imported.
+    begun : Drawing, optional
+        Pictures that were begun while the run computed; by default they are begun now.
 
     Returns
     -------
@@ -46,7 +50,11 @@ def write_results(results: Results, folder: Path, watcher: Watcher, *, plots: bo
     for table in results.tables:
         write_table(tables, table)
     write_dataset(folder / "results.nc", results)
-    drawn, missing = draw_all(results, folder / "plots", watcher.advance) if plots else (described(results), [])
+    if plots and begun is None:
+        begun = Drawing(folder / "plots")
+        for task, outcome in results.outcomes.items():
+            begun.begin(task, outcome)
+    drawn, missing = begun.finish(watcher.advance) if begun else (described(results), [])
     remarks = [*results.remarks, *results.cache_remarks, *missing]
     write_report(folder / "report.html", results, drawn, remarks)
     write_summary(folder / SUMMARY, results, remarks, [*files_in(folder), SUMMARY])

@@ -10,7 +10,7 @@ import pytest
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.output.figures import draw_all
+from fegear.output.figures import Drawing
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -39,7 +39,10 @@ def test_every_picture_shows_something(case, names, tmp_path):
     wanted = ('results=["relief", "relief-chart", "robustness"]',) if case == "nasa_relief_design" else ()
     scene = read_scene(CASES / f"{case}.toml", (*QUICK, *wanted))
     results = run_plan(scene, make_plan(scene, STAGES))
-    drawn, missing = draw_all(results, tmp_path / "plots", lambda _fraction: None)
+    drawing = Drawing(tmp_path / "plots")
+    for task, outcome in results.outcomes.items():
+        drawing.begin(task, outcome)
+    drawn, missing = drawing.finish(lambda _fraction: None)
     assert not missing
     found = {picture.path.stem: picture for one in drawn for picture in one.pictures}
     for name in names:

@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 DPI = 150
+#: SVG without its date, so that equal figures are equal bytes; PNG packed in two thirds of the time, a tenth larger.
+_SAVED: dict[str, dict[str, Any]] = {
+    ".svg": {"metadata": {"Date": None}},
+    ".png": {"pil_kwargs": {"compress_level": 3}},
+}
 #: So many views stand two by two, others three abreast.
 _SQUARE = 4
 _SETTINGS = {
@@ -76,5 +81,4 @@ def _draw(figure: Figure, views: tuple[View, ...], path: Path) -> None:
         made = Canvas()
         FigureCanvasAgg(made)
         Sheet(made, panels, min(columns, len(panels))).draw()
-        options: dict[str, Any] = {"metadata": {"Date": None}} if path.suffix == ".svg" else {}
-        made.savefig(path, dpi=DPI, **options)
+        made.savefig(path, dpi=DPI, **_SAVED[path.suffix])

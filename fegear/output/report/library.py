@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,7 +15,11 @@ from fegear.errors import MissingLibraryError
 _LEVEL = 4
 
 
-@cache
+def begin_compressing() -> None:
+    """Let plotly.js be compressed in a thread of its own while something else is computed: zlib holds nobody up."""
+    _compression()
+
+
 def compressed_plotly() -> str:
     """Return plotly.js as base64 of gzip, 2 MB; the page's script unpacks it.
 
@@ -25,6 +30,18 @@ def compressed_plotly() -> str:
     MissingLibraryError
         If plotly's wheel is not there or has no script.
     """
+    return _compression().result()
+
+
+@cache
+def _compression() -> Future[str]:
+    pool = ThreadPoolExecutor(1)
+    begun = pool.submit(_compressed)
+    pool.shutdown(wait=False)
+    return begun
+
+
+def _compressed() -> str:
     spec = find_spec("plotly")
     folders = (spec.submodule_search_locations or []) if spec else []
     for folder in folders:

@@ -1,0 +1,152 @@
+"""A second process draws: the same bytes, nothing depends on it, and it outlives nobody."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from fegear.cli import app
+from fegear.engine.figure import Axis, Curve, Figure, Panel, Surface
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Task
+from fegear.errors import MissingLibraryError
+from fegear.output.draw_png import draw_pictures
+from fegear.output.figures import Drawing
+from fegear.output.picture_process import PictureProcess
+
+CASE = Path(__file__).parents[2] / "cases" / "lin_table1.toml"
+#: A case of which nothing costs anything to compute.
+QUICK = ["--set", 'results=["geometry"]']
+
+
+def figure(key: str = "wave", count: int = 50) -> Figure:
+    x = np.linspace(0.0, 6.0, count)
+    return Figure(key, "A wave", "A sine.", (Panel(Axis("x", "mm"), Axis("y", "um"), (Curve(x, np.sin(x)),)),))
+
+
+@pytest.fixture
+def process(monkeypatch):
+    """A process, started although matplotlib is loaded here."""
+    monkeypatch.setattr("fegear.output.picture_process._pays", lambda: True)
+    with PictureProcess() as started:
+        assert started._child is not None
+        yield started
+
+
+def pictures(drawing: Drawing, *figures: object) -> tuple[list, list[str]]:
+    drawing.begin(Task("some"), Outcome(None, figures=figures))  # type: ignore[arg-type]
+    return drawing.finish(lambda _fraction: None)
+
+
+def test_it_draws_the_same_bytes_in_the_same_order(process, tmp_path):
+    there, here = tmp_path / "there", tmp_path / "here"
+    there.mkdir()
+    here.mkdir()
+    sent = [process.draw(figure(name), there) for name in "abc"]
+    for one, name in zip(sent, "abc", strict=True):
+        answer = one.result()
+        assert answer is not None, "drawn there"
+        (drawn,) = answer
+        (own,) = draw_pictures(figure(name), here)
+        assert (drawn.path, drawn.title, drawn.caption) == (there / f"{name}.png", own.title, own.caption)
+        assert drawn.path.read_bytes() == own.path.read_bytes()
+
+
+def test_what_it_cannot_draw_is_drawn_here_or_fails_here_in_its_own_words(process, tmp_path, monkeypatch):
+    unsent = Figure("lambda", "", "", (Panel(Axis("x"), Axis("y"), (lambda: None,)),))  # type: ignore[arg-type]
+    wrong = Figure("wrong", "", "", (Panel(Axis("x"), Axis("y"), (Curve([0.0, 1.0], [0.0]),)),))
+    assert process.draw(unsent, tmp_path).result() is None
+    assert process.draw(wrong, tmp_path).result() is None
+    answer = process.draw(figure(), tmp_path).result()
+    assert answer is not None, "it went on"
+    with pytest.raises(ValueError, match="first dimension"):
+        pictures(Drawing(tmp_path / "wrong", process), wrong)
+
+    def without(*_arguments):
+        raise MissingLibraryError("no library draws surfaces")
+
+    monkeypatch.setattr("fegear.output.draw_space.draw_space", without)
+    solid = Figure("solid", "", "", (Panel(Axis("x"), Axis("y"), (Surface(np.zeros((3, 2)), "tooth"),)),))
+    found, missing = pictures(Drawing(tmp_path / "solid", process), solid, figure())
+    assert missing == ["no library draws surfaces."]
+    assert [one.figure.key for one in found] == ["wave"]
+
+
+def test_when_it_dies_the_pictures_are_drawn_here(process, tmp_path):
+    process._child.kill()
+    process._child.wait()
+    found, missing = pictures(Drawing(tmp_path / "plots", process), figure("a"), figure("b"))
+    assert not missing
+    assert [picture.path.name for one in found for picture in one.pictures] == ["a.png", "b.png"]
+    assert all(picture.path.stat().st_size > 5000 for one in found for picture in one.pictures)
+
+
+def test_leaving_ends_it_whatever_it_draws(monkeypatch, tmp_path):
+    monkeypatch.setattr("fegear.output.picture_process._pays", lambda: True)
+    with PictureProcess() as process:
+        waiting = [process.draw(figure(str(i), 200_000), tmp_path) for i in range(50)]
+        started = time.perf_counter()
+    assert time.perf_counter() - started < 10.0
+    assert process._child is not None
+    assert process._child.poll() is not None
+    assert all(one.cancelled() or one.result() is None for one in waiting[5:])
+
+
+@pytest.mark.parametrize("held", ["cores", "matplotlib", "system"])
+def test_where_no_process_is_to_be_had_everything_is_drawn_here(held, monkeypatch, tmp_path):
+    def refuse(*_arguments, **_more):
+        raise OSError(11, "no more processes")
+
+    monkeypatch.setattr("fegear.output.picture_process.cores", lambda: 1 if held == "cores" else 2)
+    if held != "matplotlib":
+        monkeypatch.delitem(sys.modules, "matplotlib", raising=False)
+    else:
+        import matplotlib as mpl
+
+        assert mpl
+    if held == "system":
+        monkeypatch.setattr("fegear.output.picture_process.subprocess.Popen", refuse)
+    with PictureProcess() as process:
+        monkeypatch.undo()
+        assert process._child is None
+        found, _ = pictures(Drawing(tmp_path / "plots", process), figure())
+    assert found[0].pictures[0].path.is_file()
+
+
+def test_without_plots_none_is_started(monkeypatch, tmp_path):
+    def refuse(*_arguments):
+        raise AssertionError("started")
+
+    monkeypatch.setattr("fegear.output.picture_process._started", refuse)
+    arguments = ["run", str(CASE), *QUICK, "--out", str(tmp_path / "out")]
+    result = CliRunner().invoke(app, [*arguments, "--no-plots"], catch_exceptions=False)
+    assert result.exit_code == 0
+    with pytest.raises(AssertionError, match="started"):
+        CliRunner().invoke(app, arguments, catch_exceptions=False)
+
+
+def test_none_outlives_a_killed_parent(tmp_path):
+    program = (
+        "import time\n"
+        "from fegear.output.picture_process import PictureProcess\n"
+        "with PictureProcess() as process:\n"
+        "    print(process._child is not None, flush=True)\n"
+        "    time.sleep(600)\n"
+    )
+    parent = subprocess.Popen(
+        [sys.executable, "-c", program], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert parent.stdout is not None
+    started = parent.stdout.readline().strip() == "True"
+    parent.kill()
+    # The process has the parent's stderr: that ends when both have ended.
+    _, errors = parent.communicate(timeout=60)
+    assert errors == ""
+    if not started:
+        pytest.skip("one core: no second process")
