@@ -1,37 +1,77 @@
 """``results.nc``: every table and value as one labelled dataset that ``xarray.open_dataset`` reads.
 
-NetCDF 3 is written through scipy, which a run has loaded anyway; importing xarray to write the same file would cost
-half a second of a two-second run. Table ``stiffness_a`` becomes the dimension ``stiffness_a`` and the variables
-``stiffness_a.radius``, ``stiffness_a.c_self``, ...; the first column is their coordinate. Values become scalars with
-their error estimate as attribute.
+NetCDF 3 by the CF conventions is written through scipy, which a run has loaded anyway; importing xarray to write the
+same file would cost half a second of a two-second run. Table ``stiffness_a`` becomes the dimension ``stiffness_a`` and
+the variables ``stiffness_a.radius``, ``stiffness_a.c_self``, ...; the first column is their coordinate and, where it
+rises or falls throughout, the dimension's own (``data.sel(stiffness_a=45.0, method="nearest")``). Values become
+scalars. Estimated errors are ancillary variables of what they belong to.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING
 
-import fegear
-from fegear.output.netcdf import put
+import numpy as np
+
+from fegear.engine.citation import bibliography
+from fegear.output.netcdf import head, put
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from scipy.io import netcdf_file
 
-    from fegear.engine.outcome import Table
+    from fegear.engine.outcome import Column, Table, Value
     from fegear.engine.run import Results
 
 
-def _add_table(file: netcdf_file, table: Table) -> None:
-    rows = table.name
-    file.createDimension(rows, len(table.columns[0]))
-    first = f"{table.name}.{table.columns[0].name}"
+def _errors(table: Table) -> dict[str, str]:
+    """Which column holds the estimated error of which: ``c_self_error``, whose meaning may name several columns."""
+    found: dict[str, str] = {}
     for column in table.columns:
-        name = f"{table.name}.{column.name}"
-        variable = put(file, name, (rows,), column.values, column.unit, column.meaning)
-        if name != first:
-            variable.coordinates = first
+        base = column.name.removesuffix("_error")
+        if base != column.name:
+            words = {base, *re.findall(r"\w+", column.meaning)}
+            found |= {one.name: column.name for one in table.columns if one.name in words and one is not column}
+    return found
+
+
+def _is_index(column: Column) -> bool:
+    """Whether the conventions let a column be a dimension's own coordinate: numbers that rise or fall throughout."""
+    if column.si.dtype.kind not in "iuf" or not len(column):
+        return False
+    steps = np.diff(column.si)
+    return bool(np.isfinite(column.si).all() and ((steps > 0).all() or (steps < 0).all()))
+
+
+def _add_table(file: netcdf_file, table: Table) -> None:
+    rows, first, errors = table.name, table.columns[0], _errors(table)
+    file.createDimension(rows, len(table))
+    if _is_index(first):
+        put(file, rows, (rows,), first.values, first.unit, first.meaning or first.name)
+    for column in table.columns:
+        variable = put(file, f"{rows}.{column.name}", (rows,), column.values, column.unit, column.meaning)
+        if column is not first:
+            variable.coordinates = f"{rows}.{first.name}"
+        if column.name in errors:
+            variable.ancillary_variables = f"{rows}.{errors[column.name]}"
+
+
+def _add_value(file: netcdf_file, value: Value) -> None:
+    variable = put(file, value.name, (), np.array(value.value), value.unit, value.meaning)
+    if value.error is not None:
+        variable.error = value.error
+        variable.ancillary_variables = f"{value.name}_error"
+        put(file, f"{value.name}_error", (), np.array(value.error), value.unit, f"estimated error of {value.name}")
+
+
+def _references(results: Results) -> str:
+    """Works that the results rest on, one a line."""
+    works = bibliography()
+    cited = {c.key for step in results.plan.steps for c in step.stage.cites(results.scene, step.task.subject)}
+    return "\n".join(work.full for key, work in works.items() if key in cited)
 
 
 def write_dataset(path: Path, results: Results) -> None:
@@ -44,19 +84,13 @@ def write_dataset(path: Path, results: Results) -> None:
     """
     from scipy.io import netcdf_file
 
+    name, case = results.scene.name, results.scene.case
     with netcdf_file(path, "w", version=2) as file:
-        file.title = (results.scene.case.title or results.scene.name).encode()
-        file.source = f"fegear {fegear.__version__}"
-        case = results.scene.case.model_dump(mode="json", exclude_unset=True)
-        file.case = json.dumps(case, ensure_ascii=False).encode()
+        head(file, case.title or name, f"case {name}", _references(results))
+        file.case = json.dumps(case.model_dump(mode="json", exclude_unset=True), ensure_ascii=False).encode()
+        if results.remarks:
+            file.comment = "\n".join(results.remarks).encode()
         for table in results.tables:
             _add_table(file, table)
         for value in results.values:
-            variable = file.createVariable(value.name, "f8", ())
-            variable.data[...] = value.value
-            if value.unit:
-                variable.units = value.unit
-            if value.error is not None:
-                variable.error = value.error
-            if value.meaning:
-                variable.long_name = value.meaning.encode()
+            _add_value(file, value)

@@ -1,4 +1,8 @@
-"""Variables of a NetCDF 3 file, written through scipy: xarray would cost half a second to import."""
+"""Variables of a NetCDF 3 file by the CF conventions, written through scipy: xarray would cost half a second to import.
+
+The conventions (https://cfconventions.org) let any reader know units, meanings, coordinates and errors. Names with dots
+(``I.te_mean``), which they advise against, stay: they are the names of the summary.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +10,36 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import fegear
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.io import netcdf_file, netcdf_variable
 
     Array = NDArray[np.generic]
+
+CONVENTIONS = "CF-1.11"
+#: Units that UDUNITS, by which the conventions read them, spells otherwise (held against UDUNITS 2.2.28).
+UDUNITS = {"": "1", "deg": "degree", "1/mm": "mm-1"}
+
+
+def head(file: netcdf_file, title: str, history: str, references: str = "") -> None:
+    """Say what a file is and where it comes from; without the time of day, so that equal runs leave equal files.
+
+    Parameters
+    ----------
+    file : scipy.io.netcdf_file
+    title : str
+    history : str
+        What made it.
+    references : str
+        Papers and standards that its numbers rest on.
+    """
+    file.Conventions = CONVENTIONS
+    file.title, file.source = title.encode(), f"fegear {fegear.__version__}"
+    file.history = f"fegear {fegear.__version__}: {history}".encode()
+    if references:
+        file.references = references.encode()
 
 
 def put(
@@ -25,8 +54,10 @@ def put(
     dimensions : tuple of str
         Created before.
     values : ndarray
-    unit, meaning : str
-        Attributes ``units`` and ``long_name``, where not empty.
+    unit : str
+        Attribute ``units`` of numbers; ``1`` where empty.
+    meaning : str
+        Attribute ``long_name``; the name where empty.
 
     Returns
     -------
@@ -42,9 +73,9 @@ def put(
     else:
         kind = "i4" if values.dtype.kind in "iub" else "f8"
         variable = file.createVariable(name, kind, dimensions)
-        variable[:] = values.astype(kind)
-    if unit:
-        variable.units = unit.encode()
-    if meaning:
-        variable.long_name = meaning.encode()
+        variable.data[...] = values.astype(kind)
+        variable.units = UDUNITS.get(unit, unit).encode()
+        if kind == "f8" and np.isnan(values).any():
+            variable._FillValue = np.nan  # noqa: SLF001  (the attribute's name in the NetCDF conventions)
+    variable.long_name = (meaning or name.rsplit(".", 1)[-1]).encode()
     return variable

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-import fegear
-from fegear.output.netcdf import put
+from fegear.output.netcdf import head, put
 from fegear.studies.sweep import Point
 from fegear.studies.swept import failures, shared_clauses, swept_values
 
@@ -90,7 +89,7 @@ def write_sweep_dataset(path: Path, results: SweepResults) -> None:
     sizes = tuple(len(axis) for axis in results.axes)
     names = tuple(axis.key for axis in results.axes)
     with netcdf_file(path, "w", version=2) as file:
-        file.title, file.source = results.title.encode(), f"fegear {fegear.__version__}"
+        head(file, results.title, f"sweep of case {results.name} over {', '.join(names)}")
         file.axes = json.dumps({axis.key: list(axis.values) for axis in results.axes}, ensure_ascii=False).encode()
         for axis in results.axes:
             file.createDimension(axis.key, len(axis))
@@ -98,8 +97,9 @@ def write_sweep_dataset(path: Path, results: SweepResults) -> None:
             put(file, axis.key, (axis.key,), places, axis.unit)
         put(file, "failure", names, failures(results).reshape(sizes), "", "why the point has no result")
         for name, unit, meaning, number, error in swept_values(results):
-            put(file, name, names, number.reshape(sizes), unit, meaning)
+            variable = put(file, name, names, number.reshape(sizes), unit, meaning)
             if error is not None:
+                variable.ancillary_variables = f"{name}_error"
                 put(file, f"{name}_error", names, error.reshape(sizes), unit, f"estimated error of {name}")
         for name, found in _found_tables(results).items():
             _put_table(file, name, found, names, sizes)

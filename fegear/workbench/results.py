@@ -110,13 +110,21 @@ class Results(Found):
         table = Table("values", tuple(Column(head, np.array(made)) for head, made in columns.items()))
         return table.to_pandas().set_index("name")
 
-    def to_xarray(self) -> xr.Dataset:
-        """All tables and values as one labelled dataset: what ``results.nc`` holds.
+    def to_xarray(self, table: str = "") -> xr.Dataset:
+        """All tables and values as one labelled dataset, as in ``results.nc``, or one table alone.
+
+        Parameters
+        ----------
+        table : str, optional
+            Name of a table. Its first column is the dataset's dimension, so that
+            ``.sel(x=1.5, method="nearest")`` finds a row, unless the column does not rise or fall throughout.
 
         Raises
         ------
         MissingLibraryError
             If xarray is not installed.
+        UnknownNameError
+            With the nearest name of a table.
         """
         try:
             import xarray as xr
@@ -124,11 +132,21 @@ class Results(Found):
             raise MissingLibraryError(f"xarray is not installed; {NOTEBOOK_EXTRA}.") from None
         from fegear.output.dataset import write_dataset
 
+        first = self.tables[table].columns[0].name if table else ""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "results.nc"
             write_dataset(path, self)
             content = io.BytesIO(path.read_bytes())
-        return xr.load_dataset(content, engine="scipy")
+        whole = xr.load_dataset(content, engine="scipy")
+        if not table:
+            return whole
+        prefix, indexed = f"{table}.", table in whole.indexes
+        names = {f"{prefix}{column.name}": column.name for column in self.tables[table].columns}
+        alone = whole[list(names)].drop_vars(table, errors="ignore").rename(names)
+        for variable in alone.variables.values():
+            if "ancillary_variables" in variable.attrs:
+                variable.attrs["ancillary_variables"] = variable.attrs["ancillary_variables"].removeprefix(prefix)
+        return alone.swap_dims({table: first}) if indexed else alone.rename_dims({table: "row"})
 
     def plot(self, *names: str) -> Plots:
         """Figures by name, or all: a notebook shows them; ``.show()`` opens them, ``.save(folder)`` writes them.

@@ -18,6 +18,7 @@ from fegear.engine.plan import Plan
 from fegear.engine.run import Results, Silence, Timing
 from fegear.engine.stage import Task
 from fegear.errors import InputError
+from fegear.output.dataset import write_dataset
 from fegear.output.exchange import RECORD
 from fegear.output.folder import whole_or_nothing
 from fegear.output.write import write_results
@@ -145,6 +146,58 @@ def test_every_file_holds_the_same_numbers(results, tmp_path):
         assert float(data["peak"]) == pytest.approx(12.345678901234, rel=1e-15)
         assert data["peak"].attrs["error"] == pytest.approx(1e-3)
         assert data.attrs["title"] == "Größe"
+        assert data["demo_a.count"].attrs == {"units": "1", "long_name": "count"}
+        assert "units" not in data["demo_a.kind"].attrs
+
+
+def test_the_dataset_follows_the_cf_conventions(tmp_path):
+    scene = build_scene({"results": ["x"], "gear": {"a": {"teeth": 20, "module": "1 mm"}}}, "case", Path())
+    te = Table(
+        "te_I",
+        (
+            Column("x", np.array([-1.0, 0.0, 2.0]) * 1e-3, "mm", "position"),
+            Column("te", np.array([1.0, np.nan, 3.0]) * 1e-6, "um", "transmission error"),
+            Column("c_prev", np.array([1.0, 2.0, 3.0]) * 1e-9, "um.mm/N"),
+            Column("c_next", np.array([1.0, 2.0, 3.0]) * 1e-9, "um.mm/N"),
+            Column("te_error", np.array([0.1, 0.2, 0.3]) * 1e-6, "um", "estimated error of te"),
+            Column("c_neighbour_error", np.array([0.1, 0.2, 0.3]), "", "estimated error of c_prev and c_next"),
+            Column("angle", np.array([0.1, 0.2, 0.3]), "deg"),
+        ),
+    )
+    back = Table("back_I", (Column("x", np.array([1.0, 0.0, 2.0])), Column("y", np.zeros(3))))
+    outcome = Outcome(None, (te, back), (Value("I.te", 1e-6, "um", 1e-8), Value("n", 2.0)), {}, ("A remark.",))
+    run = Results(scene, Plan((), (), ()), {Task("demo"): outcome}, {Task("demo"): Timing(0.25)})
+    write_dataset(tmp_path / "results.nc", run)
+    first = (tmp_path / "results.nc").read_bytes()
+    write_dataset(tmp_path / "results.nc", run)
+    assert (tmp_path / "results.nc").read_bytes() == first
+    with xr.open_dataset(tmp_path / "results.nc") as data:
+        assert data.attrs["Conventions"] == "CF-1.11"
+        assert {"title", "source", "history"} <= set(data.attrs)
+        assert data.attrs["comment"] == "A remark."
+        assert data["te_I.te"].sel(te_I=1.8, method="nearest").item() == 3.0
+        assert "back_I" not in data.indexes  # its first column does not rise throughout: a coordinate, but no index
+        assert "back_I.x" in data.coords
+        assert data["te_I.te"].attrs["ancillary_variables"] == "te_I.te_error"
+        for name in ("c_prev", "c_next"):
+            assert data[f"te_I.{name}"].attrs["ancillary_variables"] == "te_I.c_neighbour_error"
+        assert "ancillary_variables" not in data["te_I.angle"].attrs
+        assert data["te_I.angle"].attrs["units"] == "degree"
+        assert data[data["I.te"].attrs["ancillary_variables"]].item() == pytest.approx(0.01)
+        assert np.isnan(data["te_I.te"].encoding["_FillValue"])
+        for variable in data.variables.values():
+            assert variable.attrs["long_name"]
+            assert variable.dtype.kind in "OSU" or variable.attrs["units"]
+
+
+def test_units_are_those_that_the_conventions_read():
+    """Spellings that UDUNITS 2.2.28 reads; it knows no ``deg``, and no unit that starts with a number."""
+    from fegear.output.netcdf import UDUNITS
+    from fegear.units import PER_SI
+
+    known = {"mm", "um", "degree", "rad", "N", "N^2", "N.m", "s", "MPa", "GPa", "N/mm", "N/um", "um/N", "um.mm/N",
+             "MPa.mm/N", "Hz", "rpm", "arcsec", "N/(mm.um)", "mm-1"}  # fmt: skip
+    assert {UDUNITS.get(unit, unit) for unit in PER_SI} == known
 
 
 def test_an_empty_table_can_be_written(results, tmp_path):

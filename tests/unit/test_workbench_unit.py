@@ -153,6 +153,18 @@ def test_xarray_has_every_table_and_value(found):
     assert np.array_equal(data["transmission_error_I.te"].values, te["te"])
 
 
+def test_xarray_finds_a_row_of_a_table_by_its_place(found):
+    pytest.importorskip("xarray")
+    data, te = found.to_xarray("transmission_error_I"), found.tables["transmission_error_I"]
+    assert list(data.indexes) == ["x"]
+    nearest = int(np.abs(te["x"] - 1.5).argmin())
+    assert data["te"].sel(x=1.5, method="nearest").item() == te["te"][nearest]
+    assert data["te"].attrs["units"] == "um"
+    assert list(found.to_xarray("tooth_geometry_check").sizes) == ["row"]
+    with pytest.raises(KeyError, match='the nearest known name is "transmission_error_I"'):
+        found.to_xarray("transmission_eror_I")
+
+
 @pytest.mark.parametrize(
     ("library", "ask"), [("pandas", lambda r: r.tables[0].to_pandas()), ("xarray", lambda r: r.to_xarray())]
 )
