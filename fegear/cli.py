@@ -15,6 +15,7 @@ from fegear.commands.cost import cost
 from fegear.commands.effects import effects
 from fegear.commands.export import export
 from fegear.commands.help import Command, Group, context_settings
+from fegear.commands.new import new
 from fegear.commands.plan import plan
 from fegear.commands.results import results
 from fegear.commands.run import run
@@ -49,6 +50,7 @@ def _options(
 
 #: The commands in the order of ``fegear --help``, and what it says of each.
 COMMANDS = (
+    (new, "Write a commented case to start from."),
     (results, "What a case can ask for."),
     (run, "Compute a case: tables, pictures, report."),
     (plan, "What a run would compute, why, and how long it takes."),

@@ -37,6 +37,7 @@ LAYERS = {
     "helical": 4,
     "dynamics": 5,
     "case": 6,
+    "drafts": 6.2,
     "models": 6.5,
     "engine": 7,
     "results": 8,

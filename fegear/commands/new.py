@@ -1,0 +1,141 @@
+"""``fegear new``: a case to start from."""
+
+from __future__ import annotations
+
+import re
+import sys
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fegear.commands.common import Quiet, Voice, leave
+from fegear.commands.help import two_columns
+from fegear.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.drafts import Answers
+
+
+def complete_kinds(incomplete: str) -> list[str]:
+    """What a kind that is being typed may become."""
+    from fegear.drafts import KINDS
+
+    return [name for name in KINDS if name.startswith(incomplete)]
+
+
+def new(
+    name: Annotated[
+        list[str], typer.Argument(metavar="NAME", help="Name of the case: NAME.toml is written.", show_default=False)
+    ],
+    kind: Annotated[
+        str | None,
+        typer.Option(
+            "--kind",
+            help="gear, pair, relief, helical, train or study; default by the numbers of teeth.",
+            autocompletion=complete_kinds,
+        ),
+    ] = None,
+    teeth: Annotated[list[str] | None, typer.Option("--teeth", metavar="N [N]", help="Of pinion and wheel.")] = None,
+    module: Annotated[str | None, typer.Option("--module", metavar="LENGTH", help='E.g. "3 mm".')] = None,
+    pressure_angle: Annotated[str | None, typer.Option("--pressure-angle", metavar="ANGLE", help="20 deg.")] = None,
+    profile_shift: Annotated[
+        list[str] | None, typer.Option("--profile-shift", metavar="X [X]", help="Of pinion and wheel, in modules.")
+    ] = None,
+    rack: Annotated[str | None, typer.Option("--rack", metavar="A..D", help="Basic rack of ISO 53.")] = None,
+    helix_angle: Annotated[str | None, typer.Option("--helix-angle", metavar="ANGLE", help="Helical pairs.")] = None,
+    face_width: Annotated[str | None, typer.Option("--face-width", metavar="LENGTH", help='E.g. "30 mm".')] = None,
+    torque: Annotated[str | None, typer.Option("--torque", help='On the pinion, e.g. "260 N m".')] = None,
+    speed: Annotated[str | None, typer.Option("--speed", help='Of the pinion, e.g. "1480 rpm".')] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a commented case that runs; on a terminal and without options, ask for what it needs.
+
+    For example: fegear new drive --teeth 21 53 --module 3mm --torque "260 N m"
+    """
+    from fegear.drafts import Answers, draft
+
+    voice = Voice(quiet)
+    # `--teeth 21 53` leaves its second number among the names.
+    names = [word for word in name if not _is_number(word)]
+    numbers = [word for word in name if _is_number(word)]
+    if len(names) != 1:
+        raise InputError("NAME", " ".join(name), "must be one name", "write for example fegear new drive")
+    if numbers and (teeth is None) == (profile_shift is None):
+        raise InputError("NAME", " ".join(numbers), "must follow --teeth or --profile-shift")
+    path = Path(names[0] if names[0].endswith(".toml") else f"{names[0]}.toml")
+    if path.exists() and not force:
+        raise InputError("NAME", f'"{path}"', "is there already", "choose another name, or replace it with --force")
+    if not path.parent.is_dir():
+        raise InputError("NAME", f'"{path}"', "lies in a folder that is not there")
+    given = {
+        "teeth": " ".join([*(teeth or ()), *(numbers if teeth else ())]),
+        "module": module,
+        "pressure_angle": pressure_angle,
+        "profile_shift": " ".join([*(profile_shift or ()), *(() if teeth else numbers)]),
+        "rack": rack,
+        "helix_angle": helix_angle,
+        "face_width": face_width,
+        "torque": torque,
+        "speed": speed,
+    }
+    told = {key: text for key, text in given.items() if text}
+    if not told and kind is None and sys.stdin.isatty() and sys.stdout.isatty():
+        answers = _asked()
+    else:
+        single = len(told.get("teeth", "").split()) == 1
+        answers = Answers(kind or ("helical" if helix_angle else "gear" if single else "pair"), told)
+    text = draft(answers, path.stem)
+    _check(text, path)
+    path.write_text(text, "utf-8")
+    voice.say(f"Wrote {path}; next: fegear run {path}")
+
+
+def _asked() -> Answers:
+    """Ask on the terminal; every answer is checked before the next question."""
+    from fegear.drafts import KINDS, Answers, check, questions
+
+    def ask(prompt: str, default: str, judge: Callable[[str], object]) -> str:
+        while text := input(f"{prompt} [{default}]: ").strip():
+            try:
+                judge(text)
+            except InputError as error:
+                typer.echo(f"  {error}")
+            else:
+                break
+        return text
+
+    for line in two_columns([(name, kind.about) for name, kind in KINDS.items()], max(map(len, KINDS))):
+        typer.echo(line)
+    typer.echo("An empty answer takes what stands in brackets.")
+    try:
+        kind = ask("Kind", "pair", lambda text: Answers(text, {})) or "pair"
+        told: dict[str, str] = {}
+        for number in range(len(questions(kind, {}))):
+            question = questions(kind, told)[number]  # a default follows the answers before it
+            text = ask(question.prompt, question.default, partial(check, question, len(KINDS[kind].gears)))
+            told |= {question.name: text} if text else {}
+    except KeyboardInterrupt:
+        leave("interrupted; nothing was written.", 130)
+    except EOFError:
+        leave("there were no more answers; nothing was written.", 2)
+    return Answers(kind, told)
+
+
+def _is_number(word: str) -> bool:
+    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", word) is not None
+
+
+def _check(text: str, path: Path) -> None:
+    """Refuse numbers that make no case, before anything is written."""
+    import tomllib
+
+    from fegear.case.reading import build_scene
+    from fegear.engine.plan import make_plan
+    from fegear.results.catalogue import STAGES
+
+    make_plan(build_scene(tomllib.loads(text), path.stem, path.parent), STAGES)

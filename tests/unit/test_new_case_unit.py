@@ -1,0 +1,181 @@
+"""``fegear new``: drafts of every kind are cases that plan and run, and say what was assumed."""
+
+from __future__ import annotations
+
+import builtins
+import io
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import fegear.cli
+from fegear.case.reading import build_scene, read_scene
+from fegear.drafts import KINDS, Answers, draft, questions
+from fegear.engine.plan import make_plan
+from fegear.errors import InputError
+from fegear.results.catalogue import STAGES
+
+
+@pytest.fixture
+def say(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["fegear", *arguments])
+        with pytest.raises(SystemExit) as end:
+            fegear.cli.main()
+        return int(end.value.code or 0), *capsys.readouterr()
+
+    return run
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_draft_without_answers_is_a_case_whose_effects_are_all_used(kind):
+    text = draft(Answers(kind, {}), "some name")
+    scene = build_scene(tomllib.loads(text), "some name", Path())
+    plan = make_plan(scene, STAGES)
+    assert plan.steps
+    assert plan.idle_effects == ()
+    # Every wanted result, and every effect on or off, says in a comment what it is for.
+    for result in scene.case.results:
+        assert re.search(rf'"{result}", +# \w+', text)
+    on = re.findall(r"^(\w+) = \S+ +# on: ", text, re.MULTILINE)
+    assert set(on) == set(scene.case.effects.on())
+    assert re.search(r"^module = .*# assumed$|^normal_module = .*# assumed$", text, re.MULTILINE)
+    assert max(map(len, text.splitlines())) <= 125
+
+
+@pytest.mark.parametrize(("teeth", "module", "shift"), [("12 80", "0.5 mm", "0.5 -0.2"), ("40 41", "0.25 inch", "0")])
+def test_answers_arrive_in_the_case(teeth, module, shift):
+    given = {"teeth": teeth, "module": module, "profile_shift": shift, "rack": "c", "torque": "7 N m"}
+    given |= {"face_width": "8 mm", "speed": "25 1/s", "pressure_angle": "25°"}
+    text = draft(Answers("relief", given), "x")
+    assert "assumed" not in "\n".join(line for line in text.splitlines() if " = " in line and line[0] != "#")
+    scene = build_scene(tomllib.loads(text), "x", Path())
+    first, second = scene.gears["pinion"], scene.gears["wheel"]
+    assert [first.teeth, second.teeth] == [int(z) for z in teeth.split()]
+    assert first.module == pytest.approx({"0.5 mm": 0.5e-3, "0.25 inch": 0.00635}[module])
+    assert [first.tooth.profile_shift, second.tooth.profile_shift] == [float(x) for x in (shift.split() * 2)[:2]]
+    assert scene.case.pair["I"].torque == pytest.approx(7.0)
+    assert scene.case.pair["I"].speed == pytest.approx(25 * 2 * 3.141592653589793)
+
+
+def test_an_assumed_torque_loads_the_face_alike_whatever_the_size():
+    for module in ("0.5 mm", "3 mm", "20 mm"):
+        pinion = build_scene(tomllib.loads(draft(Answers("pair", {"module": module}), "x")), "x", Path())
+        gear, torque = pinion.gears["pinion"], pinion.case.pair["I"].torque
+        assert torque / gear.base_radius / gear.face_width == pytest.approx(200e3, rel=0.12)
+
+
+def test_new_writes_what_the_options_say(say, tmp_path):
+    code, out, err = say("new", "drive", "--teeth", "21", "53", "--module", "3mm", "--torque", "260 N m")
+    assert (code, err) == (0, "")
+    assert out == "Wrote drive.toml; next: fegear run drive.toml\n"
+    scene = read_scene(tmp_path / "drive.toml")
+    assert [gear.teeth for gear in scene.gears.values()] == [21, 53]
+    assert scene.case.pair["I"].torque == pytest.approx(260.0)
+    code, _, err = say("new", "drive")
+    assert code == 2
+    assert "is there already" in err
+    assert say("new", "drive", "--kind", "helical", "--force", "--quiet")[:2] == (0, "")
+    assert list(read_scene(tmp_path / "drive.toml").helical_gears) == ["pinion", "wheel"]
+    assert say("new", "one", "--teeth", "28", "-q")[0] == 0
+    assert list(read_scene(tmp_path / "one.toml").gears) == ["gear"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("x", "--module", "3,5 mm"), "comma"),
+        (("x", "--module", "3"), "has no unit"),
+        (("x", "--module", "-3 mm"), "must be greater than zero"),
+        (("x", "--teeth", "21", "wheel"), "NAME = x wheel: must be one name"),
+        (("x", "--teeth", "21", "53", "80"), "must be 2 numbers"),
+        (("x", "--teeth", "3", "53"), "between 5 and 1000"),
+        (("x", "7"), "must follow --teeth"),
+        (("x", "--kind", "bevel"), "known here: gear, helical, pair, relief, study, train"),
+        (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": has no meaning for a case of kind "gear"'),
+        (("x", "--rack", "E"), "ISO 53"),
+        (("nowhere/x",), "lies in a folder that is not there"),
+        (("x", "--profile-shift", "5", "0"), "pinion"),
+    ],
+)
+def test_what_makes_no_case_is_refused_and_nothing_written(say, tmp_path, arguments, words):
+    code, out, err = say("new", *arguments)
+    assert (code, out) == (2, "")
+    assert words in err
+    assert list(tmp_path.iterdir()) == []
+
+
+class Typed(io.StringIO):
+    """A terminal at which somebody types."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture
+def type_in(monkeypatch, say):
+    def run(*lines: str | type[BaseException]) -> tuple[tuple[int, str, str], list[str]]:
+        asked, left = [], list(lines)
+
+        def answer(prompt: str) -> str:
+            asked.append(prompt)
+            line = left.pop(0) if left else ""
+            if not isinstance(line, str):
+                raise line
+            return line
+
+        monkeypatch.setattr(builtins, "input", answer)
+        monkeypatch.setattr(sys, "stdin", Typed())
+        monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+        return say("new", "drive"), asked
+
+    return run
+
+
+def test_questions_are_asked_until_an_answer_can_be_read(type_in, tmp_path):
+    (code, out, _), asked = type_in("", "21", "21 53", "3,1 mm", "3 mm", "", "0.3 0.04", "A", "", "260 N m")
+    assert code == 0
+    assert "must be 2 numbers" in out
+    assert "has a comma in its number" in out
+    assert len(asked) == 11  # nine questions, two of them twice; the last one left as it was
+    assert asked[-1] == "Speed of the pinion [1500 rpm]: "
+    text = (tmp_path / "drive.toml").read_text()
+    scene = read_scene(tmp_path / "drive.toml")
+    assert scene.gears["wheel"].tooth.profile_shift == pytest.approx(0.04)
+    assert scene.gears["pinion"].face_width == pytest.approx(0.030)  # ten modules, assumed
+    assert re.search(r'face_width = "30 mm" +# assumed', text)
+    assert not re.search(r"torque.*# assumed", text)
+
+
+@pytest.mark.parametrize(("end", "code", "words"), [(KeyboardInterrupt, 130, "interrupted"), (EOFError, 2, "no more")])
+def test_an_interrupted_dialogue_writes_nothing(type_in, tmp_path, end, code, words):
+    (found, _, err), _ = type_in("pair", "21 53", end)
+    assert found == code
+    assert words in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_kind_asks_no_more_than_ten_questions():
+    for kind in KINDS:
+        assert 5 <= len(questions(kind, {})) + 1 <= 10
+    with pytest.raises(InputError, match="no kind of case"):
+        Answers("worm", {})
+
+
+def test_a_drafted_case_runs(say, tmp_path):
+    assert say("new", "h", "--kind", "helical", "-q")[0] == 0
+    assert say("run", "h.toml", "--no-plots", "-q")[0] == 0
+    assert (tmp_path / "results" / "h" / "tables" / "tooth_contact_I.csv").is_file()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_drafted_case_runs(say, tmp_path, kind):
+    assert say("new", "case", "--kind", kind, "-q")[0] == 0
+    assert say("run", "case.toml", "-q")[0] == 0
+    assert (tmp_path / "results" / "case" / "report.html").is_file()
