@@ -12,6 +12,7 @@ reliefs are convex along the path, so that the loaded pairs are neighbours and o
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,17 +43,6 @@ class LoadedSet:
     base: Floats
     weight: Floats
 
-    def approach(self, m: Floats) -> Floats:
-        """zeta_S [m], shape (..., M), for modifications (..., n, N) [m]."""
-        first = m[..., self.pairs[0], self.states]
-        if len(self.pairs) == 1:  # the weight of a pair alone is one
-            return np.asarray(self.base + first)
-        total = self.weight[0] * first
-        total += self.base
-        for j, weight in zip(self.pairs[1:], self.weight[1:], strict=True):
-            total += weight * m[..., j, self.states]
-        return np.asarray(total)
-
 
 @dataclass(frozen=True)
 class QuickSharing:
@@ -68,27 +58,20 @@ class QuickSharing:
     sets: tuple[LoadedSet, ...]
     size: int
 
-    def approach(self, m: Floats) -> Floats:
-        """Zeta [m], shape (..., N), for modifications m [m], shape (..., n, N)."""
-        least = np.full((*m.shape[:-2], self.size), np.inf, dtype=m.dtype)
-        for s in self.sets:
-            part = least[..., s.states]
-            np.minimum(part, s.approach(m), out=part)
-        return least
+    @cached_property
+    def every_set(self) -> tuple[Floats, Floats]:
+        """Approach without modifications, shape (S, N), infinite where not all are in reach, and weights, (S, n, N)."""
+        pairs = max(s.pairs.stop for s in self.sets)
+        base, weight = np.full((len(self.sets), self.size), np.inf), np.zeros((len(self.sets), pairs, self.size))
+        for row, s in enumerate(self.sets):
+            base[row, s.states] = s.base
+            weight[row, s.pairs.start : s.pairs.stop, s.states] = s.weight
+        return base, weight
 
-    def weights(self, m: Floats) -> Floats:
-        """D zeta / d m_j of the set that decides, shape (..., n, N)."""
-        least = np.full((*m.shape[:-2], self.size), np.inf)
-        weight = np.zeros(m.shape)
-        for s in self.sets:
-            zeta = s.approach(m)
-            less = zeta < least[..., s.states]
-            own = np.zeros((m.shape[-2], zeta.shape[-1]))
-            own[s.pairs.start : s.pairs.stop] = s.weight
-            part = weight[..., s.states]
-            part[...] = np.where(less[..., None, :], own, part)
-            least[..., s.states] = np.where(less, zeta, least[..., s.states])
-        return weight
+    def by_set(self, m: Floats) -> Floats:
+        """zeta_S [m], shape (C, S, N), for modifications m [m], shape (C, n, N)."""
+        base, weight = self.every_set
+        return np.asarray(base + np.einsum("sjn,cjn->csn", weight, m))
 
 
 def quick_sharing(grid: RollGrid, loads: Floats) -> QuickSharing:
