@@ -4,8 +4,11 @@ Tests that run another program ask the fixture `program` for it: where it is mis
 that installs it. ``--no-skips`` lets no test be skipped.
 """
 
+import os
 import re
 import shutil
+import subprocess
+import sys
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -33,6 +36,26 @@ def program():
         pytest.skip(f"{name} is missing; on Debian or Ubuntu run: apt-get install {package}")
 
     return find
+
+
+@pytest.fixture(scope="session")
+def scheduler():
+    """Address of a Dask scheduler with one worker on this machine."""
+    program = (
+        "from dask.distributed import LocalCluster\n"
+        "import sys\n"
+        "if __name__ == '__main__':\n"
+        "    with LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as cluster:\n"
+        "        print(cluster.scheduler_address, flush=True)\n"
+        "        sys.stdin.read()\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
+    )
+    yield process.stdout.readline().strip()
+    process.stdin.close()
+    process.wait(timeout=30)
 
 
 def pytest_addoption(parser):

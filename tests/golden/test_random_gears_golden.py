@@ -45,10 +45,10 @@ def true_errors(found, known):
 
 
 @functools.cache
-def truth_and_estimate(level):
-    """Arrays (gears, quantities) of the thirty gears at one level of settings."""
+def truth_and_estimate(level, gears):
+    """Arrays (gears, quantities) of the first gears at one level of settings."""
     truth, estimate = [], []
-    for g in FOR_ESTIMATES:
+    for g in FOR_ESTIMATES[:gears]:
         tooth = generator.tooth_of(g)
         material = Material(1.0, g["poisson_ratio"])
         gear = Gear(tooth, 1.0, g["bore"] * tooth.root_radius, material=material, plane=g["plane"])
@@ -66,26 +66,33 @@ def truth_and_estimate(level):
     return np.array(truth), np.array(estimate)
 
 
-def check_honesty(truth, estimate):
-    assert truth.shape == (30,)
-    assert (truth > estimate).sum() <= 2
-    assert (estimate > 10.0 * truth).sum() <= 5
+def check_honesty(truth, estimate, gears):
+    """No more than one gear in fifteen errs by more than was estimated, one in six by less than a tenth of it."""
+    assert truth.shape == (gears,)
+    assert (truth > estimate).sum() <= gears / 15
+    assert (estimate > 10.0 * truth).sum() <= gears / 6
 
 
+#: All thirty in the long run; the first fifteen in the ordinary one, held to the same shares.
+COUNTS = pytest.mark.parametrize("gears", [15, pytest.param(30, marks=pytest.mark.long)])
+
+
+@COUNTS
 @pytest.mark.parametrize(
     "level", [0, pytest.param(-1, marks=pytest.mark.long), pytest.param(1, marks=pytest.mark.long)]
 )
-def test_estimated_errors_of_thirty_gears_are_honest(level):
+def test_estimated_errors_of_random_gears_are_honest(level, gears):
     """The largest error of a gear, which a tolerance is about."""
-    truth, estimate = truth_and_estimate(level)
-    check_honesty(truth.max(axis=1), estimate.max(axis=1))
+    truth, estimate = truth_and_estimate(level, gears)
+    check_honesty(truth.max(axis=1), estimate.max(axis=1), gears)
 
 
+@COUNTS
 @pytest.mark.parametrize("quantity", QUANTITIES)
-def test_estimated_errors_of_every_quantity_are_honest(quantity):
+def test_estimated_errors_of_every_quantity_are_honest(quantity, gears):
     i = QUANTITIES.index(quantity)
-    truth, estimate = truth_and_estimate(0)
-    check_honesty(truth[:, i], estimate[:, i])
+    truth, estimate = truth_and_estimate(0, gears)
+    check_honesty(truth[:, i], estimate[:, i], gears)
 
 
 def solved_case(g, tolerance):
@@ -137,7 +144,7 @@ def test_ten_gears_meet_the_tolerance_of_their_case(tolerance):
     assert not missed
 
 
-@pytest.mark.parametrize("index", [0, 5])
-def test_a_fine_tolerance_is_met_too(index):
-    found, _ = solved_case(FOR_TOLERANCES[index], 1e-4)
-    assert max(true_errors(found, FOR_TOLERANCES[index]).values()) < 1e-4
+def test_a_fine_tolerance_is_met_too():
+    """Of one gear; the long run has all ten at 1e-4."""
+    found, _ = solved_case(FOR_TOLERANCES[0], 1e-4)
+    assert max(true_errors(found, FOR_TOLERANCES[0]).values()) < 1e-4

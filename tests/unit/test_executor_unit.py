@@ -64,27 +64,6 @@ def test_a_store_that_cannot_be_written_to_is_reported(tmp_path):
         map_points(math.sqrt, [1.0], cache=SolutionCache(Store(tmp_path / "file")))
 
 
-@pytest.fixture(scope="module")
-def scheduler():
-    """A Dask scheduler with one worker on this machine."""
-    program = (
-        "from dask.distributed import LocalCluster\n"
-        "import sys\n"
-        "if __name__ == '__main__':\n"
-        "    with LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as cluster:\n"
-        "        print(cluster.scheduler_address, flush=True)\n"
-        "        sys.stdin.read()\n"
-    )
-    process = subprocess.Popen(
-        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=ENVIRONMENT
-    )
-    assert process.stdin is not None
-    assert process.stdout is not None
-    yield process.stdout.readline().strip()
-    process.stdin.close()
-    process.wait(timeout=30)
-
-
 def test_a_cluster_gives_the_same(scheduler, tmp_path):
     points = [2.0, -1.0, 3.0]
     assert map_points(math.sqrt, points, Executor(scheduler)) == map_points(math.sqrt, points)

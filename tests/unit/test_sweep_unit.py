@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import io
 import json
 import os
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from fegear.cli import app, main
 from fegear.engine.executor import Executor
 from fegear.errors import InputError
 from fegear.studies.axis import read_axis
@@ -39,11 +44,11 @@ contact_half_width = "0.05 mm"
 tolerance = 0.5
 """
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
-#: The shapes of 5 profile shifts under 40 contact widths.
+#: The shapes of 2 profile shifts under 100 contact widths.
 GRID = (
     "--set", 'results=["stiffness"]',
-    "--over", "gear.a.profile_shift=-0.1:0.7:5",
-    "--over", "stiffness.contact_half_width=0.02:0.195:40:mm",
+    "--over", "gear.a.profile_shift=0.1:0.5:2",
+    "--over", "stiffness.contact_half_width=0.02:0.119:100:mm",
     "--no-plots",
 )  # fmt: skip
 
@@ -59,11 +64,18 @@ def command(*arguments: object) -> list[str]:
     return [sys.executable, "-c", "from fegear.cli import main; main()", "sweep", *map(str, arguments)]
 
 
-def fegear(*arguments: object, cwd, cache) -> subprocess.CompletedProcess:
-    environment = {**ENVIRONMENT, "FEGEAR_CACHE": str(cache)}
-    return subprocess.run(
-        command(*arguments), cwd=cwd, env=environment, capture_output=True, text=True, check=False, timeout=120
-    )
+def fegear(*arguments: object, cwd, cache) -> SimpleNamespace:
+    """Run the sweep command in this process (its workers are processes of their own)."""
+    said, complained, code = io.StringIO(), io.StringIO(), 0
+    with pytest.MonkeyPatch.context() as patch, contextlib.chdir(cwd):
+        patch.setenv("FEGEAR_CACHE", str(cache))
+        patch.setattr(sys, "argv", ["fegear", "sweep", *map(str, arguments)])
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
+            try:
+                main()
+            except SystemExit as end:
+                code = end.code or 0
+    return SimpleNamespace(returncode=code, stdout=said.getvalue(), stderr=complained.getvalue())
 
 
 @pytest.mark.parametrize(
@@ -125,9 +137,8 @@ def test_the_dataset_is_labelled_and_agrees_with_single_runs(case, tmp_path):
         ratio = data["I.contact_ratio"].sel({"gear.a.teeth": 21, "gear.a.profile_shift": 0.3}).item()
         radius = data["geometry.tip_radius"].sel({"gear.a.teeth": 21}).values
         assert data["geometry.tip_radius"].attrs["units"] == "mm"
-    run = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(case), "--no-plots"]
     changes = ("--set", "gear.a.teeth=21", "--set", "gear.a.profile_shift=0.3", "--out", str(tmp_path / "one"))
-    subprocess.run([*run, *changes], cwd=tmp_path, env=ENVIRONMENT, check=True, capture_output=True, timeout=60)
+    assert CliRunner().invoke(app, ["run", str(case), "--no-plots", *changes]).exit_code == 0
     one = json.loads((tmp_path / "one" / "summary.json").read_text())["results"]
     assert ratio == one["I.contact_ratio"]["value"]
     assert radius[0] == pytest.approx(np.array([[23.0, 33.0], [23.6, 33.0]]))
@@ -182,10 +193,10 @@ def test_a_killed_sweep_of_200_points_goes_on_and_equals_an_uninterrupted_one_bi
     whole = fegear(case, *GRID, "--out", "whole", cwd=tmp_path, cache=tmp_path / "one")
     assert whole.returncode == 0, whole.stderr
     assert "200 of 200 points have results." in whole.stdout
-    # 5 shapes on two meshes or more each: 200 points and two workers never solved one twice.
+    # 2 shapes on two meshes or more each: 200 points and two workers never solved one twice.
     summary = json.loads((tmp_path / "whole" / "summary.json").read_text())
     shapes = summary["timings"]["shapes_solved"]
-    assert shapes >= 10
+    assert shapes >= 4
     assert len(list((tmp_path / "one" / "solutions").rglob("*.entry"))) == 200 + shapes
 
     kept = tmp_path / "two"
@@ -208,35 +219,18 @@ def test_a_killed_sweep_of_200_points_goes_on_and_equals_an_uninterrupted_one_bi
     assert resumed.returncode == 0, resumed.stderr
     told = json.loads((tmp_path / "resumed" / "summary.json").read_text())["timings"]
     assert 30 <= told["points_kept_from_earlier"] < 200
-    assert told["shapes_solved"] < 10
+    assert told["shapes_solved"] < shapes
     for name in ("sweep.nc", "tables/sweep.csv", "report.html"):
         assert (tmp_path / "resumed" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "resumed", "two", "two.toml", "whole"]
 
 
-def test_executors_are_bit_equal(case, tmp_path):
-    program = (
-        "from dask.distributed import LocalCluster\n"
-        "import sys\n"
-        "if __name__ == '__main__':\n"
-        "    with LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as cluster:\n"
-        "        print(cluster.scheduler_address, flush=True)\n"
-        "        sys.stdin.read()\n"
-    )
-    cluster = subprocess.Popen(
-        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=ENVIRONMENT
-    )
-    assert cluster.stdin is not None
-    assert cluster.stdout is not None
-    try:
-        address = cluster.stdout.readline().strip()
-        axis = ("--set", 'results=["stiffness"]', "--over", "gear.a.profile_shift=0:2:5", "--no-cache", "--no-plots")
-        for name, more in (("cores", ()), ("one", ("--workers", 1)), ("cluster", ("--scheduler", address))):
-            done = fegear(case, *axis, *more, "--out", name, cwd=tmp_path, cache=tmp_path / "cache")
-            assert done.returncode == 0, done.stderr
-    finally:
-        cluster.stdin.close()
-        cluster.wait(timeout=30)
+def test_executors_are_bit_equal(case, scheduler, tmp_path):
+    axis = ("--set", 'results=["stiffness"]', "--over", "gear.a.profile_shift=0:2:3", "--no-cache", "--no-plots")
+    for name, more in (("cores", ()), ("one", ("--workers", 1)), ("cluster", ("--scheduler", scheduler))):
+        done = fegear(case, *axis, *more, "--out", name, cwd=tmp_path, cache=tmp_path / "cache")
+        assert done.returncode == 0, done.stderr
+        assert "2 of 3 points have results." in done.stdout
     first = (tmp_path / "cores" / "sweep.nc").read_bytes()
     assert (tmp_path / "one" / "sweep.nc").read_bytes() == first
     assert (tmp_path / "cluster" / "sweep.nc").read_bytes() == first
@@ -260,13 +254,12 @@ def test_sweeps_work_from_python_too(case):
     assert found.place(2) == "gear.a.teeth = 22"
 
 
-def test_a_run_reads_the_cache_only_when_asked_and_then_says_so(case, tmp_path):
-    run = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(case), "--no-plots"]
+def test_a_run_reads_the_cache_only_when_asked_and_then_says_so(case, tmp_path, monkeypatch):
+    monkeypatch.setenv("FEGEAR_CACHE", str(tmp_path / "cache"))
     told = []
     for more in ((), ("--cache",), ("--cache",), ()):
-        arguments = [*run, "--set", 'results=["stiffness"]', "--out", "o", *more]
-        environment = {**ENVIRONMENT, "FEGEAR_CACHE": str(tmp_path / "cache")}
-        subprocess.run(arguments, cwd=tmp_path, env=environment, check=True, capture_output=True, timeout=60)
+        arguments = ["run", case, "--no-plots", "--set", 'results=["stiffness"]', "--out", tmp_path / "o", *more]
+        assert CliRunner().invoke(app, [str(one) for one in arguments]).exit_code == 0
         found = json.loads((tmp_path / "o" / "summary.json").read_text())
         told.append((found["recalled"], [r for r in found["remarks"] if "disk cache" in r], found["results"]))
     assert [bool(cached) for cached, _, _ in told] == [False, False, True, False]
