@@ -52,10 +52,12 @@ class Drawing:
         Made if needed.
     process : PictureProcess, optional
         Who draws; here, at the end, without.
+    case : str
+        Name that stands at the head of every picture.
     """
 
-    def __init__(self, folder: Path, process: PictureProcess | None = None) -> None:
-        self._folder, self._process = folder, process
+    def __init__(self, folder: Path, process: PictureProcess | None = None, case: str = "") -> None:
+        self._folder, self._process, self._case = folder, process, case
         self._begun: list[tuple[Task, Figure, Future[tuple[Picture, ...] | None] | None]] = []
         self._missing: list[str] = []
 
@@ -64,7 +66,7 @@ class Drawing:
         self._folder.mkdir(exist_ok=True)
         for figure in outcome.figures:
             with self._remarked():
-                made = figure.made()
+                made = replace(figure.made(), case=self._case)
                 # What a picture shows of a field is in its panels; the field itself stays here.
                 sent = self._process.draw(replace(made, field=None), self._folder) if self._process else None
                 self._begun.append((task, made, sent))

@@ -51,7 +51,7 @@ def write_results(
         write_table(tables, table)
     write_dataset(folder / "results.nc", results)
     if plots and begun is None:
-        begun = Drawing(folder / "plots")
+        begun = Drawing(folder / "plots", case=results.scene.name)
         for task, outcome in results.outcomes.items():
             begun.begin(task, outcome)
     drawn, missing = begun.finish(watcher.advance) if begun else (described(results), [])

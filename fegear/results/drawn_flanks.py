@@ -86,14 +86,19 @@ def _pattern(name: str, contact: ToothContact, bearing: Bearing | None) -> Figur
             role = kind if kind in ROLES else f"series:{number}"
             items.append(Points(z[here] * 1e3, r[here] * 1e3, kind, role, size=4.5, notes=notes))
         if bearing is not None and not panels:
-            items.append(outline(_outlines(contact, bearing), "contact ellipses", "grey", 0.8))
+            cut = np.clip(_outlines(contact, bearing), side.min(axis=1)[:, None] * 1e3, side.max(axis=1)[:, None] * 1e3)
+            items.append(outline(cut, "contact ellipses", "grey", 0.8))
         panels.append(Panel(Axis(f"height z on the {which}", "mm"), Axis(f"radius on the {which}", "mm"), tuple(items)))
     vague = bool(single.ill_defined[single.kind == "surface"].any())
     return Figure(
         f"contact_pattern_{name}",
         f"Contact pattern of pair {name}",
         f"Pair {name}: where one tooth pair touches over its engagement, by kind of contact."
-        + (" Ellipses: contact under the load of the case." if bearing is not None else "")
+        + (
+            " Ellipses: contact under the load of the case, cut at the ends of the flank."
+            if bearing is not None
+            else ""
+        )
         + (" The flanks touch along lines: the place of the point on them is arbitrary." if vague else ""),
         tuple(panels),
         columns=2,
@@ -102,7 +107,7 @@ def _pattern(name: str, contact: ToothContact, bearing: Bearing | None) -> Figur
 
 def _outlines(contact: ToothContact, bearing: Bearing) -> Array:
     """Up to a dozen ellipses in height and radius [mm]; the flank is seen from the side, not developed."""
-    angle, found = np.linspace(0.0, 2.0 * np.pi, 61), []
+    angle, found = np.linspace(0.0, 2.0 * np.pi, 181), []
     for k in np.unique(np.linspace(0, bearing.index.size - 1, _ELLIPSES).astype(int)):
         centre = contact.mesh.point[:, bearing.index[k], None]
         long = bearing.ellipse.long[k] * bearing.long_axis[:, k, None] * np.cos(angle)

@@ -114,4 +114,5 @@ def deformed_figure(name: str, influence: GearInfluence, line_load: float) -> Fi
         tuple(panels),
         columns=2,
         field=MeshField(name, rest, whole.triangles, fields),
+        under=f"{line_load * 1e-3:.4g} N/mm",
     )

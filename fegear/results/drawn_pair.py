@@ -33,6 +33,13 @@ def path_marks(pair: GearPair) -> tuple[Mark, ...]:
     return tuple(Mark("x", point.x * 1e3, point.letter) for point in path_points(pair))
 
 
+def roll_marks(pair: GearPair, member: Member) -> tuple[Mark, ...]:
+    """The same points as marks of a gear's roll angle in degrees."""
+    return tuple(
+        Mark("x", math.degrees(float(pair.roll_angle(point.x, member))), point.letter) for point in path_points(pair)
+    )
+
+
 def in_mesh(pair: GearPair, member: Member, teeth: int = 3) -> Array:
     """Outline of a gear's teeth near the pitch point, which is the origin; the flanks touch there, shape (2, N) [m].
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.figure import Axis, Curve, Figure, Panel, View, Zone
-from fegear.results.loaded_pair import BASE_PITCH, drawn_loads
+from fegear.results.drawn_pair import roll_marks
+from fegear.results.loaded_pair import BASE_PITCH, drawn_loads, pitch_marks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,19 +35,23 @@ def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: 
             label = f"{shape} tip relief"
             removal = getattr(ground, member).removal(table.column("roll_angle").si) * 1e6
             curves.append(Curve(roll, removal, label, label, markers=False))
+        points = roll_marks(data.pair.engagement.pair, member)
         loaded = roll[shown["load"] > 0.0]
         zone = Zone("x", float(loaded.min()), float(loaded.max()))
-        reliefs.append(Panel(x, Axis("material to remove", "um"), tuple(curves), (zone,), f"{member}: gear {gear}"))
+        reliefs.append(
+            Panel(x, Axis("material to remove", "um"), tuple(curves), (zone, *points), f"{member}: gear {gear}")
+        )
         load = Curve(roll, shown["load"], "load of the design", "grey", dash="solid", markers=False)
-        loads.append(Panel(x, Axis("load", "N", zero=True), (load,), (zone,), f"{member}: load", height=0.6))
+        loads.append(Panel(x, Axis("load", "N", zero=True), (load,), (zone, *points), f"{member}: load", height=0.6))
     return Figure(
         f"relief_{name}",
-        f"Profile relief of {name}",
+        f"Profile relief of pair {name}",
         f"Pair {name}: relief of both gears for {data.design.task.load:.5g} N over the active profile, and the load of "
         "the tooth. Shaded: the design zone, where the tooth is loaded at the design load. Ground reliefs are at the "
         "tips only; a constant over the whole flank makes no difference.",
         (*reliefs, *loads),
         columns=2,
+        under=f"{data.design.task.load:.5g} N",
     )
 
 
@@ -59,6 +64,7 @@ def _candidates_figure(name: str, data: ReliefData) -> Figure:
         size = f"{left:.3g} µm" if left > 1e-6 else "0"
         curves.append(Curve(curve.x * 1e3, te, f"{label}: {size} peak to peak", label, markers=False))
     load = f"{data.design.task.load:.5g} N"
+    marks = pitch_marks(data.pair, next(iter(data.design.curves.values())).x)
     caption = f"Pair {name}: what each relief leaves of the transmission error at the design load, {load}."
     if "diagonal only" in data.design.te:
         caption += (
@@ -67,26 +73,35 @@ def _candidates_figure(name: str, data: ReliefData) -> Figure:
         )
     return Figure(
         f"relief_candidates_{name}",
-        f"Transmission error with and without relief, {name}",
+        f"Transmission error of pair {name} with and without relief",
         caption,
-        (Panel(BASE_PITCH, Axis("transmission error less its mean", "um"), tuple(curves)),),
+        (Panel(BASE_PITCH, Axis("transmission error less its mean", "um"), tuple(curves), marks),),
+        under=load,
     )
 
 
 def _harris_figure(name: str, data: ReliefData) -> Figure:
     views = []
-    order = sorted(data.design.curves, key=lambda label: label == "diagonal only")
+    places = ("designed", "linear tip relief", "parabolic tip relief", "no relief", "diagonal only")
+    order = sorted(data.design.curves, key=lambda label: places.index(label) if label in places else len(places))
     for label in order:
         curve = data.design.curves[label]
-        loads = [float(w) for w in curve.load]
+        loads, marks = [float(w) for w in curve.load], pitch_marks(data.pair, curve.x)
         curves = tuple(
-            Curve(curve.x * 1e3, curve.transmission_error[:, i] * 1e6, text, role)
+            Curve(
+                curve.x * 1e3,
+                curve.transmission_error[:, i] * 1e6,
+                text,
+                role,
+                width=3.0 if loads[i] == data.design.task.load else 1.4,
+            )
             for i, text, role in drawn_loads(loads, data.design.task.load, "design")
         )
-        views.append(View(label, (Panel(BASE_PITCH, Axis("transmission error", "um", zero=True), curves),)))
+        views.append(View(label, (Panel(BASE_PITCH, Axis("transmission error", "um", zero=True), curves, marks),)))
     return Figure(
         f"harris_map_{name}",
-        f"Harris map of {name}",
-        f"Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief.",
+        f"Harris map of pair {name}",
+        f"Pair {name}: transmission error over the mesh cycle for a family of loads, with each relief; "
+        f"wide: the design load, {data.design.task.load:.5g} N.",
         views=tuple(views),
     )

@@ -30,6 +30,9 @@ _RPM = 30.0 / np.pi
 #: A mesh with less of the largest mean force carries none.
 _NO_SHARE = 1e-9
 
+#: A change of the dynamic factor from one speed to the next that is too large to see peaks between them.
+_COARSE = 0.1
+
 
 @dataclass(frozen=True)
 class DynamicFactorData:
@@ -169,8 +172,8 @@ def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
     """Dynamic factor over speed, and the share of the time without contact where there is any."""
     speed, x = chart.speeds * _RPM, Axis(f"speed of {speed_of}", "rpm")
     items: list[Curve | Points] = [
-        Curve(speed, chart.dynamic_factor, "tooth force", "own force"),
-        Curve(speed, chart.mesh_force_factor, "mesh force", "mesh force", width=1.2),
+        Curve(speed, chart.dynamic_factor, "tooth force", "own force", markers=True, width=1.2),
+        Curve(speed, chart.mesh_force_factor, "mesh force", "mesh force", markers=True, width=0.9),
     ]
     odd = np.array([kind != "periodic" for kind in chart.kinds])
     if odd.any():
@@ -184,11 +187,19 @@ def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
     if lost:
         panels.append(Panel(x, Axis("time", "%", zero=True), lost, height=0.5))
     worst, where = chart.worst
+    step = np.abs(np.diff(chart.dynamic_factor)) / np.minimum(chart.dynamic_factor[1:], chart.dynamic_factor[:-1])
+    at = int(np.argmax(step))
+    coarse = (
+        f" From {speed[at]:.6g} to {speed[at + 1]:.6g} rpm it changes by {step[at]:.0%}: peaks between neighbouring "
+        "speeds are not seen; take more speeds there."
+        if step[at] > _COARSE else ""
+    )  # fmt: skip
     return Figure(
         f"dynamic_factor_{name}",
         f"Dynamic factor of mesh {name}",
         f"Mesh {name}: largest force on one tooth pair (dynamic factor) and largest mesh force, both over the mean "
-        f"mesh force. Largest dynamic factor {worst:.4g} at {where * _RPM:.6g} rpm.",
+        f"mesh force; points are the {speed.size} speeds computed. Largest dynamic factor {worst:.4g} at "
+        f"{where * _RPM:.6g} rpm.{coarse}",
         tuple(panels),
     )
 

@@ -16,9 +16,10 @@ from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_inputs import gear_name
 from fegear.models.train import train_part
 from fegear.results import forecasts
+from fegear.results.drawn_pair import LINE_OF_ACTION, path_marks
 from fegear.results.gear_solution import needs_solution, solution_of
 from fegear.results.root_stress_history import table_names
-from fegear.results.train_parts import needs_one_speed, own_meshes
+from fegear.results.train_parts import RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -120,22 +121,21 @@ def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
             Value(f"{name}.{member}.largest_dynamic_root_tension", float(s.own[worst]), "MPa", float(s.error[worst]),
                   f"gear {gear}, without the other meshes, contact at x = {force.x[worst] * 1e3:.5g} mm")
         )  # fmt: skip
-    return Outcome(made, tuple(tables), tuple(values), figures=(_figure(made),))
+    return Outcome(made, tuple(tables), tuple(values), figures=(_figure(made, asked.speed),))
 
 
-def _figure(data: DynamicRootStress) -> Figure:
+def _figure(data: DynamicRootStress, speed: float) -> Figure:
     name, x, curves = data.force.train.names[data.force.mesh], data.force.force.x * 1e3, []
     for member, stress in data.stress.items():
         curves.append(Curve(x, stress.total * 1e-6, f"{member}, dynamic", member, dash="solid"))
         curves.append(Curve(x, stress.static * 1e-6, f"{member}, quasi-static", member, dash="dash", width=1.2))
-    axes = (
-        Axis("place of the tooth pair on the line of action", "mm"), Axis("largest root tension", "MPa", zero=True)
-    )  # fmt: skip
+    marks = path_marks(data.force.train.meshes[data.force.mesh].pair)
     return Figure(
         f"dynamic_root_stress_{name}",
         f"Dynamic root stress of mesh {name}",
         f"Mesh {name}: root stress of one tooth of either gear through its engagement, with and without vibration.",
-        (Panel(*axes, tuple(curves)),),
+        (Panel(LINE_OF_ACTION, Axis("largest root tension", "MPa", zero=True), tuple(curves), marks),),
+        under=f"{speed * RPM:.6g} rpm",
     )
 
 

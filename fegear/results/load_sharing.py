@@ -13,14 +13,15 @@ from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Subject
 from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
+from fegear.results.drawn_pair import LINE_OF_ACTION
 from fegear.results.loaded_pair import (
     EFFECTS,
-    LINE_OF_ACTION,
     drawn_loads,
+    engagement_marks,
     needs_pair,
     over_loads,
-    path_ends,
     spur_pairs,
+    under,
 )
 from fegear.results.sources import HERTZ
 
@@ -124,22 +125,23 @@ def _present(data: LoadSharingData, inputs: Subject) -> Outcome:
 
 def _figure(name: str, data: LoadSharingData, load_error: Array | None) -> Figure:
     h, pair = data.history, data.pair
-    x, marks = h.x * 1e3, path_ends(pair)
+    x, marks = h.x * 1e3, engagement_marks(pair)
     load, pressure = [], []
     for i, label, role in drawn_loads(pair.loads, pair.nominal):
         error = load_error if pair.loads[i] == pair.nominal else None
         load.append(Curve(x, h.load[:, i], label, role, error))
         pressure.append(Curve(x, h.hertz_pressure[:, i] * 1e-6, label, role))
-    beyond = ", beyond which tip corners touch" if pair.engagement.corner_contact else ""
+    beyond = ", outside which tip corners touch" if pair.engagement.corner_contact else ""
     return Figure(
         f"load_sharing_{name}",
-        f"Load on a tooth pair of {name}",
-        f"Pair {name}: one tooth pair from its first to its last contact; dotted: ends of the path of contact{beyond}. "
+        f"Load on a tooth pair of pair {name}",
+        f"Pair {name}: one tooth pair from its first to its last contact; A to E: points of the path{beyond}. "
         f"Compliances: {'; '.join(pair.sources)}.",
         (
             Panel(LINE_OF_ACTION, Axis("load on the pair", "N", zero=True), tuple(load), marks),
             Panel(LINE_OF_ACTION, Axis("largest Hertzian pressure", "MPa", zero=True), tuple(pressure), marks),
         ),
+        under=under(pair),
     )
 
 

@@ -14,12 +14,14 @@ from fegear.models.loaded_pair import LoadedPair, build_loaded_pair, compliance_
 from fegear.models.neglected_effects import Neglected, neglected_effects, neglected_remarks
 from fegear.models.pair_checks import check_pair
 from fegear.models.pair_inputs import pair_inputs
+from fegear.results.drawn_pair import path_marks
 from fegear.results.gear_solution import needs_solution, solution_of
 from fegear.results.sources import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from fegear.arrays import Array
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact.neglected_effects import Answer
@@ -27,8 +29,7 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Upstream, Work
     from fegear.models.pair_inputs import PairInputs
 
-#: Abscissae of figures.
-LINE_OF_ACTION = Axis("position on the line of action from the pitch point", "mm")
+#: Abscissa of figures over one base pitch.
 BASE_PITCH = Axis("roll position over one base pitch", "mm")
 #: Effects that load sharing knows.
 EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact")
@@ -65,10 +66,21 @@ def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tup
     )
 
 
-def path_ends(pair: LoadedPair) -> tuple[Mark, ...]:
-    """Marks of the ends of the path of contact, beyond which only tip corners touch."""
-    p = pair.engagement.pair
-    return tuple(Mark("x", x * 1e3) for x in (p.x_start, p.x_end))
+def under(pair: LoadedPair) -> str:
+    """The load that a figure holds for, where the pair has one only; else its legend names them."""
+    return f"{pair.nominal:.5g} N" if len(pair.loads) == 1 else ""
+
+
+def engagement_marks(pair: LoadedPair) -> tuple[Mark, ...]:
+    """Marks of the points A to E, for an abscissa on the line of action; before A and after E only corners touch."""
+    return path_marks(pair.engagement.pair)
+
+
+def pitch_marks(pair: LoadedPair, x: Array) -> tuple[Mark, ...]:
+    """Marks of those points that a roll over one base pitch passes, between the ends of x [m]."""
+    low, high = float(x.min()) * 1e3, float(x.max()) * 1e3
+    room = 1e-6 * (high - low)
+    return tuple(m for m in path_marks(pair.engagement.pair) if low - room <= m.at <= high + room)
 
 
 def spur_pairs(scene: Scene) -> tuple[str, ...]:

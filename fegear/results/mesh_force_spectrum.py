@@ -27,7 +27,11 @@ if TYPE_CHECKING:
 #: Harmonics of the waterfall at most.
 _WATERFALL_LINES = 64
 #: Lines weaker than these shares of the strongest are not drawn in spectrum and waterfall.
-_WEAKEST, _WEAKEST_OVER_SPEED = 1e-5, 1e-2
+_WEAKEST, _WEAKEST_OVER_SPEED = 1e-3, 1e-2
+#: Whole harmonics that are stronger than this share of the strongest line bear their number.
+_NUMBERED = 1e-2
+#: Lines are drawn until this share of the mean square is left, within these harmonics of the highest mesh frequency.
+_LEFT, _LEAST_HARMONICS, _MOST_HARMONICS = 1e-3, 8, 24
 #: Force that is none [N].
 _NO_FORCE = 1e-12
 
@@ -129,19 +133,28 @@ def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrai
 def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
     train, found = data.train, data.spectrum
     name, amplitudes = train.names[data.mesh], found.amplitudes[data.mesh, :, :, 0]
+    strongest = float(amplitudes.max())
+    top, left = _highest_shown(found, amplitudes)
     lines = []
     for j, other in enumerate(train.names):
-        shown = amplitudes[j] > max(_WEAKEST * float(amplitudes.max()), _NO_FORCE)
+        shown = (amplitudes[j] > max(_WEAKEST * strongest, _NO_FORCE)) & (found.frequencies[j, :, 0] <= top)
+        orders, size = found.orders[shown], amplitudes[j, shown]
+        whole = (orders % 1.0 == 0.0) & (size > _NUMBERED * strongest)
         lines.append(
-            Stems(found.frequencies[j, shown, 0] * 1e-3, amplitudes[j, shown], f"from mesh {other}", f"series:{j}",
-                  tuple(f"harmonic {n:.6g}" for n in found.orders[shown]))
+            Stems(found.frequencies[j, shown, 0] * 1e-3, size, f"from mesh {other}", f"series:{j}",
+                  tuple(f"harmonic {n:.6g}" for n in orders),
+                  tuple(f"{n:.0f}" if known else "" for n, known in zip(orders, whole, strict=True)))
         )  # fmt: skip
+    above = f" Lines above {top * 1e-3:.4g} kHz hold {left:.2g} of the mean square; the table has them."
+    beyond = above if left > 0.0 else ""
     force, rpm = Axis("mesh force, 0-peak", "N", log=True), float(found.speeds[0]) * train.speed_ratio * RPM
     spectrum = Figure(
         f"mesh_force_spectrum_{name}",
         f"Spectrum of the force in mesh {name}",
-        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: harmonics by the mesh that excites them.",
-        (Panel(Axis("frequency", "kHz"), force, tuple(lines)),),
+        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: lines by the mesh that excites them, with the number of "
+        f"the harmonic of its mesh frequency; drawn down to {_WEAKEST:g} of the strongest.{beyond}",
+        (Panel(Axis("frequency", "kHz", zero=True), force, tuple(lines)),),
+        under=f"{rpm:.6g} rpm",
     )
     over = data.waterfall
     if over is None:
@@ -162,6 +175,17 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
         (Panel(Axis("frequency", "kHz"), Axis(f"speed of {train.speed_of}", "rpm"), (points,)),),
     )
     return spectrum, waterfall
+
+
+def _highest_shown(found: MeshForceSpectrum, amplitudes: Array) -> tuple[float, float]:
+    """Frequency up to which lines are drawn [Hz], and the share of the mean square that those above it hold."""
+    frequencies, power = found.frequencies[:, :, 0], amplitudes**2
+    total, pitch = float(power.sum()), float(np.max(frequencies[:, 0] / found.orders[0]))
+    order = np.argsort(frequencies, axis=None)
+    held = np.cumsum(power.ravel()[order])
+    enough = float(frequencies.ravel()[order][min(int(np.searchsorted(held, (1.0 - _LEFT) * total)), held.size - 1)])
+    top = min(max(enough, _LEAST_HARMONICS * pitch), _MOST_HARMONICS * pitch)
+    return top, float(power[frequencies > top].sum()) / total if total > 0.0 else 0.0
 
 
 def _forecast(scene: Scene, _name: str) -> Forecast:

@@ -211,7 +211,8 @@ def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
     if chart.amounts.size < 2 or chart.lengths.size < 3:
         return ()
     best, error, views = chart.optimum_lengths(), chart.effective_error * 1e6, []
-    for i, load in enumerate(chart.loads):
+    for i in sorted(range(len(chart.loads)), key=lambda i: float(chart.loads[i]) != data.pair.nominal):
+        load = chart.loads[i]
         inside = (best[:, i] > chart.lengths[0]) & (best[:, i] < chart.lengths[-1])
         length = np.where(inside, best[:, i], np.nan)
         items = (
@@ -224,7 +225,7 @@ def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
         views.append(View(f"{load:.5g} N{word}", (Panel(*axes, items, (Mark("y", data.delta * 1e6, "Δ"),)),)))
     figure = Figure(
         f"relief_chart_{name}",
-        f"Chart of tip reliefs of {name}",
+        f"Chart of tip reliefs of pair {name}",
         f"Pair {name}: effective error A_e (NASA TM-89901) with equal tip relief on both gears. White: length with the "
         f"least A_e for each amount. Dotted: Δ = {data.delta * 1e6:.4g} µm, the largest transmission error without "
         f"relief at {data.pair.nominal:.5g} N.",
@@ -244,7 +245,7 @@ def _robustness_figure(name: str, found: Mapping[str, Robustness], metric: str) 
     what = "peak-to-peak" if metric == "peak_to_peak" else "effective"
     return Figure(
         f"robustness_{name}",
-        f"Robustness of the reliefs of {name}",
+        f"Robustness of the reliefs of pair {name}",
         f"Pair {name}: worst (marked) and least (thin) of all combinations of spacing error and relief tolerance.",
         (Panel(Axis("load over design load"), Axis(f"{what} transmission error", "um", zero=True), tuple(curves)),),
     )

@@ -16,7 +16,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_checks import check_relief
 from fegear.models.pair_inputs import gear_name
 from fegear.results import forecasts
-from fegear.results.loaded_pair import EFFECTS, needs_pair, path_ends, spur_pairs
+from fegear.results.loaded_pair import EFFECTS, engagement_marks, needs_pair, spur_pairs
 from fegear.results.sources import RING
 from fegear.results.transmission_error import POSITIONS
 
@@ -146,10 +146,11 @@ def _figure(name: str, data: RootStressData, gears: Mapping[Member, str]) -> Fig
     x = Axis("position of the tooth's contact on the line of action", "mm")
     return Figure(
         f"root_stress_history_{name}",
-        f"Root stress through the mesh, {name}",
+        f"Root stress through the mesh of pair {name}",
         f"Pair {name} at {pair.nominal:.5g} N: fillet stress of one tooth, its own load's and its neighbours' "
-        f"added. Dotted: ends of the path of contact. Largest tension {largest}.",
-        (Panel(x, Axis("largest root stress", "MPa"), tuple(curves), (*path_ends(pair), Mark("y", 0.0))),),
+        f"added. A to E: points of the path of contact. Largest tension {largest}.",
+        (Panel(x, Axis("largest root stress", "MPa"), tuple(curves), (*engagement_marks(pair), Mark("y", 0.0))),),
+        under=f"{pair.nominal:.5g} N",
     )
 
 

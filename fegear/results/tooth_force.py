@@ -11,8 +11,9 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
+from fegear.results.drawn_pair import LINE_OF_ACTION, path_marks
 from fegear.results.gear_train import gear_train, needs_train
-from fegear.results.train_parts import needs_one_speed, own_meshes, pull_remarks
+from fegear.results.train_parts import RPM, needs_one_speed, own_meshes, pull_remarks
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -123,27 +124,28 @@ def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
         )
         remarks = (*remarks, sentence)
     settings: dict[str, object] = {"harmonics": made.harmonics, "speed": asked.speed}
-    return Outcome(made, (table,), tuple(values), settings, remarks, (_tooth_force_figure(made),))
+    return Outcome(made, (table,), tuple(values), settings, remarks, (_tooth_force_figure(made, asked.speed),))
 
 
-def _tooth_force_figure(data: ToothForceData) -> Figure:
+def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
     force, names = data.force, data.train.names
-    name, x, place = names[data.mesh], force.x * 1e3, Axis("place of the tooth pair on the line of action", "mm")
+    name, x, marks = names[data.mesh], force.x * 1e3, path_marks(data.train.meshes[data.mesh].pair)
     top = [Curve(x, force.static, "static", "static"), Curve(x, force.total, "static and own increment", "own force")]
     if len(names) > 1:
         top.append(Curve(x, force.total + force.cross.sum(axis=0), "with the other meshes", "with other meshes"))
     parts = {j: force.own if j == data.mesh else force.cross[j] for j in range(len(names))}
-    below = [Curve(x, part, f"from mesh {names[j]}", f"series:{j + 2}") for j, part in parts.items()]
+    below = [Curve(x, part, f"from mesh {names[j]}", f"series:{j}") for j, part in parts.items()]
     mean = Mark("y", float(data.train.forces[data.mesh]), "mean mesh force")
     return Figure(
         f"tooth_force_{name}",
         f"Force on one tooth pair of mesh {name}",
-        f"Mesh {name}: force on one tooth pair from first to last contact; the level line is the mean mesh force. "
-        "Below: what the vibration adds, by the mesh that excites it.",
+        f"Mesh {name}: force on one tooth pair from its first contact at A to its last at E; the level line "
+        "is the mean mesh force. Below: what the vibration adds, by the mesh that excites it.",
         (
-            Panel(place, Axis("tooth force", "N", zero=True), tuple(top), (mean,), height=1.2),
-            Panel(place, Axis("increment", "N"), tuple(below), height=0.8),
+            Panel(LINE_OF_ACTION, Axis("tooth force", "N", zero=True), tuple(top), (*marks, mean), height=1.2),
+            Panel(LINE_OF_ACTION, Axis("increment", "N"), tuple(below), marks, height=0.8),
         ),
+        under=f"{speed * RPM:.6g} rpm",
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
+from fegear.engine.colours import DASHES
 from fegear.engine.figure import Axis, Bars, Curve, Figure, Mark, Panel, Points
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 _RPM = 30.0 / math.pi
 #: A share of energy below this is none.
 _ROUND_OFF = 1e-6
+#: Share of the height of a Campbell diagram that the word of a mode takes.
+_ROOM_OF_MODES = 0.05
 
 
 @dataclass(frozen=True)
@@ -49,15 +52,19 @@ class IncrementsData:
 
 @dataclass(frozen=True)
 class SpeedsInputs:
-    """Speeds of a Campbell diagram [rad/s of the body that speeds refer to], and how many harmonics it shows."""
+    """Speeds of a Campbell diagram [rad/s of the body that speeds refer to], and how many harmonics it shows.
+
+    `speed` is the one at which the case runs; nan where it names none.
+    """
 
     speeds: NDArray[np.float64]
     lines: int
+    speed: float = math.nan
 
 
 def _speeds(scene: Scene, _subject: str) -> SpeedsInputs:
     part = scene.case.dynamics
-    return SpeedsInputs(part.speed_values, part.lines)
+    return SpeedsInputs(part.speed_values, part.lines, math.nan if part.speed is None else part.speed)
 
 
 def _modes(asked: SpeedsInputs, upstream: Upstream, _work: Work) -> ModesData:
@@ -109,7 +116,7 @@ def _present_modes(known: ModesData, asked: SpeedsInputs) -> Outcome:
     values = tuple(
         Value(f"natural_frequency_{k}", float(found.frequencies[k]), "Hz", None, "undamped") for k in count[1:]
     )
-    return Outcome(known, tuple(tables), values, figures=_modes_figures(known))
+    return Outcome(known, tuple(tables), values, figures=_modes_figures(known, asked.speed))
 
 
 @dataclass(frozen=True)
@@ -150,7 +157,7 @@ def _present_increments(known: IncrementsData, _asked: FrequencyInputs) -> Outco
     return Outcome(known, (table,), tuple(values), figures=(_increments_figure(known),))
 
 
-def _modes_figures(data: ModesData) -> tuple[Figure, ...]:
+def _modes_figures(data: ModesData, speed: float) -> tuple[Figure, ...]:
     """Where each mode deforms, and where harmonics of the meshes meet the modes; the rigid motion is not drawn."""
     frequencies, energy = data.modes.frequencies[1:], data.modes.mesh_energy[1:]
     if not frequencies.size:
@@ -169,24 +176,51 @@ def _modes_figures(data: ModesData) -> tuple[Figure, ...]:
     )  # fmt: skip
     if data.campbell is None or data.campbell.speeds.size < 2:
         return (modes,)
-    return modes, _campbell_figure(data.train, data.campbell), *_critical_figure(data.train, data.campbell)
+    return modes, _campbell_figure(data.train, data.campbell, speed), *_critical_figure(data.train, data.campbell)
 
 
-def _campbell_figure(train: GearTrain, diagram: Campbell) -> Figure:
-    speed, lines = diagram.speeds * train.speed_ratio * _RPM, []
+def _campbell_figure(train: GearTrain, diagram: Campbell, operating: float) -> Figure:
+    speed = diagram.speeds * train.speed_ratio * _RPM
+    low, high, top = float(speed.min()), float(speed.max()), 1.25e-3 * float(diagram.natural.max())
+    items: list[Curve | Points] = []
     for m, name in enumerate(train.names):
         for h in range(diagram.lines.shape[1]):
-            label = f"mesh {name}, harmonics 1 to {diagram.lines.shape[1]}"
-            lines.append(Curve(speed, diagram.lines[m, h] * 1e-3, label, f"series:{m}", width=1.4, markers=False))
-    marks = tuple(Mark("y", f * 1e-3, f"mode {k + 1}: {f:.0f} Hz") for k, f in enumerate(diagram.natural))
+            label, dash = f"mesh {name}, harmonic {h + 1}", DASHES[h % len(DASHES)]
+            line = diagram.lines[m, h] * 1e-3
+            items.append(Curve(speed, line, label, f"series:{m}", dash=dash, width=1.4, markers=False))
+    for m, name in enumerate(train.names):
+        line, mode = np.indices(diagram.critical[m].shape)
+        met = diagram.critical[m] * train.speed_ratio * _RPM
+        inside = np.isfinite(met) & (met >= low) & (met <= high)
+        notes = tuple(
+            f"mesh {name}, harmonic {h + 1}, mode {k + 1}: {at:.5g} rpm"
+            for h, k, at in zip(line[inside], mode[inside], met[inside], strict=True)
+        )
+        natural = diagram.natural[mode[inside]] * 1e-3
+        items.append(Points(met[inside], natural, "", f"series:{m}", "circle", size=6.0, notes=notes))
+    marks = [Mark("y", at * 1e-3, word) for at, word in _mode_words(diagram.natural, _ROOM_OF_MODES * 1e3 * top)]
+    if low <= operating * _RPM <= high:
+        marks.append(Mark("x", operating * _RPM, f"operating speed {operating * _RPM:.5g} rpm"))
     return Figure(
         "campbell", "Campbell diagram",
-        "Where harmonics of the mesh frequencies (sloping) meet undamped natural frequencies (level).",
+        "Where harmonics of the mesh frequencies (sloping) meet undamped natural frequencies (level): the points; "
+        "critical_speeds.csv has their speeds.",
         (Panel(
-            Axis(f"speed of {train.speed_of}", "rpm", limits=(float(speed.min()), float(speed.max()))),
-            Axis("frequency", "kHz", limits=(0.0, 1.25e-3 * float(diagram.natural.max()))), tuple(lines), marks,
+            Axis(f"speed of {train.speed_of}", "rpm", limits=(low, high)), Axis("frequency", "kHz", limits=(0.0, top)),
+            tuple(items), tuple(marks), height=1.3,
         ),),
     )  # fmt: skip
+
+
+def _mode_words(natural: NDArray[np.float64], room: float) -> list[tuple[float, str]]:
+    """Each natural frequency [Hz] with its word; modes closer than the room of a word share that of the highest."""
+    found, together = [], []
+    for k, at in enumerate(natural):
+        together.append(f"{k + 1}: {at:.4g} Hz")
+        last = k + 1 == natural.size or natural[k + 1] - at >= room
+        found.append((float(at), f"mode{'s' if len(together) > 1 else ''} {', '.join(together)}" if last else ""))
+        together = [] if last else together
+    return found
 
 
 def _critical_figure(train: GearTrain, diagram: Campbell) -> tuple[Figure, ...]:

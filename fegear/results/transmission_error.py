@@ -13,7 +13,16 @@ from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Subject
 from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
-from fegear.results.loaded_pair import BASE_PITCH, EFFECTS, drawn_loads, needs_pair, over_loads, spur_pairs
+from fegear.results.loaded_pair import (
+    BASE_PITCH,
+    EFFECTS,
+    drawn_loads,
+    needs_pair,
+    over_loads,
+    pitch_marks,
+    spur_pairs,
+    under,
+)
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
@@ -241,28 +250,29 @@ def _rotational_table(name: str, series: FourierSeries, cycles: int) -> Table:
 def _figures(name: str, data: TransmissionErrorData, errors: Array | None) -> tuple[Figure, ...]:
     pair, curve = data.pair, data.curve
     drawn, i = drawn_loads(pair.loads, pair.nominal), pair.loads.index(pair.nominal)
-    te, x = data.exact[i], curve.x * 1e3
+    te, x, marks = data.exact[i], curve.x * 1e3, pitch_marks(pair, curve.x)
     over_pitch = Figure(
         f"transmission_error_{name}",
-        f"Transmission error of {name}",
+        f"Transmission error of pair {name}",
         f"Pair {name}: loaded transmission error over one base pitch (Harris map of its loads), and the mesh stiffness "
         f"at {pair.nominal:.5g} N: mean {te.average_stiffness * 1e-6:.4g} N/µm by the local slope. Peak to peak "
         f"{te.peak_to_peak * 1e6:.3g} µm, effective error A_e {te.effective_error * 1e6:.3g} µm.",
         (
             Panel(BASE_PITCH, Axis("transmission error", "um"), tuple(
                 Curve(x, curve.transmission_error[:, k] * 1e6, label, role) for k, label, role in drawn
-            )),
+            ), marks),
             Panel(BASE_PITCH, Axis("mesh stiffness", "N/um", zero=True), (
                 Curve(x, data.stiffness[:, i] * 1e-6, "secant stiffness", "secant"),
                 Curve(x, curve.local_stiffness[:, i] * 1e-6, "local slope", "local slope"),
-            )),
+            ), marks),
         ),
+        under=under(pair),
     )  # fmt: skip
     n = np.arange(1, _BARS + 1)
     amplitude = Axis("amplitude of the transmission error", "um, 0-peak")
     harmonics = Figure(
         f"transmission_error_harmonics_{name}",
-        f"Harmonics of the transmission error of {name}",
+        f"Harmonics of the transmission error of pair {name}",
         f"Pair {name}: harmonics of the static transmission error, integrated exactly between its jumps.",
         (
             Panel(Axis("harmonic of the tooth-mesh frequency", whole=True), amplitude, tuple(
@@ -271,6 +281,7 @@ def _figures(name: str, data: TransmissionErrorData, errors: Array | None) -> tu
                 for k, label, role in drawn
             )),
         ),
+        under=under(pair),
     )  # fmt: skip
     several = (_over_load(name, pair, data.exact),) if len(pair.loads) > 1 else ()
     if data.rotational is None:
@@ -279,7 +290,7 @@ def _figures(name: str, data: TransmissionErrorData, errors: Array | None) -> tu
     order = np.arange(1, data.rotational.amplitude.size + 1) / cycles
     rotational = Figure(
         f"transmission_error_rotational_{name}",
-        f"Rotational harmonics of the transmission error of {name}",
+        f"Rotational harmonics of the transmission error of pair {name}",
         f"Pair {name}: harmonics over the {cycles} base pitches after which the same teeth meet again, at "
         f"{pair.nominal:.5g} N. Whole numbers are harmonics of the tooth-mesh frequency, the others spacing errors.",
         (
@@ -287,6 +298,7 @@ def _figures(name: str, data: TransmissionErrorData, errors: Array | None) -> tu
                 Stems(order, data.rotational.amplitude * 1e6, "", "blue"),
             )),
         ),
+        under=f"{pair.nominal:.5g} N",
     )  # fmt: skip
     return over_pitch, harmonics, *several, rotational
 

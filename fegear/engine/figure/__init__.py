@@ -4,7 +4,7 @@ Renderers draw a description as PNG, as SVG and as the report's interactive plot
 cannot disagree. Names, labels and titles are plain text, in which ``_{...}`` sets what it holds lower.
 """
 
-from fegear.engine.figure.axes import Axis, Scale
+from fegear.engine.figure.axes import FEW_DECADES, Axis, Scale
 from fegear.engine.figure.figure import NOTEBOOK, DeferredFigure, Figure, MeshField, View
 from fegear.engine.figure.items import (
     Bars,
@@ -24,7 +24,7 @@ from fegear.engine.figure.lines import edges, few, outline, polylines, ramp
 from fegear.engine.figure.panel import Panel
 
 __all__ = [
-    "NOTEBOOK", "Axis", "Bars", "Curve", "DeferredFigure", "Figure", "HeatMap", "Item", "Mark",
+    "FEW_DECADES", "NOTEBOOK", "Axis", "Bars", "Curve", "DeferredFigure", "Figure", "HeatMap", "Item", "Mark",
     "MeshField", "Panel", "Points", "Scale", "Spot", "Stems", "Surface", "TriangleField", "View", "Which", "Zone",
     "edges", "few", "outline", "polylines", "ramp",
 ]  # fmt: skip

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
 
 
+#: Logarithmic axes that span less have plain numbers at 1, 2, 3 and 5 times the powers of ten.
+FEW_DECADES = 100.0
+
+
 @dataclass(frozen=True, slots=True)
 class Scale:
     """A second scale on the far side of an axis: which value belongs to which place.

@@ -73,6 +73,10 @@ class Figure:
         How many views paper has at most, evenly chosen.
     field : MeshField, optional
         What it shows a part of.
+    under : str
+        Load or speed that all of it holds for; empty where its legend says so, or nothing of the kind matters.
+    case : str
+        Name of the case, which stands at the head of its picture; put there by what draws a run.
     """
 
     key: str
@@ -83,6 +87,13 @@ class Figure:
     columns: int = 1
     most_views: int = 4
     field: MeshField | None = None
+    under: str = ""
+    case: str = ""
+
+    @property
+    def heading(self) -> str:
+        """Its title with what it holds for."""
+        return f"{self.title}, {self.under}" if self.under else self.title
 
     def __post_init__(self) -> None:
         """Give a figure without a choice its only view."""

@@ -135,13 +135,17 @@ class Bars(_Item):
 
 @dataclass(frozen=True, slots=True)
 class Stems(_Item):
-    """Lines of a spectrum: uprights with a head; `notes` is what the reader sees on pointing at each."""
+    """Lines of a spectrum: uprights with a head; `notes` is what the reader sees on pointing at each.
+
+    `numbers`, where there are any, are written above the heads.
+    """
 
     x: ArrayLike
     y: ArrayLike
     name: str = ""
     role: str = "series:0"
     notes: tuple[str, ...] = ()
+    numbers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

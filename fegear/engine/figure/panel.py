@@ -61,6 +61,8 @@ class Panel:
     @property
     def limits(self) -> tuple[float, float] | None:
         """Range of the ordinate: as the axis says, or level where curves hardly vary; None where it finds itself."""
+        if self.y.log and not self.y.limits and any(isinstance(i, Stems) and np.size(i.y) for i in self.items):
+            return self.foot, 2.0 * self.extent("y")[1]
         if self.y.limits or self.y.log or self.y.zero or self.equal:
             return self.y.limits
         found = [np.asarray(i.y)[np.isfinite(i.y)] for i in self.items if isinstance(i, (Curve, Points))]

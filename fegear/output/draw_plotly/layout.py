@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from fegear.engine.figure import Axis, Figure, HeatMap, Mark, Panel, Which
+from fegear.engine.figure import FEW_DECADES, Axis, Figure, HeatMap, Mark, Panel, Which
 from fegear.output.draw_plotly.traces import anchor, shared
 from fegear.output.draw_plotly.words import Spec, rich, titled
 from fegear.output.numbers import pretty_unit
@@ -104,11 +106,13 @@ def _axes(made: Spec, panel: Panel, name: str, domain: tuple[float, float], *, j
     both: tuple[tuple[Which, Axis, Spec], ...] = (("x", panel.x, x), ("y", panel.y, y))
     for which, axis, made_of in both:
         if axis.whole:
-            made_of |= {"tick0": 0, "dtick": panel.whole_step(which)}
+            made_of.update({"tick0": 0, "dtick": panel.whole_step(which)})
+        if axis.log and not axis.categories:
+            made_of.update(_log_ticks(*panel.extent(which)))
     if joined:
         x["matches"] = "x"
     if panel.limits:
-        y["range"] = list(panel.limits)
+        y["range"] = [float(np.log10(end)) if panel.y.log else end for end in panel.limits]
     if panel.equal:
         y |= {"scaleanchor": f"x{name}", "constrain": "domain"}
         x["constrain"] = "domain"
@@ -129,6 +133,15 @@ def _axis(axis: Axis) -> Spec:
     if axis.hidden:
         made |= {"visible": False, "fixedrange": True}
     return made
+
+
+def _log_ticks(low: float, high: float) -> Spec:
+    """Marks of a logarithmic axis: whole powers over many decades, else 1, 2, 3 and 5 times them, as plain numbers."""
+    if not 0.0 < low <= high or high >= FEW_DECADES * low:
+        return {"dtick": 1}
+    powers = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 2)
+    places = [factor * 10.0**power for power in powers for factor in (1.0, 2.0, 3.0, 5.0)]
+    return {"tickvals": places, "ticktext": [f"{place:g}" for place in places]}
 
 
 def _second(panel: Panel, name: str) -> Spec:

@@ -136,6 +136,13 @@ def _stems(panel: Panel, item: Stems) -> list[Spec]:
     drop = {"type": "data", "symmetric": False, "array": [0], "arrayminus": typed(np.asarray(item.y) - panel.foot)}
     (trace,) = _points(panel, Points(item.x, item.y, item.name, item.role, notes=item.notes))
     zeros = typed(np.zeros(np.size(item.y)))
+    if item.numbers:
+        trace |= {
+            "mode": "markers+text", "text": list(item.numbers), "textposition": "top center", "textfont": {"size": 10},
+        }  # fmt: skip
+        if item.notes:
+            notes = [rich(note) for note in item.notes]
+            trace |= {"customdata": notes, "hovertemplate": trace["hovertemplate"].replace("%{text}", "%{customdata}")}
     return [trace | {"error_y": drop | {"array": zeros, "width": 0, "thickness": 1, "color": shade(item.role).light}}]
 
 

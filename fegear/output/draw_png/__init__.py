@@ -57,16 +57,16 @@ def draw_pictures(figure: Figure, folder: Path, kind: str = "png") -> Iterator[P
     alone = [view for view in figure.views if view.key]
     for view in alone:
         path = folder / f"{file_name(view.key)}.{kind}"
-        _draw(figure, (view,), path)
+        _draw(figure, (view,), path, (f"{figure.heading}: {view.label}", figure.case))
         yield Picture(path, view.label, figure.caption)
     if not alone:
         path = folder / f"{file_name(figure.key)}.{kind}"
         chosen = few(len(figure.views), most=figure.most_views)
-        _draw(figure, tuple(figure.views[i] for i in chosen), path)
-        yield Picture(path, figure.title, figure.caption)
+        _draw(figure, tuple(figure.views[i] for i in chosen), path, (figure.heading, figure.case))
+        yield Picture(path, figure.heading, figure.caption)
 
 
-def _draw(figure: Figure, views: tuple[View, ...], path: Path) -> None:
+def _draw(figure: Figure, views: tuple[View, ...], path: Path, head: tuple[str, str]) -> None:
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure as Canvas
@@ -80,5 +80,5 @@ def _draw(figure: Figure, views: tuple[View, ...], path: Path) -> None:
     with rc_context(_SETTINGS):
         made = Canvas()
         FigureCanvasAgg(made)
-        Sheet(made, panels, min(columns, len(panels))).draw()
+        Sheet(made, panels, min(columns, len(panels)), head).draw()
         made.savefig(path, dpi=DPI, **_SAVED[path.suffix])

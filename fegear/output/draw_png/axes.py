@@ -6,12 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from fegear.engine.figure import Axis, Bars, HeatMap, Mark, Panel, Which
+from fegear.engine.figure import FEW_DECADES, Axis, Bars, HeatMap, Mark, Panel, Which
 from fegear.output.draw_png.words import titled, words
 from fegear.output.shades import shade
-
-#: Logarithmic axes that span less have plain numbers.
-_FEW_DECADES = 100.0
 
 
 def set_scales(axes: Any, panel: Panel) -> None:
@@ -45,7 +42,7 @@ def plain_numbers(axes: Any, panel: Panel) -> None:
 
     for which, axis in (("x", panel.x), ("y", panel.y)):
         low, high = getattr(axes, f"get_{which}lim")()
-        if axis.log and high < _FEW_DECADES * low:
+        if axis.log and high < FEW_DECADES * low:
             here = getattr(axes, f"{which}axis")
             here.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0)))
             here.set_major_formatter(FuncFormatter(lambda value, _place: f"{value:g}"))

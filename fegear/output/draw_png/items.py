@@ -105,6 +105,8 @@ def _stems(axes: Any, panel: Panel, item: Stems) -> None:
     style, colour = look(item.role), shade(item.role).light
     axes.vlines(item.x, panel.foot, item.y, color=colour, lw=1.0)
     axes.plot(item.x, item.y, ls="", marker=SYMBOLS[style.symbol], color=colour, ms=4)
+    for number, x, y in zip(item.numbers, np.asarray(item.x), np.asarray(item.y), strict=False):
+        axes.annotate(number, (x, y), xytext=(0, 4), textcoords="offset points", ha="center", fontsize=7, color=colour)
 
 
 def _heat(axes: Any, _panel: Panel, item: HeatMap) -> Any:

@@ -21,6 +21,8 @@ _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
 _ALONE, _STACKED = 3.4, 2.3
 _LEFT, _RIGHT, _BOTTOM, _NARROW = 0.45, 0.25, 0.55, 0.22
 _TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
+#: Inches of a line at the head of a picture, and of a letter in it.
+_HEAD, _HEAD_LETTER = 0.22, 0.1
 #: Inches of a letter of a title.
 _TITLE_LETTER = 0.083
 #: Inches of a letter at an axis.
@@ -30,9 +32,11 @@ _LETTER = 0.078
 class Sheet:
     """Panels placed on a sheet in rows, all sizes in inches."""
 
-    def __init__(self, made: Any, panels: Sequence[tuple[Panel, str]], columns: int) -> None:
+    def __init__(
+        self, made: Any, panels: Sequence[tuple[Panel, str]], columns: int, head: tuple[str, str] = ("", "")
+    ) -> None:
         letters = int(_WIDTHS.get(columns, _WIDTHS[3]) / _TITLE_LETTER)
-        self.made, self.columns = made, columns
+        self.made, self.columns, self.head = made, columns, head
         self.panels = [
             (panel, "\n".join(line for part in title.split("\n") for line in textwrap.wrap(part, letters)))
             for panel, title in panels
@@ -112,9 +116,14 @@ class Sheet:
         legend = legend_entries(panels)
         across = columns_that_fit(list(legend), whole - lefts[0])
         lines = -(-len(legend) // across) if len(legend) > 1 else 0
-        tall = 0.18 + lines * _LINE + sum(heights) + sum(bottoms) + sum(tops)
+        head = self._head_lines(whole)
+        top = 0.18 + _HEAD * len(head)
+        tall = top + lines * _LINE + sum(heights) + sum(bottoms) + sum(tops)
         self.made.set_size_inches(whole, tall)
-        y = tall - 0.18 - lines * _LINE
+        for number, (line, style) in enumerate(head):
+            place = 0.12 / whole, 1.0 - (0.1 + _HEAD * number) / tall
+            self.made.text(*place, words(line), ha="left", va="top", **style)
+        y = tall - top - lines * _LINE
         for i, axes in enumerate(drawn):
             row, column = divmod(i, count)
             if column == 0:
@@ -128,8 +137,16 @@ class Sheet:
         if lines:
             self.made.legend(
                 list(legend.values()), [words(name) for name in legend], loc="upper left", ncols=across, fontsize=9,
-                bbox_to_anchor=((lefts[0] - 0.06) / whole, 1.0 - 0.03 / tall), borderaxespad=0.0, columnspacing=1.4,
+                bbox_to_anchor=((lefts[0] - 0.06) / whole, 1.0 - (top - 0.15) / tall), borderaxespad=0.0,
+                columnspacing=1.4,
             )  # fmt: skip
+
+    def _head_lines(self, whole: float) -> list[tuple[str, dict[str, Any]]]:
+        """Title and case in lines that fit, each with its style."""
+        title, case = self.head
+        lines = textwrap.wrap(title, max(20, int((whole - 0.3) / _HEAD_LETTER)))
+        styles: list[tuple[str, dict[str, Any]]] = [(line, {"fontsize": 11, "weight": "bold"}) for line in lines]
+        return styles + ([(f"case {case}", {"fontsize": 8.5, "color": "0.35"})] if case else [])
 
     def _bar(self, image: Any, panel: Panel, place: tuple[float, float, float, float]) -> None:
         room, item = self.made.add_axes(place), maps_of(panel)[0]

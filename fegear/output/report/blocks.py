@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 _ROWS = 6
 #: Tables of so few rows with more columns than this stand on their side.
 _BESIDE = 8
+#: More columns than this cannot be read on a sheet of paper.
+_ON_PAPER = 11
 #: Larger errors than this share of the value are given as absolute numbers alone.
 _MEANINGLESS = 0.5
 
@@ -173,6 +175,11 @@ class DataTable(Block):
     def on_its_side(self) -> bool:
         """Whether quantities stand below each other."""
         return self.count <= _ROWS and len(self.table.columns) > _BESIDE
+
+    @property
+    def broad(self) -> bool:
+        """Whether a sheet of paper is too narrow for it."""
+        return not self.on_its_side and len(self.table.columns) > _ON_PAPER
 
     @property
     def sides(self) -> list[tuple[str, str, str, tuple[str, ...]]]:

@@ -148,12 +148,14 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     files = {name: scene.text.encode()} if scene.text else {}
     gears = gear_sections(results)
     shown = frozenset({"gear_data", *(f"gear_data_{pair}" for pair in scene.pairs)})
+    told = f"{len(remarks)} warning{'s' if len(remarks) > 1 else ''}"
+    warned = f" {told}, below the gear data." if remarks and gears else ""
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
     return Page(
         title=scene.case.title or scene.name,
         note=f"Case {scene.name}: {', '.join(scene.case.results)}. {count} values and {len(results.tables)} tables, "
-        f"computed in {total:.2f} s by fegear {fegear.__version__}.",
+        f"computed in {total:.2f} s by fegear {fegear.__version__}.{warned}",
         sections=(
             *gears[:1],
             Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),

@@ -1,0 +1,137 @@
+"""What the figures of results must show: points A to E, numbered harmonics, named modes, the design first."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fegear.dynamics.modes import Campbell
+from fegear.dynamics.spectra import MeshForceSpectrum
+from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel, Points, Stems
+from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.output.draw_plotly import plotly_json
+from fegear.output.draw_png.sheet import Sheet
+from fegear.results.drawn_pair import pair_figure, path_marks, roll_marks
+from fegear.results.gear_data import Drawing
+from fegear.results.loaded_pair import engagement_marks, pitch_marks
+from fegear.results.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
+from fegear.results.train_response import _campbell_figure
+from fegear.studies.sweep_figures import _varies
+
+GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3)
+PAIR = GearPair(GEAR, GEAR)
+LOADED = SimpleNamespace(engagement=SimpleNamespace(pair=PAIR))
+TRAIN = SimpleNamespace(names=("I", "II"), speed_ratio=1.0, speed_of="motor")
+
+
+def drawn_texts(panel: Panel, head: tuple[str, str] = ("", "")) -> tuple[set[str], set[str]]:
+    """Texts in the axes and around them on paper."""
+    from matplotlib.figure import Figure as Canvas
+
+    made = Canvas()
+    Sheet(made, [(panel, "")], 1, head).draw()
+    return {text.get_text() for text in made.axes[0].texts}, {text.get_text() for text in made.texts}
+
+
+def test_points_of_the_path_are_marked_on_every_abscissa_that_follows_it():
+    assert engagement_marks(LOADED) == path_marks(PAIR)
+    assert [mark.label for mark in path_marks(PAIR)] == list("ABCDE")
+    over_pitch = pitch_marks(LOADED, np.array([PAIR.x_start, PAIR.x_start + PAIR.base_pitch]))
+    assert [mark.label for mark in over_pitch] == list("ABCD")
+    rolls = {mark.label: mark.at for mark in roll_marks(PAIR, "driven")}
+    assert rolls["A"] > rolls["C"] > rolls["E"]
+    tip = math.degrees(math.sqrt((GEAR.tip_radius / GEAR.base_radius) ** 2 - 1.0))
+    assert rolls["A"] == pytest.approx(tip)
+
+
+def test_the_pair_in_mesh_has_its_letters_in_page_and_on_paper():
+    figure = pair_figure("I", Drawing({"a": GEAR}, {"I": PAIR}, {"I": ("a", "a")}, {}))
+    spec = plotly_json(figure)
+    lettered = [trace["text"] for trace in spec["data"] if trace.get("mode") == "markers+text"]
+    assert lettered == [list("ABCDE")]
+    assert {one["text"] for one in spec["layout"]["annotations"]} >= set("ABCDE")
+    for panel in figure.panels:
+        assert drawn_texts(panel)[0] >= set("ABCDE")
+
+
+def test_paper_says_case_figure_and_load():
+    panel = Panel(Axis("x"), Axis("y"), (Curve([0, 1], [0, 1]),))
+    figure = Figure("k", "Load of pair I", "c", (panel,), under="1615 N")
+    assert figure.heading == "Load of pair I, 1615 N"
+    assert drawn_texts(panel, (figure.heading, "nasa"))[1] == {"Load of pair I, 1615 N", "case nasa"}
+
+
+@pytest.fixture(scope="module")
+def spectrum():
+    orders = np.arange(1.0, 65.0)
+    frequencies = np.stack([4000.0 * orders, 5000.0 * orders])[:, :, None]
+    lines = np.stack([100.0 / orders, 1e-6 / orders])
+    found = MeshForceSpectrum(
+        np.array([1000.0]), orders, np.ones((2, 64), dtype=bool), frequencies,
+        0.5 * np.stack([lines, lines])[..., None].astype(complex), np.array([1e3, 1e3]),
+    )  # fmt: skip
+    (figure,) = _spectrum_figures(SpectrumData(TRAIN, 0, found, None, None))
+    return figure
+
+
+def test_spectra_end_where_little_is_left_and_say_so(spectrum):
+    (panel,) = spectrum.panels
+    first, second = panel.items
+    assert first.x.max() <= 5.0 * _MOST_HARMONICS
+    assert second.x.size == 0  # a hundred million times weaker
+    assert first.y.min() >= 1e-3 * first.y.max()
+    power = 1.0 / np.arange(1.0, 65.0) ** 2
+    left = power[4.0 * np.arange(1.0, 65.0) > 5.0 * _MOST_HARMONICS].sum() / power.sum()
+    assert f"hold {left:.2g} of the mean square" in spectrum.caption
+
+
+def test_stems_stand_on_the_axis_and_bear_their_harmonic_in_page_and_on_paper(spectrum):
+    (panel,) = spectrum.panels
+    low, high = panel.limits
+    assert low == panel.foot < panel.items[0].y.min()
+    assert high > panel.items[0].y.max()
+    spec = plotly_json(spectrum)
+    assert spec["layout"]["yaxis"]["range"] == pytest.approx([math.log10(low), math.log10(high)])
+    assert spec["data"][0]["text"][:3] == ["1", "2", "3"]
+    assert drawn_texts(panel)[0] >= {"1", "2", "3"}
+
+
+def test_a_campbell_diagram_names_every_mode_and_marks_crossings_and_the_operating_speed():
+    speeds = np.linspace(100.0, 1000.0, 10)
+    lines = np.array([[3.0 * n * speeds for n in (1, 2, 3)], [4.0 * n * speeds for n in (1, 2, 3)]])
+    natural = np.array([900.0, 905.0, 3000.0])
+    factors = np.array([[3.0, 6.0, 9.0], [4.0, 8.0, 12.0]])
+    critical = natural / factors[:, :, None]
+    figure = _campbell_figure(TRAIN, Campbell(speeds, natural, lines, critical), 500.0)
+    (panel,) = figure.panels
+    words = [mark.label for mark in panel.marks if mark.axis == "y" and mark.label]
+    assert words == ["modes 1: 900 Hz, 2: 905 Hz", "mode 3: 3000 Hz"]
+    assert [mark.label for mark in panel.marks if mark.axis == "x"] == ["operating speed 4774.6 rpm"]
+    harmonics = [item for item in panel.items if isinstance(item, Curve)]
+    assert len({(item.role, item.dash) for item in harmonics}) == 6
+    points = [item for item in panel.items if isinstance(item, Points)]
+    assert sum(np.size(item.x) for item in points) == int(((critical >= 100.0) & (critical <= 1000.0)).sum())
+    assert "mesh I, harmonic 1, mode 1: 2864.8 rpm" in points[0].notes
+    assert not any(mark.axis == "x" for mark in _campbell_figure(
+        TRAIN, Campbell(speeds, natural, lines, critical), math.nan).panels[0].marks)  # fmt: skip
+
+
+def test_values_that_differ_by_round_off_do_not_vary():
+    assert not _varies(np.array([88.9, 88.9 * (1.0 + 2e-16), np.nan]))
+    assert not _varies(np.array([np.nan, np.nan]))
+    assert _varies(np.array([88.9, 88.91]))
+
+
+def test_logarithmic_axes_of_few_decades_have_plain_numbers_in_the_page():
+    few = Panel(Axis("x", log=True), Axis("y", log=True), (Curve([20.0, 90.0], [1e-3, 1e3]),), (Mark("x", 30.0),))
+    spec = plotly_json(Figure("k", "t", "c", (few,)))["layout"]
+    assert {"20", "30", "50"} <= set(spec["xaxis"]["ticktext"])
+    assert spec["yaxis"]["dtick"] == 1
+
+
+def test_an_empty_spectrum_has_no_limits_of_its_own():
+    panel = Panel(Axis("x"), Axis("y", log=True), (Stems([], []),))
+    assert panel.limits is None
