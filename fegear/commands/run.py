@@ -66,9 +66,8 @@ def run(
             watching = stack.enter_context(voice.watcher())
             # Nothing is recalled by default: the seconds of a run are one of its results.
             known = cache_on_disk() if cache else SolutionCache()
-            drawing = (
-                None if no_plots else Drawing(scratch / "plots", stack.enter_context(PictureProcess()), scene.name)
-            )
+            process = None if no_plots else stack.enter_context(PictureProcess())
+            drawing = Drawing(scratch / "plots", process, scene.name) if process else None
             results = run_plan(
                 scene, planned, watching, STEPS, cache=known, executor=Executor(scheduler),
                 found=drawing.begin if drawing else None,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import fegear
@@ -42,7 +43,7 @@ def write_cost(results: CostResults, folder: Path, *, plots: bool = True) -> Non
 
         (folder / "plots").mkdir()
         for figure in figures:
-            for _ in draw_pictures(figure, folder / "plots"):
+            for _ in draw_pictures(replace(figure, case=results.asked.scene.name), folder / "plots"):
                 pass
     write_page(folder / "report.html", cost_page(results, figures))
     write_json(folder / SUMMARY, _summary(results, [*files_in(folder), SUMMARY]))

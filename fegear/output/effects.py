@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,7 +92,7 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
     title = scene.case.title or scene.name
     figures = {found.effect: effect_figure(found, curves[found.effect], title) for found in switched}
     for figure in figures.values():
-        for _ in draw_pictures(figure, folder / "plots"):
+        for _ in draw_pictures(replace(figure, case=scene.name), folder / "plots"):
             pass
     sentences = {found.effect: sentence(found) for found in switched}
     write_page(folder / "report.html", effects_page(scene, switched, fixed, table, curves, figures, sentences))

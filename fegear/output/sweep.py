@@ -46,7 +46,7 @@ def sweep_table(results: SweepResults) -> Table:
     return Table("sweep", tuple(columns), results.title)
 
 
-def _draw(figures: Sequence[Figure], folder: Path) -> list[str]:
+def _draw(figures: Sequence[Figure], folder: Path, case: str) -> list[str]:
     """Draw the first figure, value by value, where its values are pictures of their own; a remark where too many."""
     if not figures or not figures[0].views[0].key:
         return []
@@ -54,7 +54,7 @@ def _draw(figures: Sequence[Figure], folder: Path) -> list[str]:
 
     folder.mkdir()
     views = figures[0].views
-    for _ in draw_pictures(replace(figures[0], views=views[:_MOST_PICTURES]), folder):
+    for _ in draw_pictures(replace(figures[0], views=views[:_MOST_PICTURES], case=case), folder):
         pass
     left = len(views) - _MOST_PICTURES
     return [f"Pictures are drawn of the first {_MOST_PICTURES} values; the report shows all."] if left > 0 else []
@@ -81,7 +81,7 @@ def write_sweep(results: SweepResults, folder: Path, *, plots: bool = True) -> l
     write_table(folder / "tables", table)
     write_sweep_dataset(folder / "sweep.nc", results)
     figures = sweep_figures(results, varying(swept))
-    drawn = _draw(figures, folder / "plots") if plots else []
+    drawn = _draw(figures, folder / "plots", results.name) if plots else []
     remarks = [*results.grouped_failures(), *results.remarks(), *drawn]
     write_page(folder / "report.html", sweep_page(results, table, swept, figures, results.remarks()))
     solved, read, spared = results.shapes

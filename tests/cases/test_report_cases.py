@@ -132,7 +132,7 @@ def test_curves_are_plots_and_fields_are_pictures(made):
     _, folder = made
     page = report(folder)
     assert page.plots == ["gear_data_I", "tooth_a", "compliance_a", "root_stress_a", "fillet_a", "estimated_errors"]
-    assert [alt.split(".")[0] for alt in page.images] == ["Deformed gear a"]
+    assert [alt.split(".")[0] for alt in page.images] == ["Deformed gear a, 350 N/mm"]
 
 
 def test_the_page_of_the_same_results_is_the_same_bytes(made, tmp_path):
