@@ -24,6 +24,7 @@ from fegear.case.relief import ReliefPart, SpacingErrorsPart
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, Material, Tooth
 from fegear.geometry.over_balls import over_balls
+from fegear.geometry.plausible import refuse_material
 
 if TYPE_CHECKING:
     from fegear.geometry.helical_gear import HelicalGear
@@ -44,7 +45,9 @@ class MaterialPart(Part):
 
     def build(self) -> Material:
         """Make the material."""
-        return Material(self.young_modulus, self.poisson_ratio, self.density)
+        made = Material(self.young_modulus, self.poisson_ratio, self.density)
+        refuse_material(made)
+        return made
 
 
 class RackPart(Part):

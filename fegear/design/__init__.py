@@ -4,7 +4,6 @@ from fegear.design.charts import ReliefChart, harris_map, relief_chart, welbourn
 from fegear.design.loading import LoadingFunction, Ramp, slope_trade_off
 from fegear.design.minimum_excitation import MinimumExcitationRelief, minimum_excitation, relief_nodes, relief_table
 from fegear.design.optimise import TipReliefPair, grindable, optimise_tip_relief
-from fegear.design.relief_bound import deepest_relief
 from fegear.design.robustness import Robustness, robustness
 from fegear.design.root_stress_loading import design_stress, least_root_stress
 
@@ -15,7 +14,6 @@ __all__ = [
     "ReliefChart",
     "Robustness",
     "TipReliefPair",
-    "deepest_relief",
     "design_stress",
     "grindable",
     "harris_map",

@@ -9,31 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import RangeError
+from fegear.geometry.plausible import DEEPEST_RELIEF, deepest_relief
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import ArrayLike
-
     from fegear.arrays import Array
     from fegear.design.minimum_excitation import MinimumExcitationRelief
-    from fegear.geometry.gear import Gear
-
-#: Deepest relief in modules. Deflections reach it only under line loads that no steel carries (some 1.5 GPa times the
-#: module), and the influence functions, which are those of the unrelieved tooth, no longer hold there.
-_DEEPEST = 0.1
-
-
-def deepest_relief(gear: Gear, roll: ArrayLike) -> Array:
-    """Removal along the normal that a tooth can take at roll angles [rad], same shape [m].
-
-    A tenth of the module, and nowhere beyond the middle of the tooth: a removal m moves the flank by m / cos(alpha_r)
-    along the arc of its radius, alpha_r the pressure angle there.
-    """
-    angle = np.asarray(roll, dtype=float)
-    radius = np.hypot(1.0, angle) * gear.base_radius
-    half_thickness = radius * np.maximum(gear.tooth.half_thickness_angle(radius / gear.module), 0.0)
-    return np.asarray(np.minimum(_DEEPEST * gear.module, half_thickness / np.hypot(1.0, angle)))
 
 
 def refuse_deeper_than_the_tooth(*reliefs: MinimumExcitationRelief) -> None:
@@ -57,7 +39,7 @@ def refuse_deeper_than_the_tooth(*reliefs: MinimumExcitationRelief) -> None:
     ratio, middle = loading.length / loading.base_pitch, 0.5 * (pair.x_start + pair.x_end)
     rule = (
         f"asks for a relief of {_most(worst) * 1e6:.4g} um on the {worst.member}, {depth:.3g} times what its tooth can "
-        f"take ({_DEEPEST:g} module, to the middle of the tooth at most)"
+        f"take ({DEEPEST_RELIEF:g} module, to the middle of the tooth at most)"
     )
     room = 2.0 * min(loading.centre - pair.x_start, pair.x_end - loading.centre)
     longest = max(loading.length, room)

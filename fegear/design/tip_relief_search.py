@@ -17,9 +17,9 @@ import numpy as np
 
 from fegear.contact.fourier import Panels
 from fegear.design.evaluation import Bench, bench
-from fegear.design.relief_bound import deepest_relief
 from fegear.design.relief_descent import Limits, descend
 from fegear.design.relief_trials import Trials
+from fegear.geometry.plausible import deepest_relief
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:

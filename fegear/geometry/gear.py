@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from fegear.errors import GeometryError, InputError
+from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
 
 if TYPE_CHECKING:
     from fegear.geometry.tooth import Tooth
@@ -52,7 +53,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Gear:
-    """A spur gear in SI.
+    """A spur gear in SI, or of pure numbers: any module with a Young's modulus such as 1.
 
     Parameters
     ----------
@@ -71,7 +72,7 @@ class Gear:
     Raises
     ------
     GeometryError
-        If module, bore or face width break their rules.
+        If module, bore, face width or material break their rules, or are of a size that no gear has.
     InputError
         If the plane assumption is unknown, or plane strain meets a material that is as good as incompressible.
     """
@@ -89,6 +90,9 @@ class Gear:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise GeometryError(name, value, "must be positive and finite")
+        if not is_of_pure_numbers(self.material):
+            refuse_size(self.module, self.face_width)
+            refuse_material(self.material)
         if self.bore_radius >= self.root_radius:
             raise GeometryError(
                 "bore_radius",

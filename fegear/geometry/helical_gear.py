@@ -9,6 +9,7 @@ from typing import Literal
 
 from fegear.errors import GeometryError, InputError
 from fegear.geometry.involute import inv
+from fegear.geometry.plausible import refuse_size
 
 Hand = Literal["left", "right", "spur"]
 
@@ -60,6 +61,7 @@ class HelicalGear:
             value = getattr(self, key)
             if not (math.isfinite(value) and value > 0.0):
                 raise InputError(key, value, "must be positive and finite")
+        refuse_size(self.normal_module, self.face_width, "normal_module")
         if not math.radians(5.0) <= self.normal_pressure_angle <= math.radians(40.0):
             angle = f"{math.degrees(self.normal_pressure_angle):.6g} deg"
             raise InputError("normal_pressure_angle", angle, "must lie between 5 and 40 deg")

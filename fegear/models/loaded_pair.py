@@ -11,6 +11,7 @@ import numpy as np
 from fegear.case.part import at
 from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible import refuse_deep_relief
 from fegear.geometry.relief import CombinedRelief, Relief, crowning, normalised_tip_relief, root_relief, tip_relief
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def _active_ends(pair: GearPair, member: Member) -> tuple[float, float]:
     return a, b
 
 
-def _build_relief(pair: GearPair, member: Member, flank: Flanks, delta: float) -> Relief:
+def build_relief(pair: GearPair, member: Member, flank: Flanks, delta: float) -> Relief:
     """Modification of one gear of a pair.
 
     Parameters
@@ -146,7 +147,9 @@ def _build_relief(pair: GearPair, member: Member, flank: Flanks, delta: float) -
     found += [
         crowning(gear, crown.amount, crown.start_radius or low, crown.end_radius or high) for crown in part.crowning
     ]
-    return CombinedRelief((*found, *flank.tables))
+    whole = CombinedRelief((*found, *flank.tables))
+    refuse_deep_relief(gear, whole, *sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end)))
+    return whole
 
 
 def spaced(asked: PairInputs, engagement: Engagement) -> Engagement:
@@ -179,7 +182,7 @@ def relieved(asked: PairInputs, engagement: Engagement) -> Engagement:
     for member in MEMBERS:
         flank = asked.flank(member)
         try:
-            built[member] = _build_relief(pair, member, flank, delta)
+            built[member] = build_relief(pair, member, flank, delta)
         except InputError as error:
             raise at(f"gear.{flank.gear}", error) from None
     return replace(engagement, driver_relief=built["driver"], driven_relief=built["driven"])

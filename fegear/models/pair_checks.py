@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fegear.case.part import at
 from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible import refuse_load
+from fegear.models.loaded_pair import build_relief
+from fegear.models.pair_inputs import pair_inputs
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -22,6 +27,10 @@ def check_pair(scene: Scene, name: str) -> None:
             "is below 1: at some roll positions no tooth pair is on the path of contact",
             "lengthen the teeth, raise the number of teeth, or set effects.corner_contact = true",
         )  # fmt: skip
+    try:
+        refuse_load(pair, max(part.all_loads(pair)))
+    except InputError as error:
+        raise at(key, error) from None
     source = part.compliance.source
     if effects.neighbour_coupling and source != "fe":
         raise InputError(
@@ -43,6 +52,19 @@ def check_pair(scene: Scene, name: str) -> None:
             "effects.spacing_errors", "true", "finds no gear with spacing_errors in this case",
             f"give gear.{part.driver}.spacing_errors, or leave the effect out",
         )  # fmt: skip
+    _check_flanks(scene, name)
+
+
+def _check_flanks(scene: Scene, name: str) -> None:
+    """Read reliefs and spacing errors and refuse what does not fit the teeth, before anything is solved."""
+    asked = pair_inputs(scene, name)
+    for member in MEMBERS if asked.effects.relief else ():
+        flank = asked.flank(member)
+        try:
+            # What is given in Welbourn's Delta is held against the tooth when that is known.
+            build_relief(asked.pair, member, flank, 0.0)
+        except InputError as error:
+            raise at(f"gear.{flank.gear}", error) from None
 
 
 def check_relief(scene: Scene, name: str) -> None:

@@ -10,9 +10,11 @@ import numpy as np
 
 from fegear.case.csv_columns import read_columns
 from fegear.case.effects import EffectsPart
+from fegear.case.part import at
 from fegear.errors import InputError
 from fegear.geometry import interference
 from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible import heavy_load, refuse_spacing_errors
 from fegear.geometry.relief import TabulatedRelief, roll_of_radius
 from fegear.models.assumed import bore_remarks, width_remarks
 
@@ -181,6 +183,8 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
         if scene.case.pair[name].compliance.source == "fe":
             remarks += bore_remarks(scene, gear)
     pair = scene.pairs[name]
+    if sentence := heavy_load(pair, max(scene.case.pair[name].all_loads(pair), default=0.0)):
+        remarks.append(f"Pair {name}: {sentence}")
     if effects.corner_contact:
         remarks += [
             f"Pair {name}: the tip of the {member} gear reaches below the form circle of its mate, where the path "
@@ -270,7 +274,11 @@ def _spacing_errors(scene: Scene, gear: str) -> Array:
         if "spacing_error" not in columns:
             raise InputError(f"{key}.file", f'"{part.file}"', "has no column spacing_error")
         errors = columns["spacing_error"]
-    teeth = scene.gears[gear].teeth
+    teeth, module = scene.gears[gear].teeth, scene.gears[gear].module
     if errors.size != teeth:
         raise InputError(key, f"{errors.size} errors", f"must be one for each of the {teeth} teeth")
+    try:
+        refuse_spacing_errors(errors, module)
+    except InputError as error:
+        raise at(f"gear.{gear}", error) from None
     return errors

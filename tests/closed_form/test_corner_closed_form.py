@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from fegear.errors import RangeError
 from fegear.fem import MeshSettings, solve_gear, stiffness_table
 from fegear.fem.corner import corner_angles, wedge_slope
-from fegear.geometry import Gear, Tooth
+from fegear.geometry import Gear, Material, Tooth
 
 
 @given(st.floats(0.3, 3.1))
@@ -43,7 +43,7 @@ def test_half_plane_and_corners_of_a_tooth():
 
 def test_a_contact_that_nears_the_tip_corner_sinks_by_the_wedge_s_logarithm():
     tooth = Tooth(28)
-    known = solve_gear(Gear(tooth, 1.0, 6.4), MeshSettings(), estimate_error=False)
+    known = solve_gear(Gear(tooth, 1.0, 6.4, material=Material(1.0)), MeshSettings(), estimate_error=False)
     distance = np.array([1e-5, 1e-4, 1e-3])
     radii = np.sqrt(tooth.tip_radius**2 - 2.0 * tooth.base_radius * distance)
     c = known.fine.self_compliance(radii, 0.13, 0.5 * distance)

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fegear.errors import GeometryError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth, interference
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth, interference
 from fegear.geometry.curves import arc_length
 from fegear.geometry.involute import polar_angle, roll_of_polar_angle
 from fegear.geometry.span import span, span_teeth
@@ -216,7 +216,7 @@ def test_span_over_k_teeth_is_that_of_the_textbooks_tables(z, k, span_1):
 
 @given(teeth())
 def test_span_is_the_distance_of_parallel_tangents_to_opposite_flanks(tooth):
-    gear = Gear(tooth, module=1.0, bore_radius=0.1)
+    gear = Gear(tooth, module=1.0, bore_radius=0.1, material=Material(1.0))
     k = span_teeth(gear)
     length = span(gear, k)
     # The discs touch the outer flanks of k teeth, where these are parallel: the chord between both points is the span.

@@ -14,9 +14,9 @@ from fegear.contact.engagement import Engagement
 from fegear.contact.pair_compliance import PairCompliance
 from fegear.design.loading import LoadingFunction, Ramp
 from fegear.design.minimum_excitation import minimum_excitation
-from fegear.design.relief_bound import deepest_relief
 from fegear.errors import InputError, RangeError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.plausible import deepest_relief
 
 
 def engaged(z1=28, z2=28, module=3.175e-3, rack=None, shift=0.0, face=6.35e-3):

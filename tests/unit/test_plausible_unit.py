@@ -1,0 +1,149 @@
+"""Numbers that are a slip of the unit: refused, or remarked on, before anything is solved."""
+
+from __future__ import annotations
+
+import copy
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.case.reading import apply_override, build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.errors import InputError
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.geometry.helical_gear import HelicalGear
+from fegear.geometry.plausible import deepest_relief, refuse_deep_relief
+from fegear.geometry.relief import roll_of_radius, tip_relief
+from fegear.models.pair_inputs import pair_inputs
+from fegear.results.catalogue import STAGES
+
+CASE = {
+    "results": ["load-sharing"],
+    "gear": {
+        "a": {
+            "teeth": 28, "module": "3 mm", "face_width": "10 mm",
+            "relief": {"tip": {"amount": "20 um", "length": "3 mm"}},
+            "spacing_errors": ["1 um", *["0 um"] * 26, "-3 um"],
+        }
+    },
+    "pair": {"I": {"driver": "a", "driven": "a", "load": "1 kN", "compliance": {"source": "cornell"}}},
+    "effects": {"relief": True, "spacing_errors": True},
+}  # fmt: skip
+
+
+def scene_with(*overrides: str):
+    document = copy.deepcopy(CASE)
+    for override in overrides:
+        apply_override(document, override)
+    return build_scene(document, "case", Path())
+
+
+def plan(*overrides: str):
+    scene = scene_with(*overrides)
+    return scene, make_plan(scene, STAGES)
+
+
+def test_the_case_itself_is_plausible():
+    scene, _ = plan()
+    assert not any("metal" in remark for remark in pair_inputs(scene, "I").assumed)
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("gear.a.module=3 m", r"gear\.a\.module = 3 m: is beyond the modules of gears.*a module of 3 mm is 3e-3 m"),
+        (
+            "gear.a.face_width=10 m",
+            r"gear\.a\.face_width = 10 m: is beyond the face widths of gears of module 0\.003 m",
+        ),
+        ("gear.a.face_width=10 um", r"gear\.a\.face_width"),
+        ("gear.a.material.young_modulus=206.8 Pa", r"gear\.a\.material\.young_modulus = 206\.8 Pa: is beyond solids"),
+        ("gear.a.material.young_modulus=206.8 kPa", r"young_modulus"),
+        ("gear.a.material.young_modulus=206800 GPa", r"young_modulus"),
+        ("gear.a.material.density=7850 g/cm^3", r"gear\.a\.material\.density"),
+        (
+            "gear.a.relief.tip.amount=100 mm",
+            r"gear\.a\.relief = 1e\+05 um.*times what the tooth can take.*check the unit",
+        ),
+        ("gear.a.relief.tip.amount=20 m", r"times what the tooth can take"),
+        ("gear.a.relief.tip.amount=-1 mm", r"times what the tooth can take"),
+        ('gear.a.relief={crowning={amount="20 mm"}}', r"times what the tooth can take"),
+        ('gear.a.relief={table={radii=["40 mm", "45 mm"], removals=["0 mm", "5 mm"]}}', r"times what the tooth"),
+        ("gear.a.relief.tip={amount='20 um', start_radius='44 m'}", r"gear\.a\.relief\.start"),
+        (f"gear.a.spacing_errors={['1 m', *['0 um'] * 27]}", r"gear\.a\.spacing_errors = spread over 1e\+06 um"),
+        (f"gear.a.spacing_errors={['1 mm', *['0 um'] * 26, '-1 mm']}", r"gear\.a\.spacing_errors"),
+        ("pair.I.load=1e6 kN", r"pair\.I\.load = 1e\+09 N on a face of 10 mm.*would fold; check the units"),
+        ("pair.I.loads=['1 kN', '100 MN']", r"pair\.I\.load .*would fold"),
+    ],
+)
+def test_absurd_sizes_are_refused_before_solving(override, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        plan(override)
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 250
+
+
+def test_a_load_that_no_metal_carries_is_remarked_on():
+    scene, _ = plan("pair.I.load=100 kN")
+    (remark,) = [remark for remark in pair_inputs(scene, "I").assumed if "metal" in remark]
+    assert remark.startswith("Pair I: 1e+04 N/mm are 3333 MPa of load over face width and module")
+    soft, _ = plan("pair.I.load=1 kN", "gear.a.material.young_modulus=2.5 GPa")  # a plastic at .013 of its modulus
+    assert not any("metal" in remark for remark in pair_inputs(soft, "I").assumed)
+
+
+def test_a_geometry_run_remarks_on_a_contact_ratio_below_one():
+    document = {
+        "results": ["geometry"],
+        "gear": {"a": {"teeth": 20, "module": "3 mm", "tip_diameter": "61.5 mm"}},
+        "pair": {"I": {"driver": "a", "driven": "a"}},
+    }
+    scene = build_scene(document, "case", Path())
+    assert scene.pairs["I"].contact_ratio < 1.0
+    remarks = run_plan(scene, make_plan(scene, STAGES)).remarks
+    assert any(r.startswith("Pair I: the contact ratio of 0.") and "Lengthen the teeth" in r for r in remarks)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "words"),
+    [
+        ({"module": 3}, r"module = 3 m: .*a module of 3 mm is 3e-3 m in SI"),
+        ({"module": 3e-3, "bore_radius": 10e-3, "face_width": 20}, "20 mm are 20e-3 m in SI"),
+        ({"module": 3e-3, "bore_radius": 10e-3, "material": Material(206.8e3)}, "206.8 GPa are 206.8e9 Pa in SI"),
+        ({"module": 3e-3, "bore_radius": 10e-3, "material": Material(density=7.85)}, "steel has 7850"),
+        ({"module": 3e-3, "bore_radius": 10}, "bore_radius"),
+    ],
+)
+def test_millimetres_for_metres_are_refused_in_python(sizes, words):
+    with pytest.raises(InputError, match=words):
+        Gear(Tooth(20), **{"bore_radius": 10, **sizes})
+
+
+def test_a_gear_of_pure_numbers_may_have_any_size():
+    assert Gear(Tooth(20), 1.0, 5.0, 100.0, Material(1.0)).module == 1.0
+
+
+def test_millimetres_for_metres_are_refused_of_helical_gears():
+    with pytest.raises(InputError, match="normal_module = 3 m"):
+        HelicalGear(20, 3, math.radians(20), math.radians(15), 20, "left")
+    with pytest.raises(InputError, match="face_width = 20 m"):
+        HelicalGear(20, 3e-3, math.radians(20), math.radians(15), 20, "left")
+
+
+def test_the_deepest_relief_is_just_taken():
+    gear = Gear(Tooth(28, BasicRack()), 3e-3, 20e-3)
+    pair = GearPair(gear, gear)
+    tip = float(roll_of_radius(gear, gear.involute_tip_radius))
+    low = float(pair.roll_angle(pair.x_start, "driver"))
+    most = float(deepest_relief(gear, tip))
+    assert most == pytest.approx(0.3e-3)
+    at_most = tip_relief(gear, most * (1 - 1e-12), length=2e-3)
+    refuse_deep_relief(gear, at_most, low, tip)
+    with pytest.raises(InputError, match="um at radius 45 mm"):
+        refuse_deep_relief(gear, replace(at_most, amount=1.001 * most), low, tip)
+    with pytest.raises(InputError, match="what the tooth can take"):
+        refuse_deep_relief(gear, replace(at_most, amount=-1.001 * most), low, tip)
+    assert np.isfinite(most)
