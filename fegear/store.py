@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-#: First bytes of an entry; the SHA-256 of the rest follows.
-_MAGIC = b"fegear1\n"
+#: First bytes of an entry; the SHA-256 of its key and of the rest follows.
+_MAGIC = b"fegear2\n"
 _HEAD = len(_MAGIC) + 32
 _SUFFIX = ".entry"
 #: After pruning, this share of the limit is left, so that not every write prunes.
@@ -33,6 +33,11 @@ def cache_folder() -> Path:
     import platformdirs
 
     return Path(platformdirs.user_cache_dir("fegear", appauthor=False))
+
+
+def _head(key: str, payload: bytes) -> bytes:
+    """What an entry begins with: it binds what is kept to its key, wherever the file is moved."""
+    return _MAGIC + hashlib.sha256(key.encode() + b"\n" + payload).digest()
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,14 +63,14 @@ class Store:
         return self._place(key).is_file()
 
     def read(self, key: str) -> bytes | None:
-        """Return an entry; None if there is none or it is damaged."""
+        """Return an entry; None if there is none, it is damaged, or it was made for another key."""
         place = self._place(key)
         try:
             data = place.read_bytes()
         except OSError:
             return None
         payload = data[_HEAD:]
-        if data[:_HEAD] != _MAGIC + hashlib.sha256(payload).digest():
+        if data[:_HEAD] != _head(key, payload):
             return None
         with contextlib.suppress(OSError):  # records when it was last of use; a folder may be read-only
             os.utime(place)
@@ -84,7 +89,7 @@ class Store:
         handle, name = tempfile.mkstemp(prefix=".", dir=place.parent)
         try:
             with os.fdopen(handle, "wb") as file:
-                file.write(_MAGIC + hashlib.sha256(payload).digest() + payload)
+                file.write(_head(key, payload) + payload)
             Path(name).replace(place)
         except BaseException:
             with contextlib.suppress(OSError):

@@ -788,7 +788,7 @@ def _horner_slope(row: Any, t: float) -> float:
 @cache
 def compiled() -> Callable[..., Any]:
     """`_run` as machine code, compiled at first use and kept on disk for the next process."""
-    import numba
+    from fegear.dynamics.machine_code import machine_code
 
     scope = globals()
     for name in (
@@ -796,6 +796,5 @@ def compiled() -> Callable[..., Any]:
         "_damping_series", "_rubbing", "_series", "_taylor_step", "_matrices_at", "_solve", "_to_powers",
         "_long_loads", "_collocate",
     ):  # fmt: skip
-        scope[name] = numba.njit(cache=True)(scope[name])
-    run: Callable[..., Any] = numba.njit(cache=True)(_run)
-    return run
+        scope[name] = machine_code(scope[name])
+    return machine_code(_run)

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
+import logging
+import threading
+import time
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from fegear.engine.point_job import Reply, failed
 from fegear.errors import InputError, MissingLibraryError
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping
+    from collections.abc import Generator, Iterator, Mapping
+
+    from dask.distributed import Client, Future
 
     from fegear.engine.point_job import Job
 
@@ -16,6 +23,12 @@ if TYPE_CHECKING:
 
 #: How long a scheduler may take to answer, and to have a worker [s].
 _PATIENCE = 15.0
+#: What is added to it, so that Dask's own words come first [s].
+_GRACE = 3.0
+#: How long a cluster may be without any worker while there is work: nannies and queues start new ones [s].
+_WITHOUT_WORKERS = 60.0
+#: Between two looks at what is finished [s].
+_PAUSE = 0.02
 
 
 def on_cluster(job: Job, todo: Todo, address: str) -> Generator[tuple[int, Reply]]:
@@ -24,39 +37,110 @@ def on_cluster(job: Job, todo: Todo, address: str) -> Generator[tuple[int, Reply
     Raises
     ------
     InputError
-        If the scheduler does not answer or has no workers.
+        If the scheduler does not answer, has no workers, or loses all of them.
     MissingLibraryError
         If Dask is missing here, or fegear there.
     """
     try:
-        from dask.distributed import Client, KilledWorker, as_completed
+        import dask.distributed  # noqa: F401
     except ImportError:
         raise MissingLibraryError(
             "--scheduler needs Dask; install it with: pip install 'fegear[distributed]'"
         ) from None
-    try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
-    except (OSError, ValueError) as problem:
-        reason = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
-        raise InputError(
-            "--scheduler",
-            address,
-            f"does not answer ({reason})",
-            "start one with `dask scheduler` and give its address",
-        ) from None
+    with _quiet("distributed"):
+        yield from _computed(job, todo, address)
+
+
+def _computed(job: Job, todo: Todo, address: str) -> Generator[tuple[int, Reply]]:
+    from dask.distributed import CancelledError, KilledWorker
+
+    client = _connected(address)
     with client, client.as_current():
-        try:
-            client.wait_for_workers(1, timeout=_PATIENCE)
-        except OSError:
-            raise InputError(
-                "--scheduler", address, "has no workers", f"start some with `dask worker {address} --nthreads 1`"
-            ) from None
+        _check_workers(client, address)
         futures = {client.submit(job, point, pure=False): i for i, point in todo.items()}
-        for future in as_completed(list(futures)):
+        for future in _finished(client, list(futures), address):
             try:
                 reply = future.result()
             except KilledWorker as error:
                 reply = Reply(failed(error), lasting=False)
+            except CancelledError:
+                raise _refused(address, "has gone away", "start it again; finished points are kept") from None
             except ImportError as problem:
                 raise MissingLibraryError(f"the workers of {address} cannot import fegear ({problem})") from None
             yield futures.pop(future), reply
+
+
+def _refused(address: str, rule: str, remedy: str) -> InputError:
+    return InputError("--scheduler", f'"{address}"', rule, remedy)
+
+
+def _connected(address: str) -> Client:
+    """Connect to a scheduler, or say why that fails."""
+    from dask.distributed import Client
+
+    remedy = "start one with `dask scheduler` and give its address, for example tcp://10.0.0.5:8786"
+    client = Client.__new__(Client)
+    problems = ["it takes the connection and says nothing"]
+
+    def connect() -> None:
+        try:
+            client.__init__(address, timeout=_PATIENCE, set_as_default=False)
+            problems.clear()
+        except Exception as problem:  # noqa: BLE001  (every transport has errors of its own)
+            problems[:] = [(str(problem).splitlines() or [""])[0].rstrip(".") or type(problem).__name__]
+
+    # Dask's own patience ends where a listener takes the connection.
+    connecting = threading.Thread(target=connect, daemon=True)
+    connecting.start()
+    connecting.join(_PATIENCE + _GRACE)
+    if problems:
+        client.status = "closed"  # else it tries to close what was never open, and fails, when the program ends
+        raise _refused(address, f"does not answer ({problems[0]})", remedy)
+    return client
+
+
+@contextlib.contextmanager
+def _quiet(library: str) -> Iterator[None]:
+    """Keep a library from logging tracebacks of what is said here in a sentence."""
+    names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == library]
+    before = {name: logging.getLogger(name).level for name in names}
+    for name in names:
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for name, level in before.items():
+            logging.getLogger(name).setLevel(level)
+
+
+def _check_workers(client: Client, address: str) -> None:
+    """Refuse a cluster without workers, or one that has no fegear: a worker that cannot read a point just dies."""
+    try:
+        client.wait_for_workers(1, timeout=_PATIENCE)
+    except OSError:
+        raise _refused(address, "has no workers", f"start some with `dask worker {address} --nthreads 1`") from None
+    found = {"scheduler": client.run_on_scheduler(find_spec, "fegear"), **client.run(find_spec, "fegear")}
+    without = [name for name, spec in found.items() if spec is None]
+    if without:
+        raise MissingLibraryError(
+            f"--scheduler {address}: fegear is not installed where {', '.join(without)} runs; "
+            "scheduler and workers need the same environment as this program."
+        )
+
+
+def _finished(client: Client, futures: list[Future], address: str) -> Iterator[Future]:
+    """Futures as they are finished; refuses to wait for workers that are all gone."""
+    from dask.distributed import as_completed
+
+    coming = as_completed(futures)
+    seen = time.monotonic()  # when there was work or somebody to do it
+    while coming.count():
+        batch = coming.next_batch(block=False)
+        yield from batch
+        now = time.monotonic()
+        if batch or client.scheduler_info()["workers"]:
+            seen = now
+        elif now - seen > _WITHOUT_WORKERS:
+            raise _refused(address, "has lost all its workers", "start some again; finished points are kept")
+        if not batch:
+            time.sleep(_PAUSE)

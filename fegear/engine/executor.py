@@ -45,6 +45,14 @@ class Executor:
     workers: int | None = None
     here: bool = False
 
+    def __post_init__(self) -> None:
+        """Refuse an address that is none: it is what an unset variable of a shell leaves."""
+        if self.scheduler is not None and not self.scheduler.strip():
+            raise InputError(
+                "--scheduler", f'"{self.scheduler}"', "is no address",
+                "write for example tcp://10.0.0.5:8786, or leave --scheduler out to compute on this machine",
+            )  # fmt: skip
+
 
 def _name(function: Callable[..., object]) -> object:
     if isinstance(function, functools.partial):

@@ -103,6 +103,15 @@ def opened(payload: bytes) -> object:
     return found["result"] if "result" in found else Failure(found["kind"], found["reason"])
 
 
+def _passing(error: BaseException | None) -> bool:
+    """Whether a failure lies in the circumstances (disk, memory, a foreign library) and may be none the next time."""
+    while error is not None:
+        if isinstance(error, (OSError, MemoryError)) or type(error) in (Exception, RuntimeError):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
 def here(function: Callable[..., object], point: object, cache: SolutionCache | None) -> Reply:
     """Compute one point in this process; a failure is a reply like any other."""
     try:
@@ -110,6 +119,6 @@ def here(function: Callable[..., object], point: object, cache: SolutionCache | 
     except MissingLibraryError:
         raise  # every other point would fail alike
     except FegearError as error:
-        return Reply(failed(error))
+        return Reply(failed(error), lasting=not _passing(error))
     except Exception as error:  # noqa: BLE001  (one point's bug must not take the others' results with it)
         return Reply(failed(error), lasting=False)

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import operator
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
 
 from fegear.engine.executor import Executor, count_kept, map_points
 from fegear.engine.point_job import Failure
-from fegear.errors import InputError
+from fegear.errors import FegearError, InputError
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
 
@@ -74,8 +77,110 @@ def test_a_cluster_gives_the_same(scheduler, tmp_path):
 
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
     monkeypatch.setattr("fegear.engine.cluster._PATIENCE", 0.5)
-    with pytest.raises(InputError, match=re.escape("--scheduler = tcp://127.0.0.1:9: does not answer")):
+    with pytest.raises(InputError, match=re.escape('--scheduler = "tcp://127.0.0.1:9": does not answer')):
         map_points(math.sqrt, [1.0], Executor("tcp://127.0.0.1:9"))
+
+
+@pytest.mark.parametrize("address", ["tls://127.0.0.1:9", "foo", "tcp://[::1", "http://127.0.0.1:9"])
+def test_an_address_of_no_scheduler_is_one_sentence(address):
+    """In a process of its own: a client that fails half-made complains when the interpreter ends."""
+    program = (
+        "import math, sys\n"
+        "from fegear.engine.executor import Executor, map_points\n"
+        "from fegear.errors import InputError\n"
+        "try:\n"
+        "    map_points(math.sqrt, [1.0], Executor(sys.argv[1]))\n"
+        "except InputError as refusal:\n"
+        "    print(refusal)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, address], capture_output=True, text=True, env=ENVIRONMENT, check=False
+    )
+    assert done.stdout.startswith(f'--scheduler = "{address}": does not answer (')
+    assert done.stdout.count("\n") == 1
+    assert done.stderr == ""
+
+
+def test_an_empty_address_is_no_wish_to_compute_here():
+    for address in ("", " "):
+        with pytest.raises(InputError, match="--scheduler"):
+            Executor(address)
+
+
+def test_a_listener_that_says_nothing_is_no_scheduler(monkeypatch):
+    monkeypatch.setattr("fegear.engine.cluster._PATIENCE", 0.5)
+    monkeypatch.setattr("fegear.engine.cluster._GRACE", 0.1)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(InputError, match="does not answer"):
+            map_points(math.sqrt, [1.0], Executor(address))
+
+
+@pytest.mark.parametrize("lost", ["workers", "scheduler"])
+def test_a_cluster_that_is_lost_ends_the_wait(monkeypatch, capfd, lost):
+    program = (
+        "from dask.distributed import LocalCluster\n"
+        "import sys\n"
+        "if __name__ == '__main__':\n"
+        "    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:\n"
+        "        print(cluster.scheduler_address, flush=True)\n"
+        "        sys.stdin.readline()\n"
+        "        cluster.scale(0)\n"
+        "        sys.stdin.readline()\n"
+    )
+    monkeypatch.setattr("fegear.engine.cluster._WITHOUT_WORKERS", 1.0)
+    cluster = subprocess.Popen(
+        [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+        text=True, env=ENVIRONMENT, start_new_session=True,
+    )  # fmt: skip
+
+    def lose() -> None:
+        if lost == "scheduler":
+            os.killpg(cluster.pid, signal.SIGKILL)
+        else:
+            cluster.stdin.write("\n")
+            cluster.stdin.flush()
+
+    try:
+        address = cluster.stdout.readline().strip()
+        threading.Timer(1.5, lose).start()
+        with pytest.raises(InputError, match=r"has gone away|has lost all its workers"):
+            map_points(time.sleep, [600.0], Executor(address))
+        assert capfd.readouterr().err == ""
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(cluster.pid, signal.SIGKILL)
+        cluster.wait()
+
+
+def refused_for_want_of(error: type[Exception], point: float) -> float:
+    """Fail as a stage does whose library or disk has failed it."""
+    raise FegearError(f"could not solve {point}: the disk is full") from error("the disk is full")
+
+
+@pytest.mark.parametrize(("error", "kept"), [(OSError, 0), (MemoryError, 0), (Exception, 0), (ValueError, 1)])
+def test_failures_of_the_circumstances_are_not_kept(tmp_path, monkeypatch, error, kept):
+    monkeypatch.setattr("fegear.engine.executor._name", lambda function: "refused")
+    cache, function = SolutionCache(Store(tmp_path)), functools.partial(refused_for_want_of, error)
+    (failure,) = map_points(function, [2.0], Executor(here=True), cache)
+    assert failure == Failure("FegearError", "could not solve 2.0: the disk is full")
+    assert count_kept(function, [2.0], cache) == kept
+
+
+def test_nobody_waits_for_what_is_under_way_when_a_run_is_stopped(tmp_path):
+    program = (
+        "from fegear.engine.executor import Executor, map_points\n"
+        "work = 'import pathlib, time; pathlib.Path({!r}).touch(); time.sleep(600)'\n"
+        "if __name__ == '__main__':\n"
+        "    map_points(exec, [work.format(name) for name in ('first', 'second')], Executor(workers=2))\n"
+    )
+    run = subprocess.Popen([sys.executable, "-c", program], cwd=tmp_path, env=ENVIRONMENT, stderr=subprocess.DEVNULL)
+    for _ in range(600):
+        if len(list(tmp_path.iterdir())) == 2:
+            break
+        time.sleep(0.05)
+    run.send_signal(signal.SIGINT)
+    assert run.wait(timeout=20) != 0
 
 
 def test_no_worker_outlives_a_killed_parent(tmp_path):

@@ -16,7 +16,7 @@ from fegear.fem import solve_gear
 from fegear.fem.settings import MeshSettings
 from fegear.geometry import BasicRack, Gear, Tooth
 from fegear.plain import content_key, pack, unpack
-from fegear.solution_cache import Account, SolutionCache, cache_on_disk
+from fegear.solution_cache import Account, Codec, SolutionCache, cache_on_disk
 from fegear.store import Store, cache_folder
 
 COARSE = MeshSettings().scaled(2.0)
@@ -96,6 +96,21 @@ def test_damaged_entries_are_ignored_and_replaced(tmp_path):
     store.write(key, b"payload")
     assert store.read(key) == b"payload"
     assert store.read(content_key("y")) is None
+
+
+def test_an_entry_of_another_key_is_not_taken_for_this_one(tmp_path):
+    """Somebody renamed or copied it: whole, but the answer to another question."""
+    store = Store(tmp_path)
+    one, other = content_key("one"), content_key("other")
+    store.write(one, b"payload")
+    store.write(other, b"of the other")
+    places = {path.stem: path for path in tmp_path.rglob("*.entry")}
+    places[other].write_bytes(places[one].read_bytes())
+    assert store.read(other) is None
+    assert store.read(one) == b"payload"
+    cache = SolutionCache(store)
+    codec = Codec(bytes, bytes)
+    assert cache.solve(other, lambda: b"made again", codec).source == "computed"
 
 
 def test_the_store_drops_what_was_unused_for_longest(tmp_path):

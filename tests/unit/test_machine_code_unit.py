@@ -1,0 +1,76 @@
+"""What numba keeps on disk may fail in any way: it costs time, never a run, and never a number."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import shutil
+
+import pytest
+
+from fegear.dynamics.machine_code import machine_code
+
+_number = itertools.count()
+
+
+@pytest.fixture
+def made(tmp_path, monkeypatch):
+    """A module with a function to compile; numba keeps its code beside it."""
+    name = f"made_for_machine_code_{next(_number)}"
+    (tmp_path / "package").mkdir()
+    (tmp_path / "package" / f"{name}.py").write_text("def twice(x):\n    return 2.0 * x\n")
+    monkeypatch.syspath_prepend(str(tmp_path / "package"))
+    monkeypatch.setattr("sys.dont_write_bytecode", True)
+    return importlib.import_module(name)
+
+
+def hits(made) -> int:
+    """Call the function as a new process would; returns how many of its two signatures came from the disk."""
+    fast = machine_code(made.twice)
+    assert fast(3.5) == 7.0
+    assert fast(4) == 8.0
+    return sum(fast.stats.cache_hits.values())
+
+
+def test_damaged_foreign_and_exchanged_files_are_not_taken(made, tmp_path):
+    assert hits(made) == 0
+    assert hits(made) == 2
+    folder = tmp_path / "package" / "__pycache__"
+    whole = {path: path.read_bytes() for path in sorted(folder.iterdir())}
+    first, second, index = whole
+    assert [path.suffix for path in whole] == [".nbc", ".nbc", ".nbi"]
+    code = bytearray(whole[first])
+    code[len(code) // 2] ^= 1
+    damages = [
+        {path: data[: len(data) // 2] for path, data in whole.items()},
+        dict.fromkeys(whole, b"cos\nsystem\n(S'exit 1'\ntR."),  # a pickle that would end the process
+        {first: bytes(code)},
+        {first: whole[second], second: whole[first]},  # what two processes that save at once may leave
+        {index: b""},
+    ]
+    for damage in damages:
+        for path, data in (whole | damage).items():
+            path.write_bytes(data)
+        assert hits(made) < 2
+    assert hits(made) == 2, "and they have been made good"
+    first.unlink()
+    first.mkdir()
+    assert hits(made) == 1
+
+
+def test_no_place_to_keep_it_costs_time_only(made, tmp_path, monkeypatch):
+    """A package that cannot be written to, below a home that cannot either."""
+    blocker = tmp_path / "blocker"
+    blocker.write_text("")
+    (tmp_path / "package" / "__pycache__").write_text("a file where the folder should be")
+    monkeypatch.setattr("numba.misc.appdirs.AppDirs.user_cache_dir", property(lambda self: str(blocker / "x")))
+    fast = machine_code(made.twice)
+    assert fast(3.5) == 7.0
+    assert not any(tmp_path.rglob("*.nb?"))
+
+
+def test_a_folder_that_vanishes_costs_time_only(made, tmp_path):
+    fast = machine_code(made.twice)
+    shutil.rmtree(tmp_path / "package")
+    (tmp_path / "package").write_text("")
+    assert fast(1.5) == 3.0
