@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.output.file_names import file_name
+
+#: What begins a formula in a spreadsheet.
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+_QUANTITY = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?( ?[A-Za-zµ°%]+)?|inf|nan)?")
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -26,12 +31,20 @@ def table_file(table: Table) -> str:
     return f"{file_name(table.name)}.csv"
 
 
+def inert(text: str) -> str:
+    """Text that a spreadsheet shows and does not compute: an apostrophe stands before what would begin a formula.
+
+    Numbers, with or without a unit behind them, stay as they are.
+    """
+    return f"'{text}" if text.startswith(_FORMULA) and not _QUANTITY.fullmatch(text) else text
+
+
 def table_text(table: Table) -> str:
     """Write a table as CSV text."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(column.head for column in table.columns)
-    writer.writerows(zip(*([cell(v) for v in column.values] for column in table.columns), strict=True))
+    writer.writerow(inert(column.head) for column in table.columns)
+    writer.writerows(zip(*([inert(cell(v)) for v in column.values] for column in table.columns), strict=True))
     return stream.getvalue()
 
 

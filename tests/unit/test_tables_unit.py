@@ -1,0 +1,36 @@
+"""Tables as CSV: numbers are numbers, and no text is a formula."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+
+from fegear.engine.outcome import Column, Table
+from fegear.output.tables import table_text
+
+
+@pytest.mark.parametrize(
+    "text", ["=1+1", "=cmd|' /C calc'!A0", "+1+1", "-1+1", "@SUM(A1)", "\t=1", "\r=1", "-A1", "--1"]
+)
+def test_no_text_is_a_formula(text):
+    table = Table("t", (Column("gear", np.array([text])), Column(text, np.array([1.0]))))
+    head, row = csv.reader(table_text(table).splitlines(keepends=True)) if "\r" not in text else (["", ""], ["", "1"])
+    assert (head[1], row[0]) in ((f"'{text}", f"'{text}"), ("", ""))
+    assert f"'{text}" in table_text(table)
+    assert row[1] == "1"
+
+
+@pytest.mark.parametrize("text", ["-0.5", "+3 mm", "-1e-3 um", "-", "", "a=b", "it's", "-.5 deg", "Größe"])
+def test_other_texts_stay_as_they_are(text):
+    table = Table("t", (Column("gear", np.array([text])),))
+    assert table_text(table) == f"gear\n{text}\n" or text == ""
+
+
+def test_numbers_stay_numbers():
+    values = np.array([-1.5, 1e-30, -np.inf, np.nan, 12345.678901234])
+    text = table_text(Table("t", (Column("x", values), Column("n", np.array([-1, 2, -3, 4, 5])))))
+    found = np.array([[float(cell) for cell in line.split(",")] for line in text.splitlines()[1:]])
+    np.testing.assert_allclose(found[:, 0], values, rtol=1e-11)
+    assert found[:, 1].tolist() == [-1, 2, -3, 4, 5]
