@@ -15,6 +15,7 @@ import numpy as np
 from fegear.errors import InputError
 from fegear.fem.mesh import SectorMesh
 from fegear.fem.mesh_files import read_mesh_file
+from fegear.fem.sound_mesh import check_gear, check_triangles
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,12 +26,10 @@ if TYPE_CHECKING:
     from fegear.geometry.tooth import Tooth
 
 GROUPS = ("flank", "fillet", "bore", "side_a", "side_b")
-#: A flank farther than this from the gear's involute belongs to another gear [modules].
-_OFF_FLANK = 0.05
 
 
 def read_sector_mesh(
-    path: Path, tooth: Tooth, module: float, unit: float = 1e-3, key: str = "tooth_mesh"
+    path: Path, tooth: Tooth, module: float, bore_radius: float, unit: float = 1e-3, key: str = "tooth_mesh"
 ) -> SectorMesh:
     """Read a tooth sector mesh.
 
@@ -41,6 +40,8 @@ def read_sector_mesh(
         The gear that the mesh is of.
     module : float
         The gear's module [m].
+    bore_radius : float
+        The gear's, which the mesh's must be [m].
     unit : float
         Length unit of the file [m], millimetres by default.
     key : str
@@ -53,8 +54,8 @@ def read_sector_mesh(
     Raises
     ------
     InputError
-        If the file is missing or unreadable, a group is missing, elements are inverted or of another kind, or the
-        mesh is of another gear.
+        If the file is missing or unreadable, a group is missing, elements are inverted, there twice or of another kind,
+        there is a hole, or the mesh is of another gear: flank, fillet or bore.
     """
 
     def refuse(rule: str, remedy: str = "") -> InputError:
@@ -72,18 +73,17 @@ def read_sector_mesh(
     if len({block.shape[1] for block in blocks}) > 1:
         raise refuse("mixes three-node and six-node triangles", "use one kind")
     cells = np.vstack(blocks).T.astype(np.int64)
-    points = np.asarray(data.points, dtype=float)[:, :2].T * (unit / module)
-    corners = cells[:3]
-    a, b, c = points[:, corners[0]], points[:, corners[1]], points[:, corners[2]]
-    area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    if (area == 0.0).any() or ((area > 0.0).any() and (area < 0.0).any()):
-        raise refuse(f"has {int(min((area <= 0.0).sum(), (area >= 0.0).sum()))} inverted elements", "repair the mesh")
-    if (area < 0.0).all():
+    place = np.zeros((3, len(data.points)))
+    place[: np.shape(data.points)[1]] = np.asarray(data.points, dtype=float).T * (unit / module)
+    check_triangles(place, cells, module, refuse)
+    points = place[:2]
+    a, b, c = (points[:, corner] for corner in cells[:3, :1].T[0])
+    if (b[0] - a[0]) * (c[1] - a[1]) < (b[1] - a[1]) * (c[0] - a[0]):  # all of them clockwise
         cells = cells[[0, 2, 1] if cells.shape[0] == 3 else [0, 2, 1, 5, 4, 3]]
     points, six, old = _six_node(points, cells)
     edges = _named_edges(six, {name: _group(data, name, old, refuse) for name in GROUPS}, points, refuse)
     mesh = SectorMesh(points, six, edges, tooth.teeth, path.name)
-    _check_gear(mesh, tooth, refuse)
+    check_gear(points, edges, tooth, bore_radius / module, module, refuse)
     return mesh
 
 
@@ -150,17 +150,3 @@ def _named_edges(six: Index, groups: dict[str, NDArray[np.bool_]], points: Array
                 f'has no "{name.removeprefix("back_")}" edges on the {"left" if "back" in name else "right"} side'
             )
     return named
-
-
-def _check_gear(mesh: SectorMesh, tooth: Tooth, refuse: Any) -> None:
-    flank = mesh.points[:, np.unique(mesh.edges["flank"])]
-    radius, angle = np.hypot(*flank), np.arctan2(*flank)
-    inside = radius >= tooth.base_radius
-    if not inside.any():
-        raise refuse("has its whole flank inside the base circle", "check the length unit and the gear's data")
-    off = np.abs(angle[inside] - tooth.involute.polar(radius[inside])) * radius[inside]
-    if off.max() > _OFF_FLANK:
-        raise refuse(
-            f"has a flank up to {off.max():.3g} modules off the gear's involute",
-            "check the length unit, the tooth number and that the tooth stands on the y axis",
-        )

@@ -29,4 +29,4 @@ def own_sector_mesh(scene: Scene, name: str) -> SectorMesh | None:
     from fegear.fem.imported import read_sector_mesh
 
     gear, key = scene.gears[name], f"gear.{name}.tooth_mesh"
-    return read_sector_mesh(scene.file(file, key), gear.tooth, gear.module, key=key)
+    return read_sector_mesh(scene.file(file, key), gear.tooth, gear.module, gear.bore_radius, key=key)

@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -11,6 +12,7 @@ import pytest
 from fegear.errors import InputError
 from fegear.fem import solve_gear, stiffness_table
 from fegear.fem.imported import read_sector_mesh
+from fegear.fem.sound_mesh import check_triangles
 from fegear.geometry import BasicRack, Gear, Tooth
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -37,7 +39,7 @@ def test_meshes_are_the_ones_their_page_describes():
 )
 def test_a_foreign_mesh_gives_the_generated_mesh_s_answers_within_both_error_estimates(make, name):
     gear = make()
-    mesh = read_sector_mesh(MESHES / name, gear.tooth, gear.module)
+    mesh = read_sector_mesh(MESHES / name, gear.tooth, gear.module, gear.bore_radius)
     radii = np.linspace(gear.form_radius + 0.1 * gear.module, gear.tip_radius, 7)
     own = stiffness_table(gear, radii, 0.025 * gear.module)
     foreign = stiffness_table(gear, radii, 0.025 * gear.module, influence=solve_gear(gear, mesh=mesh))
@@ -74,24 +76,110 @@ def _move_side(data):
     data.points[inside, :2] *= 1.01
 
 
+def _inner(data):
+    """An element far from every boundary: none of its nodes is named."""
+    named = np.unique(np.concatenate([np.asarray(nodes) for nodes in data.point_sets.values()]))
+    cells = data.cells[0].data
+    middle = data.points[:, :2].mean(axis=0)
+    centres = data.points[cells[:, :3]].mean(axis=1)[:, :2]
+    free = ~np.isin(cells, named).any(axis=1)
+    return np.flatnonzero(free)[np.argmin(np.hypot(*(centres[free] - middle).T))]
+
+
+def _nan_node(data):
+    data.points[data.cells[0].data[_inner(data), 0], 0] = np.nan
+
+
+def _twice(data):
+    cells = data.cells[0].data
+    data.cells[0].data = np.vstack([cells, cells[[3]], cells[[_inner(data)]][:, [1, 2, 0, 4, 5, 3]]])
+
+
+def _hole(data):
+    data.cells[0].data = np.delete(data.cells[0].data, _inner(data), axis=0)
+
+
+def _seam(data):
+    """One corner of one element on a node of its own at the same place."""
+    cells = data.cells[0].data
+    element = _inner(data)
+    data.points = np.vstack([data.points, data.points[cells[element, 0]]])
+    cells[element, 0] = len(data.points) - 1
+
+
+def _loose_piece(data):
+    cells = data.cells[0].data
+    count = len(data.points)
+    data.points = np.vstack([data.points, data.points[cells[5]] + [500.0, 0.0, 0.0]])
+    data.cells[0].data = np.vstack([cells, np.arange(count, count + 6)])
+
+
+def _in_space(data):
+    data.points[:, 2] = 0.1 * data.points[:, 1]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
-    [(_drop_fillet, 'no group "fillet"'), (_invert, "inverted"), (_move_side, "same nodes")],
+    [
+        (_drop_fillet, 'no group "fillet"'),
+        (_invert, "1 inverted elements \\(one at x = .* mm\\)"),
+        (_move_side, "same nodes"),
+        (_nan_node, "1 nodes that are nowhere|cannot be read"),
+        (_twice, "has 2 elements twice \\(one at x = "),
+        (_hole, "has 1 holes or loose pieces \\(one at x = "),
+        (_seam, "nodes at one place \\(one at x = "),
+        (_loose_piece, "has 1 holes or loose pieces \\(one at x = "),
+        (_in_space, "does not lie in a plane"),
+    ],
 )
 def test_broken_meshes_are_refused_in_words(tmp_path, change, words):
     gear = shifted()
     with pytest.raises(InputError, match=words):
-        solve_gear(gear, mesh=read_sector_mesh(_written(tmp_path, change), gear.tooth, gear.module))
+        solve_gear(gear, mesh=read_sector_mesh(_written(tmp_path, change), gear.tooth, gear.module, gear.bore_radius))
+
+
+def test_elements_on_nodes_that_are_not_there_are_refused():
+    data = meshio.read(MESHES / "shifted_40_teeth.inp")
+    cells = data.cells[0].data.T.copy()
+    cells[1, 4] = 10**6
+    with pytest.raises(InputError, match="nodes that it does not have"):
+        check_triangles(data.points.T / 2.0, cells, 2e-3, lambda rule, remedy: InputError("mesh", "m", rule, remedy))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            lambda g: {"bore_radius": 0.9 * g.bore_radius},
+            "bore at radius 30.32 to 30.32 mm, the case at 27.28.*write bore",
+        ),
+        (
+            lambda g: {"tooth": replace(g.tooth, rack=BasicRack.named("C"))},
+            "fillet up to 0.0.* off.* at radius",
+        ),
+        (
+            lambda g: {"tooth": replace(g.tooth, rack=replace(g.tooth.rack, dedendum=1.3))},
+            "fillet up to .* off",
+        ),
+        (lambda g: {"tooth": replace(g.tooth, tip_radius=g.tooth.tip_radius - 0.2)}, "flank that ends at radius 42.4"),
+    ],
+)
+def test_a_bore_a_fillet_or_a_tip_that_contradicts_the_case_is_refused(change, words):
+    gear = shifted()
+    other = replace(gear, **change(gear))
+    with pytest.raises(InputError, match=words) as refusal:
+        read_sector_mesh(MESHES / "shifted_40_teeth.inp", other.tooth, other.module, other.bore_radius)
+    assert "\n" not in str(refusal.value)
 
 
 def test_a_mesh_of_another_gear_or_none_at_all_is_refused():
     gear = four_square()
     with pytest.raises(InputError, match="involute"):
-        read_sector_mesh(MESHES / "shifted_40_teeth.inp", gear.tooth, gear.module)
+        read_sector_mesh(MESHES / "shifted_40_teeth.inp", gear.tooth, gear.module, gear.bore_radius)
     with pytest.raises(InputError, match="not there"):
-        read_sector_mesh(MESHES / "nothing.msh", gear.tooth, gear.module)
+        read_sector_mesh(MESHES / "nothing.msh", gear.tooth, gear.module, gear.bore_radius)
     with pytest.raises(InputError, match="cannot be read"):
-        read_sector_mesh(MESHES / "README.md", gear.tooth, gear.module)
+        read_sector_mesh(MESHES / "README.md", gear.tooth, gear.module, gear.bore_radius)
 
 
 def test_three_node_triangles_are_read_too(tmp_path):
@@ -102,7 +190,7 @@ def test_three_node_triangles_are_read_too(tmp_path):
         straight.point_sets[name] = np.intersect1d(nodes, np.unique(straight.cells[0].data))
         assert straight.point_sets[name].size
     straight.write(tmp_path / "straight.inp", float_fmt=".12e")
-    mesh = read_sector_mesh(tmp_path / "straight.inp", gear.tooth, gear.module)
+    mesh = read_sector_mesh(tmp_path / "straight.inp", gear.tooth, gear.module, gear.bore_radius)
     radius = [gear.pitch_radius]
     linear = solve_gear(gear, mesh=mesh, estimate_error=False).self_compliance(radius, 5e-5)
     assert linear == pytest.approx(solve_gear(gear).self_compliance(radius, 5e-5), rel=5e-3)
