@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
+import sys
 import threading
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 from fegear.engine.point_job import Reply, failed
@@ -81,6 +84,28 @@ def on_cores(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]
                 yield i, reply
 
 
+def _from_main(job: Job) -> bool:
+    """Whether the function stands in the user's own script."""
+    function: object = job.function
+    while isinstance(function, functools.partial):
+        function = function.func
+    return getattr(function, "__module__", "") == "__main__"
+
+
+@contextlib.contextmanager
+def _without_main() -> Iterator[None]:
+    """Start processes that do not run the user's script again, which has no guard against that and needs none.
+
+    A spawned process imports the file of ``__main__`` for what may be defined there; jobs and points are fegear's.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
+
+
 def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from multiprocessing import active_children, get_context
@@ -90,7 +115,8 @@ def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
         others = {child.pid for child in active_children()}
         pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_settle)
         try:
-            futures = {pool.submit(job, point): i for i, point in todo.items()}
+            with contextlib.nullcontext() if _from_main(job) else _without_main():
+                futures = {pool.submit(job, point): i for i, point in todo.items()}
             for future in as_completed(futures):
                 yield futures[future], future.result()
         except BaseException:

@@ -215,3 +215,22 @@ def test_no_worker_outlives_a_killed_parent(tmp_path):
     finally:
         if not nobody_is_left():
             os.killpg(group.pid, signal.SIGKILL)
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_a_script_is_run_again_only_for_its_own_functions(own, tmp_path):
+    """Spawned processes import the file of ``__main__``: a script without a guard would start itself anew in each."""
+    (tmp_path / "script.py").write_text(
+        "import math\n"
+        "from fegear.engine.executor import Executor, map_points\n"
+        "def half(x):\n"
+        "    return 0.5 * x\n"
+        + ("if __name__ == '__main__':\n" if own else "open('runs', 'a').write('x')\nif True:\n")
+        + f"    print(map_points({'half' if own else 'math.sqrt'}, [4.0, 9.0, 16.0], Executor(workers=2)))\n"
+    )
+    ran = subprocess.run(
+        [sys.executable, "script.py"], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, check=False
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.strip() == ("(2.0, 4.5, 8.0)" if own else "(2.0, 3.0, 4.0)")
+    assert own or (tmp_path / "runs").read_text() == "x"
