@@ -40,13 +40,15 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> Any:
-    """Load a name of the top at its first use."""
-    if name not in _HOMES:
-        raise AttributeError(f"module 'fegear' has no attribute {name!r}; it has {', '.join(sorted(_HOMES))}")
-    found = getattr(importlib.import_module(f"fegear.{_HOMES[name]}"), name)
-    globals()[name] = found
-    return found
+if not TYPE_CHECKING:  # type checkers know the names from their imports, and find a wrong one
+
+    def __getattr__(name: str) -> Any:
+        """Load a name of the top at its first use."""
+        if name not in _HOMES:
+            raise AttributeError(f"module 'fegear' has no attribute {name!r}; it has {', '.join(sorted(_HOMES))}")
+        found = getattr(importlib.import_module(f"fegear.{_HOMES[name]}"), name)
+        globals()[name] = found
+        return found
 
 
 def __dir__() -> list[str]:

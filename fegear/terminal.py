@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, TextIO
+import time
+from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -11,6 +12,10 @@ if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
     from fegear.engine.run import Watcher
+
+
+#: Seconds between two signs of life in a notebook.
+_OFTEN = 0.2
 
 
 class PlainLines:
@@ -54,6 +59,35 @@ class Bar:
         self.advance(1.0)
 
 
+class NotebookLine:
+    """One line in the output of a notebook's cell, which changes in place and says at the end what it took."""
+
+    def __init__(self) -> None:
+        from IPython.display import display
+
+        self._handle: Any = display({"text/plain": ""}, raw=True, display_id=True)
+        self._title, self._said, self._steps, self._seconds = "", 0.0, 0, 0.0
+
+    def _say(self, text: str) -> None:
+        self._handle.update({"text/plain": text}, raw=True)
+
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Name the stage."""
+        self._title = f"[{number}/{count}] {title}"
+        self._say(self._title)
+
+    def advance(self, fraction: float) -> None:
+        """Say how far it is, a few times a second."""
+        if time.monotonic() - self._said > _OFTEN:
+            self._said = time.monotonic()
+            self._say(f"{self._title}: {fraction:.0%}")
+
+    def end(self, seconds: float) -> None:
+        """Count it."""
+        self._steps, self._seconds = self._steps + 1, self._seconds + seconds
+        self._say(f"{self._steps} step{'' if self._steps == 1 else 's'} in {self._seconds:.2f} s")
+
+
 @contextlib.contextmanager
 def watcher(stream: TextIO, *, remaining: bool = False, notebook: bool = False) -> Iterator[Watcher]:
     """Give the watcher that suits a stream.
@@ -64,9 +98,12 @@ def watcher(stream: TextIO, *, remaining: bool = False, notebook: bool = False) 
     remaining : bool
         Whether a bar predicts the time that is left, which makes sense for many alike steps.
     notebook : bool
-        Whether the bars go into the output of a notebook's cell and not to the stream.
+        Whether the output is that of a notebook's cell and not the stream.
     """
-    if not notebook and not stream.isatty():
+    if notebook:
+        yield NotebookLine()
+        return
+    if not stream.isatty():
         yield PlainLines(stream)
         return
     from rich.console import Console
@@ -74,6 +111,5 @@ def watcher(stream: TextIO, *, remaining: bool = False, notebook: bool = False) 
 
     columns = (TextColumn("{task.description}"), BarColumn(bar_width=30), TimeElapsedColumn())
     ahead = (TextColumn("remaining"), TimeRemainingColumn(elapsed_when_finished=False)) if remaining else ()
-    console = Console(force_jupyter=True) if notebook else Console(file=stream)
-    with Progress(*columns, *ahead, console=console) as progress:
+    with Progress(*columns, *ahead, console=Console(file=stream)) as progress:
         yield Bar(progress)

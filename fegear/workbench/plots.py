@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fegear.output.draw_plotly import page_html
+from fegear.output.draw_plotly.notebook import still_html
+
 if TYPE_CHECKING:
     import os
 
@@ -32,20 +35,25 @@ class Plots:
         return f"{count}; .show() opens them, .save(folder) writes them\n{names}"
 
     def _repr_html_(self) -> str:
-        """Show them in a notebook, plotly.js once for all."""
-        from fegear.output.draw_plotly import notebook_html
+        """Show them as pictures."""
+        return "".join(still_html(figure.made()) for figure in self.figures)
 
-        shown, library = [], True
+    def _ipython_display_(self) -> None:
+        """Show them in a notebook, each as it shows itself."""
+        from IPython.display import display
+
         for figure in self.figures:
-            made = figure.made()
-            shown.append(notebook_html(made, library=library))
-            library = library and not made.drawable_in_page
-        return "".join(shown)
+            display(figure.made())
 
     def show(self) -> None:
         """Open them in the browser, as one page."""
+        shown, library = [], True
+        for figure in self.figures:
+            made = figure.made()
+            shown.append(page_html(made, library=library))
+            library = library and not made.drawable_in_page
         with tempfile.NamedTemporaryFile("w", encoding="utf-8", suffix=".html", delete=False) as file:
-            file.write(f"<!doctype html><meta charset='utf-8'><title>fegear</title>{self._repr_html_()}")
+            file.write(f"<!doctype html><meta charset='utf-8'><title>fegear</title>{''.join(shown)}")
         webbrowser.open(Path(file.name).as_uri())
 
     def save(self, folder: str | os.PathLike[str], kind: str = "png") -> list[Path]:

@@ -102,12 +102,15 @@ class Results(Found):
         MissingLibraryError
             If pandas is not installed.
         """
-        name, value, error, unit, meaning = zip(
-            *((v.name, v.value, np.nan if v.error is None else v.error, v.unit, v.meaning) for v in self.values),
-            strict=True,
-        )
-        columns = {"name": name, "value": value, "error": error, "unit": unit, "meaning": meaning}
-        table = Table("values", tuple(Column(head, np.array(made)) for head, made in columns.items()))
+        made = self.values
+        columns = {
+            "name": [one.name for one in made],
+            "value": [one.value for one in made],
+            "error": [np.nan if one.error is None else one.error for one in made],
+            "unit": [one.unit for one in made],
+            "meaning": [one.meaning for one in made],
+        }
+        table = Table("values", tuple(Column(head, np.array(listed)) for head, listed in columns.items()))
         return table.to_pandas().set_index("name")
 
     def to_xarray(self, table: str = "") -> xr.Dataset:

@@ -69,13 +69,14 @@ DOORS = {
     "jinja2": ["fegear.output.report.rendering"],
     "ezdxf": ["fegear.output.*"],
     "pandas": ["fegear.engine.table"],
+    "IPython": ["fegear.terminal", "fegear.workbench.plots"],  # there where a notebook runs
     "xarray": ["fegear.workbench.results"],  # a reader of what a run leaves behind
 }
 
 #: What `import fegear` may not load.
 HEAVY = (
     "gmsh", "pyvista", "matplotlib", "dask", "skfem", "pint", "meshio", "plotly", "numba", "xarray", "scipy",
-    "jinja2", "pandas",
+    "jinja2", "pandas", "IPython",
 )  # fmt: skip
 
 

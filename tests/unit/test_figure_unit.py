@@ -33,7 +33,7 @@ from fegear.engine.figure import (
 )
 from fegear.engine.figure.axes import round_numbers
 from fegear.errors import MissingLibraryError
-from fegear.output.draw_plotly import darker, notebook_html, plotly_json, template
+from fegear.output.draw_plotly import darker, notebook_bundle, page_html, plotly_json, template
 from fegear.output.draw_png import draw_pictures
 from fegear.output.draw_png.sheet import Sheet
 from fegear.output.shades import shade
@@ -182,7 +182,9 @@ def test_fields_are_pictures_in_pages_and_notebooks(tmp_path):
     figure = Figure("f", "<Field>", "c", (Panel(Axis("x"), Axis("y"), (field,), equal=True),))
     assert not figure.drawable_in_page
     assert everything().drawable_in_page
-    shown = figure._repr_html_()
+    made = figure._repr_mimebundle_()
+    shown = made["text/html"]
+    assert list(made) == ["text/html"]
     assert "data:image/png;base64," in shown
     assert "&lt;Field&gt;" in shown
     deferred = DeferredFigure("f", "Field", lambda: figure)
@@ -229,10 +231,26 @@ def test_a_system_that_cannot_draw_in_space_is_told_what_to_install(tmp_path, mo
         list(draw_pictures(in_space(), tmp_path))
 
 
-def test_a_notebook_shows_a_plot():
-    shown = notebook_html(everything())
+def test_a_page_shows_a_plot():
+    shown = page_html(everything())
     assert "Plotly.newPlot" in shown
     assert "A caption." in shown
+
+
+def test_a_notebook_shows_a_plot_without_the_library():
+    made = notebook_bundle(everything())
+    assert "A caption." in made["text/html"]
+    assert "data:image/png;base64," in made["text/html"]
+    plot = made["application/vnd.plotly.v1+json"]
+    assert "bdata" not in json.dumps(plot, allow_nan=False)
+    traces = [
+        (one["y"], other["y"]) for one, other in zip(plotly_json(everything())["data"], plot["data"], strict=True)
+    ]
+    typed = [(y, plain) for y, plain in traces if isinstance(y, dict)]
+    assert len(typed) > 3
+    for y, plain in typed:
+        read = np.frombuffer(base64.b64decode(y["bdata"]))
+        assert [np.nan if value is None else value for value in plain] == pytest.approx(read.tolist(), nan_ok=True)
 
 
 def test_letters_of_points_and_marks_are_read_on_paper_and_in_pages():

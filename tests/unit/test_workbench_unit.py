@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import math
+import re
 import subprocess
 import sys
 import tomllib
+import types
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +40,14 @@ def test_the_top_shows_its_names_and_each_is_there():
         assert getattr(fegear, name) is not None
     with pytest.raises(AttributeError, match="has no attribute 'runn'"):
         fegear.runn  # noqa: B018
+
+
+def test_type_checkers_know_the_names_of_the_top():
+    tree = ast.parse(Path(fegear.__file__).read_text("utf-8"))
+    block = next(node for node in tree.body if isinstance(node, ast.If))
+    typed = {name.name: node.module for node in block.body for name in node.names}
+    assert typed == {name: f"fegear.{home}" for name, home in fegear._HOMES.items()}
+    assert {*typed, "__version__"} == set(fegear.__all__)
 
 
 def test_importing_fegear_loads_none_of_its_own_packages():
@@ -104,16 +115,41 @@ def test_short_forms_are_short(found):
     assert repr(found.plot("load_sharing_I")).startswith("1 figure; ")
 
 
-def test_a_notebook_shows_values_tables_and_figures(found):
+def test_a_notebook_shows_values_tables_and_figures(found, monkeypatch):
     page = found._repr_html_()
     assert "I.centre_distance" in page
     assert all(table.name in page for table in found.tables)
     table = found.tables["transmission_error_I"]._repr_html_()
     assert table.count("<tr>") == 11
     assert "x [mm]" in table
-    shown = found.plot("load_sharing_I", "transmission_error_I")._repr_html_()
-    assert shown.count("plotly.js v") == 1  # the library once for both
-    assert shown.count("Plotly.newPlot(") == 2
+    plots = found.plot("load_sharing_I", "transmission_error_I")
+    assert plots._repr_html_().count("data:image/png;base64,") == 2
+    drawn = []
+    monkeypatch.setitem(sys.modules, "IPython", types.ModuleType("IPython"))
+    display = types.ModuleType("IPython.display")
+    display.display = drawn.append
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    plots._ipython_display_()
+    assert [figure.key for figure in drawn] == ["load_sharing_I", "transmission_error_I"]
+    assert set(drawn[0]._repr_mimebundle_()) == {"text/html", "application/vnd.plotly.v1+json"}
+
+
+def test_a_notebook_shows_the_progress_in_one_line(monkeypatch):
+    class Handle:
+        said: list[str] = []  # noqa: RUF012
+
+        def update(self, data, raw):
+            assert raw
+            self.said.append(data["text/plain"])
+
+    display = types.ModuleType("IPython.display")
+    display.display = lambda *given, **how: Handle()
+    monkeypatch.setitem(sys.modules, "IPython", types.ModuleType("IPython"))
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
+    fegear.run(CASE, QUICK, results=["geometry", "transmission-error"])
+    assert Handle.said[0] == "[1/3] Geometry"
+    assert re.fullmatch(r"3 steps in [\d.]+ s", Handle.said[-1])
 
 
 def test_pandas_has_what_the_csv_has(found, folder):
@@ -142,6 +178,14 @@ def test_every_number_is_in_the_unit_beside_it(found, folder):
                 written = [float(row.split(",")[table.columns.index(column)]) for row in rows]
                 assert written == pytest.approx(table[column.name], rel=1e-11)
                 assert column.si * from_si(column.unit) == pytest.approx(table[column.name], rel=1e-15)
+
+
+def test_pandas_has_every_value(found):
+    pytest.importorskip("pandas")
+    frame = found.to_pandas()
+    assert frame.loc["I.te_mean", "value"] == found.values["I.te_mean"].value
+    assert frame.loc["I.te_mean", "unit"] == "um"
+    assert len(fegear.Gear(20, "3 mm").data.to_pandas()) == len(fegear.Gear(20, "3 mm").data.values)
 
 
 def test_xarray_has_every_table_and_value(found):
@@ -182,9 +226,11 @@ def test_figures_are_written_and_opened(found, tmp_path, monkeypatch):
         found.plot("load_sharing_I").save(tmp_path, "pdf")
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)
-    found.plot("load_sharing_I").show()
-    assert opened[0].startswith("file://")
-    Path(opened[0].removeprefix("file://")).unlink()
+    found.plot("load_sharing_I", "transmission_error_I").show()
+    page = Path(opened[0].removeprefix("file://"))
+    assert page.read_text("utf-8").count("plotly.js v") == 1  # the library once for both
+    assert page.read_text("utf-8").count("Plotly.newPlot(") == 2
+    page.unlink()
 
 
 def test_drawings_are_exported(found, tmp_path):

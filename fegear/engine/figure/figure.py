@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fegear.engine.figure.items import Surface, TriangleField
 
@@ -124,13 +124,13 @@ class Figure:
         still = (TriangleField, Surface)
         return not any(isinstance(item, still) for panel in self.all_panels for item in panel.items)
 
-    def _repr_html_(self) -> str | None:
-        """Show it in a notebook, where a renderer has been imported (``import fegear.output.draw_plotly``)."""
-        return NOTEBOOK[0](self) if NOTEBOOK else None
+    def _repr_mimebundle_(self, **_wishes: object) -> dict[str, Any]:
+        """Show it in a notebook, where a renderer has been imported (``import fegear`` and a run do that)."""
+        return NOTEBOOK[0](self) if NOTEBOOK else {}
 
 
 #: What shows a figure in a notebook; the renderer puts itself here.
-NOTEBOOK: list[Callable[[Figure], str]] = []
+NOTEBOOK: list[Callable[[Figure], dict[str, Any]]] = []
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -162,6 +162,6 @@ class DeferredFigure:
         """Describe it."""
         return self.make()
 
-    def _repr_html_(self) -> str | None:
+    def _repr_mimebundle_(self, **_wishes: object) -> dict[str, Any]:
         """Show it in a notebook."""
-        return self.make()._repr_html_()
+        return self.make()._repr_mimebundle_()

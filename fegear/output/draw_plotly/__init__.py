@@ -7,8 +7,8 @@ stands for each on dark ground, so that a page changes between them by replacing
 from fegear.engine.figure import NOTEBOOK
 from fegear.output.draw_plotly.description import darker, plotly_json
 from fegear.output.draw_plotly.layout import template
-from fegear.output.draw_plotly.notebook import notebook_html
+from fegear.output.draw_plotly.notebook import notebook_bundle, page_html
 
-__all__ = ["darker", "notebook_html", "plotly_json", "template"]
+__all__ = ["darker", "notebook_bundle", "page_html", "plotly_json", "template"]
 
-NOTEBOOK[:] = [notebook_html]
+NOTEBOOK[:] = [notebook_bundle]
