@@ -1,12 +1,13 @@
 """Laws that every loaded pair must obey, on smooth made-up compliances: fast, and nothing is hidden by a mesh."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from smooth_tooth import SmoothTooth
 
 from fegear.contact.engagement import Engagement
 from fegear.contact.meshing import Meshing
@@ -21,41 +22,6 @@ from fegear.contact.transmission_error import (
 from fegear.errors import InputError, RangeError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.geometry.relief import EndRelief, roll_of_radius, tip_relief
-
-
-@dataclass(frozen=True)
-class SmoothTooth:
-    """A tooth that is softer at its tip, with exponentially fading, reciprocal neighbour coupling."""
-
-    gear: Gear
-    coupling: float = 0.2
-
-    reach = 3
-    power = 0.0
-    kinks = ()
-
-    @property
-    def log_slope(self):
-        return 2.0 / math.pi / self.gear.plane_modulus
-
-    def _s(self, radius):
-        return (np.asarray(radius) - self.gear.root_radius) / (self.gear.tip_radius - self.gear.root_radius)
-
-    def own(self, radius):
-        return (6.0 + 8.0 * self._s(radius) ** 2) / self.gear.plane_modulus
-
-    def reference_half_width(self, radius):
-        return np.full(np.shape(radius), 0.1 * self.gear.module)
-
-    def neighbour(self, k, radius_p, radius_q):
-        shape = (1.0 + 0.5 * self._s(radius_p)) * (1.0 + 0.5 * self._s(radius_q))
-        return 2.0 * self.coupling ** abs(k) * shape / self.gear.plane_modulus
-
-    def root_stress(self, k, radius_q, side):
-        return None
-
-    def describe(self):
-        return "made up"
 
 
 def gear(z, x=0.0, addendum=1.0, **tooth):

@@ -8,9 +8,10 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from exact_increments import exact_increments
 
 from fegear.dynamics.increments import dynamic_increments
-from fegear.dynamics.matrices import elements, static_forces
+from fegear.dynamics.matrices import static_forces
 from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train
 from fegear.errors import RangeError
 
@@ -72,37 +73,12 @@ def closed_form(omega, zeta_3=0.5):
         return complex(own), complex(cross)
 
 
-def exact_increments(train, omega):
-    """Q from the plain matrix equation A H = U and W = (g H - zeta)/C (2.38 to 2.44), in 50 digits."""
-    with mpmath.workdps(50):
-        mp, w = mpmath.mpf, mpmath.mpf(float(omega))
-        n, m = train.size, len(train.meshes)
-        A, G = mpmath.matrix(n, n), mpmath.matrix(m, n)
-        for i in range(n):
-            A[i, i] = -w * w * mp(float(train.inertia[i]))
-        for e in elements(train):
-            y = mpmath.mpc(mp(e.stiffness), w * mp(e.damping))
-            ends = [(e.a, mp(e.radius_a))] + ([(e.b, mp(e.radius_b))] if e.b >= 0 else [])
-            for p, rp in ends:
-                if e.mesh >= 0:
-                    G[e.mesh, p] = rp
-                for q, rq in ends:
-                    A[p, q] += y * rp * rq
-        Q = mpmath.matrix(m, m)
-        for j in range(m):
-            h = mpmath.lu_solve(A, G[j, :].T * mp(train.meshes[j].stiffness))
-            for i in range(m):
-                k, c = mp(train.meshes[i].stiffness), mp(train.meshes[i].damping)
-                Q[i, j] = (G[i, :] * h)[0] * (1 + mpmath.mpc(0, w * c / k)) - (1 if i == j else 0)
-        return np.array([[complex(Q[i, j]) for j in range(m)] for i in range(m)])
-
-
 def largest_error(train, frequencies):
     omega = 2 * np.pi * np.asarray(frequencies)
     q = dynamic_increments(train, omega)
     worst = 0.0
     for n, w in enumerate(omega):
-        exact = exact_increments(train, w)
+        exact = exact_increments(train, w, digits=50)
         worst = max(worst, float(np.max(np.abs(q[:, :, n] - exact) / np.abs(exact))))
     return worst
 

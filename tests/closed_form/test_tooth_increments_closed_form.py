@@ -5,7 +5,7 @@ effect that never acts changes nothing, and what the teeth carry adds up to what
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -13,6 +13,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from smooth_tooth import SmoothTooth
 
 from fegear.contact.engagement import Engagement, Loaded, RollGrid
 from fegear.contact.load_sharing import share_load
@@ -88,34 +89,6 @@ def test_each_pair_has_the_slope_of_its_own_load(problem):
 
 
 # ---- the springs of a mesh -------------------------------------------------------------------------------------------
-@dataclass(frozen=True)
-class SmoothTooth:
-    """A tooth that is softer at its tip and draws its neighbours along."""
-
-    gear: Gear
-
-    reach = 2
-    power = 0.0
-    kinks = ()
-
-    @property
-    def log_slope(self):
-        return 2.0 / math.pi / self.gear.plane_modulus
-
-    def _s(self, radius):
-        return (np.asarray(radius) - self.gear.root_radius) / (self.gear.tip_radius - self.gear.root_radius)
-
-    def own(self, radius):
-        return (6.0 + 8.0 * self._s(radius) ** 2) / self.gear.plane_modulus
-
-    def reference_half_width(self, radius):
-        return np.full(np.shape(radius), 0.1 * self.gear.module)
-
-    def neighbour(self, k, radius_p, radius_q):
-        shape = (1.0 + 0.5 * self._s(radius_p)) * (1.0 + 0.5 * self._s(radius_q))
-        return 2.0 * 0.2 ** abs(k) * shape / self.gear.plane_modulus
-
-
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3, 25.4e-3)
 PAIR = GearPair(GEAR, GEAR)
 LOAD = 9000.0
@@ -123,7 +96,7 @@ LOAD = 9000.0
 
 def engagement(amount, coupled, **changes):
     """Equal tip reliefs over most of the double contact."""
-    source = SmoothTooth(GEAR)
+    source = SmoothTooth(GEAR, reach=2)
     relief = tip_relief(GEAR, amount, length=2.2e-3)
     compliance = PairCompliance(PAIR, source, source, coupled, "load-dependent")
     return Engagement(compliance, driver_relief=relief, driven_relief=relief, **changes)

@@ -1,0 +1,43 @@
+"""A compliance that every test can write down: one tooth, softer at its tip, and its neighbours."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fegear.geometry import Gear
+
+
+@dataclass(frozen=True)
+class SmoothTooth:
+    """A tooth that is softer at its tip, with exponentially fading, reciprocal neighbour coupling."""
+
+    gear: Gear
+    coupling: float = 0.2
+    reach: int = 3
+
+    power = 0.0
+    kinks = ()
+
+    @property
+    def log_slope(self):
+        return 2.0 / math.pi / self.gear.plane_modulus
+
+    def _s(self, radius):
+        return (np.asarray(radius) - self.gear.root_radius) / (self.gear.tip_radius - self.gear.root_radius)
+
+    def own(self, radius):
+        return (6.0 + 8.0 * self._s(radius) ** 2) / self.gear.plane_modulus
+
+    def reference_half_width(self, radius):
+        return np.full(np.shape(radius), 0.1 * self.gear.module)
+
+    def neighbour(self, k, radius_p, radius_q):
+        shape = (1.0 + 0.5 * self._s(radius_p)) * (1.0 + 0.5 * self._s(radius_q))
+        return 2.0 * self.coupling ** abs(k) * shape / self.gear.plane_modulus
+
+    def root_stress(self, k, radius_q, side):
+        return None
+
+    def describe(self):
+        return "made up"
