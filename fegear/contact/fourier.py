@@ -111,11 +111,6 @@ class FourierSeries:
         """Amplitudes, n = 1..N (0-peak)."""
         return np.asarray(2.0 * np.abs(self.coefficients[1:]))
 
-    @property
-    def two_sided(self) -> NDArray[np.complex128]:
-        """c_-N to c_N, shape (2 N + 1, ...)."""
-        return np.concatenate([self.coefficients[:0:-1].conj(), self.coefficients])
-
     def evaluate(self, x: ArrayLike) -> Array:
         """The partial sum at x [m], shape of x followed by the series' own."""
         at = np.asarray(x, dtype=float)

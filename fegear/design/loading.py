@@ -196,19 +196,6 @@ class LoadingFunction:
             total = total + weight * plateau * np.sinc(plateau * orders) * ramp.spectrum_factor(width * orders)
         return np.asarray(total * np.exp(-2j * math.pi * orders * self.centre))
 
-    def asymptote(self, g: ArrayLike) -> NDArray[np.complex128]:
-        """What `spectrum` tends to at high frequency [m]: proportional to the slope at initiation (4.20)."""
-        orders = np.asarray(g, dtype=float)
-        total = np.zeros(orders.shape)
-        for weight, k, width, ramp in self.terms:
-            plateau = k * self.base_pitch
-            total = total + weight * plateau * np.sinc(plateau * orders) * ramp.slope * np.sinc(width * orders)
-        return np.asarray(total * np.exp(-2j * math.pi * orders * self.centre))
-
-    def envelope(self, g: ArrayLike) -> Array:
-        """Envelope of the high-frequency spectrum [m]: initial slope / (pi g)^2 (4.22), contact ratio 1 to 2."""
-        return np.asarray(self.initial_slope() / (math.pi * np.asarray(g, dtype=float)) ** 2)
-
 
 @dataclass(frozen=True, slots=True)
 class SlopeTradeOff:

@@ -189,10 +189,6 @@ class MeshExcitation:
 
         return replace(self, stiffness=tuple(bearing(j) for j in range(len(self.stiffness))), parting=False)
 
-    def at_phase(self, phase: float) -> MeshExcitation:
-        """The same gear pair at another phase at time zero [base pitches]."""
-        return replace(self, phase=phase)
-
     def widened(self, ratio: float) -> MeshExcitation:
         """Teeth so many times as wide, under a load so many times as large."""
         return replace(self, stiffness=tuple(k.scaled(ratio) for k in self.stiffness))

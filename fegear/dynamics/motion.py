@@ -198,10 +198,6 @@ class Trajectory:
         value, _ = self._at(time)
         return (value @ self.packed.approach.T) * self.packed.length_unit
 
-    def spring_forces(self, time: ArrayLike) -> Array:
-        """Elastic force of each slot of teeth [N], front slots and back flanks in order, shape (..., springs)."""
-        return self._springs(time)[0]
-
     def _springs(self, time: ArrayLike) -> tuple[Array, Array]:
         """Elastic force of each spring [N], and its stiffness in units."""
         p = self.packed

@@ -144,28 +144,6 @@ class Periodic:
         )
 
     @classmethod
-    def from_nodes(cls, breaks: ArrayLike, nodes: ArrayLike, values: ArrayLike, *, pitches: int = 1) -> Periodic:
-        """Polynomials through values at the same nodes of every piece (Gauss points, for example).
-
-        Parameters
-        ----------
-        breaks : array_like, shape (pieces + 1,)
-            Break points in periods, from 0 to 1.
-        nodes : array_like, shape (n,)
-            Nodes in (-1, 1), the same in every piece; n of at most 20.
-        values : array_like, shape (pieces, n)
-            Values there.
-        pitches : int
-            Base pitches in one period.
-        """
-        v, f = np.asarray(nodes, dtype=float), np.atleast_2d(np.asarray(values, dtype=float))
-        if v.ndim != 1 or v.size > 20 or f.shape[1] != v.size:
-            raise InputError("periodic.nodes", v.shape, f"must match the {f.shape[1]} values of each piece, at most 20")
-        legendre = np.linalg.solve(np.polynomial.legendre.legvander(v, v.size - 1), f.T).T
-        rows = np.asarray(np.linalg.solve(_to_legendre(v.size - 1), legendre.T).T, dtype=float)
-        return cls(np.asarray(breaks, dtype=float), rows, pitches)
-
-    @classmethod
     def joined(cls, parts: Sequence[Periodic]) -> Periodic:
         """One function after the other, each over one base pitch of its own.
 

@@ -16,11 +16,6 @@ if TYPE_CHECKING:
 
 #: Where fegear's own meshes come from.
 GENERATED = "generated"
-#: Boundaries of a sector, counterclockwise from the bore. A full fillet leaves no root_land, a sharp or chamfered tip
-#: no tip_rounding (which is the loaded side's only).
-BOUNDARIES = (
-    "bore", "side_b", "root_land", "fillet", "flank", "tip_rounding", "tip", "back_flank", "back_fillet", "side_a",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -218,14 +218,6 @@ class LoadedFlank:
         np.add.at(total, position, weight.sum(axis=1))
         return loads.reshape(2 * self.nodes, -1) / total
 
-    def deflections_at(self, arc: Array) -> Array:
-        """Vectors that pick the deflection against the normal at points of the run, shape (2 nodes, P)."""
-        s = np.atleast_1d(arc)
-        edge, xi, inward = self._inward(s)
-        pick = np.zeros((self.nodes, s.size))
-        pick[edge * self.order + np.arange(self.order + 1)[:, None], np.arange(s.size)] = lagrange(self.order, xi)
-        return np.concatenate([direction * pick for direction in inward])
-
 
 def loaded_flank(mesh: SectorMesh, elasticity: SectorElasticity, tooth: Tooth, margin: float) -> LoadedFlank:
     """Collect the loaded run: the right flank, and `margin` [modules] of a smooth fillet or tip rounding beside it."""

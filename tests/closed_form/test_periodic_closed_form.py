@@ -76,16 +76,6 @@ def test_fourier_series_of_straight_lines(values, n):
     assert Periodic.through_points(s, f).fourier(n) == pytest.approx(exact, abs=1e-12)
 
 
-def test_nodes_of_gauss():
-    nodes, _ = np.polynomial.legendre.leggauss(12)
-    breaks = np.array([0.0, 0.3, 1.0])
-    s = 0.5 * (breaks[:-1, None] + breaks[1:, None]) + 0.5 * np.diff(breaks)[:, None] * nodes
-    f = Periodic.from_nodes(breaks, nodes, np.where(s < 0.3, np.cos(s), np.sin(s)))
-    assert f(np.array([0.1, 0.29, 0.31, 0.9])) == pytest.approx(
-        np.array([np.cos(0.1), np.cos(0.29), np.sin(0.31), np.sin(0.9)])
-    )
-
-
 PITCH = 9e-3
 
 

@@ -12,12 +12,7 @@ import pytest
 
 from fegear.contact.engagement import Engagement
 from fegear.contact.fourier import effective_error, fourier_series, panels
-from fegear.contact.mark_series import (
-    linear_transmission_error,
-    profile_part,
-    reciprocal_by_convolution,
-    reciprocal_series,
-)
+from fegear.contact.mark_series import reciprocal_series
 from fegear.contact.pair_compliance import PairCompliance
 from fegear.contact.table_compliance import table_sources
 from fegear.contact.transmission_error import pair_stiffness, transmission_error
@@ -107,16 +102,6 @@ def test_series_converges_to_the_reciprocal_and_says_where_it_does_not():
     assert uneven.min() > 0
 
 
-def test_cut_convolutions_stop_where_the_paper_must_stop():
-    """|n| <= 64: 5e-4 in alpha_0 and a few per cent in small coefficients remain however many terms."""
-    s = pair_stiffness(engagement(), LOAD, harmonics=64)
-    exact = fourier_series(s.points, 1.0 / s.mesh, 64)
-    cut = reciprocal_by_convolution(fourier_series(s.points, s.mesh, 64), 60)
-    assert 1e-5 < abs(cut.mean / exact.mean - 1.0) < 2e-3
-    few = reciprocal_by_convolution(fourier_series(s.points, s.mesh, 64), 3)
-    assert few.mean == pytest.approx(reciprocal_series(s.points, s.mesh, 64, 3).series.mean, rel=2e-3)
-
-
 def test_transmission_error_is_load_times_reciprocal_stiffness():
     """(1.8) for unmodified teeth with all pairs of the path in contact."""
     e = engagement()
@@ -124,17 +109,6 @@ def test_transmission_error_is_load_times_reciprocal_stiffness():
     te = transmission_error(e, LOAD, 32)
     expected = fourier_series(s.points, LOAD / s.mesh, 32)
     np.testing.assert_allclose(te.series.coefficients, expected.coefficients, atol=1e-12 * float(expected.mean))
-
-
-def test_profile_part_by_convolution_and_pointwise():
-    """(1.22) to (1.26) against the pointwise product; the cut at 200 harmonics leaves 1e-3."""
-    s = pair_stiffness(engagement(), LOAD, harmonics=200)
-    m = 2e-6 * (s.x / s.x.max()) ** 2
-    exact = fourier_series(s.points, linear_transmission_error(s.pair, 0.0, m), 200)
-    got = profile_part(
-        fourier_series(s.points, 1 / s.mesh, 200), fourier_series(s.points, (s.pair * m).sum(axis=0), 200)
-    )
-    np.testing.assert_allclose(got.coefficients[:10], exact.coefficients[:10], atol=2e-3 * float(exact.mean))
 
 
 def test_a_plain_fft_converges_slowly_and_quadrature_does_not():
