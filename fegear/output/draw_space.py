@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _SIZE = (1400, 900)
+#: How much closer the camera stands than where a sphere around everything would fit.
+_ZOOM = 1.0
 
 
 def offscreen_pyvista() -> Any:
@@ -68,7 +70,13 @@ def draw_space(items: Sequence[Surface | Spot], camera: tuple[tuple[float, float
             boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
         )
         plotter.add_mesh(outline, color="black", line_width=2)
+    plotter.show_bounds(
+        grid="back", location="outer", xtitle="x [mm]", ytitle="y [mm]", ztitle="z [mm]", n_xlabels=4, n_ylabels=4,
+        n_zlabels=3, font_size=22, fmt="%.3g", use_3d_text=False,
+    )  # fmt: skip
     plotter.camera.position, plotter.camera.focal_point, plotter.camera.up = camera
+    plotter.reset_camera()  # keeps the direction, and everything in the picture
+    plotter.camera.zoom(_ZOOM)
     plotter.reset_camera_clipping_range()
     image = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()

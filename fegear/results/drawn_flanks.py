@@ -32,7 +32,7 @@ def tooth_contact_figures(
 ) -> tuple[Figure | DeferredFigure, ...]:
     """Describe all figures of one pair."""
     ellipses = (_ellipses(name, contact, bearing, load),) if bearing is not None and load is not None else ()
-    flanks = DeferredFigure(f"flanks_{name}", f"Flanks of pair {name} in mesh", partial(_flanks, name, contact))
+    flanks = DeferredFigure(f"flanks_{name}", f"Teeth of pair {name} in mesh", partial(_flanks, name, contact))
     return _transmission_error(name, contact), _pattern(name, contact, bearing), *ellipses, flanks
 
 
@@ -139,20 +139,21 @@ def _flanks(name: str, contact: ToothContact) -> Figure:
     middle = contact.phi_1.size // 2
     phi_1 = float(contact.phi_1[middle])
     phi_2 = float(contact.error[middle]) + contact.pair.ratio * phi_1
-    spot = Spot(contact.mesh.point[:, middle] * 1e3, "red")
+    spot = Spot(contact.mesh.point[:, middle] * 1e3, "red", "earliest contact")
     pitch, width = contact.pair.cut_pinion.pitch_radius * 1e3, contact.pair.pinion.face_width * 1e3
     camera = ((pitch - 1.2 * width, -2.2 * width, 1.8 * width), (pitch, 0.0, 0.0), (0.0, 0.0, 1.0))
     items: tuple[Surface | Spot, ...] = (*_surfaces(contact, phi_1, phi_2), spot)
     return Figure(
         f"flanks_{name}",
-        f"Flanks of pair {name} in mesh",
-        f"Pair {name}: pinion flanks (blue) and gear flanks (orange) in mesh; the red point is the earliest contact.",
+        f"Teeth of pair {name} in mesh",
+        f"Pair {name}: teeth of pinion and gear in mesh, in the pinion's frame at rest; the red point is the earliest "
+        "contact. Below the form circles the teeth are not drawn.",
         (Panel(Axis(), Axis(), items, height=1.25, camera=camera),),
     )
 
 
 def _surfaces(contact: ToothContact, phi_1: float, phi_2: float) -> list[Surface]:
-    """Some pinion and gear flanks in the fixed frame [mm]."""
+    """Some teeth of pinion and gear in the fixed frame [mm], from the form circle to the tip."""
     pair, flank, helicoid = contact.pair, contact.pair.flank, contact.pair.mating_flank
     a, b, g = pair.cut_pinion, pair.gear, pair.errors.shaft_angle
     along = np.linspace(-0.5, 0.5, _ALONG)
@@ -160,15 +161,24 @@ def _surfaces(contact: ToothContact, phi_1: float, phi_2: float) -> list[Surface
     found = []
     for k in range(-_BESIDE, _BESIDE + 1):
         turn = phi_1 - k * a.angular_pitch
-        x, y, z1 = flank.points(s, z)
-        x, y = np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y
-        found.append(Surface(np.stack([x, y, z1]) * 1e3, "blue"))
+        for x, y, z1 in _tooth(flank.points(s, z), a.twist * z - 0.5 * a.angular_pitch):
+            x1, y1 = np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y
+            found.append(Surface(np.stack([x1, y1, z1]) * 1e3, "blue", name="pinion"))
     r = np.linspace(max(b.form_radius, b.base_radius * (1.0 + 1e-9)), b.tip_radius, _ACROSS)
     t, z = np.meshgrid(helicoid.tangent_length(r), along * b.face_width + pair.axial_offset)
     for k in range(-_BESIDE, _BESIDE + 1):
         turn = phi_2 - k * b.angular_pitch
-        x, y, z2 = helicoid.points(t, z)
-        x, y = np.cos(turn) * x + np.sin(turn) * y, -np.sin(turn) * x + np.cos(turn) * y
-        fixed = np.stack([pair.centre_distance - x, -y * np.cos(g) - z2 * np.sin(g), z2 * np.cos(g) - y * np.sin(g)])
-        found.append(Surface(fixed * 1e3, "orange", 0.6))
+        for x, y, z2 in _tooth(helicoid.points(t, z), b.twist * z):
+            x2, y2 = np.cos(turn) * x + np.sin(turn) * y, -np.sin(turn) * x + np.cos(turn) * y
+            fixed = pair.centre_distance - x2, -y2 * np.cos(g) - z2 * np.sin(g), z2 * np.cos(g) - y2 * np.sin(g)
+            found.append(Surface(np.stack(fixed) * 1e3, "orange", 0.6, "gear"))
     return found
+
+
+def _tooth(flank: Array, middle: Array) -> list[Array]:
+    """A tooth from a flank, shape (3, along, across), and the azimuth of its middle: flanks with top land, and ends."""
+    x, y, z = flank
+    c, s = np.cos(2.0 * middle), np.sin(2.0 * middle)
+    other = np.stack([c * x + s * y, s * x - c * y, z])
+    ends = [np.stack([flank[:, end], other[:, end]], axis=1) for end in (0, -1)]
+    return [np.concatenate([flank, other[:, :, ::-1]], axis=2), *ends]

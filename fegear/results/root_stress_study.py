@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 _KEYS = ("teeth", "profile_shift", "rack_tip_radius", "load_position")
 #: Ratios beyond 1 -+ this have the full colour; height of a row of tiles; steps and end of the histogram.
 _FULL, _TILE, _BIN, _WIDEST = 0.4, 0.1, 0.05, 2.0
-#: Formulas stand so far apart beside each other over the number of teeth.
-_APART = 1.025
+#: Share of the room of a number of teeth in which the formulas stand beside each other.
+_LANES = 0.8
 _RATIO = "root stress, formula / FE"
 
 
@@ -220,20 +220,24 @@ def _tiles(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
 
 
 def _scatter(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
-    points = []
+    points, counts = [], np.unique(np.asarray(table["teeth"], dtype=float))
+    lane = _LANES / len(names)
     for number, name in enumerate(names):
         rows = table["formula"] == name
         found = zip(*(np.asarray(table[key], dtype=float)[rows] for key in _KEYS), strict=True)
         notes = tuple(
             f"{name}: {z:.0f} teeth, shift {x:.3g}, rack tip radius {r:.3g}, load at {p:.3g}" for z, x, r, p in found
         )
-        teeth = np.asarray(table["teeth"], dtype=float)[rows] * _APART ** (number - 0.5 * (len(names) - 1))
-        points.append(Points(teeth, ratio[rows], name, f"series:{number}", notes=notes))
+        teeth = np.searchsorted(counts, np.asarray(table["teeth"], dtype=float)[rows])
+        place = teeth + lane * (number - 0.5 * (len(names) - 1))
+        points.append(Points(place, ratio[rows], name, f"series:{number}", size=4.5, notes=notes))
+    ticks = tuple((float(k), f"{z:.0f}") for k, z in enumerate(counts))
+    edges = tuple(Mark("x", k + 0.5) for k in range(counts.size - 1))
     panel = Panel(
-        Axis("number of teeth, formulas beside each other", log=True),
+        Axis("number of teeth; formulas stand beside each other", ticks=ticks),
         Axis("formula / FE"),
         tuple(points),
-        (Mark("y", 1.0, "finite elements"),),
+        (*edges, Mark("y", 1.0, "finite elements")),
     )
     return Figure(
         "root_stress_ratios",

@@ -135,3 +135,20 @@ def test_logarithmic_axes_of_few_decades_have_plain_numbers_in_the_page():
 def test_an_empty_spectrum_has_no_limits_of_its_own():
     panel = Panel(Axis("x"), Axis("y", log=True), (Stems([], []),))
     assert panel.limits is None
+
+
+def test_teeth_in_space_are_whole_and_mirror_their_flank():
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.helicoid import InvoluteHelicoid
+    from fegear.results.drawn_flanks import _tooth
+
+    gear = HelicalGear(20, 5e-3, math.radians(20.0), math.radians(25.0), 40e-3, "right")
+    flank = InvoluteHelicoid.of(gear, "tooth")
+    radius, z = np.meshgrid(np.linspace(1.001 * gear.form_radius, gear.tip_radius, 5), np.linspace(-0.02, 0.02, 7))
+    whole, *ends = _tooth(flank.points(flank.tangent_length(radius), z), gear.twist * z)
+    assert whole.shape == (3, 7, 10)
+    assert [end.shape for end in ends] == [(3, 2, 5)] * 2
+    assert np.hypot(whole[0], whole[1]) == pytest.approx(np.concatenate([radius, radius[:, ::-1]], axis=1))
+    tips = np.arctan2(whole[1, :, 4:6], whole[0, :, 4:6])
+    assert tips[:, 0] - tips[:, 1] == pytest.approx(gear.tip_thickness_angle)
+    assert tips.mean(axis=1) == pytest.approx(gear.twist * z[:, 0], abs=1e-12)

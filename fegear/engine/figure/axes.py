@@ -70,6 +70,8 @@ class Axis:
     limits : (float, float), optional
         Where some curves would stretch it too far.
     second : Scale, optional
+    ticks : tuple of (float, str)
+        Places that bear words in place of numbers; what is drawn may stand between them.
     hidden : bool
         Without numbers: only the lines at the other axis's names.
     """
@@ -82,6 +84,7 @@ class Axis:
     whole: bool = False
     limits: tuple[float, float] | None = None
     second: Scale | None = None
+    ticks: tuple[tuple[float, str], ...] = ()
     hidden: bool = False
 
     def like(self, other: Axis) -> bool:

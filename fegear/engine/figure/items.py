@@ -220,11 +220,14 @@ class Surface(_Item):
     points : array_like, shape (3, M, N)
     role : str
     opacity : float
+    name : str
+        Entry of the legend, which surfaces of one name share.
     """
 
     points: ArrayLike
     role: str
     opacity: float = 1.0
+    name: str = ""
     ARRAYS: ClassVar[tuple[str, ...]] = ("points",)
 
 
@@ -234,6 +237,7 @@ class Spot(_Item):
 
     points: ArrayLike
     role: str
+    name: str = ""
     ARRAYS: ClassVar[tuple[str, ...]] = ("points",)
 
 

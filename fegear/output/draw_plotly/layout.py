@@ -126,6 +126,8 @@ def _axis(axis: Axis) -> Spec:
     if axis.categories:
         names = [rich(name) for name in axis.categories]
         made |= {"type": "category", "categoryarray": names, "range": [-0.5, len(names) - 0.5]}
+    if axis.ticks:
+        made |= {"tickvals": [at for at, _ in axis.ticks], "ticktext": [rich(word) for _, word in axis.ticks]}
     if axis.limits:
         made["range"] = [float(np.log10(end)) if axis.log else end for end in axis.limits]
     if axis.zero:

@@ -104,6 +104,8 @@ def _axis(axes: Any, axis: Axis, which: str, title: str) -> None:
     getattr(axes, f"set_{which}label")(title)
     if axis.categories:
         getattr(axes, f"set_{which}ticks")(range(len(axis.categories)), [words(name) for name in axis.categories])
+    if axis.ticks:
+        getattr(axes, f"set_{which}ticks")([at for at, _ in axis.ticks], [words(word) for _, word in axis.ticks])
     if axis.hidden:
         getattr(axes, f"{which}axis").set_visible(False)
         axes.spines["left" if which == "y" else "bottom"].set_visible(False)

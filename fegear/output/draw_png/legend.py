@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.engine.colours import look
-from fegear.engine.figure import Bars, Curve, Panel
+from fegear.engine.figure import Bars, Curve, Panel, Surface
 from fegear.output.draw_png.items import DASHES, SYMBOLS
 from fegear.output.shades import shade
 
@@ -39,7 +39,7 @@ def legend_entries(panels: Sequence[Panel]) -> dict[str, Any]:
             if not name or name in found:
                 continue
             style, colour = look(item.role), shade(item.role).light  # type: ignore[union-attr]
-            if isinstance(item, Bars):
+            if isinstance(item, (Bars, Surface)):
                 found[name] = Patch(color=colour)
             elif isinstance(item, Curve):
                 found[name] = Line2D(
