@@ -248,9 +248,7 @@ def test_without_plotly_the_page_says_what_to_install_and_keeps_everything_else(
     assert browser.complaints == []
     assert "run: pip install plotly" in browser.run(f"{plot('compliance_a')}.textContent")
     block = "document.querySelector('.data[data-file=\"tables/stiffness_a.csv\"]')"
-    assert (
-        browser.run(f"{block}.querySelector('tbody tr').cells.length") == 1 + 5
-    )  # it stands on its side
+    assert browser.run(f"{block}.querySelector('tbody tr').cells.length") == 1 + 5  # it stands on its side
 
 
 # ---- sweeps ------------------------------------------------------------------------------------------------------
