@@ -10,7 +10,8 @@ from fegear.engine.plan import make_plan
 from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
 from fegear.workbench.gear import Gear
-from fegear.workbench.keys import in_si, listed
+from fegear.workbench.keys import brief, in_si, listed
+from fegear.workbench.pair import Pair
 from fegear.workbench.run import run_scene
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.solution_cache import SolutionCache
     from fegear.workbench.keys import Force, Length, Speed, Torque
-    from fegear.workbench.pair import Pair
     from fegear.workbench.results import Results
 
 #: Mesh damping ratio when none is given: that of NASA TM-89901's dynamic model.
@@ -77,6 +77,8 @@ def _loaded(
     pair: Pair, torque: Torque | Iterable[Torque] | None, load: Force | Iterable[Force] | None
 ) -> dict[str, Any]:
     """The pair's document under its load or loads, along the line of action."""
+    if not isinstance(pair, Pair):
+        raise InputError("pair", repr(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
     if not pair.is_spur:
         raise InputError(
             "pair", f'"{pair.name}"', "is helical, and loaded teeth are computed for spur pairs",
@@ -98,7 +100,7 @@ def _loaded(
 
 def stiffness_table(
     gear: Gear,
-    radii: Iterable[Length] | None = None,
+    radii: Length | Iterable[Length] | None = None,
     *,
     positions: int | None = None,
     contact_half_width: Length | None = None,
@@ -111,7 +113,7 @@ def stiffness_table(
     Parameters
     ----------
     gear : Gear
-    radii : iterable of lengths, optional
+    radii : length or iterable of lengths, optional
         Where the load stands.
     positions : int, optional
         That many over the flank instead; 100 if neither is given.
@@ -128,7 +130,7 @@ def stiffness_table(
         Table ``stiffness_<gear>``.
     """
     part: dict[str, Any] = {"gear": gear.name}
-    given = {"radii": None if radii is None else list(radii), "positions": positions,
+    given = {"radii": None if radii is None else listed(radii) or [radii], "positions": positions,
              "contact_half_width": contact_half_width}  # fmt: skip
     part |= {key: value for key, value in given.items() if value is not None}
     scene = _scene("stiffness", {"gear": {gear.name: gear.keys}, "stiffness": part}, tolerance)
@@ -162,6 +164,8 @@ def root_stress(
         Tables ``crosscheck_root_stress_<gear>``, values ``<gear>.root_stress.<formula>.highest_ratio``.
     """
     found = [gears] if isinstance(gears, Gear) else list(gears)
+    if not found or not all(isinstance(gear, Gear) for gear in found):
+        raise InputError("gears", brief(gears), "must be gears", 'write fegear.Gear(20, "3 mm", name="z20")')
     names = [gear.name for gear in found]
     for name in names:
         if names.count(name) > 1:
@@ -243,7 +247,7 @@ def dynamic_factor(
     pair: Pair,
     *,
     torque: Torque,
-    speeds: Iterable[Speed] | Mapping[str, Any],
+    speeds: Speed | Iterable[Speed] | Mapping[str, Any],
     damping_ratio: float = DAMPING_RATIO,
     train: Mapping[str, Any] | None = None,
     dynamics: Mapping[str, Any] | None = None,
@@ -259,7 +263,7 @@ def dynamic_factor(
     pair : Pair
     torque : torque
         On the driver.
-    speeds : iterable of speeds, or mapping
+    speeds : speed, iterable of speeds, or mapping
         Of the driver; a mapping as in a case file, ``{"start": "2000 rpm", "stop": "16000 rpm", "count": 57}``.
     damping_ratio : float
         Of the mesh. The default is that of NASA TM-89901; measure or compare before you promise anything.
@@ -282,6 +286,6 @@ def dynamic_factor(
         "mesh": {pair.name: {"driver": "driver", "driven": "driven", "damping_ratio": damping_ratio}},
         "torque": {"driver": torque}, "balance": "driven",
     }  # fmt: skip
-    several = None if hasattr(speeds, "keys") else listed(speeds)
-    document["dynamics"] = {"speeds": speeds if several is None else several, **(dynamics or {})}
+    several = speeds if hasattr(speeds, "keys") else listed(speeds) or [speeds]
+    document["dynamics"] = {"speeds": several, **(dynamics or {})}
     return _ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache)

@@ -30,7 +30,7 @@ def run(
     case: str | os.PathLike[str] | Mapping[str, Any],
     changes: Mapping[str, Any] | None = None,
     *,
-    results: Sequence[str] | None = None,
+    results: str | Sequence[str] | None = None,
     progress: bool | None = None,
     scheduler: str | None = None,
     cache: SolutionCache | None = None,
@@ -43,7 +43,7 @@ def run(
         A case file, its text (which has more than one line), or its tables as a mapping.
     changes : mapping of str to object, optional
         Keys of the case that are changed, ``{"pair.I.torque": "100 N*m", "gear.a.teeth": 30}``.
-    results : sequence of str, optional
+    results : str or sequence of str, optional
         What to ask for in place of the case's own ``results``.
     progress : bool, optional
         Whether a progress bar is shown; by default on a terminal and in a notebook.
@@ -69,7 +69,8 @@ def run(
     >>> found.values["I.te_peak_to_peak"]
     >>> found.tables["transmission_error_I"].to_pandas()
     """
-    wanted = dict(changes or {}) | ({} if results is None else {"results": list(results)})
+    asked = [results] if isinstance(results, str) else results
+    wanted = dict(changes or {}) | ({} if asked is None else {"results": list(asked)})
     return run_scene(_scene(case, wanted), progress=progress, scheduler=scheduler, cache=cache)
 
 

@@ -77,6 +77,10 @@ def test_quantities_are_texts_pint_or_si(module, pair):
         (lambda: fegear.Pair(fegear.Gear(23, "3 mm"), "wheel"), "is no fegear.Gear"),
         (lambda: fegear.Pair(fegear.Gear(23, "3 mm"), fegear.Gear(30, "3 mm"), "60 mm"), "jams the teeth"),
         (lambda: fegear.root_stress([fegear.Gear(23, "3 mm")] * 2), "is the name of several gears"),
+        (lambda: fegear.root_stress([]), "must be gears"),
+        (lambda: fegear.root_stress("z20"), "must be gears"),
+        (lambda: fegear.transmission_error(fegear.Gear(23, "3 mm"), torque=90.0), "is no fegear.Pair"),
+        (lambda: fegear.Gear(23, 3), "a module of 3 mm is 3e-3 m in SI"),
     ],
 )
 def test_what_cannot_be_is_refused_where_it_is_described(make, sentence):
@@ -150,7 +154,7 @@ def test_twins_get_reliefs_of_their_own():
 
 def test_dynamic_factor_is_the_case_s(pair):
     speeds = ["9000 rpm"]
-    found = fegear.dynamic_factor(pair, torque="90 N*m", speeds=speeds)
+    found = fegear.dynamic_factor(pair, torque="90 N*m", speeds=speeds[0])
     train = {
         "body": {"driver": {"gears": ["pinion"]}, "driven": {"gears": ["wheel"]}},
         "mesh": {"I": {"driver": "driver", "driven": "driven", "damping_ratio": 0.1}},

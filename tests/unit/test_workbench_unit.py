@@ -61,7 +61,7 @@ def test_a_case_is_a_file_a_text_or_a_mapping(found):
     for case in (str(CASE), text, tomllib.loads(text)):
         again = fegear.run(case, QUICK, results=["transmission-error"])
         assert again.values["I.te_mean"].si == found.values["I.te_mean"].si
-    assert fegear.run(text, {"gear.pinion.teeth": 24}, results=["geometry"]).scene.text.startswith("# changed: gear.")
+    assert fegear.run(text, {"gear.pinion.teeth": 24}, results="geometry").scene.text.startswith("# changed: gear.")
 
 
 def test_the_mapping_of_the_caller_stays_as_it_was():
