@@ -175,11 +175,12 @@ def _smallest_parts(matrices: Array, number: Index, leaf: Index, depth: int, fre
 
 def _joined(one: tuple[Index, Array], other: tuple[Index, Array]) -> tuple[Index, Array]:
     every = np.union1d(one[0], other[0])
-    stiffness = np.zeros((every.size, every.size))
+    n = every.size
+    entries = np.zeros(n * n)
     for ids, block in (one, other):
         at = np.searchsorted(every, ids)
-        stiffness[at[:, None], at] += block
-    return every, stiffness
+        entries[(at[:, None] * n + at).reshape(-1)] += block.reshape(-1)  # takes two thirds of the time of two indices
+    return every, entries.reshape(n, n)
 
 
 def _reduced(
