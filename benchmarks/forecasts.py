@@ -6,6 +6,7 @@ in a run. Processor seconds; tasks below a twentieth of a second count as a twen
 
 from __future__ import annotations
 
+import itertools
 import os
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from pathlib import Path
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.plan_text import forecast_seconds
+from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).resolve().parents[1] / "cases"
@@ -33,13 +35,11 @@ def measure(path: Path) -> list[tuple[str, float, float]]:
     """Task, seconds foretold and seconds taken."""
     scene = read_scene(path)
     plan = make_plan(scene, STAGES)
-    done: dict = {}
-    rows = []
-    for step, foretold in zip(plan.steps, forecast_seconds(scene, plan), strict=True):
-        start = time.process_time()
-        done[step.task] = step.stage.run(scene, step.task.subject, done, lambda _fraction: None)
-        rows.append((str(step.task), foretold or 0.0, time.process_time() - start))
-    return rows
+    ends = [time.process_time()]
+    run_plan(scene, plan, found=lambda _task, _outcome: ends.append(time.process_time()))
+    foretold = forecast_seconds(scene, plan)
+    taken = [end - start for start, end in itertools.pairwise(ends)]
+    return [(str(step.task), f or 0.0, t) for step, f, t in zip(plan.steps, foretold, taken, strict=True)]
 
 
 def main() -> None:

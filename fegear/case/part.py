@@ -19,8 +19,9 @@ class Part(BaseModel):
     """A table of a case file: unknown keys are refused, values are not converted silently, nothing changes later."""
 
     model_config = ConfigDict(
-        extra="forbid", strict=True, frozen=True, allow_inf_nan=False, arbitrary_types_allowed=True
-    )
+        extra="forbid", strict=True, frozen=True, allow_inf_nan=False, arbitrary_types_allowed=True,
+        defer_build=True,  # the whole case is built once when the first is read, not every part of it besides
+    )  # fmt: skip
 
 
 def refuse(rule: str, remedy: str = "", *, value: object = None, key: str = "") -> PydanticCustomError:

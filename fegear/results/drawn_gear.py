@@ -94,11 +94,11 @@ def deformed_figure(name: str, influence: GearInfluence, line_load: float) -> Fi
     low, high = gear.root_radius * 1e3 - 1.8 * m, gear.tip_radius * 1e3 + 0.5 * m
     shown = whole.triangles[:, near[whole.triangles].any(axis=0)]
     finer = np.hstack([shown[[a, b, c]] for a, b, c in ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))])
+    undeformed = outline(edges(rest, whole.outline), "", "ink", 0.5)
     panels = [
         Panel(
             Axis("x", "mm", limits=(-half, half)), Axis("y", "mm", limits=(centre - half, centre + half)),
-            (TriangleField(points, triangles, fields["von_mises"], top, "von Mises stress", "MPa"),
-             outline(edges(rest, whole.outline), "", "ink", 0.5)),
+            (TriangleField(points, triangles, fields["von_mises"], top, "von Mises stress", "MPa"), undeformed),
             title=title, height=1.26, equal=True,
         )
         for half, centre, triangles, title in (
