@@ -31,9 +31,11 @@ def export(
         scene = read_scene(case, overrides or ())
         target = out or default_folder(scene.name, "_export")
         with whole_or_nothing(target) as scratch:
-            written = export_gears(scene, scratch, gear or list(scene.gears), formats)
+            written = export_gears(scene, scratch, gear or (), formats)
     except KeyboardInterrupt:
         leave(INTERRUPTED, 130)
-    for name in written:
+    for name in written.files:
         voice.say(f"Wrote {target / name}")
-    voice.tell({"folder": str(target), "files": written})
+    for remark in written.remarks:
+        voice.note(remark)
+    voice.tell({"folder": str(target), "files": written.files, "remarks": written.remarks})

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fegear.arrays import Array
     from fegear.geometry import Gear, Tooth
-    from fegear.geometry.curves import Curve
+    from fegear.geometry.relieved_outline import Drawn
 
 _LARGEST_COUNT = 1 << 14
 
 
-def along(curve: Curve, tolerance: float) -> Array:
+def along(curve: Drawn, tolerance: float) -> Array:
     """Points on a curve whose chords stay within `tolerance` [modules] of it, ends included, shape (2, N)."""
     count = 8
     while True:
@@ -36,18 +38,30 @@ def turned(points: Array, angle: float) -> Array:
     return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
 
 
-def tooth_outline(tooth: Tooth, tolerance: float = 1e-4) -> Array:
-    """One tooth from the middle of its left space over the tip to the middle of its right space [modules], (2, N)."""
-    pieces = [along(curve, tolerance) for curve in tooth.outline.values()]
-    right = np.hstack([pieces[0], *[piece[:, 1:] for piece in pieces[1:]]])
+def tooth_outline(tooth: Tooth, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:
+    """One tooth from the middle of its left space over the tip to the middle of its right space [modules], (2, N).
+
+    Parameters
+    ----------
+    tooth : Tooth
+    tolerance : float
+        How far chords may lie off the curves [modules].
+    pieces : sequence of Drawn, optional
+        Another right half than the generated one, see `relieved_outline`.
+    """
+    lines = [along(curve, tolerance) for curve in pieces or tooth.outline.values()]
+    right = np.hstack([lines[0], *[line[:, 1:] for line in lines[1:]]])
     right[0, -1] = 0.0  # the tooth's centre line, free of round-off
     left = right * np.array([[-1.0], [1.0]])
     return np.hstack([left, right[:, -2::-1]])
 
 
-def gear_outline(gear: Gear, tolerance: float = 1e-4) -> Array:
-    """The closed outline of all teeth [m], clockwise from tooth 0's left space; the first point is not repeated."""
-    one = tooth_outline(gear.tooth, tolerance)[:, :-1] * gear.module
+def gear_outline(gear: Gear, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:
+    """The closed outline of all teeth [m], clockwise from tooth 0's left space; the first point is not repeated.
+
+    Parameters as for `tooth_outline`.
+    """
+    one = tooth_outline(gear.tooth, tolerance, pieces)[:, :-1] * gear.module
     pitch = 2.0 * math.pi / gear.teeth
     return np.hstack([turned(one, k * pitch) for k in range(gear.teeth)])
 

@@ -132,7 +132,7 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
         If a file is missing or has not what it is named for.
     """
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
-    first, second = (_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
+    first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
     own = EffectsPart(**{effect: getattr(effects, effect) for effect in LOAD_SHARING})
     table = pair_compliance_table(scene, name) if part.compliance.source == "table" else None
     nominal = part.normal_load(pair) or math.nan
@@ -144,7 +144,8 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
     )  # fmt: skip
 
 
-def _flanks(scene: Scene, gear: str) -> Flanks:
+def gear_flanks(scene: Scene, gear: str) -> Flanks:
+    """What a case says of the flanks of a gear; data of effects that are off may be wrong."""
     part, effects = scene.case.gear[gear], scene.case.effects
     tables: tuple[TabulatedRelief, ...] = ()
     spacing, wrong = np.empty(0), {}

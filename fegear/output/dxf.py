@@ -10,6 +10,7 @@ import numpy as np
 from fegear.geometry.curves import Arc, Line
 from fegear.geometry.fillet import ProtuberanceFillet
 from fegear.geometry.outline import gear_outline, tooth_outline, turned
+from fegear.geometry.relieved_outline import relieved_outline
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,7 +18,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.geometry import Gear
-    from fegear.geometry.curves import Curve
+    from fegear.geometry.relief import Relief
+    from fegear.geometry.relieved_outline import Drawn
 
     Array = NDArray[np.float64]
 
@@ -25,19 +27,23 @@ if TYPE_CHECKING:
 CHORD_TOLERANCE = 1e-4
 SPLINE_TOLERANCE = 1e-8
 _MM = 1e3
+AS_GENERATED = "as generated, without relief"
+#: Splines of pieces by the piece's id: one tooth's serve all.
+Splines = dict[int, tuple["Array", "Array"]]
 
 
-def _drawing() -> tuple[Any, Any]:
+def _drawing(flanks: str) -> tuple[Any, Any]:
     import ezdxf
     from ezdxf import units
 
     document = ezdxf.new("R2010", units=units.MM)
+    document.header.custom_vars.append("FLANKS", flanks)
     for layer, colour in (("OUTLINE", 7), ("BORE", 5)):
         document.layers.add(layer, color=colour)
     return document, document.modelspace()
 
 
-def spline_of(curve: Curve, tolerance: float = SPLINE_TOLERANCE) -> tuple[Array, Array]:
+def spline_of(curve: Drawn, tolerance: float = SPLINE_TOLERANCE) -> tuple[Array, Array]:
     """Knots and control points [modules] of the quintic B-spline through a curve, (M + 6,) and (M, 2).
 
     Control points are doubled until the spline stays within `tolerance` of the curve between its nodes.
@@ -59,7 +65,7 @@ def _add_polyline(space: Any, points: Array, layer: str) -> None:
     space.add_lwpolyline([(x, y) for x, y in points.T], close=True, dxfattribs={"layer": layer})
 
 
-def _add_curve(space: Any, curve: Curve, scale: float, turn: float, *, mirrored: bool) -> None:
+def _add_curve(space: Any, curve: Drawn, scale: float, turn: float, *, mirrored: bool, known: Splines) -> None:
     """Add one piece of the outline as the entity that holds it best, mirrored about +y and turned clockwise."""
     side = np.array([[-1.0 if mirrored else 1.0], [1.0]])
 
@@ -69,7 +75,7 @@ def _add_curve(space: Any, curve: Curve, scale: float, turn: float, *, mirrored:
     layer = {"layer": "OUTLINE"}
     if isinstance(curve, ProtuberanceFillet):  # its curvature jumps, which one spline would round off
         for piece in (curve.trochoid, curve.involute):
-            _add_curve(space, piece, scale, turn, mirrored=mirrored)
+            _add_curve(space, piece, scale, turn, mirrored=mirrored, known=known)
     elif isinstance(curve, Line):
         a, b = place(curve.points(np.array([curve.start, curve.end]))).T
         space.add_line(tuple(a), tuple(b), dxfattribs=layer)
@@ -81,13 +87,17 @@ def _add_curve(space: Any, curve: Curve, scale: float, turn: float, *, mirrored:
         start, end = math.degrees(first - turn), math.degrees(last - turn)
         space.add_arc(tuple(centre), curve.radius * scale, start, end, dxfattribs=layer)
     else:
-        knots, control = spline_of(curve)
+        if id(curve) not in known:
+            known[id(curve)] = spline_of(curve)
+        knots, control = known[id(curve)]
         spline = space.add_spline(degree=5, dxfattribs=layer)
         spline.control_points = [(x, y, 0.0) for x, y in place(control.T).T]
         spline.knots = knots.tolist()
 
 
-def write_dxf(gear: Gear, folder: Path, name: str) -> list[Path]:
+def write_dxf(
+    gear: Gear, folder: Path, name: str, relief: Relief | None = None, flanks: str = AS_GENERATED
+) -> list[Path]:
     """Write ``<name>_{tooth,gear}_{polyline,spline}.dxf``.
 
     Parameters
@@ -96,6 +106,10 @@ def write_dxf(gear: Gear, folder: Path, name: str) -> list[Path]:
     folder : Path
     name : str
         Name of the gear.
+    relief : Relief, optional
+        What is ground off both flanks of every tooth.
+    flanks : str
+        What the drawings hold, for their property ``FLANKS``.
 
     Returns
     -------
@@ -103,7 +117,9 @@ def write_dxf(gear: Gear, folder: Path, name: str) -> list[Path]:
         The tooth is drawn as its sector down to the bore, +y along its centre line; the gear with its bore circle.
     """
     bore, pitch, scale = gear.bore_radius * _MM, 2.0 * math.pi / gear.teeth, gear.module * _MM
-    sector = tooth_outline(gear.tooth, CHORD_TOLERANCE) * scale
+    pieces = list(gear.tooth.outline.values()) if relief is None else relieved_outline(gear, relief)
+    sector = tooth_outline(gear.tooth, CHORD_TOLERANCE, pieces) * scale
+    known: Splines = {}
     ends = turned(np.array([[0.0], [bore]]), pitch / 2), turned(np.array([[0.0], [bore]]), -pitch / 2)
     arc = np.linspace(pitch / 2, -pitch / 2, 33)
     written = []
@@ -112,30 +128,30 @@ def write_dxf(gear: Gear, folder: Path, name: str) -> list[Path]:
         written.append(folder / f"{name}_{part}.dxf")
         document.saveas(written[-1])
 
-    document, space = _drawing()
+    document, space = _drawing(flanks)
     _add_polyline(space, np.hstack([sector, bore * np.stack([np.sin(arc), np.cos(arc)])]), "OUTLINE")
     save(document, "tooth_polyline")
 
-    document, space = _drawing()
-    _add_polyline(space, gear_outline(gear, CHORD_TOLERANCE) * _MM, "OUTLINE")
+    document, space = _drawing(flanks)
+    _add_polyline(space, gear_outline(gear, CHORD_TOLERANCE, pieces) * _MM, "OUTLINE")
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
     save(document, "gear_polyline")
 
-    document, space = _drawing()
-    for curve in gear.tooth.outline.values():
+    document, space = _drawing(flanks)
+    for curve in pieces:
         for mirrored in (False, True):
-            _add_curve(space, curve, scale, 0.0, mirrored=mirrored)
+            _add_curve(space, curve, scale, 0.0, mirrored=mirrored, known=known)
     for end, corner in zip(ends, (sector[:, -1], sector[:, 0]), strict=True):
         space.add_line(tuple(end[:, 0]), tuple(corner), dxfattribs={"layer": "OUTLINE"})
     low, high = 90.0 - math.degrees(pitch) / 2, 90.0 + math.degrees(pitch) / 2
     space.add_arc((0.0, 0.0), bore, low, high, dxfattribs={"layer": "BORE"})
     save(document, "tooth_spline")
 
-    document, space = _drawing()
+    document, space = _drawing(flanks)
     for k in range(gear.teeth):
-        for curve in gear.tooth.outline.values():
+        for curve in pieces:
             for mirrored in (False, True):
-                _add_curve(space, curve, scale, k * pitch, mirrored=mirrored)
+                _add_curve(space, curve, scale, k * pitch, mirrored=mirrored, known=known)
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
     save(document, "gear_spline")
     return written

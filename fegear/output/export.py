@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.case.names import nearest
 from fegear.errors import InputError
+from fegear.models.described_relief import described_relief
 from fegear.models.settings import mesh_settings
 from fegear.models.tooth_mesh import own_sector_mesh
-from fegear.output.dxf import write_dxf
+from fegear.output.dxf import AS_GENERATED, write_dxf
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
@@ -20,42 +22,88 @@ if TYPE_CHECKING:
 FORMATS = ("dxf", "msh", "vtu", "inp")
 
 
-def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str) -> list[str]:
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """Files of an export and what they leave out.
+
+    Parameters
+    ----------
+    files : tuple of str
+        Names of the files.
+    remarks : tuple of str
+        Sentences for the user.
+    """
+
+    files: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+
+def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str) -> Exported:
     """Write every format of every named gear.
+
+    Drawings hold the flanks with the relief that the case gives them; meshes hold the generated flanks, because relief
+    enters fegear's own contact as a distance, not as a change of the mesh. Helical gears are left out.
 
     Parameters
     ----------
     scene : Scene
     folder : Path
     names : sequence of str
-        Gears of the scene.
+        Gears of the scene; none for all of them.
     formats : str
         Formats separated by commas.
-
-    Returns
-    -------
-    list of str
-        Names of the files.
 
     Raises
     ------
     InputError
-        If a gear or a format is unknown.
+        If a gear or a format is unknown, or nothing can be written because all gears are helical.
     """
     wanted = {part.strip() for part in formats.split(",") if part.strip()}
     for one in sorted(wanted.difference(FORMATS)):
         raise InputError("--format", f'"{one}"', "is no format that fegear writes", nearest(one, FORMATS))
     if not wanted:
         raise InputError("--format", f'"{formats}"', "names no format", f"choose from {', '.join(FORMATS)}")
-    written: list[Path] = []
+    every = [*scene.gears, *scene.helical_gears]
     for name in names:
-        if name not in scene.gears:
-            raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, scene.gears))
-        if "dxf" in wanted:
-            written += write_dxf(scene.gears[name], folder, file_name(name))
-        if wanted.difference({"dxf"}):
-            from fegear.output.mesh_export import write_meshes
+        if name not in every:
+            raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, every))
+    spur = [name for name in names or every if name in scene.gears]
+    helical = [name for name in names or every if name in scene.helical_gears]
+    if not spur:
+        which = "is helical" if len(helical) == 1 else "are helical"
+        remedy = "only spur gears can be exported: a helical gear is described by its flanks, without root and bore"
+        raise InputError("--gear", ", ".join(helical), which, remedy)
+    written: list[Path] = []
+    remarks = [f"Gear {name} is helical: nothing is written for it." for name in helical]
+    for name in spur:
+        files, left_out = _export_gear(scene, folder, name, wanted)
+        written += files
+        remarks += left_out
+    return Exported(tuple(path.name for path in written), tuple(remarks))
 
-            settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
-            written += write_meshes(scene.gears[name], folder, file_name(name), wanted, settings, mesh)
-    return [path.name for path in written]
+
+def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tuple[list[Path], list[str]]:
+    """Write the wanted formats of a spur gear: files, and remarks on its relief."""
+    found = described_relief(scene, name)
+    relieved = scene.case.gear[name].relief is not None
+    written: list[Path] = []
+    remarks = []
+    if "dxf" in wanted:
+        flanks = AS_GENERATED if found.relief is None else "with the relief of the case, both flanks"
+        if found.pair:
+            flanks += f", as in pair {found.pair}"
+            remarks.append(f"Gear {name}, DXF: relief as in pair {found.pair}; in other pairs it would end elsewhere.")
+        if found.left_out:
+            remarks.append(f"Gear {name}, DXF: flanks without relief, because {found.left_out}.")
+        written += write_dxf(scene.gears[name], folder, file_name(name), found.relief, flanks)
+    meshes = sorted(wanted.difference({"dxf"}))
+    if meshes:
+        from fegear.output.mesh_export import write_meshes
+
+        settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
+        written += write_meshes(scene.gears[name], folder, file_name(name), set(meshes), settings, mesh)
+        if relieved:
+            remarks.append(f"Gear {name}, {', '.join(meshes)}: flanks as generated, without the relief of the case.")
+    if scene.case.gear[name].spacing_errors is not None:
+        remarks.append(f"Gear {name}: teeth evenly spaced, without the spacing errors of the case.")
+    return written, remarks

@@ -8,6 +8,7 @@ import numpy as np
 
 from fegear.fem.loaded_gear import loaded_gear, nodal_fields
 from fegear.fem.mesh_files import write_mesh_file
+from fegear.output.dxf import AS_GENERATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,7 +50,11 @@ def write_inp(path: Path, gear: Gear, whole: WholeGear, forces: Array) -> None:
     """
     points, width = whole.points * gear.module * _MM, gear.face_width * _MM
     kind = "CPE6" if gear.plane_assumption == "strain" else "CPS6"
-    out = ["*HEADING", f"Gear of {gear.teeth} teeth, module {gear.module * _MM:.9g} mm; mm, N, MPa", "*NODE, NSET=ALL"]
+    out = [
+        "*HEADING",
+        f"Flanks {AS_GENERATED}. Gear of {gear.teeth} teeth, module {gear.module * _MM:.9g} mm; mm, N, MPa",
+        "*NODE, NSET=ALL",
+    ]
     out += [f"{i}, {x:.12g}, {y:.12g}, 0" for i, (x, y) in enumerate(points.T, start=1)]
     out.append(f"*ELEMENT, TYPE={kind}, ELSET=GEAR")
     out += [f"{i}, " + ", ".join(map(str, e)) for i, e in enumerate((whole.triangles + 1).T.tolist(), start=1)]
@@ -102,9 +107,14 @@ def write_meshes(
     if "msh" in formats:
         written.append(folder / f"{name}.msh")
         write_mesh_file(written[-1], points, whole.triangles, whole.boundaries, {})
+        written[-1].write_text(
+            f"$Comments\nFlanks {AS_GENERATED}.\n$EndComments\n{written[-1].read_text('utf-8')}", "utf-8"
+        )
     if "vtu" in formats:
         written.append(folder / f"{name}.vtu")
         write_mesh_file(written[-1], points, whole.triangles, {}, nodal_fields(gear, whole, field, 1e3))
+        head, _, rest = written[-1].read_bytes().partition(b"\n")
+        written[-1].write_bytes(head + f"\n<!-- Flanks {AS_GENERATED}. -->\n".encode() + rest)
     if "inp" in formats:
         written.append(folder / f"{name}.inp")
         write_inp(written[-1], gear, whole, field.forces)

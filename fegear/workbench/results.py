@@ -210,5 +210,5 @@ class Results(Found):
 
         target = Path(folder)
         with whole_or_nothing(target, "folder") as scratch:
-            written = export_gears(self.scene, scratch, gears or tuple(self.scene.gears), formats)
-        return [target / name for name in written]
+            written = export_gears(self.scene, scratch, gears, formats)
+        return [target / name for name in written.files]
