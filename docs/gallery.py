@@ -34,7 +34,9 @@ _ROWS = 8
 #: Characters of a case's comment after which no further sentence of it is on the gallery's first page.
 _ABOUT = 200
 #: Pages outside docs/ that belong to the site, and where links to them are found.
-_OUTSIDE = {"index.md": ROOT / "README.md", "meshes.md": ROOT / "meshes" / "README.md"}
+_OUTSIDE = {"index.md": ROOT / "README.md", "meshes.md": ROOT / "meshes" / "README.md"} | {
+    f"{name.lower()}.md": ROOT / f"{name}.md" for name in ("CONTRIBUTING", "SECURITY", "CHANGELOG")
+}
 
 
 def cases() -> list[Path]:
@@ -173,6 +175,7 @@ def on_files(files, config):
     files.append(File.generated(config, "references.md", content=references()))
     for name, source in _OUTSIDE.items():
         files.append(File.generated(config, name, content=source.read_text("utf-8")))
+    files.append(File.generated(config, "CITATION.cff", content=(ROOT / "CITATION.cff").read_text("utf-8")))
     index = ["# Gallery", "", "Each page is one file of `cases/` and what `fegear run` makes of it.", ""]
     for path in cases():
         index.append(_card(path))
@@ -187,8 +190,8 @@ def on_files(files, config):
 
 def on_page_markdown(markdown, page, **_others):
     """Let links that hold in the repository hold in the site."""
-    if page.file.src_uri == "index.md":
-        markdown = markdown.replace("](docs/", "](")
+    if page.file.src_uri in _OUTSIDE and page.file.src_uri != "meshes.md":  # they stand at the top of the tree
+        markdown = re.sub(r"\]\(([A-Z]+)\.md", lambda m: f"]({m[1].lower()}.md", markdown.replace("](docs/", "]("))
     top = "../" * page.file.src_uri.count("/")
     markdown = re.sub(r"\]\((?:\.\./)+meshes/README\.md\)", f"]({top}meshes.md)", markdown)
     return re.sub(r"\]\((?:\.\./)*cases/(\w+)\.toml\)", rf"]({top}gallery/\1.md)", markdown)

@@ -11,6 +11,7 @@ import typer
 
 import fegear
 from fegear.commands.common import INTERRUPTED, leave
+from fegear.commands.compare import compare
 from fegear.commands.cost import cost
 from fegear.commands.effects import effects
 from fegear.commands.export import export
@@ -19,6 +20,7 @@ from fegear.commands.new import new
 from fegear.commands.plan import plan
 from fegear.commands.results import results
 from fegear.commands.run import run
+from fegear.commands.schema import schema
 from fegear.commands.sweep import sweep
 from fegear.errors import NO_ROOM, FegearError
 from fegear.streams import give_up
@@ -54,10 +56,12 @@ COMMANDS = (
     (results, "What a case can ask for."),
     (run, "Compute a case: tables, pictures, report."),
     (plan, "What a run would compute, why, and how long it takes."),
+    (compare, "Two runs or two cases held against each other."),
     (sweep, "A case over a grid of values."),
     (effects, "What each effect changes in a case."),
     (cost, "What accuracy costs in time."),
     (export, "Drawings and meshes for other programs."),
+    (schema, "What editors need to complete and check case files."),
 )
 
 for _command, _short in COMMANDS:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from fegear.case.part import Number, Part, PositiveNumber, PositiveSpeed, quantity, refuse
+from fegear.case.part import Number, Part, PositiveNumber, PositiveSpeed, quantity, refuse, spelt_also
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,6 +19,8 @@ Viscosity = Annotated[float, quantity("viscosity", positive=True)]
 
 class SpeedsPart(Part):
     """``speeds = { start, stop, count }``, evenly spaced, or a list."""
+
+    model_config = spelt_also(lambda table: table["properties"]["values"])
 
     values: Annotated[list[PositiveSpeed], Field(min_length=1)] | None = None
     start: PositiveSpeed | None = None

@@ -19,6 +19,7 @@ from fegear.case.part import (
     PositivePressure,
     at,
     refuse,
+    spelt_also,
 )
 from fegear.case.relief import ReliefPart, SpacingErrorsPart
 from fegear.errors import InputError
@@ -50,8 +51,16 @@ class MaterialPart(Part):
         return made
 
 
+#: Names of the profiles of ISO 53, as `BasicRack.named` reads them.
+_ISO_53 = r"^\s*([Ii][Ss][Oo])?\s*(53)?[ ._-]*[A-Da-d][ ._-]*$"
+
+
 class RackPart(Part):
     """``rack = { addendum, dedendum, tip_radius, protuberance, ... }`` in modules, or the name of an ISO 53 profile."""
+
+    model_config = spelt_also(
+        lambda _table: {"type": "string", "pattern": "^(ISO ?)?(53 ?)?[A-Da-d]$", "examples": ["ISO 53 A"]}
+    )
 
     profile: str | None = None
     addendum: Number | None = None

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import UnionType
 from typing import TYPE_CHECKING, Annotated, Union, get_args, get_origin
 
-from pydantic import BaseModel
+from pydantic import BaseModel, ValidationError
 
 from fegear.case.model import Case
 
@@ -41,3 +42,25 @@ def keys_at(loc: Sequence[str]) -> list[str]:
             steps.pop(0)  # the name that the user gave
         models = [model for annotation in annotations for model in part_models(annotation)] or models
     return sorted({name for model in models for name in model.model_fields})
+
+
+def flat(document: Mapping[str, object], prefix: str = "") -> dict[str, object]:
+    """Tables within tables as dotted keys; lists of tables are numbered."""
+    found: dict[str, object] = {}
+    for key, value in document.items():
+        if isinstance(value, Mapping):
+            found |= flat(value, f"{prefix}{key}.")
+        elif isinstance(value, (list, tuple)) and any(isinstance(one, Mapping) for one in value):
+            for number, one in enumerate(value):
+                found |= flat(one, f"{prefix}{key}[{number}].") if isinstance(one, Mapping) else {}
+        else:
+            found[f"{prefix}{key}"] = value
+    return found
+
+
+def meaning_of(document: Mapping[str, object]) -> dict[str, object]:
+    """A case by dotted keys in SI, with the defaults of what it does not give; as it is written if it is no case."""
+    try:
+        return flat(Case.model_validate(document).model_dump())
+    except ValidationError:
+        return flat(document)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
@@ -11,6 +11,11 @@ from pydantic_core import PydanticCustomError
 from fegear.errors import FegearError, InputError, shown
 from fegear.units import as_text, to_si
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: Key in the schema of a quantity: its dimension, from which `fegear.case.schema` says what it looks like.
+QUANTITY = "fegear-quantity"
 #: Key of the context of validation: whether numbers without a unit are SI (arguments of Python functions are).
 BARE_SI = "bare_si"
 
@@ -55,7 +60,24 @@ def quantity(dimension: str, *, positive: bool = False, not_negative: bool = Fal
             raise refuse("must not be negative", value=shown(value))
         return number
 
-    return BeforeValidator(read)
+    return BeforeValidator(read, json_schema_input_type=Annotated[str, Field(json_schema_extra={QUANTITY: dimension})])
+
+
+def spelt_also(alternative: Callable[[dict[str, Any]], dict[str, Any]]) -> ConfigDict:
+    """Configuration of a table that may be written in another way, for the schema that editors read.
+
+    Parameters
+    ----------
+    alternative : callable
+        ``alternative(schema)`` -> schema of the other way, from that of the table.
+    """
+
+    def extend(schema: dict[str, Any]) -> None:
+        table = dict(schema)
+        schema.clear()
+        schema["anyOf"] = [alternative(table), table]
+
+    return ConfigDict(json_schema_extra=extend)
 
 
 def _number(value: object) -> object:

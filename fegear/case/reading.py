@@ -44,6 +44,8 @@ class Scene:
     text : str
         The case file as it was written, with the ``--set`` options as comments in front; empty for a case that was
         never a file.
+    document : mapping
+        The same as plain tables, ``--set`` options included.
     """
 
     case: Case
@@ -54,6 +56,7 @@ class Scene:
     helical_gears: dict[str, HelicalGear] = field(default_factory=dict)
     helical_pairs: dict[str, HelicalPair] = field(default_factory=dict)
     text: str = ""
+    document: Mapping[str, object] = field(default_factory=dict)
 
     def file(self, text: str, key: str) -> Path:
         """Return the path of a file that the case names, or refuse if it is not there."""
@@ -151,7 +154,7 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
         _known("cost.pair", case.cost.pair, pairs, "spur pair")
     if case.design is not None and case.design.pair is not None:
         _known("design.pair", case.design.pair, pairs, "pair")
-    return Scene(case, name, folder, gears, pairs, helical_gears, helical_pairs)
+    return Scene(case, name, folder, gears, pairs, helical_gears, helical_pairs, document=document)
 
 
 def _known(key: str, name: str, known: Iterable[str], kind: str) -> None:

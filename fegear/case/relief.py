@@ -14,6 +14,7 @@ from fegear.case.part import (
     PositiveLength,
     PositiveNumber,
     refuse,
+    spelt_also,
 )
 
 Shape = Literal["linear", "parabolic"]
@@ -22,9 +23,13 @@ Shape = Literal["linear", "parabolic"]
 STARTS = ("start_roll_angle", "start_radius", "length", "normalised_length")
 
 
-def _several(value: Any) -> Any:
+def _several(part: type[Part]) -> BeforeValidator:
     """Let one table stand for a list of one."""
-    return [value] if isinstance(value, dict) else value
+
+    def read(value: Any) -> Any:
+        return [value] if isinstance(value, dict) else value
+
+    return BeforeValidator(read, json_schema_input_type=part | list[part])  # type: ignore[valid-type]
 
 
 class EndReliefPart(Part):
@@ -115,10 +120,10 @@ class ReliefTablePart(Part):
 class ReliefPart(Part):
     """Profile modification of every tooth of a gear; parts of any kind add up."""
 
-    tip: Annotated[list[TipReliefPart], BeforeValidator(_several)] = Field(default_factory=list)
-    root: Annotated[list[RootReliefPart], BeforeValidator(_several)] = Field(default_factory=list)
-    crowning: Annotated[list[CrowningPart], BeforeValidator(_several)] = Field(default_factory=list)
-    table: Annotated[list[ReliefTablePart], BeforeValidator(_several)] = Field(default_factory=list)
+    tip: Annotated[list[TipReliefPart], _several(TipReliefPart)] = Field(default_factory=list)
+    root: Annotated[list[RootReliefPart], _several(RootReliefPart)] = Field(default_factory=list)
+    crowning: Annotated[list[CrowningPart], _several(CrowningPart)] = Field(default_factory=list)
+    table: Annotated[list[ReliefTablePart], _several(ReliefTablePart)] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _something(self) -> Self:
@@ -129,6 +134,8 @@ class ReliefPart(Part):
 
 class SpacingErrorsPart(Part):
     """``spacing_errors = [...]`` or ``{ file = "errors.csv" }``: one error for each tooth in the order of meshing."""
+
+    model_config = spelt_also(lambda table: table["properties"]["values"])
 
     values: Annotated[list[Length], Field(min_length=1)] | None = None
     file: str | None = None

@@ -12,6 +12,7 @@ import typer
 
 from fegear.commands.common import Quiet, Voice, leave
 from fegear.commands.help import two_columns
+from fegear.commands.schema import SCHEMA_FILE, schema_text
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ def new(
     torque: Annotated[str | None, typer.Option("--torque", help='On the pinion, e.g. "260 N m".')] = None,
     speed: Annotated[str | None, typer.Option("--speed", help='Of the pinion, e.g. "1480 rpm".')] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
+    no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a commented case that runs; on a terminal and without options, ask for what it needs.
@@ -89,9 +91,13 @@ def new(
     else:
         single = len(told.get("teeth", "").split()) == 1
         answers = Answers(kind or ("helical" if helix_angle else "gear" if single else "pair"), told)
-    text = draft(answers, path.stem)
+    text = draft(answers, path.stem, "" if no_schema else SCHEMA_FILE)
     _check(text, path)
     path.write_text(text, "utf-8")
+    if not no_schema:
+        beside = path.with_name(SCHEMA_FILE)
+        beside.write_text(schema_text(), "utf-8")
+        voice.say(f"Wrote {beside}, by which editors complete and check case files")
     voice.say(f"Wrote {path}; next: fegear run {path}")
 
 

@@ -69,7 +69,7 @@ _BODIES = 10.0
 _STEEL = 7850.0
 
 
-def draft(answers: Answers, stem: str) -> str:
+def draft(answers: Answers, stem: str, schema: str = "") -> str:
     """Write a case file.
 
     Parameters
@@ -77,6 +77,8 @@ def draft(answers: Answers, stem: str) -> str:
     answers : Answers
     stem : str
         Name of the file, without its ending.
+    schema : str
+        File beside it that tells editors what a case may hold; empty for none.
 
     Returns
     -------
@@ -103,7 +105,8 @@ def draft(answers: Answers, stem: str) -> str:
         **(_study(answers) if answers.kind == "study" else {}),
     }
     template = files("fegear.drafts").joinpath("templates", f"{answers.kind}.toml").read_text("utf-8")
-    return "\n".join(map(_aligned, Template(template).substitute(values).splitlines())) + "\n"
+    hint = f"#:schema ./{schema}\n" if schema else ""
+    return hint + "\n".join(map(_aligned, Template(template).substitute(values).splitlines())) + "\n"
 
 
 def _aligned(line: str) -> str:

@@ -38,6 +38,7 @@ def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str,
             value.name: {"value": _finite(value.value), "unit": value.unit, "error": _finite(value.error)}
             for value in results.values
         },
+        "inputs": inputs(results.scene.document),
         "settings": {
             "tolerance": case.accuracy.tolerance,
             "effects": list(case.effects.on()),
@@ -58,6 +59,12 @@ def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str,
         "files": files,
         "version": fegear.__version__,
     }
+
+
+def inputs(document: Mapping[str, object]) -> dict[str, object]:
+    """The case as JSON has it; what is no plain value (a quantity of a library) as its text."""
+    plain: dict[str, object] = json.loads(json.dumps(document, default=str))
+    return plain
 
 
 def write_summary(path: Path, results: Results, remarks: list[str], files: list[str]) -> None:

@@ -40,7 +40,7 @@ def test_the_program_prints_what_the_readme_says(tmp_path):
 
 
 def test_the_commands_are_there_and_set_themselves_up():
-    (commands,) = blocks("sh")
+    commands, _ = blocks("sh")
     scripts = [line.split()[0] for line in commands.splitlines()]
     assert scripts == ["./run.sh", "./test.sh", "./docs.sh"]
     for script in scripts:
@@ -51,8 +51,45 @@ def test_the_commands_are_there_and_set_themselves_up():
     assert (ROOT / commands.splitlines()[0].split()[1]).is_file()
 
 
+def test_the_first_commands_write_a_case_that_is_one(tmp_path):
+    _, commands = blocks("sh")
+    activate, new, run = (line.split("  #")[0] for line in commands.splitlines())
+    assert activate == ". .venv/bin/activate"
+    program = f"'{sys.executable}' -m fegear"
+    looked = run.replace("run", "plan")  # what it computes is the tutorial's matter
+    for line in (new, looked):
+        command = line.replace("fegear", program, 1)
+        subprocess.run(["sh", "-c", command], check=True, cwd=tmp_path, capture_output=True, timeout=60)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["drive.toml", "fegear.schema.json"]
+
+
+def test_every_command_has_its_line_and_its_section():
+    from fegear.cli import COMMANDS
+
+    page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    names = [command.__name__ for command, _ in COMMANDS]
+    assert re.findall(r"^  \| `fegear (\w+)", README, re.MULTILINE) == names
+    assert re.findall(r"^## `fegear (\w+)", page, re.MULTILINE) == names
+    program = "import sys\nfrom fegear.cli import main\nsys.argv[0] = 'fegear'\nmain()"
+    for name in names:
+        section = page.split(f"## `fegear {name}")[1].split("\n## ")[0]
+        command = [sys.executable, "-c", program, name, "-h"]
+        told = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+        options = set(re.findall(r"^ +(?:-\w, )?(--[a-z-]+)", told, re.MULTILINE)) - {"--help", "--quiet", "--json"}
+        assert {option for option in options if f"`{option}" not in section} == set(), name
+
+
+def test_version_and_name_are_the_same_everywhere():
+    import fegear
+
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {fegear.__version__}\n" in citation
+    assert f"## [{fegear.__version__}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"fegear-{fegear.__version__}-py3-none-any.whl" in README
+
+
 def test_every_link_leads_somewhere():
-    pages = [ROOT / "README.md", ROOT / "meshes" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    pages = [*sorted(ROOT.glob("*.md")), ROOT / "meshes" / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     for page in pages:
         for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
             # What a page's own run makes is under results/: docs/executed.py refuses a link to what it does not make.

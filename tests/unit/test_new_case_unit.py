@@ -73,7 +73,7 @@ def test_an_assumed_torque_loads_the_face_alike_whatever_the_size():
 def test_new_writes_what_the_options_say(say, tmp_path):
     code, out, err = say("new", "drive", "--teeth", "21", "53", "--module", "3mm", "--torque", "260 N m")
     assert (code, err) == (0, "")
-    assert out == "Wrote drive.toml; next: fegear run drive.toml\n"
+    assert out.endswith("Wrote drive.toml; next: fegear run drive.toml\n")
     scene = read_scene(tmp_path / "drive.toml")
     assert [gear.teeth for gear in scene.gears.values()] == [21, 53]
     assert scene.case.pair["I"].torque == pytest.approx(260.0)

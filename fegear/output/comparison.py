@@ -1,0 +1,188 @@
+"""What ``fegear compare`` reads and writes: folders of runs, joined tables, pictures, a page, a summary."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import fegear
+from fegear.engine.outcome import Table, Value
+from fegear.engine.table import Column
+from fegear.errors import InputError
+from fegear.output.folder import SUMMARY, files_in
+from fegear.output.report.blocks import DataTable, Grid, Notes, Paragraph, Plot
+from fegear.output.report.page import Page, Section, write_page
+from fegear.output.summary import write_json
+from fegear.output.tables import write_table
+from fegear.studies.comparison import Side, comparison_figures
+from fegear.units import PER_SI
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from fegear.studies.comparison import Comparison
+
+_HEAD = re.compile(r"(.*?)(?: \[(.*)\])?")
+
+
+def read_side(folder: Path) -> Side:
+    """Read the folder of a run as one side of a comparison.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Raises
+    ------
+    InputError
+        If it is no such folder.
+    """
+    try:
+        summary = json.loads((folder / SUMMARY).read_text("utf-8"))
+        found, document = summary["results"], summary.get("inputs", {})
+        values = {name: _value(name, one["value"], one["unit"], one["error"]) for name, one in found.items()}
+        tables = [_read_table(path) for path in sorted((folder / "tables").glob("*.csv"))]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise InputError(
+            "compare", f'"{folder}"', f"is no folder of a run ({type(error).__name__}: {error})",
+            "give folders that fegear run wrote, or case files",
+        ) from None  # fmt: skip
+    return Side(str(folder), document, values, {table.name: table for table in tables})
+
+
+def _value(name: str, value: float | None, unit: str, error: float | None) -> Value:
+    size = PER_SI[unit] if unit else 1.0
+    return Value(name, np.nan if value is None else value / size, unit, None if error is None else error / size)
+
+
+def _read_table(path: Path) -> Table:
+    with path.open(encoding="utf-8", newline="") as stream:
+        heads, *rows = csv.reader(stream)
+    columns = []
+    for head, cells in zip(heads, zip(*rows, strict=True) if rows else [()] * len(heads), strict=True):
+        found = _HEAD.fullmatch(head)
+        name, unit = (found[1], found[2] or "") if found and (found[2] or "") in (*PER_SI, "") else (head, "")
+        values = _cells(cells)
+        if unit and values.dtype.kind == "f":
+            values = np.asarray(values, dtype=float) / PER_SI[unit]
+        columns.append(Column(name, values, unit))
+    return Table(path.stem, tuple(columns))
+
+
+def _cells(cells: tuple[str, ...]) -> NDArray[np.generic]:
+    """Numbers where all are, texts otherwise; whole numbers are numbers like others."""
+    try:
+        return np.array([float(cell) if cell else np.nan for cell in cells])
+    except ValueError:
+        return np.array(cells)
+
+
+def comparison_page(comparison: Comparison) -> Page:
+    """The page of a comparison: inputs, values, curves over each other, joined tables."""
+    first, second = comparison.first, comparison.second
+    tables = tuple(joined.table for joined in comparison.different_tables)
+    inputs = [(one.key, *(_shown(text) for text in (one.first, one.second))) for one in comparison.inputs or ()]
+    none = "The inputs of a side are not known: its folder was not written by this version."
+    none = none if comparison.inputs is None else "None."
+    values = [
+        (
+            one.name,
+            *("" if value is None else f"{value.value:.9g} {value.unit}".rstrip() for value in (one.first, one.second)),
+            f"{one.share:+.2%}" if np.isfinite(one.share) else "",
+            "yes" if one.within_errors else "",
+        )
+        for one in comparison.different_values
+    ]
+    alone = [f"Only {label} has the table {name}." for name, label in comparison.alone]
+    return Page(
+        title="Two runs compared",
+        note=f"A: {first.label}. B: {second.label}.",
+        sections=(
+            Section("Inputs that differ", (
+                Grid(("Key", "A", "B"), inputs) if inputs else Paragraph(none),
+            )),
+            Section("Values that differ", (
+                Grid(("Value", "A", "B", "B over A", "Within the estimated errors"), values) if values
+                else Paragraph(f"None of {len(comparison.values)}."),
+            )),
+            Section("Curves over each other", tuple(map(Plot, comparison_figures(comparison)))),
+            Section("Tables that differ", (*((Notes(alone),) if alone else ()), *map(DataTable, tables))),
+        ),
+        tables=tables,
+        name="compare",
+    )  # fmt: skip
+
+
+def _shown(text: object) -> str:
+    return "(not given)" if text is None else str(text)
+
+
+def comparison_summary(comparison: Comparison) -> dict[str, object]:
+    """What programs read of a comparison."""
+
+    def number(value: float) -> float | None:
+        return float(value) if np.isfinite(value) else None
+
+    return {
+        "a": comparison.first.label,
+        "b": comparison.second.label,
+        "same": not comparison.results_differ,
+        "inputs": None if comparison.inputs is None else {
+            one.key: {"a": one.first, "b": one.second} for one in comparison.inputs
+        },
+        "values": {
+            one.name: {
+                "a": None if one.first is None else number(one.first.value),
+                "b": None if one.second is None else number(one.second.value),
+                "unit": (one.first or one.second).unit,  # type: ignore[union-attr]
+                "share": number(one.share),
+                "within_errors": one.within_errors,
+            }
+            for one in comparison.different_values
+        },
+        "tables": {
+            joined.table.name: {
+                "largest": {
+                    one.column.head: number(one.largest)
+                    for one in joined.differences
+                    if one.share > comparison.tolerance
+                },
+                "rows_only_in_a": joined.only_first,
+                "rows_only_in_b": joined.only_second,
+            }
+            for joined in comparison.different_tables
+        },
+        "tables_only_in": {name: label.lower() for name, label in comparison.alone},
+    }  # fmt: skip
+
+
+def write_comparison(comparison: Comparison, folder: Path, *, plots: bool = True) -> None:
+    """Write joined tables, pictures, page and summary.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    folder : Path
+        An empty folder.
+    plots : bool
+        Whether to draw; without, matplotlib is not imported.
+    """
+    (folder / "tables").mkdir()
+    for joined in comparison.different_tables:
+        write_table(folder / "tables", joined.table)
+    if plots:
+        from fegear.output.draw_png import draw_pictures
+
+        (folder / "plots").mkdir()
+        for figure in comparison_figures(comparison):
+            for _ in draw_pictures(figure, folder / "plots"):
+                pass
+    write_page(folder / "report.html", comparison_page(comparison))
+    files = [*files_in(folder), SUMMARY]
+    write_json(folder / SUMMARY, {**comparison_summary(comparison), "files": files, "version": fegear.__version__})

@@ -1,0 +1,147 @@
+"""Tables of two runs joined row by row."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.engine.table import Column, Table
+from fegear.units import from_si
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array
+
+#: Digits by which rows are known: the same place, computed anew, may differ in the last ones.
+_DIGITS = 9
+
+
+class Difference(NamedTuple):
+    """How much a column changes.
+
+    Attributes
+    ----------
+    column : Column
+        Of the first table.
+    largest : float
+        Largest change by size, second less first, in the column's unit.
+    share : float
+        The same over the largest entry of either column; infinite where only one of them is a number.
+    where : object
+        What the first column holds there.
+    """
+
+    column: Column
+    largest: float
+    share: float
+    where: object
+
+
+class Joined(NamedTuple):
+    """Two tables as one.
+
+    Attributes
+    ----------
+    table : Table
+        Key columns, then for every other column both and their difference.
+    differences : tuple of Difference
+        For every column of numbers that both have.
+    only_first, only_second : int
+        Rows that only one of them has.
+    """
+
+    table: Table
+    differences: tuple[Difference, ...]
+    only_first: int
+    only_second: int
+
+    def differs(self, tolerance: float) -> bool:
+        """Whether a row is missing on one side, or a number changes by more than a share of its column's largest."""
+        return self.only_first + self.only_second > 0 or any(one.share > tolerance for one in self.differences)
+
+
+def join(first: Table, second: Table, labels: tuple[str, str] = ("a", "b")) -> Joined:
+    """Join two tables of one name on their first column and their columns of texts.
+
+    Parameters
+    ----------
+    first, second : Table
+    labels : (str, str)
+        What is put behind the names of the columns.
+
+    Returns
+    -------
+    Joined
+        Rows of the first table in its order, then those that only the second has. Where no row of a curve meets one of
+        the other, differences are those of the interpolated curves where both are.
+    """
+    names = [name for name in first.keys() if name in second.keys()]  # noqa: SIM118  (a table iterates by columns)
+    keys = [name for i, name in enumerate(names) if i == 0 or not _numeric(first, name) or not _numeric(second, name)]
+    rows = [_row_keys(table, keys) for table in (first, second)]
+    order = list(dict.fromkeys([*rows[0], *rows[1]]))
+    at = [_places(order, {key: row for row, key in enumerate(found)}) for found in rows]
+    columns, differences = [], []
+    for name in keys:
+        one, other = first.column(name), second.column(name)
+        cells = [one.si[a] if a >= 0 else other.si[b] for a, b in zip(*at, strict=True)]
+        columns.append(Column(one.name, np.array(cells), one.unit, one.meaning))
+    for name in names:
+        if name in keys:
+            continue
+        one, other = first.column(name), second.column(name)
+        a, b = _at(one, at[0]), _at(other, at[1]) * (1.0 if one.unit == other.unit else np.nan)
+        for label, values in zip((*labels, "change"), (a, b, b - a), strict=True):
+            columns.append(Column(f"{name}_{label}", values, one.unit, one.meaning))
+        if not np.isfinite(a + b).any() and len(keys) == 1 and _rising(first, keys[0]) and _rising(second, keys[0]):
+            places = first.column(keys[0])
+            a = _numbers(one)
+            b = np.interp(_numbers(places), _numbers(second.column(keys[0])), _numbers(other), np.nan, np.nan)
+            differences.append(_difference(one, a, b, places))
+        else:
+            differences.append(_difference(one, a, b, columns[0]))
+    found = Table(first.name, tuple(columns), first.title)
+    return Joined(found, tuple(differences), int(np.sum(at[1] < 0)), int(np.sum(at[0] < 0)))
+
+
+def _numbers(column: Column) -> Array:
+    return np.asarray(column.si, dtype=float)
+
+
+def _rising(table: Table, name: str) -> bool:
+    places = table.column(name).si
+    return _numeric(table, name) and len(places) > 1 and bool(np.all(np.diff(_numbers(table.column(name))) >= 0.0))
+
+
+def _numeric(table: Table, name: str) -> bool:
+    return np.issubdtype(table.column(name).si.dtype, np.number)
+
+
+def _row_keys(table: Table, names: list[str]) -> list[tuple[object, ...]]:
+    """What each row is known by; rows alike are numbered."""
+    seen: dict[tuple[object, ...], int] = {}
+    found = []
+    for cells in zip(*(table.column(name).si.tolist() for name in names), strict=True):
+        key = tuple(float(f"{cell:.{_DIGITS}g}") if isinstance(cell, float) else cell for cell in cells)
+        seen[key] = seen.get(key, 0) + 1
+        found.append((*key, seen[key]))
+    return found
+
+
+def _places(order: list[tuple[object, ...]], rows: dict[tuple[object, ...], int]) -> np.ndarray:
+    return np.array([rows.get(key, -1) for key in order], dtype=int)
+
+
+def _at(column: Column, rows: np.ndarray) -> Array:
+    values = _numbers(column)
+    return np.where(rows >= 0, values[np.maximum(rows, 0)], np.nan) if len(values) else np.full(len(rows), np.nan)
+
+
+def _difference(column: Column, a: Array, b: Array, places: Column) -> Difference:
+    change, factor = b - a, from_si(column.unit) if column.unit else 1.0
+    lost = np.isnan(a) != np.isnan(b)
+    if not np.isfinite(change).any():
+        return Difference(column, np.nan, np.inf if lost.any() else 0.0, "")
+    worst = int(np.nanargmax(np.abs(change)))
+    size = max(np.nanmax(np.abs(a)), np.nanmax(np.abs(b)))
+    share = abs(change[worst]) / size if size > 0.0 else 0.0
+    return Difference(column, float(change[worst] * factor), float(share), places.values[worst])

@@ -1,0 +1,164 @@
+"""``fegear compare``: what it finds between two runs, what it leaves, and its exit codes."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+import sys
+
+import numpy as np
+import pytest
+
+import fegear.cli
+from fegear.engine.table import Column, Table
+from fegear.output.comparison import read_side
+from fegear.studies.comparison import different_inputs, join
+
+CASE = """
+results = ["geometry", "load-sharing"]
+[gear.a]
+teeth = 28
+module = "3 mm"
+bore_radius = "20 mm"
+face_width = "10 mm"
+rack = "ISO 53 C"
+[pair.I]
+driver = "a"
+driven = "a"
+load = "1000 N"
+compliance = { source = "cornell" }
+"""
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """Three runs: a case, the same with twice the load, and with another face width."""
+    folder = tmp_path_factory.mktemp("runs")
+    (folder / "one.toml").write_text(CASE)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for name, change in (("one", ()), ("loaded", ("--set", "pair.I.load=2000 N")),
+                             ("shifted", ("--set", "gear.a.profile_shift=0.1"))):  # fmt: skip
+            patch.setattr(sys, "argv", ["fegear", "run", "one.toml", "--no-plots", "-q", "--out", name, *change])
+            with pytest.raises(SystemExit):
+                fegear.cli.main()
+    return folder
+
+
+@pytest.fixture
+def say(runs, monkeypatch, capsys):
+    monkeypatch.chdir(runs)
+
+    def run(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["fegear", *map(str, arguments)])
+        with pytest.raises(SystemExit) as end:
+            fegear.cli.main()
+        return int(end.value.code or 0), *capsys.readouterr()
+
+    return run
+
+
+def test_inputs_values_and_curves_are_told_apart(say, runs):
+    code, out, _ = say("compare", "one", "loaded", "--out", "cmp")
+    assert code == 1
+    assert "  pair.I.load: 1000 N -> 2000 N" in out
+    assert "I.largest_load: 1000 -> 2000 N (+50.00%)" in out
+    assert "I.contact_ratio" not in out  # does not depend on the load
+    with (runs / "cmp" / "tables" / "load_sharing_I.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    single = [row for row in rows if float(row["load_a [N]"]) == pytest.approx(1000.0)]
+    assert single
+    assert all(float(row["load_change [N]"]) == pytest.approx(1000.0) for row in single)
+    assert (runs / "cmp" / "plots" / "compare_load_sharing_I.png").stat().st_size > 5000
+    assert "Curves over each other" in (runs / "cmp" / "report.html").read_text()
+    summary = json.loads((runs / "cmp" / "summary.json").read_text())
+    assert summary["inputs"] == {"pair.I.load": {"a": "1000 N", "b": "2000 N"}}
+    assert summary["values"]["I.largest_load"]["share"] == pytest.approx(0.5)
+    assert {p.relative_to(runs / "cmp").as_posix() for p in (runs / "cmp").rglob("*") if p.is_file()} >= set(
+        summary["files"]
+    )
+
+
+def test_a_run_and_its_own_case_are_the_same(say):
+    code, out, _ = say("compare", "one", "one.toml", "--out", "cmp_same", "--no-plots")
+    assert code == 0
+    assert "Inputs: the same." in out
+    assert "Values: the same." in out
+    assert "Tables: the same." in out
+    # With another load the case is no longer that of the folder.
+    assert say("compare", "one", "one.toml", "--set", "pair.I.load=1001 N", "--out", "cmp_other", "-q")[0] == 1
+    assert say("compare", "one", "one.toml", "--set", "pair.I.load=1001 N", "--tolerance", "0.02", "-q")[0] == 0
+
+
+def test_curves_over_other_places_are_compared_where_both_are(say, runs):
+    """A profile shift moves the path of contact: no row of one table meets a row of the other."""
+    code, out, _ = say("compare", "one", "shifted", "--json", "--no-plots")
+    told = json.loads(out)
+    assert code == 1
+    table = told["tables"]["load_sharing_I"]
+    assert table["rows_only_in_a"] > 100
+    assert 0.0 < abs(table["largest"]["deflection [um]"]) < 10.0
+    sides = [read_side(runs / name) for name in ("one", "shifted")]
+    x, deflection = (
+        [np.asarray(side.tables["load_sharing_I"][name]) for side in sides] for name in ("x", "deflection")
+    )
+    there = (x[0] >= x[1][0]) & (x[0] <= x[1][-1])
+    change = np.interp(x[0][there], x[1], deflection[1]) - deflection[0][there]
+    assert abs(table["largest"]["deflection [um]"]) == pytest.approx(np.abs(change).max(), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("compare", "one", "nothing.toml"), "does not exist"),
+        (("compare", "one", "."), "is no folder of a run"),
+        (("compare", "one", "loaded", "--set", "gear.a.teeth=30"), "both are folders"),
+        (("compare", "one", "loaded", "--tolerance", "-1"), "zero or greater"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(say, arguments, words):
+    code, out, err = say(*arguments)
+    assert (code, out) == (2, "")
+    assert words in err
+
+
+def test_a_folder_without_inputs_is_compared_by_its_numbers(say, runs):
+    shutil.copytree(runs / "one", runs / "old", dirs_exist_ok=True)
+    summary = json.loads((runs / "old" / "summary.json").read_text())
+    del summary["inputs"]
+    (runs / "old" / "summary.json").write_text(json.dumps(summary))
+    code, out, _ = say("compare", "old", "one", "--no-plots")
+    assert code == 0
+    assert "Inputs: not known of both" in out
+
+
+def test_inputs_that_mean_the_same_are_the_same():
+    first = {"results": ["geometry"], "gear": {"a": {"teeth": 20, "module": "3 mm"}}}
+    second = {"results": ["geometry"], "gear": {"a": {"teeth": 20, "module": "0.3 cm", "profile_shift": 0}}}
+    assert different_inputs(first, second) == ()
+    second["gear"]["a"]["rack"] = "ISO 53 A"
+    (found,) = different_inputs(first, second)
+    assert (found.first, found.second) == (None, "ISO 53 A")
+    second["gear"]["b"] = {"teeth": 30, "module": "3 mm"}
+    keys = {one.key: one for one in different_inputs(first, second)}
+    assert keys["gear.b.teeth"].first is None
+    assert keys["gear.b.teeth"].second == 30
+
+
+def test_rows_that_only_one_table_has_are_counted_and_kept():
+    def table(names, places, loads):
+        return Table("t", (Column("x", np.array(places), "mm"), Column("name", np.array(names)),
+                           Column("load", np.array(loads), "N")))  # fmt: skip
+
+    first = table(["p", "q", "p"], [1e-3, 1e-3, 2e-3], [10.0, 20.0, 30.0])
+    second = table(["q", "p", "p"], [1e-3, 1e-3 * (1 + 1e-12), 3e-3], [25.0, 10.0, 40.0])
+    found = join(first, second)
+    assert (found.only_first, found.only_second) == (1, 1)
+    assert found.table["x"] == pytest.approx([1.0, 1.0, 2.0, 3.0])
+    np.testing.assert_array_equal(found.table["load_change"], [0.0, 5.0, np.nan, np.nan])
+    (difference,) = found.differences
+    assert difference.largest == pytest.approx(5.0)
+    assert difference.share == pytest.approx(5.0 / 40.0)
+    assert found.differs(1.0)
+    assert not join(first, first).differs(0.0)
