@@ -77,13 +77,15 @@ class _Forgiving:
             return
 
 
-def machine_code(function: Callable[..., Any]) -> Callable[..., Any]:
+def machine_code(function: Callable[..., Any], made_from: str = "") -> Callable[..., Any]:
     """Compile a function at its first call, or take the machine code of an earlier process.
 
     Parameters
     ----------
     function : callable
         Plain Python on arrays, as numba takes it.
+    made_from : str
+        Digest of what else its machine code is made from: numba looks at the age of the function's own file alone.
 
     Returns
     -------
@@ -97,6 +99,6 @@ def machine_code(function: Callable[..., Any]) -> Callable[..., Any]:
         return numba.njit(function)
     kept = made._cache  # noqa: SLF001  (numba has no open door to it)
     files = kept._cache_file  # noqa: SLF001
-    kept._cache_file = _CheckedFiles(kept.cache_path, kept._impl.filename_base, files._source_stamp)  # noqa: SLF001
+    kept._cache_file = _CheckedFiles(kept.cache_path, kept._impl.filename_base, (files._source_stamp, made_from))  # noqa: SLF001
     made._cache = _Forgiving(kept)  # noqa: SLF001
     return made

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import itertools
+import os
 import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
+from fegear.dynamics import kernel
 from fegear.dynamics.machine_code import machine_code
 
 _number = itertools.count()
@@ -74,3 +80,33 @@ def test_a_folder_that_vanishes_costs_time_only(made, tmp_path):
     shutil.rmtree(tmp_path / "package")
     (tmp_path / "package").write_text("")
     assert fast(1.5) == 3.0
+
+
+def test_machine_code_of_functions_in_several_files_is_made_anew_when_one_of_them_changes(tmp_path):
+    """Numba alone takes a caller's old code where a function that it calls has changed in another file."""
+    (tmp_path / "helper.py").write_text("def part(x):\n    return 2.0 * x\n")
+    (tmp_path / "caller.py").write_text("from helper import part\ndef whole(x):\n    return 1.0 + part(x)\n")
+    program = (
+        "import sys, caller, helper; from pathlib import Path; sys.dont_write_bytecode = True;"
+        "from fegear.dynamics.kernel import source_digest; from fegear.dynamics.machine_code import machine_code;"
+        "digest = source_digest(Path(caller.__file__).parent); caller.part = machine_code(helper.part, digest);"
+        "fast = machine_code(caller.whole, digest); print(fast(3.0), sum(fast.stats.cache_hits.values()))"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *filter(None, sys.path)])}
+
+    def run():
+        return subprocess.run([sys.executable, "-B", "-c", program], env=environment, capture_output=True, text=True,
+                              check=True).stdout.split()  # fmt: skip
+
+    assert run() == ["7.0", "0"]
+    assert run() == ["7.0", "1"]
+    (tmp_path / "helper.py").write_text("def part(x):\n    return 3.0 * x\n")
+    assert run() == ["10.0", "0"]
+
+
+def test_every_function_of_the_kernel_is_compiled_with_the_others():
+    folder = Path(kernel.__file__).parent
+    named = {Path(module.__file__).name for module in kernel.COMPILED}
+    assert {path.name for path in folder.glob("*.py")} == named | {"__init__.py", "arrays.py"}
+    functions = inspect.getmembers(kernel.arrays, inspect.isfunction)
+    assert not [name for name, one in functions if one.__module__ == kernel.arrays.__name__]
