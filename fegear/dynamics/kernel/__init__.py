@@ -56,7 +56,7 @@ def compiled() -> Callable[..., Any]:
     from fegear.dynamics.machine_code import machine_code
 
     digest = source_digest()
-    made = {
+    made: dict[object, Callable[..., Any]] = {
         function: machine_code(function, digest)
         for module in COMPILED
         for _, function in inspect.getmembers(module, inspect.isfunction)
