@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 Member = Literal["driver", "driven"]
 MEMBERS: tuple[Member, Member] = ("driver", "driven")
+#: Difference of two involute angles that is none [rad].
+_ROUND_OFF = 1e-14
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,8 @@ class GearPair:
     def normal_backlash(self) -> float:
         """Gap between the back flanks along the line of action when the front flanks touch [m] (ISO 21771, 5.4.6)."""
         turn = float(inv(self.working_pressure_angle)) - float(inv(self._working_angle(allowance=True)))
+        if abs(turn) < _ROUND_OFF:  # the centre distance that leaves none: no backlash, not -8e-15 mm
+            return 0.0
         return 2.0 * (self.driver.base_radius + self.driven.base_radius) * turn
 
     @property

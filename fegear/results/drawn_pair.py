@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 #: Abscissa of everything that is followed along the path of contact.
 LINE_OF_ACTION = Axis("position on the line of action from the pitch point", "mm")
 #: Chords of a drawn outline stay this close to it [modules].
-_CHORD = 3e-4
+_CHORD = 1e-3
 #: Room above and below the pitch point [modules], and the same to the sides in pitches.
 _TALL, _WIDE = 3.0, 1.9
 #: Places at which sliding is drawn, and the most negative that an axis shows: it has no bound on the base circle.
@@ -40,7 +40,7 @@ def roll_marks(pair: GearPair, member: Member) -> tuple[Mark, ...]:
     )
 
 
-def in_mesh(pair: GearPair, member: Member, teeth: int = 3) -> Array:
+def in_mesh(pair: GearPair, member: Member, teeth: int = 2) -> Array:
     """Outline of a gear's teeth near the pitch point, which is the origin; the flanks touch there, shape (2, N) [m].
 
     The driver lies below and turns clockwise; along the line of action it pushes to the right and up.

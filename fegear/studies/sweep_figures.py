@@ -27,8 +27,6 @@ _FEW_ENOUGH = 40
 _LEVELS = 6
 #: More values than this cannot be read beside each other.
 _MOST_COORDINATES = 8
-#: Values that differ by less than this share of their size do not vary.
-_ROUND_OFF = 1e-9
 
 
 def sweep_figures(results: SweepResults, swept: Sequence[Swept]) -> tuple[Figure, ...]:
@@ -123,8 +121,7 @@ def _family(one: Swept, axes: tuple[SweepAxis, ...], along: SweepAxis, other: Sw
 
 def _coordinates(results: SweepResults, axes: tuple[SweepAxis, ...], swept: Sequence[Swept]) -> Figure:
     """Every point as a line through its place and its values, coloured by the value that is chosen."""
-    level = [one for one in swept if not _varies(one.number)]
-    chosen = [one for one in swept if _varies(one.number)][:_MOST_COORDINATES] or list(swept[:1])
+    chosen = swept[:_MOST_COORDINATES]
     where = np.unravel_index(np.arange(len(results.points)), [len(axis) for axis in results.axes])
     index = {id(axis): i for axis, i in zip(results.axes, where, strict=True)}
     keys = [axis.key.rsplit(".", 1)[-1] for axis in axes]
@@ -147,16 +144,9 @@ def _coordinates(results: SweepResults, axes: tuple[SweepAxis, ...], swept: Sequ
         "sweep_coordinates",
         "All points at a glance",
         "Each line is a point of the sweep, from its place to its values, low at the bottom, coloured by the chosen "
-        "value. Click a range in the legend to hide its points."
-        + (f" Left out, because they do not vary: {', '.join(one.name for one in level)}." if level else ""),
+        "value. Click a range in the legend to hide its points.",
         views=views,
     )
-
-
-def _varies(values: Array) -> bool:
-    """Whether numbers differ by more than their round-off."""
-    found = values[np.isfinite(values)]
-    return bool(found.size) and bool(np.ptp(found) > _ROUND_OFF * np.abs(found).max())
 
 
 def _failed(results: SweepResults) -> NDArray[np.bool_]:

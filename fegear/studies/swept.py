@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: Values that vary by less than this share of their size do not vary.
 _ROUND_OFF = 1e-12
+#: Differences below this, in the unit of a value, are round-off of zero.
+_NOTHING = 1e-12
 
 
 def failures(results: SweepResults) -> Array:
@@ -95,6 +97,6 @@ def varying(swept: Sequence[Swept]) -> list[Swept]:
 
     def moves(number: NDArray[np.float64]) -> bool:
         found = number[np.isfinite(number)]
-        return found.size > 1 and float(np.ptp(found)) > _ROUND_OFF * float(np.abs(found).max())
+        return found.size > 1 and float(np.ptp(found)) > max(_ROUND_OFF * float(np.abs(found).max()), _NOTHING)
 
     return [one for one in swept if moves(one.number)]

@@ -19,7 +19,7 @@ from fegear.results.gear_data import Drawing
 from fegear.results.loaded_pair import engagement_marks, pitch_marks
 from fegear.results.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
 from fegear.results.train_response import _campbell_figure
-from fegear.studies.sweep_figures import _varies
+from fegear.studies.swept import Swept, varying
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3)
 PAIR = GearPair(GEAR, GEAR)
@@ -120,9 +120,18 @@ def test_a_campbell_diagram_names_every_mode_and_marks_crossings_and_the_operati
 
 
 def test_values_that_differ_by_round_off_do_not_vary():
-    assert not _varies(np.array([88.9, 88.9 * (1.0 + 2e-16), np.nan]))
-    assert not _varies(np.array([np.nan, np.nan]))
-    assert _varies(np.array([88.9, 88.91]))
+    numbers = {
+        "level": [88.9, 88.9 * (1.0 + 2e-16), np.nan], "unknown": [np.nan, np.nan, np.nan],
+        "zero": [-8e-15, 0.0, 1.6e-14], "free": [88.9, 88.91, 88.9],
+    }  # fmt: skip
+    swept = [Swept(name, "mm", "", np.array(values), None) for name, values in numbers.items()]
+    assert [one.name for one in varying(swept)] == ["free"]
+
+
+@pytest.mark.parametrize(("teeth", "shift"), [(24, -0.2), (28, 0.1), (32, 0.4), (17, 0.3)])
+def test_a_pair_without_backlash_has_none_at_all(teeth, shift):
+    gear = Gear(Tooth(teeth, BasicRack(1.0, 1.25, 0.25), shift), 3.175e-3, 10e-3)
+    assert GearPair(gear, GEAR).normal_backlash == 0.0
 
 
 def test_logarithmic_axes_of_few_decades_have_plain_numbers_in_the_page():
