@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from fegear.case.reading import build_scene
 from fegear.errors import InputError
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.geometry import Gear as SpurGear
     from fegear.geometry.helical_gear import HelicalGear
-    from fegear.workbench.keys import Length
+    from fegear.workbench.keys import GearKeys, Length
     from fegear.workbench.results import Results
 
 
@@ -54,7 +54,7 @@ class Gear:
     >>> pinion = fegear.Gear(23, "3 mm", profile_shift=0.3, bore_radius="15 mm", face_width="10 mm", name="pinion")
     """
 
-    def __init__(self, teeth: int, module: Length | None = None, *, name: str = "a", **keys: Any) -> None:
+    def __init__(self, teeth: int, module: Length | None = None, *, name: str = "a", **keys: Unpack[GearKeys]) -> None:
         self.name = name
         self.keys: Mapping[str, Any] = {"teeth": teeth, **({} if module is None else {"module": module}), **keys}
         self.known = SolutionCache()
@@ -63,7 +63,8 @@ class Gear:
     @classmethod
     def of(cls, name: str, keys: Mapping[str, Any]) -> Gear:
         """A gear from its name and its keys, ``teeth`` among them."""
-        return cls(**{**keys, "name": name})
+        given: dict[str, Any] = {**keys, "name": name}
+        return cls(**given)
 
     def changed(self, **keys: Any) -> Gear:
         """A gear with other keys; None takes one away."""
@@ -112,7 +113,10 @@ class Gear:
         return run_scene(self._scene, progress=False)
 
     def export(self, folder: str | os.PathLike[str], formats: str = "dxf") -> list[Path]:
-        """Write drawings and meshes, as ``fegear export`` does; see `Results.export`."""
+        """Write drawings and meshes, as ``fegear export`` does; see `Results.export`.
+
+        Relief that ends with the path of contact is drawn by `Pair.export`.
+        """
         return self.data.export(folder, formats)
 
     def __eq__(self, other: object) -> bool:

@@ -3,20 +3,57 @@
 from __future__ import annotations
 
 import reprlib
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 from fegear.units import as_text, to_si
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping, Sequence
 
     import pint
 
 #: A text with its unit (``"3 mm"``), a quantity of pint, or a number in SI.
-Length: TypeAlias = "str | float | pint.Quantity[Any]"
-Torque: TypeAlias = Length
-Force: TypeAlias = Length
-Speed: TypeAlias = Length
+Quantity: TypeAlias = "str | float | pint.Quantity[Any]"
+Length: TypeAlias = Quantity
+Torque: TypeAlias = Quantity
+Force: TypeAlias = Quantity
+Speed: TypeAlias = Quantity
+
+
+class GearKeys(TypedDict, total=False):
+    """Keys of ``[gear.NAME]`` of a case file besides ``teeth`` and ``module``; lists and tables as there."""
+
+    diametral_pitch: Quantity
+    pressure_angle: Quantity
+    profile_shift: float
+    rack: str | Mapping[str, Any]
+    thickness_allowance: Quantity
+    tip_diameter: Quantity
+    tip_radius_rounding: Quantity
+    tip_chamfer: Quantity
+    bore_radius: Quantity
+    rim_thickness: Quantity
+    face_width: Quantity
+    ball_diameter: Quantity
+    plane: Literal["strain", "stress", "auto"]
+    material: Mapping[str, Any]
+    tooth_mesh: str
+    relief: Mapping[str, Any]
+    spacing_errors: Sequence[Quantity] | Mapping[str, Any]
+    helix_angle: Quantity
+    hand: Literal["left", "right", "spur"]
+    normal_module: Quantity
+    normal_diametral_pitch: Quantity
+
+
+class PairKeys(TypedDict, total=False):
+    """Keys of ``[pair.NAME]`` of a case file besides its gears, its load, the centre distance and the compliance."""
+
+    speed: Quantity
+    misalignment: Mapping[str, Any]
+    modification: Mapping[str, Any]
+    axial_offset: Quantity
+    iso_6336: Mapping[str, Any]
 
 
 _brief = reprlib.Repr()
@@ -29,7 +66,7 @@ def brief(value: object) -> str:
     return _brief.repr(value)
 
 
-def in_si(value: Length, dimension: str, key: str) -> float:
+def in_si(value: Quantity, dimension: str, key: str) -> float:
     """A quantity in SI.
 
     Raises

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from fegear.case.reading import build_scene
 from fegear.errors import InputError
@@ -15,13 +15,14 @@ from fegear.workbench.keys import brief
 from fegear.workbench.run import run_scene
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Mapping
 
     from fegear.case.reading import Scene
     from fegear.geometry import GearPair
     from fegear.geometry.pair import Member
     from fegear.helical.pair import HelicalPair
-    from fegear.workbench.keys import Length
+    from fegear.workbench.keys import Length, PairKeys
     from fegear.workbench.results import Results
 
 _MEMBERS: tuple[Member, ...] = ("driver", "driven")
@@ -64,7 +65,7 @@ class Pair:
         *,
         compliance: str | Mapping[str, Any] = "fe",
         name: str = "I",
-        **keys: Any,
+        **keys: Unpack[PairKeys],
     ) -> None:
         for role, gear in (("driver", driver), ("driven", driven)):
             if not isinstance(gear, Gear):
@@ -129,6 +130,10 @@ class Pair:
     def data(self) -> Results:
         """What a drawing of it carries: contact ratio, centre distance, diameters, span."""
         return run_scene(self._scene, progress=False)
+
+    def export(self, folder: str | os.PathLike[str], formats: str = "dxf") -> list[Path]:
+        """Write drawings and meshes of both gears, as ``fegear export`` does; see `Results.export`."""
+        return self.data.export(folder, formats)
 
     def relieved(self, design: Results, shape: Literal["designed", "linear", "parabolic"] = "designed") -> Pair:
         """The pair with a relief that `fegear.relief` found for it.

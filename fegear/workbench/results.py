@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import tempfile
 import textwrap
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -204,6 +205,11 @@ class Results(Found):
         -------
         list of Path
             The files.
+
+        Warns
+        -----
+        UserWarning
+            Of what the files leave out, relief in meshes for example.
         """
         from fegear.output.export import export_gears
         from fegear.output.folder import whole_or_nothing
@@ -211,4 +217,6 @@ class Results(Found):
         target = Path(folder)
         with whole_or_nothing(target, "folder") as scratch:
             written = export_gears(self.scene, scratch, gears, formats)
+        for remark in written.remarks:
+            warnings.warn(remark, stacklevel=2)
         return [target / name for name in written.files]

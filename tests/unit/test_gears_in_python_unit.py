@@ -195,6 +195,34 @@ def test_a_helical_pair_is_described_and_refused_where_it_cannot_be_loaded():
     assert "Gear(23" in helical._repr_html_()
 
 
+def test_type_checkers_know_the_keys_of_the_case():
+    from fegear.case.gear import GearPart
+    from fegear.case.pair import PairPart
+    from fegear.workbench.keys import GearKeys, PairKeys
+
+    assert set(GearKeys.__annotations__) | {"teeth", "module"} == set(GearPart.model_fields)
+    own = {"driver", "driven", "centre_distance", "compliance", "load", "loads", "torque"}
+    assert set(PairKeys.__annotations__) | own == set(PairPart.model_fields)
+
+
+def outline(path) -> np.ndarray:
+    """Corners of the drawn tooth [mm]."""
+    ezdxf = pytest.importorskip("ezdxf")
+    (line,) = ezdxf.readfile(path).modelspace().query("LWPOLYLINE")
+    return np.array([point[:2] for point in line.get_points()])
+
+
+def test_a_drawing_carries_the_relief_and_a_mesh_says_that_it_does_not(tmp_path, pair):
+    relief = {"tip": {"amount": "200 um", "start_radius": "36 mm"}}
+    relieved = fegear.Pair(pair.driver.changed(relief=relief), pair.driven, compliance="weber-banaschek")
+    plain, ground = (outline(one.export(tmp_path / name)[0]) for name, one in (("a", pair), ("b", relieved)))
+    tip = pair.driver.spur.tip_radius * 1e3
+    thickness = [np.ptp(corners[np.hypot(*corners.T) > tip - 1e-6, 0]) for corners in (plain, ground)]
+    assert thickness[0] - thickness[1] == pytest.approx(0.4, rel=0.3)  # both flanks, .2 mm each along their normals
+    with pytest.warns(UserWarning, match="without the relief of the case"):
+        relieved.export(tmp_path / "mesh", "inp")
+
+
 def test_gears_never_change(pair):
     other = pair.driver.changed(profile_shift=0.0, bore_radius=None)
     assert "bore_radius" not in other.keys
