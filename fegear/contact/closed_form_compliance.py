@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.compliance import Rigid
+from fegear.contact.compliance import OneTooth, Rigid
 from fegear.contact.spline import Spline, spline
 from fegear.errors import InputError
 from fegear.formulas.sources import source as formula_source
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.contact.compliance import Side
     from fegear.formulas.compliance import ComplianceSource
     from fegear.geometry.gear import Gear
 
@@ -25,7 +24,7 @@ _POINTS = 81
 
 
 @dataclass(frozen=True)
-class ClosedFormCompliance:
+class ClosedFormCompliance(OneTooth):
     """Tooth compliance by a formula, its contact split into what the load-sharing solver knows.
 
     Parameters
@@ -59,14 +58,6 @@ class ClosedFormCompliance:
     def reference_half_width(self, radius: ArrayLike) -> Array:
         """The same everywhere [m]."""
         return np.full(np.shape(radius), self.half_width)
-
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
-        """Zero: closed forms know one tooth."""
-        return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
-
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
-        """Unknown here: closed forms for root stress are formulas of their own."""
-        return None
 
     def describe(self) -> str:
         """Return source and limits."""

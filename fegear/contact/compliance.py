@@ -60,8 +60,22 @@ class GearCompliance(Protocol):
         """Return one sentence: what this source includes and what not."""
 
 
+class OneTooth:
+    """Base of compliance sources that know one tooth: neither its neighbours nor its root stress."""
+
+    __slots__ = ()
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
+        """Zero."""
+        return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
+        """Unknown."""
+        return None
+
+
 @dataclass(frozen=True, slots=True)
-class Rigid:
+class Rigid(OneTooth):
     """A gear that does not deflect: for pairs whose whole compliance is given on the other gear."""
 
     reach: int = 0
@@ -76,14 +90,6 @@ class Rigid:
     def reference_half_width(self, radius: ArrayLike) -> Array:
         """One: it never matters, since the logarithm's slope is zero."""
         return np.ones(np.shape(radius))
-
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
-        """Zero."""
-        return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
-
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
-        """Unknown."""
-        return None
 
     def describe(self) -> str:
         """Return what it is."""

@@ -6,7 +6,7 @@ loaded, per unit line load (secant, not local slope). Formulas outside their ran
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ from fegear.formulas.outcome import attempt
 from fegear.formulas.pair_compliance import pair_compliance
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import SOURCES
+from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -70,7 +71,7 @@ class ComplianceAnswers:
 
 
 @dataclass(frozen=True, slots=True)
-class PairReference:
+class PairReference(ReadOnlyArrays):
     """Finite elements of one tooth pair over contact positions, shape (N,).
 
     Parameters
@@ -87,11 +88,6 @@ class PairReference:
     driver: Array
     driven: Array
     half_width: Array
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        for f in fields(self):
-            getattr(self, f.name).setflags(write=False)
 
     @property
     def total(self) -> Array:

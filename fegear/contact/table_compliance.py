@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.contact.compliance import Rigid
+from fegear.contact.compliance import OneTooth, Rigid
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.contact.compliance import GearCompliance, Side
+    from fegear.contact.compliance import GearCompliance
     from fegear.geometry.pair import GearPair, Member
 
 Fit = Literal["linear", "cubic"]
@@ -95,7 +95,7 @@ def fit_compliance(x: ArrayLike, compliance: ArrayLike, fit: Fit = "cubic") -> C
 
 
 @dataclass(frozen=True)
-class TableCompliance:
+class TableCompliance(OneTooth):
     """Compliance of one gear's tooth as a function of the position on its own flank.
 
     Parameters
@@ -140,14 +140,6 @@ class TableCompliance:
     def reference_half_width(self, radius: ArrayLike) -> Array:
         """One: the table's contact compliance is fixed."""
         return np.ones(np.shape(radius))
-
-    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
-        """Zero: a table of single teeth knows no coupling."""
-        return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
-
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
-        """Unknown."""
-        return None
 
     def describe(self) -> str:
         """Return what the table includes."""

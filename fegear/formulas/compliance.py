@@ -7,8 +7,10 @@ ring (Sainsot).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
+
+from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class ToothCompliance:
+class ToothCompliance(ReadOnlyArrays):
     """Deflection of one tooth along the line of action per unit line load, without the contact; shape (N,) [m^2/N].
 
     Parameters
@@ -36,11 +38,6 @@ class ToothCompliance:
     shear: Array
     axial: Array
     foundation: Array
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        for f in fields(self):
-            getattr(self, f.name).setflags(write=False)
 
     @property
     def total(self) -> Array:

@@ -6,13 +6,14 @@ the contact's half-width being Hertz's. One tooth pair on its own: no neighbours
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.errors import RangeError
 from fegear.formulas import hertz
+from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class PairCompliance:
+class PairCompliance(ReadOnlyArrays):
     """Deflection of one tooth pair over contact positions, shape (N,), per unit face width.
 
     Parameters
@@ -46,11 +47,6 @@ class PairCompliance:
     driven: Array
     contact: Array
     half_width: Array
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        for f in fields(self):
-            getattr(self, f.name).setflags(write=False)
 
     @property
     def total(self) -> Array:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.frozen import ReadOnlyArrays
 from fegear.helical.earliest import Earliest, earliest_contact
 from fegear.helical.extremes import Extreme, extremes
 from fegear.helical.pair_contact import PairContact, describe, pair_contact, slope_of_error
@@ -27,7 +28,7 @@ _TOGETHER = 1e-13
 
 
 @dataclass(frozen=True, slots=True)
-class MeshCycle:
+class MeshCycle(ReadOnlyArrays):
     """Transmission error of a helical drive over one cycle of meshing, and the contact that leads at each angle.
 
     Parameters
@@ -49,11 +50,6 @@ class MeshCycle:
     error: Array
     leader: NDArray[np.int_]
     mesh: PairContact
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        for array in (self.phi_1, self.error, self.leader):
-            array.setflags(write=False)
 
     def pieces(self) -> list[tuple[float, float, int, str, float]]:
         """Pieces of the cycle with one leading pair and one kind of contact.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.frozen import ReadOnlyArrays
 from fegear.helical.curvature import parting, pinion_normal
 from fegear.helical.earliest import Earliest, earliest_contact
 from fegear.helical.reach import Bound
@@ -36,7 +37,7 @@ _NAMES = {
 
 
 @dataclass(frozen=True, slots=True)
-class PairContact:
+class PairContact(ReadOnlyArrays):
     """Contact of one tooth pair at given pinion angles, all arrays of shape (n,) and read-only.
 
     Parameters
@@ -80,11 +81,6 @@ class PairContact:
     point: Array
     spread: Array
     ill_defined: NDArray[np.bool_]
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        for name in self.__slots__:
-            getattr(self, name).setflags(write=False)
 
 
 def pair_contact(pair: HelicalPair, phi_1: ArrayLike) -> PairContact:

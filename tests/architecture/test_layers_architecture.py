@@ -23,6 +23,7 @@ LAYERS = {
     "errors": 0,
     "streams": 0,
     "arrays": 0,
+    "frozen": 0,
     "plain": 0.5,
     "unit_text": 0.4,
     "units": 0.5,
