@@ -15,7 +15,8 @@ def _tolerance(value: float) -> float:
     return value
 
 
-EdgeLength = Annotated[Number, Field(gt=0.0, le=2.0)]
+#: In modules; the mesher never ends with shorter ones.
+EdgeLength = Annotated[Number, Field(ge=1e-5, le=2.0)]
 
 
 class AccuracyPart(Part):
@@ -24,7 +25,7 @@ class AccuracyPart(Part):
     tolerance: Annotated[Number, AfterValidator(_tolerance)] = 1e-3
     order: Annotated[int, Field(ge=2, le=4)] | None = None
     root_edge_length: EdgeLength | None = None
-    root_fraction: Annotated[Number, Field(gt=0.0, le=2.0)] | None = None
+    root_fraction: Annotated[Number, Field(ge=1e-4, le=2.0)] | None = None
     flank_edge_length: EdgeLength | None = None
     tip_edge_length: EdgeLength | None = None
     junction_edge_length: EdgeLength | None = None
@@ -32,7 +33,7 @@ class AccuracyPart(Part):
     growth: EdgeLength | None = None
     tip_growth: EdgeLength | None = None
     side_growth: EdgeLength | None = None
-    body_fraction: Annotated[Number, Field(gt=0.0, le=10.0)] | None = None
-    rim_fraction: Annotated[Number, Field(gt=0.0, le=1.0)] | None = None
+    body_fraction: Annotated[Number, Field(ge=1e-3, le=10.0)] | None = None
+    rim_fraction: Annotated[Number, Field(ge=1e-3, le=1.0)] | None = None
     corner_distance: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None
     patch_half_width: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None

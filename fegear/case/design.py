@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Length, Number, Part, PositiveForce, PositiveLength, PositiveNumber, refuse
+from fegear.case.part import Length, Number, Part, PositiveForce, PositiveLength, PositiveNumber, refuse, refuse_more
 
 Shape = Literal["linear", "parabolic"]
 Positive = Annotated[list[PositiveNumber], Field(min_length=1)]
@@ -24,6 +24,12 @@ class ChartPart(Part):
     loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = None
     shape: Shape = "linear"
 
+    @model_validator(mode="after")
+    def _feasible(self) -> Self:
+        counts = [len(values) for values in (self.amounts, self.lengths, self.loads) if values]
+        refuse_more(100_000, "candidates", *counts)
+        return self
+
 
 class RobustnessPart(Part):
     """``robustness = { load_factors, spacing_errors, relief_errors }``: deviations whose combinations are tried."""
@@ -33,6 +39,12 @@ class RobustnessPart(Part):
     relief_errors: Annotated[list[Annotated[Number, Field(gt=-1.0)]], Field(min_length=1)] = Field(
         default_factory=lambda: [-0.2, 0.0, 0.2]
     )
+
+    @model_validator(mode="after")
+    def _feasible(self) -> Self:
+        lists = (self.load_factors, self.spacing_errors, self.relief_errors)
+        refuse_more(100_000, "combinations of deviations", *map(len, lists))
+        return self
 
 
 class DesignPart(Part):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from fegear.case.part import Number, Part, PositiveNumber, PositiveSpeed, quantity, refuse, spelt_also
+from fegear.case.part import Number, Part, PositiveNumber, PositiveSpeed, at_most, quantity, refuse, spelt_also
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,7 +22,7 @@ class SpeedsPart(Part):
 
     model_config = spelt_also(lambda table: table["properties"]["values"])
 
-    values: Annotated[list[PositiveSpeed], Field(min_length=1)] | None = None
+    values: Annotated[list[PositiveSpeed], Field(min_length=1), at_most(100_000, "speeds")] | None = None
     start: PositiveSpeed | None = None
     stop: PositiveSpeed | None = None
     count: Annotated[int, Field(ge=2, le=100_000)] | None = None

@@ -16,6 +16,7 @@ from fegear.case.part import (
     PositiveSpeed,
     PositiveTorque,
     at,
+    at_most,
     refuse,
 )
 from fegear.errors import InputError
@@ -65,7 +66,7 @@ class PairPart(Part):
     centre_distance: PositiveLength | None = None
     load: PositiveForce | None = None
     torque: PositiveTorque | None = None
-    loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = None
+    loads: Annotated[list[PositiveForce], Field(min_length=1), at_most(1000, "loads")] | None = None
     speed: PositiveSpeed | None = None
     compliance: CompliancePart = Field(default_factory=CompliancePart)
     misalignment: MisalignmentPart | None = None

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
 
 from fegear.errors import FegearError, InputError, shown
@@ -20,6 +20,9 @@ QUANTITY = "fegear-quantity"
 BARE_SI = "bare_si"
 
 
+T = TypeVar("T")
+
+
 class Part(BaseModel):
     """A table of a case file: unknown keys are refused, values are not converted silently, nothing changes later."""
 
@@ -32,6 +35,24 @@ class Part(BaseModel):
 def refuse(rule: str, remedy: str = "", *, value: object = None, key: str = "") -> PydanticCustomError:
     """Make the error that a validator raises; `key` goes below the place where pydantic found it."""
     return PydanticCustomError("fegear", "{rule}", {"rule": rule, "remedy": remedy, "shown": value, "key": key})
+
+
+def at_most(limit: int, what: str) -> AfterValidator:
+    """Validator that refuses a list that asks for more than can be computed in a day or held in memory."""
+
+    def check(values: list[T]) -> list[T]:
+        refuse_more(limit, what, len(values))
+        return values
+
+    return AfterValidator(check)
+
+
+def refuse_more(limit: int, what: str, *counts: int, key: str = "") -> None:
+    """Refuse combinations of lists of these lengths when there are too many of them."""
+    total = math.prod(counts)
+    if total > limit:
+        size = " x ".join(f"{n:,}" for n in counts) + (f" = {total:,}" if len(counts) > 1 else "")
+        raise refuse(f"asks for {size} {what}", f"ask for {limit:,} at most", value="(a list)", key=key)
 
 
 #: Magnitudes that a machine can have, in SI. Beyond them products overflow, and no refusal after that would say why.

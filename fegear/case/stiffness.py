@@ -6,14 +6,14 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Part, PositiveLength, PositiveLineLoad, refuse
+from fegear.case.part import Part, PositiveLength, PositiveLineLoad, at_most, refuse
 
 
 class StiffnessPart(Part):
     """Which gear, at which radii, under how wide a contact."""
 
     gear: str | None = None
-    radii: Annotated[list[PositiveLength], Field(min_length=1)] | None = None
+    radii: Annotated[list[PositiveLength], Field(min_length=1), at_most(100_000, "load positions")] | None = None
     positions: Annotated[int, Field(ge=2, le=100_000)] = 100
     contact_half_width: PositiveLength | None = None
     load: PositiveLineLoad | None = None

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from fegear.case.part import Number, Part
+from fegear.case.part import Number, Part, refuse_more
 
 Teeth = Annotated[list[Annotated[int, Field(ge=5, le=1000)]], Field(min_length=1)]
 Numbers = Annotated[list[Number], Field(min_length=1)]
@@ -21,3 +21,10 @@ class StudyPart(Part):
     profile_shift: Numbers | None = None
     rack_tip_radius: Numbers | None = None
     load_position: Shares = Field(default_factory=lambda: [0.1, 0.4, 0.7, 1.0])
+
+    @model_validator(mode="after")
+    def _feasible(self) -> Self:
+        gears = [len(values) for values in (self.teeth, self.profile_shift, self.rack_tip_radius) if values]
+        refuse_more(10_000, "gears to solve", *gears)
+        refuse_more(1000, "load positions", len(self.load_position), key="load_position")
+        return self

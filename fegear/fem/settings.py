@@ -7,6 +7,9 @@ from dataclasses import dataclass, fields, replace
 
 from fegear.errors import InputError
 
+#: Unknowns of a sector beyond which neither time nor memory suffices: some 20 GB.
+_MOST_UNKNOWNS = 3e6
+
 
 @dataclass(frozen=True, slots=True)
 class MeshSettings:
@@ -62,6 +65,27 @@ class MeshSettings:
                 raise InputError(f"accuracy.{f.name}", value, "must be positive and finite")
         if self.order not in (2, 3, 4):
             raise InputError("accuracy.order", self.order, "must be 2, 3 or 4")
+
+        triangles = self.expected_triangles
+        if triangles * self.order**2 > _MOST_UNKNOWNS:
+            raise InputError(
+                "accuracy", "(edge lengths)", f"asks for about {triangles:.1g} triangles of order {self.order}",
+                f"lengthen the edges: {_MOST_UNKNOWNS / self.order**2:.1g} is what a large computer can solve",
+            )  # fmt: skip
+
+    @property
+    def expected_triangles(self) -> float:
+        """About how many triangles a sector gets, half to three times as many: rows along each edge, longer row by row.
+
+        Around the flank's ends the rows are half rings whose edges grow with the distance.
+        """
+        fillet, flank, ring = 3.0, 2.3, 0.3  # modules: both fillets, the loaded flank, the ends' reach
+        rows = fillet / (self.growth * min(self.root_edge_length, 0.3 * self.root_fraction))
+        rows += flank / (self.side_growth * min(self.flank_edge_length, self.back_edge_length))
+        grown = [self.tip_growth * ring / edge for edge in (self.tip_edge_length, self.junction_edge_length)]
+        ends = sum(math.pi / self.tip_growth**2 * (math.log1p(g) - g / (1.0 + g)) for g in grown)
+        body = 2.0 / min(self.body_fraction, self.rim_fraction) ** 2
+        return 2.3 * (rows + ends + body)
 
     def scaled(self, factor: float) -> MeshSettings:
         """Return a coarser (factor > 1) or finer set: every edge length and the corner distance times `factor`.

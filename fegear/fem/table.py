@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
 
 
+#: Load positions at a time: compliances between neighbours come as a matrix over all of them.
+_BLOCK = 512
+
+
 @dataclass(frozen=True)
 class StiffnessTable:
     """Compliance and root stress of a gear's tooth over load positions, per unit face width, SI; arrays of shape (P,).
@@ -116,30 +120,35 @@ def stiffness_table(
         )
     check_contacts(gear, r, b)
     known = influence or solve_gear(gear, settings, progress=progress)
-    c_self = known.self_compliance(r, b)
-    neighbours = {k: np.diagonal(known.neighbour(k, r, r)) for k in (-1, 1)}
-    errors = {
-        "c_self": known.self_error(r, b),
-        "c_neighbour": np.diagonal(known.neighbour_error(1, r, r)),
+    parts = [_columns(known, r[i : i + _BLOCK], b[i : i + _BLOCK]) for i in range(0, r.size, _BLOCK)]
+    found = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    for array in (r, b, *found.values()):
+        array.flags.writeable = False
+    errors = {name.removeprefix("error_of_"): found.pop(name) for name in tuple(found) if name.startswith("error_of_")}
+    angle = np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
+    return StiffnessTable(
+        r, angle, half_width=b, errors=errors, influence=known, seconds=time.perf_counter() - started, **found
+    )
+
+
+def _columns(known: GearInfluence, r: Array, b: Array) -> dict[str, Array]:
+    """Every column over some of the load positions, and each error as ``error_of_<column>``."""
+    module = known.gear.module
+    found = {
+        "c_self": known.self_compliance(r, b),
+        "c_prev": np.diagonal(known.neighbour(-1, r, r)),
+        "c_next": np.diagonal(known.neighbour(1, r, r)),
+        "error_of_c_self": known.self_error(r, b),
+        "error_of_c_neighbour": np.diagonal(known.neighbour_error(1, r, r)),
     }
-    places = {}
     for side in ("tension", "compression"):
         value, arc = known.largest_root_stress(0, side, r, b)
         fillet = known.fine.fillets[side]
-        arc_modules = arc / gear.module
-        places[side] = (
-            value,
-            np.interp(arc_modules, fillet.arc, fillet.radius) * gear.module,
-            np.interp(arc_modules, fillet.arc, fillet.tangent_angle),
-        )
-        errors[f"root_{side}"] = known.root_stress_error(0, side, r, b)
-    for array in (r, b, c_self, *neighbours.values(), *errors.values()):
-        array.flags.writeable = False
-    return StiffnessTable(
-        r, np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius,
-        c_self, neighbours[-1], neighbours[1], b,
-        *places["tension"], *places["compression"], errors, known, time.perf_counter() - started,
-    )  # fmt: skip
+        found[f"root_{side}"] = value
+        found[f"root_{side}_radius"] = np.interp(arc / module, fillet.arc, fillet.radius) * module
+        found[f"root_{side}_angle"] = np.interp(arc / module, fillet.arc, fillet.tangent_angle)
+        found[f"error_of_root_{side}"] = known.root_stress_error(0, side, r, b)
+    return found
 
 
 def check_contacts(gear: Gear, radii: ArrayLike, half_width: ArrayLike, key: str = "contact_half_width") -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import itertools
+import math
 import re
 import time
 from dataclasses import dataclass
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Progress
     from fegear.studies.axis import Axis
 
+#: Points of a sweep beyond which its results do not fit into memory: some 10 GB.
+_MOST_POINTS = 100_000
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
 
@@ -179,6 +182,10 @@ def _check(axes: Sequence[Axis], document: Mapping[str, Any]) -> None:
     for name in names:
         if names.count(name) > 1:
             raise InputError("--over", f'"{name}"', "is given twice", "merge its values into one --over")
+    count = math.prod(len(axis) for axis in axes)
+    if count > _MOST_POINTS:
+        size = " x ".join(f"{len(axis):,}" for axis in axes) + f" = {count:,}"
+        raise InputError("--over", size, "points are more than a sweep can hold", f"ask for {_MOST_POINTS:,} at most")
     trial = copy.deepcopy(dict(document))
     for axis in axes:
         set_key(trial, axis.key, axis.values[0], "--over")
