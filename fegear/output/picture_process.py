@@ -13,17 +13,16 @@ import pickle
 import signal
 import subprocess
 import sys
-import tempfile
 from concurrent.futures import Future, ThreadPoolExecutor
-from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from fegear.engine.figure import Axis, Curve, Figure, Panel
 from fegear.engine.processes import cores
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
+    from fegear.engine.figure import Figure
     from fegear.output.draw_png import Picture
 
     Pictures = tuple[Picture, ...] | None
@@ -112,12 +111,9 @@ def serve() -> None:
     gc.set_threshold(100_000)  # as in the program itself; what is drawn is freed figure by figure
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no answer
-    from fegear.output.draw_png import draw_pictures
+    from fegear.output.draw_png import draw_pictures, warm_up
 
-    # Loads matplotlib, its fonts and the writer of PNG.
-    first = Figure("first", "", "", (Panel(Axis("x"), Axis("y"), (Curve((0, 1), (0, 1)),)),))
-    with tempfile.TemporaryDirectory() as folder:
-        list(draw_pictures(first, Path(folder)))
+    warm_up()
     for figure, target in _requests(sys.stdin.buffer):
         try:
             drawn = tuple(draw_pictures(figure, target))

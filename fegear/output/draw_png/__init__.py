@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -82,3 +83,14 @@ def _draw(figure: Figure, views: tuple[View, ...], path: Path, head: tuple[str, 
         FigureCanvasAgg(made)
         Sheet(made, panels, min(columns, len(panels)), head).draw()
         made.savefig(path, dpi=DPI, **_SAVED[path.suffix])
+
+
+def warm_up() -> None:
+    """Load matplotlib, its fonts and the writer of PNG, so that the first picture need not."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure as Canvas
+
+    made = Canvas()
+    FigureCanvasAgg(made)
+    made.add_subplot().set_title("")
+    made.savefig(io.BytesIO(), format="png")
