@@ -123,14 +123,19 @@ def _bends(chain: Chain) -> NDArray[np.float64]:
     return np.where(off > _STRAIGHT * np.hypot(*chord), bends, 0.0)
 
 
-def _ignore_closed_pipes() -> None:
-    """Give SIGPIPE back to Python, from any thread.
+def _initialize(gmsh: Any) -> None:
+    """Start gmsh, from any thread; signals stay with whoever has them.
 
-    gmsh.initialize resets it, after which writing to a pipe or socket that the other side has closed would end the
-    process without a word instead of raising BrokenPipeError.
+    gmsh.initialize gives them back to the system: a request to stop would end the process before it has cleared away
+    what is unfinished, and writing to a pipe that the other side has closed would end it without a word.
     """
-    if hasattr(signal, "SIGPIPE") and signal.getsignal(signal.SIGPIPE) == signal.SIG_IGN:
-        ctypes.pythonapi.PyOS_setsig(int(signal.SIGPIPE), ctypes.c_void_p(int(signal.SIG_IGN)))
+    names = ("SIGPIPE", "SIGTERM", "SIGHUP")
+    handlers = ctypes.pythonapi
+    handlers.PyOS_getsig.restype = ctypes.c_void_p
+    held = {int(n): handlers.PyOS_getsig(int(n)) for n in (getattr(signal, name, None) for name in names) if n}
+    gmsh.initialize(interruptible=False)
+    for number, handler in held.items():
+        handlers.PyOS_setsig(number, ctypes.c_void_p(handler))
 
 
 def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -139,8 +144,7 @@ def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
     n = polygon.shape[1]
     own = not gmsh.isInitialized()
     if own:
-        gmsh.initialize(interruptible=False)
-        _ignore_closed_pipes()
+        _initialize(gmsh)
     try:
         for option, value in {
             "General.Terminal": 0,

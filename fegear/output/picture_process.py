@@ -14,12 +14,11 @@ import signal
 import subprocess
 import sys
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from fegear.engine.processes import cores
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from fegear.engine.figure import Figure
@@ -111,22 +110,21 @@ def serve() -> None:
     gc.set_threshold(100_000)  # as in the program itself; what is drawn is freed figure by figure
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no answer
-    from fegear.output.draw_png import draw_pictures, warm_up
+    from fegear.output.draw_png import warm_up
 
     warm_up()
-    for figure, target in _requests(sys.stdin.buffer):
-        try:
-            drawn = tuple(draw_pictures(figure, target))
-        except Exception:  # noqa: BLE001  (the other side draws it again and reports what is wrong)
-            drawn = None
-        pickle.dump(drawn, answers)
-        answers.flush()
+    with contextlib.suppress(EOFError, pickle.UnpicklingError, BrokenPipeError):  # until the other side ends
+        while True:
+            figure, target = pickle.load(sys.stdin.buffer)  # noqa: S301  (from the process that started this one)
+            pickle.dump(_pictures(figure, target), answers)
+            answers.flush()
     gc.freeze()
 
 
-def _requests(stream: IO[bytes]) -> Iterator[tuple[Figure, Path]]:
-    while True:
-        try:
-            yield pickle.load(stream)  # noqa: S301  (from the process that started this one)
-        except EOFError:
-            return
+def _pictures(figure: Figure, folder: Path) -> Pictures:
+    from fegear.output.draw_png import draw_pictures
+
+    try:
+        return tuple(draw_pictures(figure, folder))
+    except Exception:  # noqa: BLE001  (the other side draws it again and reports what is wrong)
+        return None

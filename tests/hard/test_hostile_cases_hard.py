@@ -183,3 +183,29 @@ def test_an_interrupt_while_the_program_is_still_loading_is_reported_in_one_line
     _, errors = process.communicate(timeout=30)
     assert process.returncode == 130
     assert errors == "fegear: interrupted; results of earlier runs are as they were.\n"
+
+
+def test_meshing_leaves_signals_to_whoever_handles_them(tmp_path):
+    """gmsh takes them away when it starts: a batch system's request to stop left a scratch folder behind."""
+    program = (
+        "import os, signal\n"
+        "for name in ('SIGTERM', 'SIGHUP'):\n"
+        "    signal.signal(getattr(signal, name), lambda number, _frame: print('heeded', number, flush=True))\n"
+        "from fegear.fem import MeshSettings\n"
+        "from fegear.fem.sector import mesh_sector\n"
+        "from fegear.geometry import BasicRack, Tooth\n"
+        "mesh_sector(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 6.0, MeshSettings())\n"
+        "for name in ('SIGTERM', 'SIGHUP'):\n"
+        "    os.kill(os.getpid(), getattr(signal, name))\n"
+        "reader, writer = os.pipe()\n"
+        "os.close(reader)\n"
+        "try:\n"
+        "    os.write(writer, b'x')\n"
+        "except BrokenPipeError:\n"
+        "    print('closed')\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == f"heeded {int(signal.SIGTERM)}\nheeded {int(signal.SIGHUP)}\nclosed\n"

@@ -131,11 +131,14 @@ def test_without_plots_none_is_started(monkeypatch, tmp_path):
         CliRunner().invoke(app, arguments, catch_exceptions=False)
 
 
-def test_none_outlives_a_killed_parent(tmp_path):
+def test_none_outlives_a_killed_parent_nor_complains(tmp_path):
     program = (
         "import time\n"
         "from fegear.output.picture_process import PictureProcess\n"
         "with PictureProcess() as process:\n"
+        "    if process._child is not None:\n"
+        "        process._child.stdin.write(bytes([128, 4, 149]))\n"  # the first bytes of a figure
+        "        process._child.stdin.flush()\n"
         "    print(process._child is not None, flush=True)\n"
         "    time.sleep(600)\n"
     )
