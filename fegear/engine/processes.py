@@ -44,6 +44,24 @@ def _one_thread_each() -> Iterator[None]:
                 os.environ[name] = value
 
 
+@contextlib.contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Start processes that Ctrl-C does not reach: it would find them loading, and each would end in a traceback.
+
+    A blocked signal stays blocked in the new process; in this one it is delivered at the end of the block.
+    """
+    import signal
+
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _settle() -> None:
     """Begin a worker's life: Ctrl-C is the parent's business, and no worker outlives a parent that was killed."""
     import signal
@@ -115,7 +133,7 @@ def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
         others = {child.pid for child in active_children()}
         pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_settle)
         try:
-            with contextlib.nullcontext() if _from_main(job) else _without_main():
+            with _deaf_to_ctrl_c(), contextlib.nullcontext() if _from_main(job) else _without_main():
                 futures = {pool.submit(job, point): i for i, point in todo.items()}
             for future in as_completed(futures):
                 yield futures[future], future.result()

@@ -142,6 +142,36 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     assert [path.name for path in out.parent.iterdir()] == ["one"]
 
 
+def test_ctrl_c_while_a_sweep_starts_its_processes_is_one_line(case, tmp_path):
+    """Ctrl-C reaches every process of a terminal; those that were still loading ended in tracebacks of their own."""
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "sitecustomize.py").write_text(
+        "import pathlib, sys, time\n"
+        "if any('spawn_main' in word for word in sys.orig_argv):\n"
+        f"    pathlib.Path({str(tmp_path / 'loading')!r}).touch()\n"
+        "    time.sleep(20)\n"
+    )
+    # A background job of a shell without job control ignores SIGINT, and its children would inherit that.
+    program = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from fegear.cli import main\nif __name__ == '__main__': main()"
+    )
+    options = ["--over", "gear.a.teeth=20:60:41", "--workers", "2", "--no-plots", "--no-cache"]
+    path = os.pathsep.join([str(tmp_path / "site"), *filter(None, [os.environ.get("PYTHONPATH")])])
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, "sweep", str(case), *options], env=os.environ | {"PYTHONPATH": path},
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    until = time.monotonic() + 60
+    while not (tmp_path / "loading").exists() and time.monotonic() < until:
+        time.sleep(0.01)
+    time.sleep(0.2)  # the parent is past starting them
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors == "fegear: interrupted; started again, the sweep resumes where it stopped.\n"
+
+
 def test_a_terminal_gets_a_bar(case, tmp_path):
     import pty
 
