@@ -35,11 +35,14 @@ snippets = _snippets()
 PAGES = [page for page in sorted(DOCS.rglob("*.md")) if snippets.runs(page)]
 
 
-def test_the_site_builds_without_a_warning(tmp_path):
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The site with one case of the gallery and no page run, and what mkdocs said."""
     pytest.importorskip("mkdocs")
+    folder = tmp_path_factory.mktemp("docs") / "site"
     environment = {**os.environ, "FEGEAR_GALLERY": "litvin_lead", "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        [sys.executable, "-m", "mkdocs", "build", "--site-dir", str(tmp_path / "site")],
+        [sys.executable, "-m", "mkdocs", "build", "--site-dir", str(folder)],
         cwd=ROOT,
         env=environment,
         capture_output=True,
@@ -48,18 +51,44 @@ def test_the_site_builds_without_a_warning(tmp_path):
         timeout=240,
     )
     assert done.returncode == 0, done.stderr
+    return folder, done.stderr
+
+
+def test_the_search_is_in_sight_and_works_in_a_folder(site, program):
+    """The list of pages scrolled it away at load, and a browser refused its worker below file://."""
+    folder, said = site
+    assert f"The site starts at {folder / 'index.html'}" in said
+    spec = importlib.util.spec_from_file_location("docs_chromium", Path(__file__).with_name("chromium.py"))
+    chromium = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(chromium)
+    box = "document.querySelector('[role=search] input').getBoundingClientRect()"
+    scrolled = "document.querySelector('.wy-side-scroll').scrollTop"
+    with chromium.Browser(program("chromium")) as browser:
+        for name in ("index.html", "reference/geometry.html"):
+            browser("Page.navigate", url=(folder / name).as_uri())
+            browser.until(f"document.readyState === 'complete' && {scrolled} > 50")
+            top, bottom = browser.run(f"[{box}.top, {box}.bottom]")
+            assert 0 <= top < bottom < 200
+        browser("Page.navigate", url=(folder / "search.html").as_uri() + "?q=robustness")
+        browser.until("document.querySelectorAll('#mkdocs-search-results article').length > 3")
+        assert "design" in browser.run("document.getElementById('mkdocs-search-results').innerText")
+        assert browser.complaints == []
+
+
+def test_the_site_builds_without_a_warning(site):
+    folder, said = site
     # Pages that name other cases, or show what their own run makes, link to what this shortened site leaves out.
     left_out = ("'gallery/", "gallery/", "_files/results/")
-    faults = [line for line in done.stderr.splitlines() if line.startswith("WARNING")]
+    faults = [line for line in said.splitlines() if line.startswith("WARNING")]
     assert [line for line in faults if not any(name in line for name in left_out)] == []
-    start = (tmp_path / "site" / "index.html").read_text("utf-8")
+    start = (folder / "index.html").read_text("utf-8")
     names = [page.relative_to(DOCS).with_suffix(".html").as_posix() for page in DOCS.rglob("*.md")]
     assert [name for name in names if f'href="{name}"' not in start] == []
-    page = (tmp_path / "site" / "gallery" / "litvin_lead.html").read_text("utf-8")
+    page = (folder / "gallery" / "litvin_lead.html").read_text("utf-8")
     assert "fegear run cases/litvin_lead.toml" in re.sub("<[^>]+>", "", page)
     assert page.count("<img") >= 1
     assert '<h2 id="numbers">' in page
-    assert "<math" in (tmp_path / "site" / "tutorial.html").read_text("utf-8")
+    assert "<math" in (folder / "tutorial.html").read_text("utf-8")
 
 
 def test_a_dead_link_and_a_fetched_script_are_found(tmp_path):
