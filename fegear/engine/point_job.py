@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from fegear.errors import FegearError, MissingLibraryError
+from fegear.one_thread import one_thread
 from fegear.plain import code_version, pack, unpack
 from fegear.solution_cache import SolutionCache, cache_on_disk
 
@@ -79,10 +80,7 @@ class Job:
         if self.version != code_version():
             raise FegearError("the workers run another version of fegear or of its libraries than this program.")
         # A worker that somebody else started may have loaded its BLAS with many threads, and sums with other last bits.
-        import scipy.linalg  # noqa: F401  (loaded before it is limited: scipy brings a BLAS of its own)
-        from threadpoolctl import threadpool_limits
-
-        with _alone, threadpool_limits(limits=1):
+        with _alone, one_thread():
             cache = self._cache()
             before = cache.shapes.state
             reply = here(self.function, point, cache if self.shares_cache else None)

@@ -14,6 +14,7 @@ from fegear.fem.elasticity import assemble
 from fegear.fem.ring import close_ring
 from fegear.fem.root_stress import FilletStrain, extreme, fillet_strain
 from fegear.fem.trace import LoadedFlank, loaded_flank
+from fegear.one_thread import one_thread
 from fegear.tally import tallied
 
 if TYPE_CHECKING:
@@ -313,11 +314,7 @@ def solve_influence(
     -------
     Influence
     """
-    import scipy.linalg  # noqa: F401  (loaded before it is limited: scipy brings a BLAS of its own)
-    from threadpoolctl import threadpool_limits
-
-    # Many small dense matrices: on a busy machine a second BLAS thread makes them ten times slower, never faster.
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_thread():
         return _solve(tooth, mesh, poisson_ratio, plane, order, reach, corner_distance, margin, sector_teeth)
 
 

@@ -14,6 +14,7 @@ from fegear.case.reading import build_scene, case_text, parse_document, read_doc
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
+from fegear.one_thread import one_thread
 from fegear.results.catalogue import STAGES
 from fegear.solution_cache import SolutionCache
 from fegear.terminal import watcher
@@ -78,12 +79,9 @@ def run_scene(
     scene: Scene, *, progress: bool | None = None, scheduler: str | None = None, cache: SolutionCache | None = None
 ) -> Results:
     """Compute what a scene asks for; see `run`."""
-    from threadpoolctl import threadpool_limits
-
     plan = make_plan(scene, STAGES)
     known = SolutionCache() if cache is None else cache
-    # The dense blocks of a sector are too small for threads: two take twice the work of one for no gain in time.
-    with threadpool_limits(limits=1), _watching(progress) as watching:
+    with one_thread(), _watching(progress) as watching:
         return Results.of(run_plan(scene, plan, watching, cache=known, executor=Executor(scheduler)))
 
 

@@ -27,6 +27,7 @@ LAYERS = {
     "plain": 0.5,
     "unit_text": 0.4,
     "units": 0.5,
+    "one_thread": 0.5,
     "tally": 0.5,
     "store": 0.6,
     "solution_cache": 0.7,

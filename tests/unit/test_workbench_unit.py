@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import math
+import os
 import re
 import subprocess
 import sys
@@ -239,6 +240,26 @@ def test_drawings_are_exported(found, tmp_path):
         "pinion_tooth_polyline.dxf", "pinion_gear_polyline.dxf", "pinion_tooth_spline.dxf", "pinion_gear_spline.dxf",
     ]  # fmt: skip
     assert all(path.is_file() for path in made)
+
+
+def test_a_run_keeps_linear_algebra_to_one_thread_and_gives_it_back():
+    """scipy's own library too, which a script has not loaded when it calls fegear for the first time."""
+    probe = (
+        "import numpy, fegear, fegear.workbench.run as module\n"
+        "from threadpoolctl import threadpool_info\n"
+        "def threads():\n"
+        "    import scipy.linalg\n"
+        "    return sorted({pool['num_threads'] for pool in threadpool_info()})\n"
+        "plan, inside = module.run_plan, []\n"
+        "module.run_plan = lambda *given, **how: (inside.append(threads()), plan(*given, **how))[1]\n"
+        "fegear.Gear(20, '3 mm').data\n"
+        "print(inside, threads())\n"
+    )
+    threads = {f"{library}_NUM_THREADS": "2" for library in ("OMP", "OPENBLAS", "MKL")}
+    ran = subprocess.run(
+        [sys.executable, "-c", probe], capture_output=True, text=True, check=True, env={**os.environ, **threads}
+    )
+    assert ran.stdout.strip() == "[[1]] [2]"
 
 
 def test_a_silent_run_writes_nothing(capfd):

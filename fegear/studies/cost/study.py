@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.engine.run import Silence
 from fegear.models.settings import seconds_of_gear
+from fegear.one_thread import one_thread
 from fegear.studies.cost.answers import answer
 from fegear.studies.cost.knobs import ladder_knobs
 from fegear.studies.cost.ladder import make_ladder
@@ -24,7 +25,6 @@ from fegear.studies.cost.measure import (
 from fegear.studies.cost.pair_knobs import pair_knobs
 from fegear.studies.cost.result import CostResults
 from fegear.studies.cost.sources import CaseTable
-from fegear.studies.cost.timing import one_thread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import time
 from statistics import median
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
 T = TypeVar("T")
 
@@ -49,13 +48,3 @@ def timed(work: Callable[[], T], *, repeat: bool = True) -> tuple[T, Seconds]:
         wall.append(time.perf_counter() - clock)
         if not repeat or cpu[0] > _SHORT or len(cpu) == _TIMES:
             return found, Seconds(median(cpu), median(wall))
-
-
-@contextlib.contextmanager
-def one_thread() -> Iterator[None]:
-    """Keep the libraries of linear algebra to one thread, so that processor seconds are those of one core."""
-    import scipy.linalg  # noqa: F401  (loaded before it is limited: scipy brings a BLAS of its own)
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(limits=1, user_api="blas"):
-        yield

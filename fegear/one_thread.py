@@ -1,0 +1,23 @@
+"""Linear algebra on one thread."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@contextlib.contextmanager
+def one_thread() -> Iterator[None]:
+    """Keep the libraries of linear algebra to one thread while the block runs.
+
+    The matrices of a gear are many and small: on a busy machine a second thread makes them ten times slower, never
+    faster, and sums come out with other last bits. Processor seconds are then those of one core.
+    """
+    import scipy.linalg  # noqa: F401  (loaded before it is limited: scipy brings a BLAS of its own)
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(limits=1):
+        yield
