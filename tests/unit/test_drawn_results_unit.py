@@ -139,6 +139,8 @@ def test_logarithmic_axes_of_few_decades_have_plain_numbers_in_the_page():
     spec = plotly_json(Figure("k", "t", "c", (few,)))["layout"]
     assert {"20", "30", "50"} <= set(spec["xaxis"]["ticktext"])
     assert spec["yaxis"]["dtick"] == 1
+    small = Panel(Axis("x", log=True), Axis("y"), (Curve([2e-6, 9e-6], [0.0, 1.0]),))
+    assert not {"dtick", "ticktext"} & set(plotly_json(Figure("k", "t", "c", (small,)))["layout"]["xaxis"])
 
 
 def test_an_empty_spectrum_has_no_limits_of_its_own():

@@ -18,6 +18,8 @@ _LEFT, _RIGHT, _BOTTOM, _TOP = 74, 24, 56, 34
 _SECOND, _LEGEND_LINE, _MENU = 44, 21, 46
 _BESIDE = 4
 _TILE = 26
+#: Numbers between these are read without powers of ten.
+_PLAIN = 1e-3, 1e5
 
 
 def _inner(panel: Panel, alone: bool) -> float:
@@ -141,6 +143,8 @@ def _log_ticks(low: float, high: float) -> Spec:
     """Marks of a logarithmic axis: whole powers over many decades, else 1, 2, 3 and 5 times them, as plain numbers."""
     if not 0.0 < low <= high or high >= FEW_DECADES * low:
         return {"dtick": 1}
+    if low < _PLAIN[0] or high > _PLAIN[1]:
+        return {}
     powers = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 2)
     places = [factor * 10.0**power for power in powers for factor in (1.0, 2.0, 3.0, 5.0)]
     return {"tickvals": places, "ticktext": [f"{place:g}" for place in places]}
