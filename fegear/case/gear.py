@@ -147,7 +147,11 @@ class GearPart(Part):
             "normal_module", "normal_diametral_pitch", "rack", "rim_thickness",
         }  # fmt: skip
         for key in sorted(self.model_fields_set - known):
-            raise refuse("has no meaning for a gear with a helix_angle", f"remove {key}", key=key)
+            if key in ("module", "diametral_pitch"):
+                raise refuse("is that of a spur gear", f"write normal_{key} for a gear with a helix_angle", key=key)
+            raise refuse(
+                "is not computed for a gear with a helix_angle yet", f"remove {key}: results do without it", key=key
+            )
         for key in ("hand", "face_width"):
             if getattr(self, key) is None:
                 raise refuse("is missing for a helical gear", f"give {key}", key=key)

@@ -91,7 +91,19 @@ class PairPart(Part):
             raise at(prefix, error, {"pair": ""}) from None
 
     def build_helical(self, gears: dict[str, HelicalGear], prefix: str, *, misaligned: bool) -> HelicalPair:
-        """Make a helical pair; its errors count only where the scene calls for misalignment."""
+        """Make a helical pair; its errors count only where the scene calls for misalignment.
+
+        Raises
+        ------
+        InputError
+            If a key asks for what is not computed for helical pairs.
+        """
+        for key in ("compliance", "loads", "speed"):
+            if key in self.model_fields_set:
+                raise InputError(
+                    f"{prefix}.{key}", "(given)", "is not computed for a helical pair yet: its flanks are rigid",
+                    f"remove {key}; tooth_contact.load gives contact ellipses, load or torque the crosscheck",
+                )  # fmt: skip
         if self.centre_distance is not None:
             raise InputError(
                 f"{prefix}.centre_distance", f"{self.centre_distance * 1e3:.9g} mm",

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 USUAL_LINE_LOAD = 100e3
 #: The whole case is one subject: gears and pairs share the tables of sources and the remarks.
 _WHOLE = ""
-_REMARKS = (
+_GEAR_REMARKS = (
     (
         "Crosscheck: one tooth of the whole gear is loaded normal to its flank, without friction and with no other "
         "tooth loaded; everything is per unit line load (secant, not local slope)."
@@ -45,10 +45,10 @@ _REMARKS = (
         "Crosscheck of gear compliance: tooth and body without the contact zone; from FE the exact half-plane approach "
         "down to the tooth's centre line along the line of action is taken off."
     ),
-    (
-        "Crosscheck of pair compliance: one tooth pair with its contact of Hertz's width, no load sharing; FE "
-        "deflections are means weighted with the contact pressure."
-    ),
+)
+_PAIR_REMARK = (
+    "Crosscheck of pair compliance: one tooth pair with its contact of Hertz's width, no load sharing; FE "
+    "deflections are means weighted with the contact pressure."
 )
 
 
@@ -123,7 +123,9 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
 
 
 def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
-    tables, values, remarks = [sources_table()], [], list(_REMARKS)
+    # A case of helical pairs alone compares no spur gear of its own: its remarks come with each pair.
+    tables, values = [sources_table()], []
+    remarks = [*(_GEAR_REMARKS if asked.gears else ()), *((_PAIR_REMARK,) if asked.pairs else ())]
     for name, gear in asked.gears.items():
         answers = data.gears[name]
         found = (

@@ -109,7 +109,8 @@ def _present(data: LoadSharingData, inputs: Subject) -> Outcome:
         Value(f"{name}.largest_share", float(history.share[largest, i]), "", relative, "of one tooth pair"),
         Value(
             f"{name}.largest_hertz_pressure", float(pressure[hardest]), "MPa",
-            None if relative is None else 0.5 * relative * float(pressure[hardest]), f"smooth flanks, {where}",
+            # Never exact: where the load has no error, what Hertz leaves out is still not estimated.
+            0.5 * relative * float(pressure[hardest]) if relative else None, f"smooth flanks, {where}",
         ),
     )  # fmt: skip
     remarks = []

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from fegear.helical.predesign import Predesign
 
 
+#: How far past an end of the face, over its width, an ellipse may reach without a remark.
+_NEGLIGIBLE = 0.01
+
+
 @dataclass(frozen=True, slots=True)
 class ToothContactData:
     """The analysis of a pair.
@@ -62,6 +66,8 @@ class ToothContactInputs:
         Contact modulus [Pa].
     name : str
         Of the pair.
+    ignored : str
+        Key of a load that the case gives and no wanted result takes; else empty.
     """
 
     pair: HelicalPair
@@ -70,6 +76,7 @@ class ToothContactInputs:
     load: float | None
     modulus: float
     name: str = field(compare=False)
+    ignored: str = field(default="", compare=False)
 
 
 def _pairs(scene: Scene) -> tuple[str, ...]:
@@ -179,6 +186,12 @@ def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
     share = {str(k): c / t.mesh.kind.size for k, c in zip(kinds, counts, strict=True)}
     edges = {k: s for k, s in share.items() if k != "surface"}
     remarks = []
+    total = t.pair.transverse_contact_ratio + t.pair.overlap_ratio
+    if total < 1.0:
+        remarks.append(
+            f"Pair {name}: contact ratio {total:.3g}, overlap included, is below 1: over {1.0 - total:.0%} of a pitch "
+            "no tooth pair is on its path of contact, and edges carry the motion on."
+        )
     if edges:
         shares = ", ".join(f"{k} {s:.0%}" for k, s in sorted(edges.items(), key=lambda item: -item[1]))
         remarks.append(f"Pair {name}: contact is on an edge over part of the cycle: {shares}.")
@@ -198,13 +211,33 @@ def _remarks(name: str, t: ToothContact) -> tuple[str, ...]:
     return tuple(remarks)
 
 
+def _ellipse_remarks(name: str, t: ToothContact, bearing: Bearing) -> tuple[str, ...]:
+    """Ellipses that reach past an end of the common face: the half-space behind them ends there."""
+    z, reach = t.mesh.z1[bearing.index], np.abs(bearing.long_axis[2]) * bearing.ellipse.long
+    low, high = t.pair.overlap
+    past, face = np.maximum(z + reach - high, low - z + reach), high - low
+    if not (past > _NEGLIGIBLE * face).any():
+        return ()
+    longest = 2.0 * float(bearing.ellipse.long.max())
+    than = f"longer than the common face of {1e3 * face:.4g} mm" if longest > face else "not as long as the common face"
+    share = np.mean(past > _NEGLIGIBLE * face)
+    remark = (
+        f"Pair {name}: at {share:.0%} of the positions the contact ellipse reaches past an end "
+        f"of the face, by up to {1e3 * past.max():.3g} mm (the longest, of {1e3 * longest:.4g} mm, is {than}). Hertz's "
+        "flanks do not end: pressures there are too low."
+    )
+    return (remark,)
+
+
 def _inputs(scene: Scene, name: str) -> ToothContactInputs:
     part, asked = scene.case.pair[name], scene.case.tooth_contact
     a, b = (scene.case.gear[gear].material.build().plane_modulus("strain") for gear in (part.driver, part.driven))
     absorb = part.modification is not None and part.modification.absorb
     return ToothContactInputs(
-        scene.helical_pairs[name], asked.positions, absorb, asked.load, 1.0 / (1.0 / a + 1.0 / b), name
-    )
+        scene.helical_pairs[name], asked.positions, absorb, asked.load, 1.0 / (1.0 / a + 1.0 / b), name,
+        next((key for key in ("load", "torque") if getattr(part, key) is not None), "")
+        if "crosscheck" not in scene.case.results else "",
+    )  # fmt: skip
 
 
 def _compute(asked: ToothContactInputs, _upstream: Upstream, _work: Work) -> ToothContactData:
@@ -242,6 +275,14 @@ def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
     settings: dict[str, object] = {"positions": asked.positions}
     if asked.load is not None:
         settings |= {"load": asked.load, "contact_modulus": asked.modulus}
+    if data.bearing is not None:
+        remarks += _ellipse_remarks(name, contact, data.bearing)
+    if asked.ignored:
+        idle = (
+            f"Pair {name}: {asked.ignored} changes nothing here: tooth contact analysis takes the flanks as rigid. "
+            "tooth_contact.load gives contact ellipses; the crosscheck takes load or torque for ISO 6336."
+        )
+        remarks += (idle,)
     if data.no_ellipses:
         remarks += (f"Pair {name}: no contact ellipses: {data.no_ellipses}.",)
     figures = tooth_contact_figures(name, contact, data.bearing, asked.load)

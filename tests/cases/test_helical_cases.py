@@ -54,6 +54,31 @@ def test_without_the_effect_the_drive_is_aligned_or_the_table_refused():
     assert any("ill-defined" in remark for remark in results.remarks)
 
 
+def test_a_load_that_changes_nothing_is_said_to():
+    for key, value in (("load", "1000 N"), ("torque", "100 N*m")):
+        _, _, results = run("litvin_lead", f"pair.I.{key}='{value}'", "tooth_contact.positions=8")
+        assert any(f"Pair I: {key} changes nothing here" in remark for remark in results.remarks), key
+    _, _, results = run("litvin_lead", "tooth_contact.positions=8")
+    assert not any("changes nothing" in remark for remark in results.remarks)
+
+
+def test_a_contact_ratio_below_one_and_ellipses_past_the_face_are_remarked():
+    """0.7 and ellipses longer than the face went without a word."""
+    narrow = [f"gear.{gear}.face_width='4 mm'" for gear in ("pinion", "gear")]
+    short = ["gear.pinion.tip_diameter='178 mm'", "gear.gear.tip_diameter='589 mm'"]
+    _, values, results = run(
+        "litvin_localised", *narrow, *short, "tooth_contact.positions=40", "tooth_contact.load='20 kN'"
+    )
+    total = values["I.transverse_contact_ratio"] + values["I.overlap_ratio"]
+    assert total < 1.0
+    told = "\n".join(results.remarks)
+    assert f"contact ratio {total:.3g}, overlap included, is below 1" in told
+    assert "reaches past an end of the face" in told
+    assert "longer than the common face of 4 mm" in told
+    _, _, results = run("litvin_localised", "tooth_contact.positions=40", "tooth_contact.load='0.001 N'")
+    assert not any("below 1" in remark or "past an end" in remark for remark in results.remarks)
+
+
 def test_absorbing_the_linear_error():
     tables, values, results = run("litvin_localised", "pair.I.modification.absorb=true")
     assert set(tables["tooth_contact_I"]["contact"]) == {"surface"}
@@ -64,7 +89,8 @@ def test_absorbing_the_linear_error():
     _, again, _ = run("litvin_localised", crown)
     assert again["I.te_peak_to_peak"] == pytest.approx(values["I.te_peak_to_peak"], rel=1e-6)
     assert "contact_ellipses_I" in tables
-    assert results.remarks == ()
+    (remark,) = results.remarks
+    assert "10% of the positions the contact ellipse reaches past an end of the face" in remark
 
 
 def test_blankenship_singh():
@@ -110,7 +136,12 @@ def test_general_pair_and_mesh_from_a_load_distribution(tmp_path):
         ("gear.gear.hand='left'", "opposite hands"),
         ("gear.gear.helix_angle='20 deg'", "equal by design"),
         ("gear.pinion.tip_diameter='150 mm'", "below the base circle"),
-        ("gear.pinion.module='5 mm'", "no meaning for a gear with a helix_angle"),
+        ("gear.pinion.module='5 mm'", "write normal_module"),
+        ("gear.pinion.profile_shift=0.3", "not computed for a gear with a helix_angle yet"),
+        ("gear.pinion.relief={ tip = { amount = '10 um', start_radius = '80 mm' } }", "not computed for a gear"),
+        ("pair.I.compliance={ source = 'cornell' }", "pair.I.compliance.*not computed for a helical pair yet"),
+        ("pair.I.loads=['100 N']", "pair.I.loads.*rigid"),
+        ("pair.I.speed='100 rpm'", "pair.I.speed.*rigid"),
         ("gear.pinion.normal_module='5 mm'", "must be given once"),
         ("gear.pinion.hand='spur'", "contradicts the helix angle"),
         ("pair.I.axial_offset='100 mm'", "beside each other"),
