@@ -66,9 +66,10 @@ def virtual_root_stress(
     for z in counts:
         tooth = Tooth(z, cutter, tip_radius=0.5 * z + addendum)
         radius = 0.5 * (load_diameter - z_n + z)
-        wheel = Gear(tooth, 1.0, 0.5 * tooth.root_radius)
+        m = gear.normal_module
+        wheel = Gear(tooth, m, 0.5 * tooth.root_radius * m)
         known = solve_gear(wheel, settings, reach=0, estimate_error=False, cache=cache)
-        found.append(float(known.largest_root_stress(0, "tension", np.array([radius]))[0][0]))
+        found.append(m * float(known.largest_root_stress(0, "tension", np.array([radius * m]))[0][0]))
     if len(found) == 1:
         return VirtualRootStress(tuple(counts), found[0])
     low, high = counts
