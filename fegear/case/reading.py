@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,12 +14,13 @@ from fegear.case import Case
 from fegear.case.keys import keys_at
 from fegear.case.names import nearest
 from fegear.case.part import BARE_SI
+from fegear.case.references import check_references
 from fegear.case.refusals import refusal
 from fegear.case.text_file import read_text
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.helical_gear import HelicalGear
@@ -101,9 +103,27 @@ def read_document(path: Path, overrides: Sequence[str] = ()) -> dict[str, Any]:
 def parse_document(text: str, name: str) -> dict[str, Any]:
     """Read the text of a case file, called `name` in messages, as plain tables."""
     try:
-        return tomllib.loads(text)
+        document = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # beside what TOML forbids, numbers and nests that Python cannot hold
         raise InputError("case", name, f"is no valid TOML: {error}", "quantities stand in quotes") from None
+    _refuse_decimal_commas(text)
+    return document
+
+
+#: A list of plain numbers behind a key.
+_NUMBERS = re.compile(r"(?:^|[{,])[ \t]*([\w-]+)[ \t]*=\s*\[([-+.,\w\s]*)\]", re.MULTILINE)
+
+
+def _refuse_decimal_commas(text: str) -> None:
+    """Refuse lists such as ``[0.1, 0,25]``, where one comma is followed by a blank and one stands amid digits."""
+    for found in _NUMBERS.finditer(text):
+        glued = re.search(r"(?<![\w.])[-+]?\d+,\d+(?![\w.])", found[2])
+        if glued and re.search(r",\s", found[2]):
+            point, two = glued[0].replace(",", "."), glued[0].replace(",", ", ")
+            raise InputError(
+                found[1], f"[{' '.join(found[2].split())}]", f"can be read with a decimal comma in {glued[0]}",
+                f"write {point}, or {two} for two numbers",
+            )  # fmt: skip
 
 
 def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare_si: bool = False) -> Scene:
@@ -131,7 +151,9 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
     helical_gears = {key: part.build_helical(f"gear.{key}") for key, part in case.gear.items() if part.is_helical}
     for key, pair in case.pair.items():
         for role in ("driver", "driven"):
-            _known(f"pair.{key}.{role}", getattr(pair, role), case.gear, "gear")
+            if (gear := getattr(pair, role)) not in case.gear:
+                rule, remedy = "is no gear of this case", nearest(gear, case.gear)
+                raise InputError(f"pair.{key}.{role}", f'"{gear}"', rule, remedy)
         if (pair.driver in gears) != (pair.driven in gears):
             raise InputError(
                 f"pair.{key}.driven", f'"{pair.driven}"', "is helical where its mate is not, or the other way round",
@@ -144,22 +166,8 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
         for key, pair in case.pair.items()
         if key not in spur
     }
-    if case.stiffness.gear is not None:
-        _known("stiffness.gear", case.stiffness.gear, gears, "gear")
-    if case.stiffness.pair is not None:
-        _known("stiffness.pair", case.stiffness.pair, pairs, "pair")
-    if case.cost.gear is not None:
-        _known("cost.gear", case.cost.gear, gears, "spur gear")
-    if case.cost.pair is not None:
-        _known("cost.pair", case.cost.pair, pairs, "spur pair")
-    if case.design is not None and case.design.pair is not None:
-        _known("design.pair", case.design.pair, pairs, "pair")
+    check_references(case, gears, pairs)
     return Scene(case, name, folder, gears, pairs, helical_gears, helical_pairs, document=document)
-
-
-def _known(key: str, name: str, known: Iterable[str], kind: str) -> None:
-    if name not in known:
-        raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known))
 
 
 def apply_override(document: dict[str, Any], override: str) -> None:
@@ -179,6 +187,8 @@ def apply_override(document: dict[str, Any], override: str) -> None:
         read = tomllib.loads(f"value = {text.strip()}")
     except (ValueError, RecursionError):
         read = {}
+    if isinstance(read.get("value"), list):
+        _refuse_decimal_commas(f"{steps[-1]} = {text.strip()}")
     # What is no TOML is a text, and so is what would be TOML of several keys.
     set_key(document, path.strip(), read["value"] if set(read) == {"value"} else text.strip())
 

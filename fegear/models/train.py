@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fegear.case.names import nearest
 from fegear.dynamics.gear_train import GearTrain
 from fegear.dynamics.matrices import static_forces
 from fegear.dynamics.train import (
@@ -26,7 +25,7 @@ from fegear.dynamics.train_mesh import TrainMesh, a_drives
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Mapping
 
     from fegear.case.reading import Scene
     from fegear.case.train import BodyPart, ShaftPart, TrainPart
@@ -47,36 +46,9 @@ def train_part(scene: Scene) -> TrainPart:
     return scene.case.train
 
 
-def _known(key: str, name: str, known: Iterable[str], kind: str) -> None:
-    if name not in known:
-        raise InputError(key, f'"{name}"', f"is no {kind} of this case", nearest(name, known))
-
-
-def _references(scene: Scene, part: TrainPart) -> Iterator[tuple[str, str, str]]:
-    """Key, name and kind of everything that the train refers to."""
-    for name, body in part.body.items():
-        yield from ((f"train.body.{name}.gears", gear, "gear") for gear in body.gears or ())
-    for name, shaft in part.shaft.items():
-        yield from ((f"train.shaft.{name}.{end}", getattr(shaft, end), "body") for end in ("a", "b"))
-    for name, mesh in part.mesh.items():
-        yield from ((f"train.mesh.{name}.{role}", getattr(mesh, role), "body") for role in ("driver", "driven"))
-        yield f"train.mesh.{name}.pair", part.pair_of(name), "spur pair"
-        yield f"train.mesh.{name}.like.pair", part.loaded_pair_of(name), "spur pair"
-    for name, damper in part.damper.items():
-        yield from ((f"train.damper.{name}", end, "body") for end in (damper.a, damper.b) if end is not None)
-    yield from (("train.torque", torque, "body") for torque in part.torque)
-    dynamics = scene.case.dynamics
-    others = {"train.balance": part.balance, "dynamics.speed_of": dynamics.speed_of}
-    others["dynamics.loss_taken_by"] = dynamics.loss_taken_by
-    yield from ((key, name, "body") for key, name in others.items() if name is not None)
-
-
 def check_train(scene: Scene) -> None:
-    """Refuse names that nothing has and trains that cannot turn, before anything is computed."""
+    """Refuse trains that cannot turn, before anything is computed."""
     part = train_part(scene)
-    known: dict[str, Iterable[str]] = {"body": part.body, "gear": scene.gears, "spur pair": scene.pairs}
-    for key, name, kind in _references(scene, part):
-        _known(key, name, known[kind], kind)
     forces = static_forces(build_train(train_inputs(scene)))
     for name, force in zip(part.mesh, forces, strict=True):
         pair = part.loaded_pair_of(name)

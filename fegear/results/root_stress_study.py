@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.case.names import nearest
 from fegear.engine.citation import citing
 from fegear.engine.figure import Axis, Curve, Figure, HeatMap, Mark, Panel, Points, View
 from fegear.engine.outcome import Column, Outcome, Table, Value
@@ -49,8 +48,6 @@ def _study(scene: Scene) -> StudyPart:
 
 def _check(scene: Scene, _subject: str) -> None:
     study = _study(scene)
-    if study.gear is not None and study.gear not in scene.gears:
-        raise InputError("study.gear", f'"{study.gear}"', "is no gear of this case", nearest(study.gear, scene.gears))
     if study.gear is None and len(scene.gears) > 1:
         raise InputError(
             "study.gear", "(not given)", "must say which gear is varied", f"one of {', '.join(scene.gears)}"

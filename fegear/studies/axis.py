@@ -12,7 +12,7 @@ import numpy as np
 from fegear.errors import InputError
 
 _EXAMPLE = "for example --over gear.a.profile_shift=-0.4:0.8:25, =0.1,0.2,0.5 or =10:20:6:mm"
-_QUANTITY = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*)?")
+_QUANTITY = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([^\s0-9].*|1\s*/.*)?")
 _MOST = 1_000_000
 
 
@@ -76,9 +76,11 @@ def _range(key: str, parts: list[str], text: str) -> Axis:
     units = [part for part in parts[3:] if part != "log"]
     ends = [_QUANTITY.fullmatch(part) for part in parts[:2]]
     found = {match[2] for match in ends if match and match[2]} | set(units)
-    if None in ends or len(found) > 1 or not parts[2].isdigit():
+    if None in ends or len(found) > 1 or not re.fullmatch("[0-9]{1,9}", parts[2]):
         raise InputError("--over", f'"{text}"', "must read START:STOP:COUNT with one unit for both ends", _EXAMPLE)
     start, stop = (float(match[1]) for match in ends if match)
+    if not (math.isfinite(start) and math.isfinite(stop)):
+        raise InputError("--over", f'"{text}"', "must have finite ends", _EXAMPLE)
     count, unit = int(parts[2]), next(iter(found), "")
     if not 1 <= count <= _MOST:
         raise InputError("--over", f'"{text}"', f"asks for {count} values, but it must be 1 to {_MOST}", _EXAMPLE)
@@ -98,10 +100,18 @@ def _range(key: str, parts: list[str], text: str) -> Axis:
 
 
 def _list(key: str, given: str) -> Axis:
+    glued = re.search(r"(?<![\w.])[-+]?[0-9]+,[0-9]+(?![\w.])", given)
+    if glued and "." in given and '"' not in given:
+        point, two = glued[0].replace(",", "."), glued[0].replace(",", ".0,") + ".0"
+        raise InputError(
+            "--over", f'"{key}={given}"', f"can be read with a decimal comma in {glued[0]}",
+            f"write {point}, or {two} for two numbers",
+        )  # fmt: skip
     try:
-        values = tomllib.loads(f"values = {given if given.startswith('[') else f'[{given}]'}")["values"]
-    except tomllib.TOMLDecodeError:
-        values = [part.strip() for part in given.split(",")]
+        read = tomllib.loads(f"values = {given if given.startswith('[') else f'[{given}]'}")
+    except (ValueError, RecursionError):
+        read = {}
+    values = read["values"] if set(read) == {"values"} else [part.strip() for part in given.split(",")]
     if not values or len({str(value) for value in values}) < len(values):
         raise InputError("--over", f'"{key}={given}"', "must list different values", _EXAMPLE)
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
@@ -110,6 +120,11 @@ def _list(key: str, given: str) -> Axis:
         return Axis(key, tuple(values), tuple(float(value) for value in values))
     found = [_QUANTITY.fullmatch(value) if isinstance(value, str) else None for value in values]
     units = {match[2] for match in found if match}
+    if len(units) > 1 and None in units:
+        raise InputError(
+            "--over", f'"{key}={given}"', "has numbers with a unit and numbers without",
+            "decimal commas? write points, and the unit to each number",
+        )  # fmt: skip
     if None not in found and len(units) == 1 and None not in units:
         return Axis(key, tuple(values), tuple(float(match[1]) for match in found if match), units.pop())
     return Axis(key, tuple(values), None)

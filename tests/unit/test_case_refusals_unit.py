@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from fegear.case.reading import apply_override, build_scene, read_scene
+from fegear.case.reading import apply_override, build_scene, parse_document, read_scene
 from fegear.errors import GeometryError, InputError
 
 CASE = {
@@ -122,6 +122,48 @@ def test_a_refusal_names_key_and_rule(override, key, words):
         scene_with(override)
     assert str(refusal.value).startswith(key)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    "override",
+    ["design.load_factors=[0.1, 0,25]", "design.robustness.load_factors=[0.7, 1,3]", "study.profile_shift=[0,1, 0.5]"],
+)
+def test_a_decimal_comma_in_a_list_of_numbers_is_refused(override, tmp_path):
+    """TOML reads [0.1, 0,25] as three numbers."""
+    with pytest.raises(InputError, match=r"decimal comma in .*write \d\.\d+, or \d, \d+ for two numbers|unknown key"):
+        scene_with(override)
+    key, _, value = override.rpartition("=")
+    table, _, last = key.rpartition(".")
+    (tmp_path / "case.toml").write_text(f'results = ["geometry"]\n[{table}]\n{last} = {value}\n')
+    with pytest.raises(InputError, match="decimal comma"):
+        read_scene(tmp_path / "case.toml")
+
+
+@pytest.mark.parametrize("fine", ["[0.1, 0.25]", "[0,1,2]", "[0, 1, 2.5]", "[0.1,0.25]", "[0,\n1]"])
+def test_other_lists_of_numbers_are_left_alone(fine):
+    assert len(parse_document(f"a = {fine}", "case")["a"]) >= 2
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        ({"balance": "lod"}, r'train\.balance = "lod": is no body of this case; the nearest known name is "load"'),
+        ({"torque": {"motr": "5 N*m"}}, r'train\.torque = "motr": is no body'),
+        ({"mesh": {"I": {"driver": "motor", "driven": "wheel"}}}, r'train\.mesh\.I\.driven = "wheel": is no body'),
+        ({"mesh": {"II": {"driver": "motor", "driven": "load"}}}, r'train\.mesh\.II\.pair = "II": is no spur pair'),
+        ({"damper": {"d": {"a": "lead", "damping": "1 N*m*s"}}}, r'train\.damper\.d\.a = "lead": is no body'),
+    ],
+)
+def test_names_in_a_train_that_no_result_reads_are_held_against_the_case_too(part, words):
+    document = copy.deepcopy(CASE)
+    document["train"] = {
+        "body": {"motor": {"inertia": "1 kg*m^2"}, "load": {"inertia": "1 kg*m^2"}},
+        "mesh": {"I": {"driver": "motor", "driven": "load"}},
+        "torque": {"motor": "5 N*m"},
+        **part,
+    }
+    with pytest.raises(InputError, match=words):
+        build_scene(document, "case", Path())
 
 
 def test_geometry_keeps_its_kind_of_error():
