@@ -6,6 +6,7 @@ import math
 import re
 import tomllib
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -111,7 +112,7 @@ def _list(key: str, given: str) -> Axis:
         read = tomllib.loads(f"values = {given if given.startswith('[') else f'[{given}]'}")
     except (ValueError, RecursionError):
         read = {}
-    values = read["values"] if set(read) == {"values"} else [part.strip() for part in given.split(",")]
+    values: list[Any] = read["values"] if set(read) == {"values"} else [part.strip() for part in given.split(",")]
     if not values or len({str(value) for value in values}) < len(values):
         raise InputError("--over", f'"{key}={given}"', "must list different values", _EXAMPLE)
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
