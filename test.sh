@@ -6,5 +6,6 @@ root=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 . "$root/setup.sh"
 fegear_setup "${FEGEAR_VENV:-$root/.venv}" test
 cd "$root"
-# Each worker is one process of one thread: the solves are too small for threads to help.
-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 exec "${FEGEAR_VENV:-$root/.venv}/bin/python" -m pytest -n 2 "$@"
+# Each worker is one process of one thread: the solves are too small for threads to help. Tests of one file stay together, so that
+# what they share is made once.
+OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 exec "${FEGEAR_VENV:-$root/.venv}/bin/python" -m pytest -n 2 --dist worksteal "$@"

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 
+import in_process
 import pytest
 
 CASE = """
@@ -29,9 +30,9 @@ friction = true
 """
 
 
-def fegear(
-    *arguments: object, cwd, program: str = "from fegear.cli import main; main()"
-) -> subprocess.CompletedProcess:
+def fegear(*arguments: object, cwd, program: str = "") -> subprocess.CompletedProcess:
+    if not program:
+        return in_process.fegear(*arguments, cwd=cwd)
     command = [sys.executable, "-c", program, *map(str, arguments)]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
 

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import contextlib
 import csv
-import io
 import json
 import os
 import subprocess
 import sys
 import time
-from types import SimpleNamespace
 
+import in_process
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from fegear.cli import app, main
+from fegear.cli import app
 from fegear.engine.executor import Executor
 from fegear.errors import InputError
 from fegear.studies.axis import read_axis
@@ -64,18 +62,9 @@ def command(*arguments: object) -> list[str]:
     return [sys.executable, "-c", "from fegear.cli import main; main()", "sweep", *map(str, arguments)]
 
 
-def fegear(*arguments: object, cwd, cache) -> SimpleNamespace:
+def fegear(*arguments: object, cwd, cache):
     """Run the sweep command in this process (its workers are processes of their own)."""
-    said, complained, code = io.StringIO(), io.StringIO(), 0
-    with pytest.MonkeyPatch.context() as patch, contextlib.chdir(cwd):
-        patch.setenv("FEGEAR_CACHE", str(cache))
-        patch.setattr(sys, "argv", ["fegear", "sweep", *map(str, arguments)])
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
-            try:
-                main()
-            except SystemExit as end:
-                code = end.code or 0
-    return SimpleNamespace(returncode=code, stdout=said.getvalue(), stderr=complained.getvalue())
+    return in_process.fegear("sweep", *arguments, cwd=cwd, FEGEAR_CACHE=cache)
 
 
 @pytest.mark.parametrize(
