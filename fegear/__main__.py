@@ -2,8 +2,6 @@
 
 import gc
 
-from fegear.streams import complain, open_streams
-
 #: So many new objects are made before Python looks for cycles among them (its default is 700). What a command loads and
 #: computes stays until it ends: looking through it two hundred times, and at the end, took a tenth of a short run.
 _YOUNG = 100_000
@@ -12,12 +10,16 @@ _YOUNG = 100_000
 def main() -> None:
     """Load the command line and run it; an interrupt while it is still loading is reported like any other."""
     gc.set_threshold(_YOUNG)
-    open_streams()
     try:
+        from fegear.streams import open_streams
+
+        open_streams()
         from fegear.cli import main as run
 
         run()
     except KeyboardInterrupt:
+        from fegear.streams import complain
+
         complain("fegear: interrupted; results of earlier runs are as they were.")
         raise SystemExit(130) from None
     finally:

@@ -143,6 +143,24 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     assert [path.name for path in out.parent.iterdir()] == ["one"]
 
 
+@pytest.mark.parametrize("module", ["fegear.streams", "fegear.cli", "typer"])
+def test_ctrl_c_while_the_program_loads_is_one_line(module, case, tmp_path):
+    program = (
+        "import sys\n"
+        "class Typed:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        f"        if name == {module!r}:\n"
+        "            sys.meta_path.remove(self)\n"
+        "            raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Typed())\n"
+        "from fegear.__main__ import main\n"
+        "main()"
+    )
+    done = fegear("run", case, cwd=tmp_path, program=program)
+    assert done.returncode == 130
+    assert done.stderr == "fegear: interrupted; results of earlier runs are as they were.\n"
+
+
 def test_ctrl_c_while_a_sweep_starts_its_processes_is_one_line(case, tmp_path):
     """Ctrl-C reaches every process of a terminal; those that were still loading ended in tracebacks of their own."""
     (tmp_path / "site").mkdir()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -134,6 +135,29 @@ def test_bash_completes_commands_results_and_effects(typed, offered):
         [sys.executable, "-c", program], env=os.environ | asked, capture_output=True, text=True, check=False, timeout=60
     )
     assert set(done.stdout.split()) == offered, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("shell", "file"),
+    [
+        ("bash", ".bash_completions/fegear.sh"),
+        ("zsh", ".zfunc/_fegear"),
+        ("fish", ".config/fish/completions/fegear.fish"),
+    ],
+)
+def test_completion_installs_in_every_shell(shell, file, tmp_path):
+    """The shell is known by its name, so that a copy of the system's under that name stands for it."""
+    stand_in = tmp_path / "bin" / shell
+    stand_in.parent.mkdir()
+    shutil.copy(shutil.which("bash"), stand_in)
+    program = "import sys; from fegear.cli import main; sys.argv[0] = 'fegear'; main()"
+    command = f'"{sys.executable}" -c "{program}" --install-completion; exit $?'
+    done = subprocess.run(
+        [stand_in, "-c", command], env=os.environ | {"HOME": str(tmp_path)}, capture_output=True, text=True,
+        check=False, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "fegear" in (tmp_path / file).read_text()
 
 
 @pytest.mark.parametrize(
