@@ -6,10 +6,12 @@ one. They are loaded when they are first used. Below them lie the packages of th
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+#: Type checkers take it for true; importing typing would cost more than the rest of ``import fegear``.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from fegear.errors import FegearError, InputError
     from fegear.workbench.gear import Gear
     from fegear.workbench.pair import Pair
@@ -44,6 +46,8 @@ if not TYPE_CHECKING:  # type checkers know the names from their imports, and fi
 
     def __getattr__(name: str) -> Any:
         """Load a name of the top at its first use."""
+        import importlib
+
         if name not in _HOMES:
             raise AttributeError(f"module 'fegear' has no attribute {name!r}; it has {', '.join(sorted(_HOMES))}")
         found = getattr(importlib.import_module(f"fegear.{_HOMES[name]}"), name)
