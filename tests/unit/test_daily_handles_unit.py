@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -208,3 +209,41 @@ def test_a_geometry_run_prints_the_numbers_of_its_gears(say, tmp_path):
     assert len(rows) >= 13
     for head, *cells in rows[1:]:
         assert [float(cell) for cell in lines[head]] == pytest.approx([float(cell) for cell in cells], rel=1e-6)
+
+
+def test_a_hundred_slips_in_command_lines_are_refused_and_leave_nothing(say, tmp_path):
+    """A letter more, less or changed in a command, an option or a value: none is taken for another."""
+    lines = [
+        ["run", "one.toml", "--results", "geometry", "--no-plots", "--set", "gear.a.teeth=30"],
+        ["plan", "one.toml", "--results", "load-sharing", "--set", "gear.a.plane=stress"],
+        ["sweep", "one.toml", "--over", "gear.a.teeth=20,21", "--workers", "1", "--no-cache", "--no-plots"],
+        ["effects", "one.toml", "--effect", "hertz", "--results", "load-sharing"],
+        ["export", "one.toml", "--gear", "a", "--format", "dxf"],
+        ["cost", "one.toml", "--quick", "--no-plots"],
+        ["compare", "one.toml", "one.toml", "--results", "geometry", "--no-plots"],
+        ["new", "drive", "--kind", "pair", "--module", "3mm", "--no-schema"],
+    ]
+    #: Words of which another is as good: a name of the user's choice, a number.
+    free = {"1", "20,21", "a", "drive"}
+    before = sorted(tmp_path.rglob("*"))
+    chance = random.Random(3)  # noqa: S311
+    tried = 0
+    while tried < 100:
+        line = list(chance.choice(lines))
+        place = chance.randrange(len(line))
+        word = line[place]
+        key, equals, value = word.partition("=")
+        if key in free:
+            continue
+        at, letter = chance.randrange(len(key)), chance.choice("abcdefghijklmnopqrstuvwxyz-_")
+        slip = chance.choice(
+            [key[:at] + key[at + 1 :], key[:at] + letter + key[at:], key[:at] + letter + key[at + 1 :]]
+        )
+        if slip == key or (key == "3mm" and slip in ("mm", "3m")):
+            continue
+        line[place] = slip + equals + value
+        code, out, err = say(*line)
+        assert code == 2, (line, out)
+        assert "Traceback" not in err
+        assert sorted(tmp_path.rglob("*")) == before, line
+        tried += 1
