@@ -33,7 +33,7 @@ def tooth_contact_figures(
     """Describe all figures of one pair."""
     ellipses = (_ellipses(name, contact, bearing, load),) if bearing is not None and load is not None else ()
     flanks = DeferredFigure(f"flanks_{name}", f"Teeth of pair {name} in mesh", partial(_flanks, name, contact))
-    return _transmission_error(name, contact), _pattern(name, contact, bearing), *ellipses, flanks
+    return _transmission_error(name, contact), _pattern(name, contact, bearing, load), *ellipses, flanks
 
 
 def _transmission_error(name: str, contact: ToothContact) -> Figure:
@@ -66,7 +66,7 @@ def _transmission_error(name: str, contact: ToothContact) -> Figure:
     )
 
 
-def _pattern(name: str, contact: ToothContact, bearing: Bearing | None) -> Figure:
+def _pattern(name: str, contact: ToothContact, bearing: Bearing | None, load: float | None) -> Figure:
     """The path of contact of one pair on both flanks, by kind of contact, with ellipses where there are any."""
     pair, single = contact.pair, contact.single
     kinds = [str(kind) for kind in dict.fromkeys(single.kind) if kind != "none"]
@@ -102,6 +102,7 @@ def _pattern(name: str, contact: ToothContact, bearing: Bearing | None) -> Figur
         + (" The flanks touch along lines: the place of the point on them is arbitrary." if vague else ""),
         tuple(panels),
         columns=2,
+        under=f"{load:.4g} N" if bearing is not None and load is not None else "",
     )
 
 
@@ -131,6 +132,7 @@ def _ellipses(name: str, contact: ToothContact, bearing: Bearing, load: float) -
             )),
             Panel(_PHI, Axis("largest pressure", "MPa"), (pressure,)),
         ),
+        under=f"{load:.4g} N",
     )  # fmt: skip
 
 

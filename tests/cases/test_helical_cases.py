@@ -86,11 +86,20 @@ def test_absorbing_the_linear_error():
     assert values["I.crown"] == pytest.approx(19.8, abs=0.5)
     # The crown told in words gives the same drive when it is written into the case.
     crown = f"pair.I.modification.crown='{values['I.crown']:.12g} um'"
-    _, again, _ = run("litvin_localised", crown)
+    _, again, drawn = run("litvin_localised", crown)
     assert again["I.te_peak_to_peak"] == pytest.approx(values["I.te_peak_to_peak"], rel=1e-6)
     assert "contact_ellipses_I" in tables
     (remark,) = results.remarks
     assert "10% of the positions the contact ellipse reaches past an end of the face" in remark
+    figures = {figure.key: figure for outcome in drawn.outcomes.values() for figure in outcome.figures}
+    pattern = figures["contact_pattern_I"]
+    items = {getattr(item, "name", ""): item for item in pattern.panels[0].items}
+    flank, ellipses = items[""], items["contact ellipses"]
+    for axis in ("x", "y"):
+        drawn_at, ends = getattr(ellipses, axis), getattr(flank, axis)
+        assert ends.min() <= np.nanmin(drawn_at) < np.nanmax(drawn_at) <= ends.max()
+    assert np.nanmax(ellipses.x) == flank.x.max()  # one of them is cut at the end of the face
+    assert pattern.under == figures["contact_ellipses_I"].under != ""
 
 
 def test_blankenship_singh():

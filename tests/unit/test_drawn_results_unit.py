@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fegear.dynamics.charts import SpeedChart
 from fegear.dynamics.modes import Campbell
 from fegear.dynamics.spectra import MeshForceSpectrum
 from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel, Points, Stems
@@ -15,6 +17,7 @@ from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.output.draw_plotly import plotly_json
 from fegear.output.draw_png.sheet import Sheet
 from fegear.results.drawn_pair import pair_figure, path_marks, roll_marks
+from fegear.results.dynamic_factor import _figure as _factor_figure
 from fegear.results.gear_data import Drawing
 from fegear.results.loaded_pair import engagement_marks, pitch_marks
 from fegear.results.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
@@ -163,3 +166,15 @@ def test_teeth_in_space_are_whole_and_mirror_their_flank():
     tips = np.arctan2(whole[1, :, 4:6], whole[0, :, 4:6])
     assert tips[:, 0] - tips[:, 1] == pytest.approx(gear.tip_thickness_angle)
     assert tips.mean(axis=1) == pytest.approx(gear.twist * z[:, 0], abs=1e-12)
+
+
+def test_a_dynamic_factor_over_too_few_speeds_says_where_peaks_may_be_missed():
+    speeds, factor = np.linspace(100.0, 500.0, 5), np.array([1.0, 1.05, 1.5, 1.52, 1.5])
+    none = np.zeros(5)
+    whole = np.ones(5, dtype=int)
+    chart = SpeedChart(speeds, factor, factor, none, none, whole, ("periodic",) * 5, factor, factor, whole)
+    figure = _factor_figure("I", chart, "motor")
+    assert "From 1909.86 to 2864.79 rpm it changes by 43%" in figure.caption
+    assert all(item.marked for item in figure.panels[0].items)
+    smooth = replace(chart, dynamic_factor=np.full(5, 1.2))
+    assert "changes by" not in _factor_figure("I", smooth, "motor").caption
