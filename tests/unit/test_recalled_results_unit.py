@@ -85,5 +85,5 @@ def test_the_order_of_the_gears_in_the_case_is_kept(first):
     for order in (("a", "b"), ("b", "a")):
         document["gear"] = {name: {"teeth": 20 if name == "a" else 30, "module": "1 mm"} for name in order}
         scene = build_scene(document, "case", Path())
-        (table,) = run_plan(scene, make_plan(scene, STAGES), cache=cache).tables
+        table = run_plan(scene, make_plan(scene, STAGES), cache=cache).tables["geometry"]
         assert tuple(table["gear"]) == order
