@@ -196,6 +196,7 @@ class GearPart(Part):
                 tip_rounding=self.tip_radius_rounding / m,
                 tip_chamfer=self.tip_chamfer / m,
             )
+            self._refuse_thick_rim(tooth.root_radius * m)
             bore = 0.5 * tooth.root_radius * m if self.bore_radius is None else self.bore_radius
             width = 1e-3 if self.face_width is None else self.face_width
             gear = Gear(tooth, m, bore, width, self.material.build(), self.plane)
@@ -204,6 +205,14 @@ class GearPart(Part):
         except InputError as error:
             raise at(prefix, self._in_words_of_the_case(error), _KEYS) from None
         return gear
+
+    def _refuse_thick_rim(self, root_radius: float) -> None:
+        """Refuse a rim that reaches beyond the gear's centre."""
+        if self.rim_thickness is not None and self.rim_thickness > root_radius:
+            raise InputError(
+                "rim_thickness", f"{self.rim_thickness * 1e3:.6g} mm",
+                f"must lie inside (0, root radius = {root_radius * 1e3:.6g} mm)", "leave it out for a solid gear",
+            )  # fmt: skip
 
     def _in_words_of_the_case(self, error: InputError) -> InputError:
         """Report lengths that the tooth takes in modules as the case gave them."""

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.geometry.gear import Gear, Material
     from fegear.geometry.pair import GearPair
-    from fegear.geometry.relief import Relief
+    from fegear.geometry.relief import Crowning, EndRelief, Relief, TabulatedRelief
 
 #: Modules of gears [m], from micromachined ones to the racks of jack-up rigs, twice over.
 MODULES = (1e-6, 0.25)
 #: Face widths in modules; the default of 1 mm is far below any, and fits the largest module.
-FACE_WIDTHS = (4e-3, 1000.0)
+FACE_WIDTHS = (4e-3, 300.0)
 #: Young's moduli [Pa], from rubber to diamond, and densities [kg/m^3], from foam to osmium.
 YOUNG_MODULI, DENSITIES = (1e6, 1.5e12), (10.0, 25e3)
 #: Below this Young's modulus [Pa] there is no solid: the gear is one of pure numbers, of module 1 and modulus 1.
@@ -110,6 +110,30 @@ def refuse_deep_relief(gear: Gear, relief: Relief, low: float, high: float) -> N
         )  # fmt: skip
 
 
+def refuse_relief_elsewhere(relief: EndRelief | Crowning | TabulatedRelief, low: float, high: float) -> None:
+    """Refuse a modification whose ends lie farther off an active profile than that is long, or that misses it.
+
+    Parameters
+    ----------
+    relief : EndRelief, Crowning or TabulatedRelief
+    low, high : float
+        Roll angles of the active profile's ends [rad].
+
+    Raises
+    ------
+    InputError
+    """
+    kinks = relief.kinks if hasattr(relief, "roll") else (relief.start, relief.end)
+    first, last, room = min(kinks), max(kinks), high - low
+    missed = hasattr(relief, "roll") and (first >= high or last <= low)
+    if missed or (not hasattr(relief, "roll") and (first < low - room or last > high + room)):
+        raise InputError(
+            "relief", f"from roll angle {math.degrees(first):.5g} to {math.degrees(last):.5g} deg",
+            f"lies elsewhere than the active profile, {math.degrees(low):.5g} to {math.degrees(high):.5g} deg",
+            "check the units of its radii, lengths and angles",
+        )  # fmt: skip
+
+
 def refuse_spacing_errors(errors: ArrayLike, module: float) -> None:
     """Refuse spacing errors [m] that are no errors any more beside a tooth of this module [m].
 
@@ -118,10 +142,10 @@ def refuse_spacing_errors(errors: ArrayLike, module: float) -> None:
     InputError
     """
     found = np.asarray(errors, dtype=float)
-    spread = float(np.ptp(found)) if found.size else 0.0
+    spread = max(float(np.ptp(found)), float(np.abs(found).max())) if found.size else 0.0
     if spread > _LARGEST_SPACING_ERROR * module:
         raise InputError(
-            "spacing_errors", f"spread over {spread * 1e6:.4g} um",
+            "spacing_errors", f"up to {spread * 1e6:.4g} um",
             f"is {spread / module:.3g} modules, and teeth are {0.5 * math.pi:.3g} modules thick",
             "check the unit: spacing errors are some micrometres",
         )  # fmt: skip

@@ -11,7 +11,7 @@ import numpy as np
 from fegear.case.part import at
 from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
-from fegear.geometry.plausible import refuse_deep_relief
+from fegear.geometry.plausible import refuse_deep_relief, refuse_relief_elsewhere
 from fegear.geometry.relief import CombinedRelief, Relief, crowning, normalised_tip_relief, root_relief, tip_relief
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from fegear.fem import GearInfluence
     from fegear.geometry import GearPair
     from fegear.geometry.pair import Member
+    from fegear.geometry.relief import Crowning, EndRelief
     from fegear.models.pair_inputs import Flanks, PairInputs
 
     #: Compliances of driver and driven.
@@ -112,7 +113,7 @@ def build_relief(pair: GearPair, member: Member, flank: Flanks, delta: float) ->
     if part is None:
         return CombinedRelief()
     low, high = _active_ends(pair, member)
-    found: list[Relief] = []
+    found: list[EndRelief | Crowning] = []
 
     def amount(end: EndReliefPart) -> float:
         return end.amount if end.amount is not None else (end.amount_over_delta or 0.0) * delta
@@ -148,7 +149,10 @@ def build_relief(pair: GearPair, member: Member, flank: Flanks, delta: float) ->
         crowning(gear, crown.amount, crown.start_radius or low, crown.end_radius or high) for crown in part.crowning
     ]
     whole = CombinedRelief((*found, *flank.tables))
-    refuse_deep_relief(gear, whole, *sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end)))
+    first, last = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+    for one in (*found, *flank.tables):
+        refuse_relief_elsewhere(one, first, last)
+    refuse_deep_relief(gear, whole, first, last)
     return whole
 
 
