@@ -68,6 +68,9 @@ for _command, _short in COMMANDS:
     app.command(cls=Command, short_help=_short)(_command)
 
 
+_NO_MEMORY = "out of memory; results of earlier runs are as they were. Ask for less at once, or allow more."
+
+
 def main() -> None:
     """Entry point: every foreseen error is one line on stderr and exit code 2; Ctrl-C is 130."""
     # The dense blocks of a sector are too small for threads: two take twice the work of one for no gain in time, and
@@ -85,7 +88,11 @@ def main() -> None:
     except FegearError as error:
         leave(str(error), 2)
     except MemoryError:
-        leave("out of memory; results of earlier runs are as they were. Ask for less at once, or allow more.", 2)
+        leave(_NO_MEMORY, 2)
+    except ImportError as error:
+        if "failed to map" not in str(error) and "allocate memory" not in str(error):
+            raise
+        leave(_NO_MEMORY, 2)  # where memory ends while a library is loaded
     except OSError as error:
         give_up(sys.stdout)
         if error.errno not in NO_ROOM:
