@@ -217,6 +217,11 @@ def execute(page: Path, folder: Path) -> str:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) > 2:
+        made = Path(sys.argv[2]).resolve()
+        if made.exists() and not (made / ".bin").is_dir():
+            sys.exit(f"{made} is there and not from an earlier run of a page; it would be emptied")
+        sys.exit(execute(Path(sys.argv[1]).resolve(), made) or 0)
     try:
         run_page(Path(sys.argv[1]))
     except DifferentError as difference:

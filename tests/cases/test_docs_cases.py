@@ -235,3 +235,18 @@ def test_the_python_page_names_every_result_and_functions_that_exist():
                 importlib.import_module(whole)
             except ModuleNotFoundError:
                 assert hasattr(importlib.import_module(package), last), whole
+
+
+def test_a_page_runs_in_the_folder_that_is_named_and_in_no_other(tmp_path):
+    """It ran where one stood, and a page's case was committed to the top of the tree twice."""
+    page = tmp_path / "page.md"
+    page.write_text("```sh\necho said > here.txt && cat here.txt\n```\n\n```text\nsaid\n```\n")
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis" / "chapter.tex").write_text("dear")
+    for name, code in (("made", 0), ("made", 0), ("thesis", 1)):
+        command = [sys.executable, str(DOCS / "snippets.py"), str(page), name]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+        assert done.returncode == code, done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["made", "page.md", "thesis"]
+    assert (tmp_path / "made" / "here.txt").read_text() == "said\n"
+    assert (tmp_path / "thesis" / "chapter.tex").exists()
