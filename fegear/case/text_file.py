@@ -32,7 +32,7 @@ def read_text(path: Path, key: str) -> str:
     """
     try:
         if path.is_file() and path.stat().st_size > _LARGEST:
-            raise InputError(key, f'"{path}"', f"is larger than {_LARGEST // 1_000_000} MB", "is it the right file?")
+            raise InputError(key, f'"{path}"', f"is larger than {_LARGEST // 1_000_000} MB", "check which file it is")
         data = path.read_bytes()
     except FileNotFoundError:
         raise InputError(key, f'"{path}"', "does not exist", f"check the path of the {key} file") from None
@@ -42,7 +42,7 @@ def read_text(path: Path, key: str) -> str:
         if data.startswith(mark):
             raise InputError(key, f'"{path.name}"', f"is in {name}, not in UTF-8", "save it as UTF-8")
     if b"\0" in data:
-        raise InputError(key, f'"{path.name}"', "is no text", "is it the right file?")
+        raise InputError(key, f'"{path.name}"', "is no text", "check which file it is")
     try:
         return data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
