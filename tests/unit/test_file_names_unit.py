@@ -8,7 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fegear.case.reading import build_scene
+from fegear.output.export import export_gears
 from fegear.output.file_names import file_name
+from fegear.output.folder import whole_or_nothing
 
 
 @pytest.mark.parametrize("name", ["a", "pinion", "stiffness_a", "I-II", "v1.2", "my gear", "_", "2nd (left)", "A+B,C"])
@@ -37,3 +40,15 @@ def test_different_names_stay_different(a, b):
     assert (file_name(a) == file_name(b)) == (a == b)
     assert len(file_name(a)) <= 100
     assert "/" not in file_name(a)
+
+
+def test_an_export_stays_in_its_folder(tmp_path):
+    names = ["../../evil", "/evil", "Größe/x", "x" * 300]
+    gears = {name: {"teeth": 20, "module": "1 mm"} for name in names}
+    scene = build_scene({"results": ["geometry"], "gear": gears}, "case", tmp_path)
+    out = tmp_path / "deep" / "out"
+    with whole_or_nothing(out) as scratch:
+        export_gears(scene, scratch, names, "dxf")
+    found = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert {path.parent for path in found} == {out}
+    assert len({path.name for path in found if path.suffix == ".dxf"}) == 16

@@ -314,3 +314,23 @@ def test_a_claim_of_a_folder_that_cannot_be_made_is_an_error(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(OSError, match="Not a directory"), claimed(folder_for(tmp_path / "file", "x")):
         pass
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of file sizes are set through the resource module")
+def test_a_file_that_may_not_grow_is_one_sentence_and_the_old_results_stay(tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text('results = ["geometry"]\n[gear.a]\nteeth = 20\nmodule = "1 mm"\n')
+    out = tmp_path / "out"
+    write(out, {"report.html": "old"})
+    before = contents(out)
+    program = (
+        "import resource, sys\nresource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))\n"
+        "from fegear.__main__ import main\nsys.argv[0] = 'fegear'\nmain()\n"
+    )
+    command = [sys.executable, "-B", "-c", program, "run", str(case), "--out", str(out), "--no-plots"]
+    done = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1].startswith("fegear: --out = ")
+    assert "File too large" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert contents(out) == before
