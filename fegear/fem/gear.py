@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,8 @@ _SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 2.4, 0.9
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
+#: How many times the others a single difference over the flank counts in what is usual.
+_WILD = 100.0
 #: What is modelled nearer to an end of the flank than the mesh resolves is wrong by the first power of the edges'
 #: length, of which neighbouring levels differ by two fifths.
 _END_SHARE = 3.0
@@ -177,11 +180,16 @@ class GearInfluence:
         return fine, np.abs(fine - self._other.largest_root_stress(k, side, r, b)[0])
 
     def _usual_stress(self, k: int, side: Side) -> float:
-        """Of the value."""
+        """Of the value; a single difference is taken for no more than a hundred times the others.
+
+        Under a contact that reaches onto a sharp fillet it is ten thousand times them, and is told for that contact.
+        """
 
         def relative() -> Array:
             value, difference = self._stress_difference(k, side, self._samples, REFERENCE_HALF_WIDTH)
-            return difference / value
+            found = np.sort(difference / value)
+            found[-1] = min(found[-1], _WILD * math.sqrt(np.mean(found[:-1] ** 2)))
+            return found
 
         return self._usually((k, side), relative)
 
