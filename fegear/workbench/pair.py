@@ -89,6 +89,8 @@ class Pair:
         driver, driven = self.names
         gears = {driver: dict(self.driver.keys), driven: dict(self.driven.keys)}
         pair = {"driver": driver, "driven": driven, **self.keys, **load}
+        if not self.driver.is_spur and pair["compliance"] == {"source": "fe"}:
+            del pair["compliance"]  # the default of spur pairs; the flanks of helical ones are rigid
         return {"gear": gears, "pair": {self.name: pair}}
 
     @cached_property
