@@ -37,7 +37,7 @@ profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
 # bore_radius = "20 mm"        # where the body is held fast; without it half the root radius
-# tip_diameter = "70.8 mm"     # without it the pitch circle + 2 (1 + x) modules
+# tip_diameter = "{tip_diameter}"     # without it: this, the reference circle + 2 (1 + x) modules
 # thickness_allowance = "75 um"     # thinner teeth, for backlash
 # material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # without it steel
 """
@@ -56,7 +56,7 @@ driver = {first}
 driven = {second}
 torque = {torque}{torque_note}
 speed = {speed}{speed_note}
-# centre_distance = "112 mm"   # without it, free of backlash
+# centre_distance = "{centre_distance}"     # without it: free of backlash
 # loads = ["2 kN", "4 kN"]     # further loads along the line of action
 """
 #: Column of comments behind keys.
@@ -126,14 +126,22 @@ def _gear(answers: Answers, number: int) -> str:
     texts |= {"name": kind.gears[number], "teeth": answers.numbers("teeth")[number]}
     if answers.kind == "helical":
         return _HELICAL.format(**texts, hand=("right", "left")[number])
-    texts["profile_shift"] = repr(float(answers.numbers("profile_shift")[number]))
+    shift = float(answers.numbers("profile_shift")[number])
+    texts["profile_shift"] = repr(shift)
+    texts["tip_diameter"] = _length(answers.si("module") * (int(texts["teeth"]) + 2.0 * (1.0 + shift)))
     texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
     return _SPUR.format(**texts)
 
 
 def _pair(answers: Answers) -> str:
     first, second = map(json.dumps, KINDS[answers.kind].gears)
-    return _PAIR.format(first=first, second=second, **_texts(answers, ("torque", "speed")))
+    teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
+    distance = _length(answers.si("module") * (0.5 * teeth + shifts))
+    return _PAIR.format(first=first, second=second, centre_distance=distance, **_texts(answers, ("torque", "speed")))
+
+
+def _length(value: float) -> str:
+    return f"{value * from_si('mm'):.6g} mm"
 
 
 def _amount(value: float, unit: str) -> str:
