@@ -48,7 +48,7 @@ def run(
     from fegear.output.figures import Drawing
     from fegear.output.folder import default_folder, whole_or_nothing
     from fegear.output.picture_process import PictureProcess
-    from fegear.output.report.library import begin_compressing
+    from fegear.output.report.page import begin_page
     from fegear.output.tables import sheet_lines
     from fegear.output.write import STEPS, write_results
     from fegear.results.catalogue import STAGES
@@ -59,7 +59,7 @@ def run(
     try:
         scene = read_scene(case, changes(overrides, wanted))
         planned = make_plan(scene, STAGES)
-        begin_compressing()
+        begin_page()
         target = out or default_folder(scene.name)
         with contextlib.ExitStack() as stack:
             scratch = stack.enter_context(whole_or_nothing(target))

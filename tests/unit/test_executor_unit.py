@@ -169,7 +169,9 @@ def test_failures_of_the_circumstances_are_not_kept(tmp_path, monkeypatch, error
 
 def test_nobody_waits_for_what_is_under_way_when_a_run_is_stopped(tmp_path):
     program = (
+        "import signal\n"
         "from fegear.engine.executor import Executor, map_points\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a shell's background job ignores Ctrl-C
         "work = 'import pathlib, time; pathlib.Path({!r}).touch(); time.sleep(600)'\n"
         "if __name__ == '__main__':\n"
         "    map_points(exec, [work.format(name) for name in ('first', 'second')], Executor(workers=2))\n"

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import base64
 import gzip
-from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fegear.errors import MissingLibraryError
+from fegear.output.report.ahead import begun
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 #: Quick, and only 4 % larger than the best.
 _LEVEL = 4
-
-
-def begin_compressing() -> None:
-    """Let plotly.js be compressed in a thread of its own while something else is computed: zlib holds nobody up."""
-    _compression()
 
 
 def compressed_plotly() -> str:
@@ -30,15 +29,13 @@ def compressed_plotly() -> str:
     MissingLibraryError
         If plotly's wheel is not there or has no script.
     """
-    return _compression().result()
+    return compression().result()
 
 
 @cache
-def _compression() -> Future[str]:
-    pool = ThreadPoolExecutor(1)
-    begun = pool.submit(_compressed)
-    pool.shutdown(wait=False)
-    return begun
+def compression() -> Future[str]:
+    """Compression in a thread of its own: zlib holds nobody up."""
+    return begun(_compressed)
 
 
 def _compressed() -> str:

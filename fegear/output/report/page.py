@@ -12,8 +12,8 @@ import fegear
 from fegear.errors import MissingLibraryError
 from fegear.output.draw_plotly import darker, plotly_json, template
 from fegear.output.file_names import file_name
-from fegear.output.report.library import compressed_plotly
-from fegear.output.report.rendering import render
+from fegear.output.report.library import compressed_plotly, compression
+from fegear.output.report.rendering import render, templates
 from fegear.output.tables import table_file, table_text
 
 if TYPE_CHECKING:
@@ -26,6 +26,12 @@ if TYPE_CHECKING:
 
 #: Files in archives carry this date, so that equal content is equal bytes.
 _DATE = (1980, 1, 1, 0, 0, 0)
+
+
+def begin_page() -> None:
+    """Let what every page needs be made while something else is computed: plotly.js compressed, templates compiled."""
+    compression()
+    templates()
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,12 @@ from importlib import resources
 from typing import TYPE_CHECKING
 
 from fegear.output.numbers import pretty_unit
+from fegear.output.report.ahead import begun
 from fegear.output.report.blocks import Block, as_words, readable
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     from jinja2 import Environment
 
 
@@ -30,8 +33,13 @@ def _symbols(text: str) -> list[tuple[str, str]]:
 
 
 @cache
+def templates() -> Future[Environment]:
+    """Jinja2 with the compiled templates, .1 s of work, in a thread: most of a run holds no lock of the interpreter."""
+    return begun(_environment)
+
+
 def _environment() -> Environment:
-    from jinja2 import Environment, PackageLoader, StrictUndefined  # takes 20 ms, which only pages should cost
+    from jinja2 import Environment, PackageLoader, StrictUndefined  # takes time, which only pages should cost
 
     made = Environment(
         loader=PackageLoader("fegear.output.report"), autoescape=True, undefined=StrictUndefined,
@@ -49,6 +57,8 @@ def _environment() -> Environment:
     made.filters.update(
         symbols=_symbols, base64=_base64, drawn=drawn, resource=_resource, unit=pretty_unit, words=as_words
     )
+    for name in ("page.html", "blocks.html"):
+        made.get_template(name)
     return made
 
 
@@ -61,4 +71,4 @@ def render(template: str, **content: object) -> str:
     **content
         What the template names; a name that is missing is an error (`jinja2.UndefinedError`).
     """
-    return _environment().get_template(template).render(content)
+    return templates().result().get_template(template).render(content)
