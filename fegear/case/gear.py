@@ -107,6 +107,7 @@ class GearPart(Part):
     plane: Literal["strain", "stress", "auto"] = "strain"
     material: MaterialPart = Field(default_factory=MaterialPart)
     tooth_mesh: str | None = None
+    tooth_mesh_fillet: Literal["rack", "own"] = "rack"
     relief: ReliefPart | None = None
     spacing_errors: SpacingErrorsPart | None = None
     helix_angle: Angle | None = None

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 from fegear.engine.executor import Executor
 from fegear.engine.named import Named
 from fegear.engine.stage import Work
+from fegear.errors import InputError
 from fegear.plain import content_key
 from fegear.solution_cache import SolutionCache
 
@@ -183,6 +184,7 @@ def run_plan(
         title = f"{step.stage.title} ({step.task.subject})" if step.task.subject else step.stage.title
         watcher.begin(title, number, len(plan.steps) + following)
         done[step.task] = _finish(scene, step, done, work)
+        _refuse_one_name_for_two(done, step.task)
         watcher.end(done[step.task].timing.seconds)
         if found is not None:
             found(step.task, done[step.task].outcome)
@@ -196,6 +198,23 @@ class _Finished(NamedTuple):
     outcome: Outcome
     key: str
     timing: Timing
+
+
+def _refuse_one_name_for_two(done: Mapping[Task, _Finished], task: Task) -> None:
+    """Pairs "I" and "harmonics_I" would write one file over the other's: names are joined to those of tables."""
+    new = done[task].outcome
+    for other, (_, outcome, *_) in done.items():
+        for kind, here, there in (
+            ("table", new.tables, outcome.tables),
+            ("figure", new.figures, outcome.figures),
+            ("value", new.values, outcome.values),
+        ):
+            same = {one.name for one in here} & {one.name for one in there}
+            if other != task and same:
+                raise InputError(
+                    "gear, pair", f"{other.subject}, {task.subject}", f"both have a {kind} {min(same)}",
+                    "give one of them another name",
+                )  # fmt: skip
 
 
 def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work) -> _Finished:

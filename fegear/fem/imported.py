@@ -15,7 +15,7 @@ import numpy as np
 from fegear.errors import InputError
 from fegear.fem.mesh import SectorMesh
 from fegear.fem.mesh_files import read_mesh_file
-from fegear.fem.sound_mesh import check_gear, check_triangles
+from fegear.fem.sound_mesh import check_fillet, check_gear, check_triangles
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,7 +29,13 @@ GROUPS = ("flank", "fillet", "bore", "side_a", "side_b")
 
 
 def read_sector_mesh(
-    path: Path, tooth: Tooth, module: float, bore_radius: float, unit: float = 1e-3, key: str = "tooth_mesh"
+    path: Path,
+    tooth: Tooth,
+    module: float,
+    bore_radius: float,
+    unit: float = 1e-3,
+    key: str = "tooth_mesh",
+    own_fillet: bool = False,
 ) -> SectorMesh:
     """Read a tooth sector mesh.
 
@@ -46,6 +52,8 @@ def read_sector_mesh(
         Length unit of the file [m], millimetres by default.
     key : str
         Name of the input for error messages.
+    own_fillet : bool
+        Whether the fillet is the user's own (optimised, ground): it is then not held against the rack's.
 
     Returns
     -------
@@ -84,6 +92,8 @@ def read_sector_mesh(
     edges = _named_edges(six, {name: _group(data, name, old, refuse) for name in GROUPS}, points, refuse)
     mesh = SectorMesh(points, six, edges, tooth.teeth, path.name)
     check_gear(points, edges, tooth, bore_radius / module, module, refuse)
+    if not own_fillet:
+        check_fillet(points, edges, tooth, module, refuse)
     return mesh
 
 

@@ -136,10 +136,10 @@ def check_gear(
             f"{bore_radius * mm:.6g} mm",
             f'write bore_radius = "{bore.mean() * mm:.8g} mm" if the mesh is right',
         )
-    _check_fillet(points, edges, tooth, module, refuse)
 
 
-def _check_fillet(points: Array, edges: Mapping[str, Index], tooth: Tooth, module: float, refuse: Refuse) -> None:
+def check_fillet(points: Array, edges: Mapping[str, Index], tooth: Tooth, module: float, refuse: Refuse) -> None:
+    """Refuse fillets that the gear's rack does not cut; arguments as of `check_gear`."""
     outline = [piece.points(np.linspace(piece.start, piece.end, 4001)) for piece in tooth.outline.values()]
     tree = cKDTree(np.hstack(outline).T)
     for name, sign in (("fillet", 1.0), ("back_fillet", -1.0)):
@@ -150,5 +150,5 @@ def _check_fillet(points: Array, edges: Mapping[str, Index], tooth: Tooth, modul
             raise refuse(
                 f"has a fillet up to {off[worst]:.2g} modules off the one that the case's rack cuts, at radius "
                 f"{np.hypot(*nodes[:, worst]) * module * 1e3:.6g} mm",
-                "check rack (dedendum, tip_radius) and profile_shift",
+                'check rack (dedendum, tip_radius) and profile_shift, or write tooth_mesh_fillet = "own"',
             )

@@ -23,10 +23,12 @@ def own_sector_mesh(scene: Scene, name: str) -> SectorMesh | None:
     InputError
         If the file is missing or its mesh cannot be used.
     """
-    file = scene.case.gear[name].tooth_mesh
+    part = scene.case.gear[name]
+    file = part.tooth_mesh
     if file is None:
         return None
     from fegear.fem.imported import read_sector_mesh
 
     gear, key = scene.gears[name], f"gear.{name}.tooth_mesh"
-    return read_sector_mesh(scene.file(file, key), gear.tooth, gear.module, gear.bore_radius, key=key)
+    own = part.tooth_mesh_fillet == "own"
+    return read_sector_mesh(scene.file(file, key), gear.tooth, gear.module, gear.bore_radius, key=key, own_fillet=own)

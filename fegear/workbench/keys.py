@@ -38,6 +38,7 @@ class GearKeys(TypedDict, total=False):
     plane: Literal["strain", "stress", "auto"]
     material: Mapping[str, Any]
     tooth_mesh: str
+    tooth_mesh_fillet: Literal["rack", "own"]
     relief: Mapping[str, Any]
     spacing_errors: Sequence[Quantity] | Mapping[str, Any]
     helix_angle: Quantity

@@ -172,6 +172,20 @@ def test_a_bore_a_fillet_or_a_tip_that_contradicts_the_case_is_refused(change, w
     assert "\n" not in str(refusal.value)
 
 
+def test_a_fillet_of_the_user_s_own_is_taken_as_the_mesh_has_it():
+    gear = shifted()
+    other = replace(gear, tooth=replace(gear.tooth, rack=BasicRack.named("C")))
+    radii = np.array([gear.pitch_radius])
+    stress = []
+    for known, own in ((gear, False), (other, True)):
+        mesh = read_sector_mesh(
+            MESHES / "shifted_40_teeth.inp", known.tooth, known.module, known.bore_radius, own_fillet=own
+        )
+        solved = solve_gear(known, mesh=mesh, estimate_error=False)
+        stress.append(stiffness_table(known, radii, 0.025 * known.module, influence=solved).root_tension[0])
+    assert stress[1] == pytest.approx(stress[0], rel=1e-9)
+
+
 def test_a_mesh_of_another_gear_or_none_at_all_is_refused():
     gear = four_square()
     with pytest.raises(InputError, match="involute"):

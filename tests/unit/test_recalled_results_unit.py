@@ -8,6 +8,7 @@ import pytest
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
+from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
 from fegear.solution_cache import SolutionCache
 
@@ -87,3 +88,13 @@ def test_the_order_of_the_gears_in_the_case_is_kept(first):
         scene = build_scene(document, "case", Path())
         table = run_plan(scene, make_plan(scene, STAGES), cache=cache).tables["geometry"]
         assert tuple(table["gear"]) == order
+
+
+def test_names_that_join_to_one_table_are_refused():
+    """The table of harmonics of pair I and the transmission error of pair harmonics_I overwrote each other."""
+    gears = {name: {"teeth": 24, "module": "2 mm", "face_width": "10 mm"} for name in ("p", "w")}
+    pair = {"driver": "p", "driven": "w", "load": "1000 N", "compliance": {"source": "cornell"}}
+    document = {"results": ["transmission-error"], "gear": gears, "pair": {"I": pair, "harmonics_I": pair}}
+    scene = build_scene(document, "case", Path())
+    with pytest.raises(InputError, match="both have a table transmission_error_harmonics_I"):
+        run_plan(scene, make_plan(scene, STAGES))
