@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -248,7 +249,7 @@ def dynamic_factor(
     *,
     torque: Torque,
     speeds: Speed | Iterable[Speed] | Mapping[str, Any],
-    damping_ratio: float = DAMPING_RATIO,
+    damping_ratio: float | None = None,
     train: Mapping[str, Any] | None = None,
     dynamics: Mapping[str, Any] | None = None,
     effects: Mapping[str, Any] | None = None,
@@ -265,8 +266,9 @@ def dynamic_factor(
         On the driver.
     speeds : speed, iterable of speeds, or mapping
         Of the driver; a mapping as in a case file, ``{"start": "2000 rpm", "stop": "16000 rpm", "count": 57}``.
-    damping_ratio : float
-        Of the mesh. The default is that of NASA TM-89901; measure or compare before you promise anything.
+    damping_ratio : float, optional
+        Of the mesh. The default, which a remark reports, is that of NASA TM-89901; measure or compare before you
+        promise anything.
     train : mapping, optional
         ``[train]`` of a case file. By default the two gears turn as discs between steady torques, without shafts.
     dynamics : mapping, optional
@@ -280,12 +282,19 @@ def dynamic_factor(
         Table ``dynamic_factor_<pair>``, values ``<pair>.largest_dynamic_factor``, ``<pair>.speed_of_largest``.
     """
     driver, driven = pair.names
+    ratio = DAMPING_RATIO if damping_ratio is None else damping_ratio
     document = _loaded(pair, torque, None)
     document["train"] = dict(train) if train is not None else {
         "body": {"driver": {"gears": [driver]}, "driven": {"gears": [driven]}},
-        "mesh": {pair.name: {"driver": "driver", "driven": "driven", "damping_ratio": damping_ratio}},
+        "mesh": {pair.name: {"driver": "driver", "driven": "driven", "damping_ratio": ratio}},
         "torque": {"driver": torque}, "balance": "driven",
     }  # fmt: skip
     several = speeds if hasattr(speeds, "keys") else listed(speeds) or [speeds]
     document["dynamics"] = {"speeds": several, **(dynamics or {})}
-    return _ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache)
+    found = _ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache)
+    if train is not None:
+        return found
+    said = "No train was given; assumed default: the gears turn as discs between steady torques, without shafts."
+    if damping_ratio is None:
+        said += f" No damping_ratio was given; assumed default: {ratio:g} in the mesh."
+    return replace(found, plan=replace(found.plan, remarks=(*found.plan.remarks, said)))
