@@ -26,6 +26,7 @@ from fegear.engine.citation import bibliography
 from fegear.plain import code_version, content_key
 
 ROOT = Path(__file__).resolve().parents[1]
+CASES = ROOT / "cases"
 MADE = ROOT / "results" / "gallery"
 #: What mkdocs prints while it works; a gallery takes minutes, and says where it is.
 log = logging.getLogger("mkdocs.plugins.gallery")
@@ -42,8 +43,13 @@ _OUTSIDE = {"index.md": ROOT / "README.md", "meshes.md": ROOT / "meshes" / "READ
 def cases() -> list[Path]:
     """Case files of the gallery."""
     wanted = os.environ.get("FEGEAR_GALLERY")
-    found = sorted((ROOT / "cases").glob("*.toml"))
+    found = [*sorted(CASES.glob("*.toml")), *sorted((CASES / "sources").glob("*.toml"))]
     return [path for path in found if wanted is None or path.stem in wanted.split(",")]
+
+
+def _name(path: Path) -> str:
+    """``thin_rim``, ``sources/mark_fig22``."""
+    return path.relative_to(CASES).with_suffix("").as_posix()
 
 
 def _title(path: Path) -> str:
@@ -52,20 +58,19 @@ def _title(path: Path) -> str:
 
 def _run(path: Path) -> None:
     """Run a case unless its results are there, made by the same program from the same files."""
-    out, stamp = MADE / path.stem, MADE / f"{path.stem}.key"
-    beside = {
-        p.name: p.read_text("utf-8", "replace") for p in sorted(path.parent.rglob("*")) if p.is_file() and p != path
-    }
+    out, stamp = MADE / _name(path), MADE / f"{_name(path)}.key"
+    beside = {p.name: p.read_text("utf-8", "replace") for p in sorted(CASES.rglob("*")) if p.is_file() and p != path}
     named = {name: text for name, text in beside.items() if name in path.read_text("utf-8")}
     key = content_key(code_version(), path.read_text("utf-8"), named)
     if stamp.is_file() and stamp.read_text() == key and (out / "summary.json").is_file():
         return
-    log.info("Running cases/%s", path.name)
+    log.info("Running cases/%s.toml", _name(path))
     shutil.rmtree(out, ignore_errors=True)
     command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(path), "--out", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise PluginError(f"the case {path.name} does not run: {done.stderr.strip()}")
+    stamp.parent.mkdir(parents=True, exist_ok=True)
     stamp.write_text(key)
 
 
@@ -110,13 +115,13 @@ def _card(path: Path) -> str:
 
 def page(path: Path) -> str:
     """Text of a case's page."""
-    out, text = MADE / path.stem, path.read_text("utf-8")
+    out, text = MADE / _name(path), path.read_text("utf-8")
     summary = json.loads((out / "summary.json").read_text("utf-8"))
     pictures = [name for name in summary["files"] if name.endswith(".png")]
     parts = [
         f"# {_title(path)}",
         _comment(path),
-        f"```sh\nfegear run cases/{path.name}\n```",
+        f"```sh\nfegear run cases/{_name(path)}.toml\n```",
         (
             f"Computed in {summary['timings']['total']:.2f} s. [The whole report]({path.stem}/report.html), "
             f"[all numbers as a dataset]({path.stem}/results.nc)."
@@ -160,7 +165,7 @@ def _with_unlisted(nav: list[dict[str, object]]) -> list[dict[str, object]]:
 def on_config(config):
     """Put pages without a place and the gallery into the navigation."""
     config.nav = _with_unlisted(config.nav)
-    pages = [{_title(path): f"gallery/{path.stem}.md"} for path in cases()]
+    pages = [{_title(path): f"gallery/{_name(path)}.md"} for path in cases()]
     config.nav.append({"Gallery": [{"All cases": "gallery/index.md"}, *pages]})
     return config
 
@@ -177,13 +182,18 @@ def on_files(files, config):
         files.append(File.generated(config, name, content=source.read_text("utf-8")))
     files.append(File.generated(config, "CITATION.cff", content=(ROOT / "CITATION.cff").read_text("utf-8")))
     index = ["# Gallery", "", "Each page is one file of `cases/` and what `fegear run` makes of it.", ""]
+    of_papers = [path for path in cases() if path.parent != CASES]
     for path in cases():
-        index.append(_card(path))
-        files.append(File.generated(config, f"gallery/{path.stem}.md", content=page(path)))
-        for made in sorted((MADE / path.stem).rglob("*")):
+        if path not in of_papers:
+            index.append(_card(path))
+        files.append(File.generated(config, f"gallery/{_name(path)}.md", content=page(path)))
+        for made in sorted((MADE / _name(path)).rglob("*")):
             relative = made.relative_to(MADE).as_posix()
             if made.is_file() and made.suffix in (".png", ".csv", ".html", ".nc"):
                 files.append(File.generated(config, f"gallery/{relative}", abs_src_path=str(made)))
+    if of_papers:
+        listed = [f"- [{_title(path)}]({_name(path)}.md)" for path in of_papers]
+        index += ["## Figures of the papers", "\n".join(listed)]
     files.append(File.generated(config, "gallery/index.md", content="\n\n".join(index) + "\n"))
     return files
 
@@ -194,7 +204,7 @@ def on_page_markdown(markdown, page, **_others):
         markdown = re.sub(r"\]\(([A-Z]+)\.md", lambda m: f"]({m[1].lower()}.md", markdown.replace("](docs/", "]("))
     top = "../" * page.file.src_uri.count("/")
     markdown = re.sub(r"\]\((?:\.\./)+meshes/README\.md\)", f"]({top}meshes.md)", markdown)
-    return re.sub(r"\]\((?:\.\./)*cases/(\w+)\.toml\)", rf"]({top}gallery/\1.md)", markdown)
+    return re.sub(r"\]\((?:\.\./)*cases/((?:sources/)?\w+)\.toml\)", rf"]({top}gallery/\1.md)", markdown)
 
 
 def on_post_build(config):

@@ -48,7 +48,7 @@ from fegear.results.catalogue import STAGES
 from fegear.results.loaded_pair import LOADED_PAIR
 
 ROOT = Path(__file__).parents[2]
-CASES = sorted((ROOT / "cases").glob("*.toml"))
+CASES = sorted((ROOT / "cases").rglob("*.toml"))
 
 
 @pytest.mark.parametrize(

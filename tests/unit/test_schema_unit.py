@@ -20,7 +20,7 @@ from fegear.drafts import KINDS, Answers, draft
 from fegear.errors import FegearError
 from fegear.results.catalogue import RESULTS
 
-CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+CASES = sorted((Path(__file__).parents[2] / "cases").rglob("*.toml"))
 
 
 @pytest.fixture(scope="module")
