@@ -219,7 +219,7 @@ class Source(_Part):
     title: str
     citation: str
     items: tuple[str, ...]
-    row: tuple[Row, ...]
+    row: tuple[Row, ...] = ()
 
     def faults(self) -> list[str]:
         """Items that no row covers, rows that cover something else, and faults of rows."""
