@@ -20,7 +20,7 @@ from fegear.formulas.sources import SOURCES
 from fegear.geometry import BasicRack, Gear, Tooth
 
 M = 3.175e-3
-PAPER_TOOTH = Tooth(28, BasicRack(1.0, 1.32005, 0.23354), thickness_allowance=0.04203926)
+PAPER_TOOTH = Tooth(28, BasicRack(1.0, 1.34225, 0.22972), thickness_allowance=0.04203926)
 PAPER = cornell.RootSection(
     1.75 * 25.4e-3 * math.cos(math.radians(20.0)), math.radians(3.98222), 1.016e-3, 40.909406e-3, 5.6958151e-3
 )
@@ -43,7 +43,7 @@ def documented(start: str) -> dict[str, np.ndarray]:
 
 def test_cornells_five_percent_claim_for_the_papers_gear(paper_gear_fe):
     # Cornell's abstract: within about 5 % of test and finite elements. Measured here, from the start of the flank to
-    # the tip: +1 %, +6 %, +12 %, +18 %, +22 % of FE. The claim holds near the base circle only; above it the formula
+    # the tip: +1 %, +5 %, +11 %, +17 %, +22 % of FE. The claim holds near the base circle only; above it the formula
     # is on the safe side. The place drifts from 4 to 16 degrees of tangent angle above that of FE.
     _, fe = paper_gear_fe
     found = cornell.root_stress(PAPER, ROLLS)

@@ -22,7 +22,7 @@ DEFLECTION = 1e-3 * np.array([5.7412e-4, 6.5641e-3, 1.1554e-2, 1.3035e-2, 1.5090
 
 
 def rig_gear() -> Gear:
-    tooth = Tooth(28, BasicRack(1.0, 1.32005, 0.23354), thickness_allowance=0.04203926)
+    tooth = Tooth(28, BasicRack(1.0, 1.34225, 0.22972), thickness_allowance=0.04203926)
     return Gear(tooth, 3.175e-3, 0.5 * tooth.root_radius * 3.175e-3, 6.35e-3, plane="auto")
 
 

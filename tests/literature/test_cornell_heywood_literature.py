@@ -19,7 +19,7 @@ R_B = 1.75 * 2.54 * math.cos(math.radians(20.0))
 BETA = math.radians(3.98222)
 PAPER = cornell.RootSection(R_B, BETA, 0.1016, 4.0909406, 0.56958151)
 THINNING = 28 * (Tooth(28).base_half_angle - BETA)
-PAPER_TOOTH = Tooth(28, BasicRack(1.0, 1.32005, 0.23354), thickness_allowance=THINNING)
+PAPER_TOOTH = Tooth(28, BasicRack(1.0, 1.34225, 0.22972), thickness_allowance=THINNING)
 #: from the base circle to the tip circle, 1.875 in
 ROLLS = np.linspace(0.0, math.sqrt((1.875 * 2.54 / R_B) ** 2 - 1.0), 21)
 
@@ -80,13 +80,20 @@ def test_stress_scales_as_one_over_length():
 
 def test_generated_tooth_resembles_the_papers_inputs():
     # The paper gives no rack. The generated tooth with its beta (thinning 0.04204 modules), its fillet radius (rack
-    # tip radius 0.23354) and the root circle of the circle (R_m, r) must give its R_m and h_0: to the digits of r.
+    # tip radius 0.22972) and a root circle 1.4 modules below the pitch circle must give its R_m and h_0.
     section = cornell.RootSection.radial_of(PAPER_TOOTH)
     module = 0.3175
     assert PAPER_TOOTH.base_half_angle == pytest.approx(BETA, abs=1e-8)
     assert section.fillet_radius * module == pytest.approx(0.1016, abs=5e-5)
-    assert section.fillet_height * module == pytest.approx(4.0909406, abs=5e-5)
-    assert section.root_thickness * module == pytest.approx(0.56958151, abs=2e-5)
+    assert PAPER_TOOTH.root_radius == pytest.approx(14.0 - 1.4, abs=5e-6)
+    assert section.fillet_height * module == pytest.approx(4.0909406, abs=2e-6)
+    assert section.root_thickness * module == pytest.approx(0.56958151, abs=1e-6)
+
+
+def test_height_of_the_fillet_follows_from_a_dedendum_of_1_4_modules_to_seven_digits():
+    # the radial flank at beta touches a circle of 0.04 in that stands on the root circle of 1.575 in: 1.6106065 in
+    root, r = 1.75 - 1.4 / 8.0, 0.04
+    assert math.cos(BETA) * math.sqrt((root + r) ** 2 - r**2) == pytest.approx(1.6106065, abs=1e-7)
 
 
 @pytest.mark.parametrize("z", [8, 12, 17, 28, 60, 300])
