@@ -111,11 +111,10 @@ def _on_breaks(part: Periodic, cuts: Array, pitches: int, degree: int) -> Array:
     piece = np.clip(np.searchsorted(part.breaks, s, side="right") - 1, 0, part.breaks.size - 2)
     start, end = part.breaks[piece], part.breaks[piece + 1]
     centre, scale = ((s - start) - (end - s)) / (end - start), 2.0 * half / (end - start)
-    for index, p in enumerate(piece):
-        row = np.polynomial.Polynomial(part.coefficients[p])
-        for k in range(part.coefficients.shape[1]):
-            rows[index, k] = row(centre[index]) * scale[index] ** k / math.factorial(k)
-            row = row.deriv()
+    row = part.coefficients[piece]  # of all pieces together: a speed of a sweep is mostly this
+    for k in range(row.shape[1]):
+        rows[:, k] = np.polynomial.polynomial.polyval(centre, row.T, tensor=False) * scale**k / math.factorial(k)
+        row = row[:, 1:] * np.arange(1, row.shape[1])
     return rows
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: Importing mesher and solvers, once in a process.
 LIBRARIES = 0.2
 #: One speed in time: linear, with contact loss, each further period until the motion repeats, friction of one mesh.
-_LINEAR, _LOSS, _PERIOD, _FRICTION = 0.015, 0.055, 0.4, 0.06
+_LINEAR, _LOSS, _PERIOD, _FRICTION = 0.008, 0.03, 0.4, 0.06
 
 
 def constant(seconds: float) -> Forecast:

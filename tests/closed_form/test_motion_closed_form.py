@@ -297,3 +297,20 @@ def test_idling_gears_rattle_and_have_no_dynamic_factor():
     assert state.apart[0] > 0.0
     with pytest.raises(RangeError, match="mean force"):
         _ = state.dynamic_factor
+
+
+def test_springs_are_packed_without_loss():
+    """Pieces re-expanded about finer break points over a longer period give what the periodic functions give."""
+    rng = np.random.default_rng(7)
+    parts = [
+        Periodic(np.array([0.0, *np.sort(rng.random(n)), 1.0]), 1.0 + rng.random((n + 1, d)), pitches)
+        for n, d, pitches in ((2, 9, 3), (3, 2, 2))
+    ]
+    packed = pack(MotionModel(two_discs(), (MeshExcitation((parts[0],), (parts[1],)),), 100.0))
+    units = packed.force_unit / packed.length_unit, packed.length_unit
+    for u in rng.random(40):
+        piece = int(np.searchsorted(packed.cuts, u, side="right")) - 1
+        low, high = packed.cuts[piece : piece + 2]
+        v = (2 * u - low - high) / (high - low)
+        got = [unit * np.polynomial.polynomial.polyval(v, packed.poly[piece, q]) for q, unit in enumerate(units)]
+        assert got == pytest.approx([float(part(6 * u)) for part in parts], rel=1e-12)
