@@ -95,20 +95,25 @@ class Involute:
 
 @dataclass(frozen=True, slots=True)
 class Trochoid:
-    """Right fillet, cut by the rack's tip rounding; parameter beta [rad] is the angle from the rounding's lowest point.
+    """Right fillet, cut by the rack's tip rounding; parameter b [rad] is the angle from the rounding's lowest point.
 
-    The rounding's centre lies `centre_offset` beside the rack tooth's centre line and `centre_height` above the
-    gear's pitch line (negative: below). Rolling angle of the gear when the point at beta is cut:
-    phi(beta) = (-centre_height tan(beta) - centre_offset) / r: the common normal passes through the pitch point.
+    The rounding's centre lies u_c beside the rack tooth's centre line and v_c above the gear's pitch line (negative:
+    below). In the section across the axis the rounding is (u_c + (rho / c) sin b, v_c - rho cos b), c the cosine of the
+    helix angle: a circle for a spur gear, else an ellipse, stretched along the rack as all of its normal section is.
+    The point at b is cut when the common normal passes through the pitch point: its direction is (c sin b, -cos b), so
+    the centre then lies w(b) = -c v_c tan b + (c - 1/c) rho sin b beside the pitch point, and the gear has rolled by
+    phi(b) = (w(b) - u_c) / r.
 
     Parameters
     ----------
     pitch_radius, rounding, centre_offset, centre_height : float
-        r, rho_fP, u_c, v_c [modules].
+        r, rho_fP, u_c, v_c [modules]; all but rho_fP in the section across the axis.
     space_half_angle : float
         pi/z, angle between tooth and space centre lines [rad].
     start, end : float
-        Range of beta [rad]: 0 on the root circle, pi/2 - alpha where the rack's straight flank begins.
+        Range of b [rad]: 0 on the root circle, pi/2 - alpha_n where the rack's straight flank begins.
+    cos_helix : float
+        c, cosine of the helix angle on the pitch cylinder.
     """
 
     pitch_radius: float
@@ -118,42 +123,66 @@ class Trochoid:
     space_half_angle: float
     start: float
     end: float
+    cos_helix: float = 1.0
+
+    @property
+    def _bulge(self) -> float:
+        """c - 1/c: zero, and every term with it, for a spur gear."""
+        return self.cos_helix - 1.0 / self.cos_helix
+
+    def _centre_beside(self, b: Array) -> Array:
+        """w(b), the centre's distance beside the pitch point when b is cut [modules]."""
+        bulge = self._bulge * self.rounding * np.sin(b)
+        return np.asarray(bulge - self.cos_helix * self.centre_height * np.tan(b))
 
     def rolling(self, parameter: ArrayLike) -> Array:
-        """Angle by which the gear has rolled when beta is cut [rad]."""
-        return (-self.centre_height * np.tan(parameter) - self.centre_offset) / self.pitch_radius
+        """Angle by which the gear has rolled when b is cut [rad]."""
+        b = np.asarray(parameter, dtype=float)
+        return (self._centre_beside(b) - self.centre_offset) / self.pitch_radius
 
     def points(self, parameter: ArrayLike) -> Array:
         """Envelope of the rounding in the gear's frame."""
         b = np.asarray(parameter, dtype=float)
-        x = -self.centre_height * np.tan(b) + self.rounding * np.sin(b)
+        x = self._centre_beside(b) + self.rounding / self.cos_helix * np.sin(b)
         y = self.pitch_radius + self.centre_height - self.rounding * np.cos(b)
         return _mirror_turn(x, y, self.rolling(b), self.space_half_angle)
 
     def centres(self, parameter: ArrayLike) -> Array:
-        """Centre of the rounding in the gear's frame when beta is cut, shape (2, N); the fillet runs beside it."""
+        """Centre of the rounding in the gear's frame when b is cut, shape (2, N); the fillet runs beside it."""
         b = np.asarray(parameter, dtype=float)
-        x = -self.centre_height * np.tan(b)
         y = np.broadcast_to(self.pitch_radius + self.centre_height, b.shape)
-        return _mirror_turn(x, y, self.rolling(b), self.space_half_angle)
+        return _mirror_turn(self._centre_beside(b), y, self.rolling(b), self.space_half_angle)
+
+    def _stretch(self, b: Array) -> Array:
+        """n = sqrt(cos^2 b + c^2 sin^2 b), one to the last bit for a spur gear."""
+        return np.sqrt(1.0 - (1.0 - self.cos_helix**2) * np.sin(b) ** 2)
 
     def normals(self, parameter: ArrayLike) -> Array:
-        """Outward normals: from the material toward the rounding's centre."""
+        """Outward normals: from the material into the rounding."""
         b = np.asarray(parameter, dtype=float)
-        return _mirror_turn(-np.sin(b), np.cos(b), self.rolling(b), self.space_half_angle)
+        n = self._stretch(b)
+        return _mirror_turn(-self.cos_helix * np.sin(b) / n, np.cos(b) / n, self.rolling(b), self.space_half_angle)
+
+    def _turn_and_speed(self, parameter: ArrayLike) -> tuple[Array, Array]:
+        """Turn of the tangent d(theta)/db, and ds/db [modules]."""
+        b, v, r = np.asarray(parameter, dtype=float), self.cos_helix * self.centre_height, self.pitch_radius
+        c, n = np.cos(b), self._stretch(b)
+        bulge = self._bulge * self.rounding / r
+        rolled = bulge * c - v / (r * c * c)  # d(phi)/db
+        sliding = v * self.centre_height / (r * c**3) - bulge * self.centre_height
+        return self.cos_helix / n**2 + rolled, n * (self.rounding * (1.0 / self.cos_helix + rolled) + sliding)
 
     def curvatures(self, parameter: ArrayLike) -> Array:
-        """Minus one over the fillet's radius rho + v^2 / (cos b (r cos^2 b - v)) (Euler and Savary)."""
-        b, v = np.asarray(parameter, dtype=float), self.centre_height
-        c = np.cos(b)
-        turn = 1.0 - v / (self.pitch_radius * c * c)
-        return -turn / (self.rounding * turn + v * v / (self.pitch_radius * c**3))
+        """Turn of the tangent over the arc length, (c / n^2 + phi') / (ds/db); negative, for the fillet is hollow.
+
+        For a spur gear minus one over the radius rho + v^2 / (cos b (r cos^2 b - v)) of Euler and Savary.
+        """
+        turn, speed = self._turn_and_speed(parameter)
+        return -turn / speed
 
     def speed(self, parameter: ArrayLike) -> Array:
-        """ds/dbeta = rho (1 + phi') + v^2 / (r cos^3 beta)."""
-        b, v = np.asarray(parameter, dtype=float), self.centre_height
-        c = np.cos(b)
-        return self.rounding * (1.0 - v / (self.pitch_radius * c * c)) + v * v / (self.pitch_radius * c**3)
+        """ds/db = n (rho / c + (rho - v / cos b) phi'): what rolls off the rounding, and the sliding about the pole."""
+        return self._turn_and_speed(parameter)[1]
 
 
 def _mirror_turn(x: Array, y: Array, phi: Array, space_half_angle: float) -> Array:

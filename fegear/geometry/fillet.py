@@ -4,6 +4,8 @@ A rack without protuberance leaves a trochoid that meets the flank smoothly or, 
 protuberance (ISO 6336-3, 6.2, and ISO 53) cuts deeper than the finished flank by s_pr, its protuberance less the stock
 that grinding takes; its protuberance flank, straight under an angle of its own, generates a second involute that goes
 on where the trochoid ends. Whatever is deepest inside the tooth is its outline.
+All of it is drawn in the section across the axis, where the rack of a helical gear is its normal section stretched
+along the rack by one over the cosine of the helix angle.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ import numpy as np
 from fegear.errors import GeometryError
 from fegear.geometry.curves import Involute, Trochoid
 from fegear.geometry.involute import inv, polar_angle
+from fegear.geometry.rack import transverse_angle
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -81,22 +84,30 @@ class ProtuberanceFillet:
 class RackFlankLine:
     """The involute that one straight flank of a rack generates on a gear, before anything else cuts it.
 
+    All is in the section across the gear's axis.
+
     Parameters
     ----------
     pressure_angle : float
-        Of the straight flank [rad].
+        alpha_t of the straight flank [rad].
     pitch_radius : float
         [modules].
     half_space : float
         Half the width of the rack's tooth on the reference line, along this flank [modules].
+    half_pitch : float
+        Half the rack's pitch [modules].
     shift : float
         Generating profile shift [modules].
+    normal_angle : float
+        alpha_n of the straight flank [rad]; alpha_t itself for a spur gear.
     """
 
     pressure_angle: float
     pitch_radius: float
     half_space: float
+    half_pitch: float
     shift: float
+    normal_angle: float
 
     @property
     def base_radius(self) -> float:
@@ -106,13 +117,13 @@ class RackFlankLine:
     @property
     def half_angle(self) -> float:
         """Half the tooth's angle between its two such involutes on their base circle [rad]."""
-        half = 0.5 * math.pi - self.half_space + self.shift * math.tan(self.pressure_angle)
+        half = self.half_pitch - self.half_space + self.shift * math.tan(self.pressure_angle)
         return half / self.pitch_radius + float(inv(self.pressure_angle))
 
     def tangent_roll(self, rack: BasicRack) -> float:
         """Roll angle at which the flank ends on the line of action at the tip rounding; negative means undercut."""
         alpha = self.pressure_angle
-        height = self.shift - rack.tip_centre_depth - rack.tip_radius * math.sin(alpha)
+        height = self.shift - rack.tip_centre_depth - rack.tip_radius * math.sin(self.normal_angle)
         return math.tan(alpha) + height / (self.base_radius * math.sin(alpha))
 
     def roll(self, radius: float) -> float:
@@ -170,7 +181,7 @@ def _outside(trochoid: Trochoid, flank: RackFlankLine, beta: float) -> float:
 
 
 def protuberance_fillet(
-    trochoid: Trochoid, rack: BasicRack, flank: RackFlankLine, tip_radius: float
+    trochoid: Trochoid, rack: BasicRack, flank: RackFlankLine, tip_radius: float, helix_angle: float
 ) -> tuple[Trochoid | ProtuberanceFillet, float]:
     """Fillet that a rack with protuberance leaves under the finished flank, and the flank's roll angle at its end.
 
@@ -183,6 +194,8 @@ def protuberance_fillet(
         The finished flank.
     tip_radius : float
         The flank must be met below it [modules].
+    helix_angle : float
+        [rad].
 
     Raises
     ------
@@ -193,7 +206,11 @@ def protuberance_fillet(
 
     half_space = rack.tip_centre_offset + rack.tip_radius / math.cos(rack.protuberance_angle)
     half_space += rack.tip_centre_depth * math.tan(rack.protuberance_angle)
-    second = RackFlankLine(rack.protuberance_angle, flank.pitch_radius, half_space, flank.shift)
+    half_space /= math.cos(helix_angle)
+    angle = transverse_angle(rack.protuberance_angle, helix_angle)
+    second = RackFlankLine(
+        angle, flank.pitch_radius, half_space, flank.half_pitch, flank.shift, rack.protuberance_angle
+    )
     beta, roll = meeting(trochoid, second, second.tangent_roll(rack))
     at = float(np.hypot(*trochoid.points(beta)))
 
@@ -203,10 +220,10 @@ def protuberance_fillet(
 
     if at >= flank.base_radius and _outside(trochoid, flank, beta) >= 0.0:
         # The rounding itself comes out of the flank: from where it is cut deepest, up to there.
-        looked = np.append(np.linspace(0.0, beta, 400)[::-1], 0.5 * math.pi - flank.pressure_angle)
+        looked = np.append(np.linspace(0.0, beta, 400)[::-1], 0.5 * math.pi - flank.normal_angle)
         cut = max((b for b in looked if b < beta and _outside(trochoid, flank, b) < 0.0), default=None)
         if cut is None:  # a protuberance lost in round-off
-            plain = replace(trochoid, end=0.5 * math.pi - flank.pressure_angle)
+            plain = replace(trochoid, end=0.5 * math.pi - flank.normal_angle)
             end, along = meeting(plain, flank, flank.tangent_roll(rack))
             return replace(trochoid, end=end), along
         end = brentq(lambda b: _outside(trochoid, flank, b), cut, beta, xtol=1e-15, rtol=9e-16)

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from fegear.geometry.tooth import Tooth
 
 Plane = Literal["strain", "stress"]
+Hand = Literal["left", "right", "spur"]
 #: Compliances at this value are within 1e-4 of those at 0.5; beyond it elements stiffen and digits are lost.
 _LARGEST_POISSON_RATIO = 0.4999
 
@@ -53,14 +54,17 @@ class Material:
 
 @dataclass(frozen=True)
 class Gear:
-    """A spur gear in SI, or of pure numbers: any module with a Young's modulus such as 1.
+    """A spur or helical gear in SI, or of pure numbers: any module with a Young's modulus such as 1.
+
+    A helical gear is its transverse section (`tooth`) turned by `twist` z at the height z along the axis; the solid
+    lies within abs(z) <= face_width / 2. Lengths and angles without "normal" in their name are those of that section.
 
     Parameters
     ----------
     tooth : Tooth
-        Shape in modules.
+        Shape of the transverse section in normal modules, with the helix angle.
     module : float
-        m [m].
+        m_n, the normal module [m].
     bore_radius : float
         Radius at which the body is held fast [m], inside (0, root radius).
     face_width : float
@@ -68,11 +72,13 @@ class Gear:
     material : Material
     plane : {"strain", "stress", "auto"}
         Plane assumption; "auto" is strain when the face is at least five tooth thicknesses (at the pitch circle) wide.
+    hand : {"left", "right", "spur"}
+        Hand of the helix; "spur" if and only if the helix angle is zero.
 
     Raises
     ------
     GeometryError
-        If module, bore, face width or material break their rules, or are of a size that no gear has.
+        If module, bore, face width, hand or material break their rules, or are of a size that no gear has.
     InputError
         If the plane assumption is unknown, or plane strain meets a material that is as good as incompressible.
     """
@@ -83,9 +89,19 @@ class Gear:
     face_width: float = 1e-3
     material: Material = field(default_factory=Material)
     plane: Literal["strain", "stress", "auto"] = "strain"
+    hand: Hand = "spur"
 
     def __post_init__(self) -> None:
         """Refuse sizes that cannot be and settle the plane assumption."""
+        if self.hand not in ("left", "right", "spur"):
+            raise GeometryError("hand", f'"{self.hand}"', 'must be "left", "right" or "spur"')
+        if (self.hand == "spur") != (self.helix_angle == 0.0):
+            raise GeometryError(
+                "hand",
+                f'"{self.hand}" at a helix angle of {math.degrees(self.helix_angle):.6g} deg',
+                "contradicts the helix angle",
+                'give "left" or "right" for a helical gear and "spur" for a helix angle of zero',
+            )
         for name in ("module", "face_width", "bore_radius"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
@@ -126,6 +142,40 @@ class Gear:
         return self.tooth.teeth
 
     @property
+    def helix_angle(self) -> float:
+        """Helix angle beta on the pitch cylinder [rad], without the sign of the hand."""
+        return self.tooth.helix_angle
+
+    @property
+    def base_helix_angle(self) -> float:
+        """Helix angle beta_b on the base cylinder [rad], without the sign of the hand."""
+        return self.tooth.base_helix_angle
+
+    @property
+    def twist(self) -> float:
+        """Turn of the transverse section per height z [rad/m]: tan(beta) / r, positive for a right hand.
+
+        The turn is counter-clockwise seen from +z, so that the section at z has the points R(twist z) (x, y).
+        """
+        size = self.tooth.twist / self.module
+        return -size if self.hand == "left" else size
+
+    @property
+    def transverse_module(self) -> float:
+        """m_t = m_n / cos(beta) [m]."""
+        return self.module / math.cos(self.helix_angle)
+
+    @property
+    def normal_pressure_angle(self) -> float:
+        """alpha_n [rad], that of the rack."""
+        return self.tooth.rack.pressure_angle
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """alpha_t [rad]."""
+        return self.tooth.pressure_angle
+
+    @property
     def pitch_radius(self) -> float:
         """Pitch radius r [m]."""
         return self.tooth.pitch_radius * self.module
@@ -157,7 +207,7 @@ class Gear:
 
     @property
     def base_pitch(self) -> float:
-        """p_b [m]."""
+        """p_bt, across the axis [m]."""
         return self.tooth.base_pitch * self.module
 
     @property

@@ -67,7 +67,7 @@ def gear_outline(gear: Gear, tolerance: float = 1e-4, pieces: Sequence[Drawn] | 
 
 
 def rack_tooth(tooth: Tooth) -> Array:
-    """Outline of the tool's tooth [modules], shape (2, N): along the rack, and above the gear's pitch line."""
+    """Outline of the tool's tooth across the gear's axis [modules], (2, N): along the rack, above the pitch line."""
     rack, shift = tooth.rack, tooth.generating_shift
     alpha, rho = rack.pressure_angle, rack.tip_radius
     top = np.array([[math.pi / 4 + rack.addendum * math.tan(alpha)], [shift + rack.addendum]])
@@ -75,6 +75,7 @@ def rack_tooth(tooth: Tooth) -> Array:
     centre = rack.tip_centre_offset, shift - rack.tip_centre_depth
     rounding = np.stack([centre[0] + rho * np.sin(beta), centre[1] - rho * np.cos(beta)])
     right = np.hstack([top, rounding])
+    right[0] /= math.cos(tooth.helix_angle)
     return np.hstack([right, right[:, ::-1] * np.array([[-1.0], [1.0]])])
 
 

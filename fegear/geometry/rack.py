@@ -15,6 +15,8 @@ ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.30), "C": (1.0, 1.25, 0.25)
 class BasicRack:
     """Basic rack tooth profile: what the tool that cuts the gear looks like, counted from the gear's side.
 
+    For a helical gear this is the rack's normal section, and a module the normal module; see `Tooth`.
+
     Parameters
     ----------
     addendum : float
@@ -155,3 +157,18 @@ class BasicRack:
     def tip_centre_depth(self) -> float:
         """Depth of the tip rounding's centre below the reference line [modules]."""
         return self.dedendum - self.tip_radius
+
+
+def transverse_angle(normal_angle: float, helix_angle: float) -> float:
+    """Angle of a straight rack flank in the transverse section [rad]: tan(alpha_t) = tan(alpha_n) / cos(beta).
+
+    Parameters
+    ----------
+    normal_angle : float
+        alpha_n [rad].
+    helix_angle : float
+        beta on the pitch cylinder [rad]; zero gives the normal angle itself, to the last bit.
+    """
+    if helix_angle == 0.0:
+        return normal_angle
+    return math.atan(math.tan(normal_angle) / math.cos(helix_angle))

@@ -1,4 +1,4 @@
-"""The generated tooth of module 1: what the basic rack leaves standing, as exact curves (ISO 21771, 5)."""
+"""The generated tooth of normal module 1: what the basic rack leaves standing, as exact curves (ISO 21771, 5)."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ from fegear.errors import GeometryError
 from fegear.geometry.curves import Arc, Curve, Involute, Line, Trochoid
 from fegear.geometry.fillet import ProtuberanceFillet, RackFlankLine, meeting, protuberance_fillet
 from fegear.geometry.involute import inv, polar_angle, roll_of_polar_angle
-from fegear.geometry.rack import BasicRack
+from fegear.geometry.rack import BasicRack, transverse_angle
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
 
+#: Largest helix angle on the pitch cylinder [rad].
+LARGEST_HELIX_ANGLE = math.radians(60.0)
 #: Half the thickness of the thinnest neck that undercut may leave [modules].
 _THINNEST_NECK = 0.02
 #: A rack tip as sharp as this [modules] needs as much room below the pitch line to leave a fillet.
@@ -28,7 +30,13 @@ _SMALLEST_FILLET = 1e-6
 
 @dataclass(frozen=True)
 class Tooth:
-    """A generated external spur tooth; every length in modules, so that one tooth serves every size.
+    """A generated external tooth, spur or helical: its section across the gear's axis, exactly.
+
+    Every length is in normal modules, so that one tooth serves every size. The rack is given in its normal section; the
+    section across the axis is cut by the rack's transverse section, which is the normal one stretched along the rack by
+    1 / cos(beta): heights stay, flanks stand under alpha_t, and the circle of the rack's tip becomes an ellipse. A
+    solid gear is this section turned in proportion to the height along the axis (`Gear.twist`); all curves, radii and
+    angles here are those of the section, and so are base pitch and tip edge. A helix angle of zero is a spur tooth.
 
     Parameters
     ----------
@@ -37,16 +45,18 @@ class Tooth:
     rack : BasicRack
         Basic rack tooth profile.
     profile_shift : float
-        x, profile shift coefficient.
+        x, profile shift coefficient, in normal modules.
     thickness_allowance : float
-        A_s, reduction of the tooth's thickness at the pitch circle [modules]; made, as on the machine, by feeding
-        the rack deeper by A_s / (2 tan alpha) (ISO 21771, generating profile shift coefficient x_E).
+        A_sn, reduction of the tooth's normal thickness at the pitch circle [modules]; made, as on the machine, by
+        feeding the rack deeper by A_sn / (2 tan alpha_n) (ISO 21771, generating profile shift coefficient x_E).
     tip_radius : float
-        Radius of the tip circle [modules]; NaN, the default, is replaced by z/2 + x + h_aP.
+        Radius of the tip circle [modules]; NaN, the default, is replaced by r + x + h_aP.
     tip_rounding : float
-        Radius of the rounding between flank and tip circle [modules].
+        Radius of the rounding between flank and tip circle, in the section [modules].
     tip_chamfer : float
         Height of a tip chamfer [modules]: a straight cut that takes as much off the tip's width as off its height.
+    helix_angle : float
+        beta on the pitch cylinder [rad], from 0 to 60 deg; the hand is that of the gear.
 
     Raises
     ------
@@ -62,20 +72,26 @@ class Tooth:
     tip_radius: float = math.nan
     tip_rounding: float = 0.0
     tip_chamfer: float = 0.0
+    helix_angle: float = 0.0
 
     def __post_init__(self) -> None:
         """Fill in the tip radius and refuse teeth that cannot exist."""
         z = self.teeth
         if isinstance(z, bool) or int(z) != z:
             raise GeometryError("teeth", z, "must be a whole number")
-        if not 5 <= z <= 1000:
-            raise GeometryError("teeth", z, "must lie between 5 and 1000", "model a rack as a gear with many teeth")
+        if not 0.0 <= self.helix_angle <= LARGEST_HELIX_ANGLE:
+            angle = f"{math.degrees(self.helix_angle):.6g} deg"
+            raise GeometryError("helix_angle", angle, "must lie between 0 and 60 deg", "the hand carries the sign")
+        fewest = max(3, math.ceil(5.0 * math.cos(self.helix_angle) ** 3 - 1e-9))  # as many as five of a spur gear
+        if not fewest <= z <= 1000:
+            remedy = "model a rack as a gear with many teeth"
+            raise GeometryError("teeth", z, f"must lie between {fewest} and 1000", remedy)
         object.__setattr__(self, "teeth", int(z))
         for name in ("profile_shift", "thickness_allowance", "tip_rounding", "tip_chamfer"):
             if not math.isfinite(getattr(self, name)):
                 raise GeometryError(name, getattr(self, name), "must be finite")
         if math.isnan(self.tip_radius):
-            object.__setattr__(self, "tip_radius", z / 2 + self.profile_shift + self.rack.addendum)
+            object.__setattr__(self, "tip_radius", self.pitch_radius + self.profile_shift + self.rack.addendum)
         if math.isinf(self.tip_radius):
             raise GeometryError("tip_radius", self.tip_radius, "must be finite")
         for name in ("tip_rounding", "tip_chamfer"):
@@ -190,18 +206,33 @@ class Tooth:
     # ---- circles and angles -------------------------------------------------------------------------------------
     @property
     def pitch_radius(self) -> float:
-        """Pitch radius r = z/2 [modules]."""
-        return self.teeth / 2
+        """Pitch radius r = z / (2 cos(beta)) [modules]."""
+        return self.teeth / 2 / math.cos(self.helix_angle)
+
+    @cached_property
+    def pressure_angle(self) -> float:
+        """alpha_t, the transverse pressure angle [rad]; for a spur tooth that of the rack, to the last bit."""
+        return transverse_angle(self.rack.pressure_angle, self.helix_angle)
+
+    @property
+    def base_helix_angle(self) -> float:
+        """beta_b on the base cylinder [rad], without the sign of the hand."""
+        return math.atan(math.tan(self.helix_angle) * math.cos(self.pressure_angle))
+
+    @property
+    def twist(self) -> float:
+        """tan(beta) / r, turn of the section per height along the axis [rad/module], without the sign of the hand."""
+        return math.tan(self.helix_angle) / self.pitch_radius
 
     @cached_property
     def base_radius(self) -> float:
-        """r_b = r cos(alpha) [modules]."""
-        return self.pitch_radius * math.cos(self.rack.pressure_angle)
+        """r_b = r cos(alpha_t) [modules]."""
+        return self.pitch_radius * math.cos(self.pressure_angle)
 
     @property
     def base_pitch(self) -> float:
-        """p_b = pi cos(alpha) [modules]."""
-        return math.pi * math.cos(self.rack.pressure_angle)
+        """p_bt = pi cos(alpha_t) / cos(beta), across the axis [modules]."""
+        return math.pi * math.cos(self.pressure_angle) / math.cos(self.helix_angle)
 
     @property
     def generating_shift(self) -> float:
@@ -216,17 +247,16 @@ class Tooth:
     @cached_property
     def base_half_angle(self) -> float:
         """psi_b, half the tooth's angle on the base circle [rad]."""
-        alpha = self.rack.pressure_angle
-        thickness = math.pi / 2 + 2.0 * self.generating_shift * math.tan(alpha)
-        return thickness / self.teeth + float(inv(alpha))
+        thickness = math.pi / 2 + 2.0 * self.generating_shift * math.tan(self.rack.pressure_angle)
+        return thickness / self.teeth + float(inv(self.pressure_angle))
 
     @property
     def root_land_half_angle(self) -> float:
         """Half the angle of the root land between the two fillets of one tooth space [rad]."""
-        return self.rack.tip_centre_offset / self.pitch_radius
+        return self.rack.tip_centre_offset / math.cos(self.helix_angle) / self.pitch_radius
 
     def roll(self, radius: ArrayLike) -> Array:
-        """Roll angle tan(alpha_r) [rad] of the involute at `radius` [modules] (>= base radius)."""
+        """Roll angle tan(alpha_r) [rad], in the section, of the involute at `radius` [modules] (>= base radius)."""
         r = np.asarray(radius, dtype=float)
         return np.sqrt((r - self.base_radius) * (r + self.base_radius)) / self.base_radius
 
@@ -244,16 +274,20 @@ class Tooth:
         return Trochoid(
             pitch_radius=self.pitch_radius,
             rounding=self.rack.tip_radius,
-            centre_offset=self.rack.tip_centre_offset,
+            centre_offset=self.rack.tip_centre_offset / math.cos(self.helix_angle),
             centre_height=self.generating_shift - self.rack.tip_centre_depth,
             space_half_angle=math.pi / self.teeth,
             start=0.0,
             end=math.pi / 2 - angle,
+            cos_helix=math.cos(self.helix_angle),
         )
 
     @cached_property
     def _flank_line(self) -> RackFlankLine:
-        return RackFlankLine(self.rack.pressure_angle, self.pitch_radius, 0.25 * math.pi, self.generating_shift)
+        half_pitch, normal = 0.5 * math.pi / math.cos(self.helix_angle), self.rack.pressure_angle
+        return RackFlankLine(
+            self.pressure_angle, self.pitch_radius, 0.5 * half_pitch, half_pitch, self.generating_shift, normal
+        )
 
     @property
     def undercut(self) -> bool:
@@ -265,7 +299,7 @@ class Tooth:
         """The fillet, and the roll angle of the involute at its end."""
         whole = self._full_trochoid()
         if self.rack.residual_undercut > 0.0:
-            return protuberance_fillet(whole, self.rack, self._flank_line, self.tip_radius)
+            return protuberance_fillet(whole, self.rack, self._flank_line, self.tip_radius, self.helix_angle)
         end, roll = meeting(whole, self._flank_line, self._flank_line.tangent_roll(self.rack))
         return replace(whole, end=end), roll
 
