@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from fegear.case.part import Angle, InverseLength, Length, LengthOrZero, Part, PositiveForce
+from fegear.case.part import Angle, InverseLength, Length, LengthOrZero, Part, PositiveForce, refuse
 
 if TYPE_CHECKING:
     from fegear.geometry.helical_gear import HelicalGear
@@ -15,18 +15,30 @@ if TYPE_CHECKING:
 
 
 class MisalignmentPart(Part):
-    """``misalignment = { shaft_angle, lead_angle, profile_angle, centre_distance }``: errors of a helical pair."""
+    """``misalignment = { shaft_angle, lead_angle or lead, profile_angle, centre_distance }``: errors of a helical pair.
+
+    ``lead`` is the error of the pinion's lead itself, which the cutting machine leaves: Delta H_1 of TM-107451, Eq. 18.
+    """
 
     shaft_angle: Angle = 0.0
     lead_angle: Angle = 0.0
+    lead: Length | None = None
     profile_angle: Angle = 0.0
     centre_distance: Length = 0.0
 
-    def build(self) -> Misalignment:
+    @model_validator(mode="after")
+    def _one_lead(self) -> Self:
+        if self.lead is not None and "lead_angle" in self.model_fields_set:
+            raise refuse("contradicts lead_angle", "give either the error of the lead or that of its angle", key="lead")
+        return self
+
+    def build(self, pinion: HelicalGear) -> Misalignment:
         """Make the errors."""
+        from fegear.helical.lead_error import lead_angle_error
         from fegear.helical.pair import Misalignment
 
-        return Misalignment(self.shaft_angle, self.lead_angle, self.profile_angle, self.centre_distance)
+        lead_angle = self.lead_angle if self.lead is None else lead_angle_error(pinion, self.lead)
+        return Misalignment(self.shaft_angle, lead_angle, self.profile_angle, self.centre_distance)
 
 
 class ModificationPart(Part):
@@ -67,7 +79,7 @@ def build_pair(
     return HelicalPair(
         pinion,
         gear,
-        Misalignment() if errors is None else errors.build(),
+        Misalignment() if errors is None else errors.build(pinion),
         parabola=change.parabola,
         crown=change.crown_coefficient(pinion),
         axial_offset=axial_offset,

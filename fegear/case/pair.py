@@ -119,7 +119,9 @@ class PairPart(Part):
                 self.axial_offset,
             )
         except InputError as error:
-            names = {key: f"misalignment.{key}" for key in ("shaft_angle", "lead_angle", "profile_angle")}
+            names = {key: f"misalignment.{key}" for key in ("shaft_angle", "lead_angle", "lead", "profile_angle")}
+            if self.misalignment is not None and self.misalignment.lead is not None:
+                names["lead_angle"] = names["lead"]
             names |= {key: f"modification.{key}" for key in ("parabola", "crown")}
             raise at(prefix, error, names) from None
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
+from fegear.helical.lead_error import lead, lead_angle_error_of_cut, lead_error_as_cut
 from fegear.results.drawn_flanks import tooth_contact_figures
 
 if TYPE_CHECKING:
@@ -68,6 +70,8 @@ class ToothContactInputs:
         Of the pair.
     ignored : str
         Key of a load that the case gives and no wanted result takes; else empty.
+    lead : float or None
+        Error of the pinion's lead that the case gives in place of a lead angle [m].
     """
 
     pair: HelicalPair
@@ -77,6 +81,7 @@ class ToothContactInputs:
     modulus: float
     name: str = field(compare=False)
     ignored: str = field(default="", compare=False)
+    lead: float | None = field(default=None, compare=False)
 
 
 def _pairs(scene: Scene) -> tuple[str, ...]:
@@ -151,6 +156,7 @@ def _tables(name: str, t: ToothContact, bearing: Bearing | None) -> tuple[Table,
             f"Pieces of the cycle of pair {name}",
         ),
     ]
+    tables.append(_kinds_table(name, t))
     if bearing is not None:
         tables.append(
             Table(
@@ -168,6 +174,58 @@ def _tables(name: str, t: ToothContact, bearing: Bearing | None) -> tuple[Table,
     return tuple(tables)
 
 
+def _kinds_table(name: str, t: ToothContact) -> Table:
+    """Each kind of contact with its share of the cycle, and how fast and how evenly the gear runs ahead in it."""
+    kinds = np.unique(t.mesh.kind)
+    slopes, pitch = [t.mesh.slope[t.mesh.kind == kind] for kind in kinds], t.pair.pinion.angular_pitch
+    mean, spread = np.array([s.mean() for s in slopes]), np.array([np.ptp(s) for s in slopes])
+    return Table(
+        f"tooth_contact_kinds_{name}",
+        (
+            Column("contact", kinds, "", "kind of contact"),
+            Column("share", np.array([s.size / t.phi_1.size for s in slopes]), "", "of the cycle's positions"),
+            Column("slope", mean, "", "mean slope of the transmission error"),
+            Column("rise", mean * pitch, "arcsec", "mean slope times the pitch"),
+            Column("rise_spread", spread * pitch, "arcsec", "largest less smallest slope, times the pitch"),
+        ),
+        f"Kinds of contact of pair {name}",
+    )
+
+
+def _surface_share(name: str, t: ToothContact) -> Value:
+    inside = t.mesh.kind == "surface"
+    changes = np.count_nonzero(inside != np.roll(inside, 1))
+    error = max(1, changes) / inside.size  # each change lies somewhere between two positions
+    return Value(f"{name}.surface_share", float(inside.mean()), "", error, "share of the cycle without edge contact")
+
+
+def _lead_values(name: str, pair: HelicalPair) -> tuple[Value, ...]:
+    """The pinion's lead error as an angle, and as the lead of the pinion that Appendix 2 makes of it."""
+    angle = pair.errors.lead_angle
+    if angle == 0.0 or angle >= pair.pinion.helix_angle:  # without an error, or without a finite lead of its hand
+        return ()
+    return (
+        Value(f"{name}.lead_angle_error", angle, "arcsec", 0.0, "on the pinion's pitch cylinder"),
+        Value(f"{name}.lead_error_as_cut", lead_error_as_cut(pair.pinion, angle), "mm", 0.0,
+              "of the pinion's lead H, pitch radius as cut"),
+    )  # fmt: skip
+
+
+def _lead_remark(name: str, asked: ToothContactInputs) -> tuple[str, ...]:
+    if asked.lead is None:
+        return ()
+    pinion, angle = asked.pair.pinion, asked.pair.errors.lead_angle
+    other = lead_angle_error_of_cut(pinion, asked.lead)
+    minutes = math.degrees(60.0)
+    remark = (
+        f"Pair {name}: a lead of {lead(pinion) * 1e3:.6g} mm that is off by {asked.lead * 1e3:.6g} mm is taken as "
+        f"{angle * minutes:.6g}' of lead angle by Eq. 18 of TM-107451, which holds the pitch radius. Its Appendix 2 "
+        f"lets the radius follow: the lead as cut is off by {lead_error_as_cut(pinion, angle) * 1e3:.6g} mm, and by the "
+        f'given amount with lead_angle = "{other * minutes:.8g} arcmin".'
+    )
+    return (remark,)
+
+
 def _values(name: str, t: ToothContact) -> tuple[Value, ...]:
     error = t.maximum.error + t.minimum.error
     pair = t.pair
@@ -178,6 +236,8 @@ def _values(name: str, t: ToothContact) -> tuple[Value, ...]:
         Value(f"{name}.transverse_contact_ratio", pair.transverse_contact_ratio, "", 0.0, "aligned drive"),
         Value(f"{name}.overlap_ratio", pair.overlap_ratio, "", 0.0, "common face over axial pitch"),
         Value(f"{name}.centre_distance", pair.centre_distance, "mm", 0.0, "with the pinion as cut"),
+        _surface_share(name, t),
+        *_lead_values(name, pair),
     )
 
 
@@ -237,6 +297,7 @@ def _inputs(scene: Scene, name: str) -> ToothContactInputs:
         scene.helical_pairs[name], asked.positions, absorb, asked.load, 1.0 / (1.0 / a + 1.0 / b), name,
         next((key for key in ("load", "torque") if getattr(part, key) is not None), "")
         if "crosscheck" not in scene.case.results else "",
+        part.misalignment.lead if part.misalignment is not None else None,
     )  # fmt: skip
 
 
@@ -263,7 +324,7 @@ def _compute(asked: ToothContactInputs, _upstream: Upstream, _work: Work) -> Too
 
 def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
     name, contact, design = asked.name, data.contact, data.design
-    values, remarks = _values(name, contact), _remarks(name, contact)
+    values, remarks = _values(name, contact), (*_remarks(name, contact), *_lead_remark(name, asked))
     if design is not None:
         pinion = design.pair.pinion
         arm = pinion.base_radius * np.cos(pinion.base_helix_angle)

@@ -33,6 +33,9 @@ def run(name, *overrides):
         ("litvin_combined", {"pinion tip", "gear face end", "pinion face end", "corner"}, 1.4386),
         # A dense search finds 12.33324; the bottom lies where another pair takes the lead.
         ("litvin_localised", {"surface", "gear face end", "pinion face end"}, 12.3332),
+        # tests/closed_form/test_tooth_contact_closed_form.py finds these extremes by plain search.
+        ("sources/litvin_fig07", {"pinion face end", "corner"}, 1.5356),
+        ("sources/litvin_fig09", {"surface"}, 0.0),
     ],
 )
 def test_litvin_cases(name, kinds, peak_to_peak):
@@ -52,6 +55,29 @@ def test_without_the_effect_the_drive_is_aligned_or_the_table_refused():
     _, values, results = run("litvin_lead", "pair.I.misalignment={ lead_angle = '0 deg' }")
     assert values["I.te_peak_to_peak"] < 1e-6
     assert any("ill-defined" in remark for remark in results.remarks)
+
+
+def test_a_lead_error_counts_by_equation_18():
+    """TM-107451, Eq. 18; the lead of the pinion that Appendix 2 then makes is told beside it."""
+    _, by_lead, results = run("sources/litvin_eq18", "tooth_contact.positions=20")
+    _, by_angle, _ = run("litvin_lead", "tooth_contact.positions=20")
+    assert by_lead["I.lead_angle_error"] == pytest.approx(180.0, abs=1e-3)
+    assert by_lead["I.te_peak_to_peak"] == pytest.approx(by_angle["I.te_peak_to_peak"], rel=1e-5)
+    assert by_lead["I.lead_error_as_cut"] == pytest.approx(0.75 * 1.92979, rel=3e-3)
+    told = "\n".join(results.remarks)
+    angle = told.split('lead_angle = "')[1].split('"')[0]
+    _, exact, _ = run("litvin_lead", f"pair.I.misalignment.lead_angle='{angle}'", "tooth_contact.positions=20")
+    assert exact["I.lead_error_as_cut"] == pytest.approx(1.92979, rel=1e-7), "the angle told in words"
+
+
+def test_kinds_of_contact_add_up():
+    tables, values, _ = run("litvin_localised", "tooth_contact.positions=100")
+    kinds, cycle = tables["tooth_contact_kinds_I"], tables["tooth_contact_I"]
+    assert kinds["share"].sum() == pytest.approx(1.0)
+    (surface,) = kinds["share"][kinds["contact"] == "surface"]
+    assert values["I.surface_share"] == surface == np.mean(cycle["contact"] == "surface")
+    assert kinds["rise"] == pytest.approx(kinds["slope"] * 360.0 / 30.0 * 3600.0, rel=1e-12)
+    assert kinds["slope"] @ kinds["share"] == pytest.approx(cycle["slope"].mean(), rel=1e-12)
 
 
 def test_a_load_that_changes_nothing_is_said_to():
@@ -155,6 +181,9 @@ def test_general_pair_and_mesh_from_a_load_distribution(tmp_path):
         ("gear.pinion.hand='spur'", "contradicts the helix angle"),
         ("pair.I.axial_offset='100 mm'", "beside each other"),
         ("pair.I.centre_distance='381 mm'", "no meaning for a helical pair"),
+        ("pair.I.misalignment={ lead = '1 mm', lead_angle = '3 arcmin' }", "misalignment.lead.*contradicts lead_angle"),
+        ("pair.I.misalignment={ lead = '1 m' }", "pair.I.misalignment.lead.*no small error of a lead of 957"),
+        ("pair.I.misalignment={ lead = '150 mm' }", "pair.I.misalignment.lead.*no small error"),
         ("pair.I.misalignment={ shaft_angle = '10 deg' }", "pair.I.misalignment.shaft_angle.*no small error"),
         ("pair.I.modification={ parabola = '90 / mm' }", "pair.I.modification.parabola.*no regular flank"),
         ("pair.I.modification={ absorb = true }", "pair.I.modification.parabola.*must be positive"),

@@ -77,6 +77,17 @@ def test_aligned_drives_transmit_exactly(n1, n2, beta, width, hand, apart):
     assert result.mesh.ill_defined[result.mesh.kind == "surface"].all()
 
 
+def test_the_range_of_figure_8_is_that_of_a_plain_search():
+    """TM-107451, Fig. 8 (profile angle 3', lead -2'): both extremes are what a search over all pairs finds there."""
+    pair = make(errors=Misalignment(0.0, -2 * ARCMIN, 3 * ARCMIN))
+    result, pitch = tooth_contact(pair, 60), pair.pinion.angular_pitch
+    assert result.peak_to_peak / ARCSEC == pytest.approx(1.53561, abs=1e-5)
+    for extreme in (result.maximum, result.minimum):
+        own = [extreme.angle - k * pitch for k in range(-2, 3)]
+        found = max(largest_gear_angle(pair, phi, 61) - pair.ratio * phi for phi in own)
+        assert found == pytest.approx(extreme.value, abs=1e-5 * ARCSEC)
+
+
 angles = st.floats(-6.0, 6.0).map(lambda a: a * ARCMIN)
 
 
