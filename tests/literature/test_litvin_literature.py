@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fegear.errors import RangeError
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, mesh_cycle, tooth_contact
+from fegear.helical import HelicalGear, HelicalPair, Misalignment, mesh_cycle, pair_contact, tooth_contact
 from fegear.helical.bearing import bearing_contact
 from fegear.helical.predesign import absorb_linear_error, linear_error
 
@@ -174,3 +174,45 @@ def test_contact_ellipses_lie_along_the_tooth():
     assert point.shape == bearing.long_axis.shape
     with pytest.raises(RangeError, match="no contact ellipse"):
         bearing_contact(drive(), mesh_cycle(drive(), 10).mesh, 1000.0, 115e9)
+
+
+def test_equations_15_to_17_are_the_derivatives_of_appendix_2():
+    pinion, step = drive().pinion, 1e-5
+    low, high = (pinion.with_errors(profile_angle=sign * step) for sign in (-1, 1))
+    alpha_n, alpha_t = pinion.normal_pressure_angle, pinion.transverse_pressure_angle
+    lambda_b = 0.5 * math.pi - pinion.base_helix_angle
+    by_alpha_n = math.sin(2.0 * alpha_t) / math.sin(2.0 * alpha_n)  # (15)
+    for attribute, sign, printed in (
+        ("transverse_pressure_angle", 1.0, by_alpha_n),
+        ("base_helix_angle", -1.0, 0.5 * math.sin(2.0 * lambda_b) * math.tan(alpha_t) * by_alpha_n),  # (16)
+        ("base_radius", 1.0, -pinion.pitch_radius * math.sin(alpha_t) * by_alpha_n),  # (17)
+    ):
+        slope = sign * (getattr(high, attribute) - getattr(low, attribute)) / (2.0 * step)
+        assert slope == pytest.approx(printed, rel=1e-8), attribute
+
+
+@pytest.mark.parametrize("minutes", [0.01, 3.0, 60.0])
+@pytest.mark.parametrize("where", [0.086, 0.088, 0.091])
+def test_appendix_4_is_the_whole_solution_where_both_errors_are_of_one_size(minutes, where):
+    """A.4.1 to A.4.8 as printed: in the paper they begin an iteration."""
+    pair = drive(shaft=minutes, lead=-minutes)
+    a, b, gamma = pair.cut_pinion, pair.gear, pair.errors.shaft_angle
+    (la, pa), (lb, pb) = ((0.5 * math.pi - g.base_helix_angle, 1.0 / abs(g.twist)) for g in (a, b))
+    Phi_2 = math.acos((math.cos(la) - math.cos(lb) * math.cos(gamma)) / (math.sin(lb) * math.sin(gamma)))
+    Phi_1 = math.asin(math.sin(lb) / math.sin(la) * math.sin(Phi_2))
+    u1 = math.sqrt(where**2 - a.base_radius**2) / math.cos(la)
+    x1 = a.base_radius * math.cos(Phi_1) + u1 * math.cos(la) * math.sin(Phi_1)
+    y1 = -a.base_radius * math.sin(Phi_1) + u1 * math.cos(la) * math.cos(Phi_1)
+    u2 = (pair.centre_distance - b.base_radius * math.cos(Phi_2) - x1) / (math.cos(lb) * math.sin(Phi_2))
+    y2 = u2 * math.cos(lb) * math.cos(Phi_2) - b.base_radius * math.sin(Phi_2)
+    theta_2 = (y1 + u2 * math.sin(lb) * math.sin(gamma) + y2 * math.cos(gamma)) / (pb * math.sin(gamma))
+    z = (u2 * math.sin(lb) - pb * theta_2) * math.cos(gamma) - y2 * math.sin(gamma)
+    theta_1 = (z + u1 * math.sin(la)) / pa
+    phi_1, phi_2 = theta_1 + a.half_base_space_angle - Phi_1, Phi_2 - theta_2 + b.half_base_tooth_angle
+    found = pair_contact(pair, [phi_1])
+    assert found.kind[0] == "surface"
+    # A.4.1 takes the difference of two cosines over a small sine: what is left of it is 1e-16 over the error.
+    loss = 1e-15 / gamma
+    assert found.error[0] == pytest.approx(phi_2 - pair.ratio * phi_1, abs=1e-10 * ARCMIN + loss)
+    if minutes >= 3.0:
+        assert (found.r1[0], found.z1[0]) == pytest.approx((where, z), abs=1e-8)
