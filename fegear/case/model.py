@@ -13,6 +13,7 @@ from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
 from fegear.case.gear import GearPart
 from fegear.case.helical import ToothContactPart
+from fegear.case.loading import LoadingPart
 from fegear.case.pair import PairPart
 from fegear.case.part import Part
 from fegear.case.stiffness import StiffnessPart
@@ -33,6 +34,7 @@ class Case(Part):
     tooth_contact: ToothContactPart = Field(default_factory=ToothContactPart)
     transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
     design: DesignPart | None = None
+    loading: LoadingPart | None = None
     train: TrainPart | None = None
     dynamics: DynamicsPart = Field(default_factory=DynamicsPart)
     effects: EffectsPart = Field(default_factory=EffectsPart)

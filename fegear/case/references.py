@@ -48,6 +48,8 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
         yield "study.gear", case.study.gear, "gear"
     if case.design is not None:
         yield "design.pair", case.design.pair, "pair"
+    if case.loading is not None:
+        yield "loading.pair", case.loading.pair, "pair"
     if case.train is not None:
         yield from _of_train(case.train)
         dynamics = case.dynamics

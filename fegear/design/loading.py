@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from fegear.design.spectra import polynomial_factor, sinusoidal_factor
 from fegear.errors import InputError, RangeError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.arrays import Array
@@ -72,6 +74,10 @@ class Ramp:
         if self.exponent is None:
             return sinusoidal_factor(q, self.slope)
         return polynomial_factor(q, self.slope, self.exponent)
+
+    def asymptotic_factor(self, q: ArrayLike) -> Array:
+        """What the factor tends to at high frequency, s sinc(q), whatever the family (4.20); none where s is zero."""
+        return np.asarray(self.slope * np.sinc(np.asarray(q, dtype=float)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +202,26 @@ class LoadingFunction:
             total = total + weight * plateau * np.sinc(plateau * orders) * ramp.spectrum_factor(width * orders)
         return np.asarray(total * np.exp(-2j * math.pi * orders * self.centre))
 
+    def asymptote(self, g: ArrayLike) -> NDArray[np.complex128]:
+        """What the spectrum tends to at high frequency [m], at g [cycles/m] (4.20, 4.22); a jump is its own."""
+        orders = np.asarray(g, dtype=float)
+        total = np.zeros(orders.shape)
+        for weight, k, width, ramp in self.terms:
+            factor = ramp.asymptotic_factor(width * orders) if width > 0.0 else 1.0
+            total = total + weight * k * self.base_pitch * np.sinc(k * self.base_pitch * orders) * factor
+        return np.asarray(total * np.exp(-2j * math.pi * orders * self.centre))
+
+    def envelope(self, g: ArrayLike) -> Array:
+        """Largest size of the asymptote about g > 0 [m]: initial slope over (pi g)^2 for one ramp (after 4.22).
+
+        With an inner ramp both slopes add up; a path that starts with a jump J falls like J / (pi g) only.
+        """
+        wave = math.pi * np.asarray(g, dtype=float)
+        total = np.zeros(wave.shape)
+        for weight, _, width, ramp in self.terms:
+            total = total + (weight * ramp.slope / (width * wave**2) if width > 0.0 else weight / wave)
+        return np.asarray(total)
+
 
 @dataclass(frozen=True, slots=True)
 class SlopeTradeOff:
@@ -203,44 +229,31 @@ class SlopeTradeOff:
 
     Parameters
     ----------
-    slope : ndarray, shape (S,)
-        s.
-    initial_slope : ndarray, shape (S,)
+    initial_slope : ndarray, shape (F,)
         d(W / W_d)/dx at contact initiation [1/m].
-    length_per_load : ndarray, shape (S,)
+    length_per_load : ndarray, shape (F,)
         Rough change of the loaded length when the load grows by its own size, 2 / initial slope [m]: with relief from
         (4.6) the relief's slope follows the loading's.
-    high_frequency_content : ndarray, shape (S,)
+    high_frequency_content : ndarray, shape (F,)
         Root mean square of the spectrum above the frequency asked for, in plateau areas W_d A.
     """
 
-    slope: Array
     initial_slope: Array
     length_per_load: Array
     high_frequency_content: Array
 
 
-def slope_trade_off(
-    length: float, base_pitch: float, slopes: ArrayLike, above: float, family: Literal["sinusoidal"] | int = 7
-) -> SlopeTradeOff:
-    """Compare initial slopes by how steady the loaded length is and how much they excite tooth resonances.
+def slope_trade_off(functions: Sequence[LoadingFunction], above: float) -> SlopeTradeOff:
+    """Compare loading functions by how steady the loaded length is and how much they excite tooth resonances.
 
     Parameters
     ----------
-    length, base_pitch : float
-        L and A [m].
-    slopes : array_like, shape (S,)
-        s of each candidate.
+    functions : sequence of LoadingFunction
     above : float
         Frequency from which content counts [tooth-mesh orders]; to ten times that.
-    family : "sinusoidal" or int
-        The sinusoidal family, or the exponent r of the polynomial one.
     """
-    s = np.atleast_1d(np.asarray(slopes, dtype=float))
-    g = np.linspace(above, 10.0 * above, 4001) / base_pitch
-    exponent = None if family == "sinusoidal" else family
-    functions = [LoadingFunction(length, base_pitch, ramp=Ramp(float(value), exponent)) for value in s]
+    orders = np.linspace(above, 10.0 * above, 4001)
     initial = np.array([f.initial_slope() for f in functions])
-    content = np.array([math.sqrt(float(np.mean(np.abs(f.spectrum(g)) ** 2))) for f in functions]) / base_pitch
+    content = [np.abs(f.spectrum(orders / f.base_pitch)) / f.base_pitch for f in functions]
     with np.errstate(divide="ignore"):
-        return SlopeTradeOff(s, initial, 2.0 / initial, content)
+        return SlopeTradeOff(initial, 2.0 / initial, np.array([math.sqrt(float(np.mean(c**2))) for c in content]))

@@ -15,6 +15,7 @@ from fegear.results import (
     geometry,
     load_sharing,
     loaded_pair,
+    loading_spectrum,
     mesh_force_spectrum,
     motion,
     relief,
@@ -58,6 +59,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             relief.RELIEF,
             relief_chart.RELIEF_CHART,
             relief_chart.ROBUSTNESS,
+            loading_spectrum.LOADING_SPECTRUM,
         ),
         "Helical pairs": (tooth_contact.TOOTH_CONTACT, transmissibility.TRANSMISSIBILITY),
         "Gear trains in motion": (

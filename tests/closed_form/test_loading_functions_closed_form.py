@@ -90,14 +90,6 @@ def test_cosine_moment_against_forty_digits(p):
             assert abs(value - float(exact / (p + 1))) < 4e-15
 
 
-def asymptote(f, g):
-    """What the spectrum tends to at high frequency (4.20)."""
-    total = sum(
-        weight * k * A * np.sinc(k * A * g) * ramp.slope * np.sinc(width * g) for weight, k, width, ramp in f.terms
-    )
-    return total * np.exp(-2j * np.pi * g * f.centre)
-
-
 def test_asymptote_and_its_envelope():
     """(4.20): the spectrum's difference from the asymptote falls with the fourth power against the second."""
     for ramp in (Ramp(1.5), Ramp(4.0, 7)):
@@ -105,9 +97,51 @@ def test_asymptote_and_its_envelope():
         ratio = []
         for order in (200.0, 2000.0):
             g = np.linspace(order, order + 10, 400) / A
-            ratio.append(np.abs(f.spectrum(g) - asymptote(f, g)).max() / np.abs(asymptote(f, g)).max())
-            assert (np.abs(f.spectrum(g)) <= 1.2 * f.initial_slope() / (np.pi * g) ** 2).all()  # (4.22)
+            ratio.append(np.abs(f.spectrum(g) - f.asymptote(g)).max() / np.abs(f.asymptote(g)).max())
+            np.testing.assert_allclose(f.envelope(g), f.initial_slope() / (np.pi * g) ** 2, rtol=1e-12)  # (4.22)
+            assert (np.abs(f.spectrum(g)) <= 1.2 * f.envelope(g)).all()
         assert ratio[1] < 0.11 * ratio[0]
+
+
+def test_two_ramps_and_jumps_have_asymptotes_too():
+    """Contact ratio 2 to 3 as a sum over its ramps; a whole contact ratio starts with a jump and falls like 1/g."""
+    high = LoadingFunction(2.3 * A, A, ramp=Ramp(1.5), inner_ramp=Ramp(0.5), peak=0.7)
+    jump = LoadingFunction(A, A, ramp=Ramp(1.5))
+    for f, order in ((high, 3), (jump, 1)):
+        off, size = [], []
+        for where in (100.0, 1000.0):
+            g = np.linspace(where, where + 10.0, 2001) / A
+            off.append(np.abs(f.spectrum(g) - f.asymptote(g)).max())
+            size.append(np.abs(f.asymptote(g)).max())
+            assert (np.abs(f.asymptote(g)) <= f.envelope(g) * (1.0 + 1e-9)).all()
+        if f is jump:
+            assert max(off) == 0.0
+            assert size[1] == pytest.approx(0.1 * size[0], rel=0.15)
+        else:
+            assert off[1] < 10.0 ** (0.1 - order) * off[0]
+            assert size[1] == pytest.approx(0.01 * size[0], rel=0.15)
+    assert math.isinf(jump.initial_slope())
+
+
+@pytest.mark.parametrize(
+    "ramp",
+    [Ramp(0.0), Ramp(1.0), Ramp(2.0), Ramp(0.0, 3), Ramp(3.0, 3), Ramp(0.0, 7), Ramp(3.0, 7), Ramp(7.0, 7)],
+    ids=str,
+)
+def test_spectrum_factor_is_the_transform_of_the_ramps_slope(ramp):
+    """(4.15b), (4.16) from 30-digit quadrature of (4.12), (4.14), at the removable places and at s = 0, s = r."""
+    s, r = mpmath.mpf(ramp.slope), ramp.exponent
+    with mpmath.workdps(30):
+        for q in (0.0, 1e-9, 0.5, 1.0, 1.0 + 1e-9, 2.0, 7.25, 40.0):
+
+            def wave(t, q=q):
+                slope = 1 + (1 - s) * mpmath.cospi(t) if r is None else ((r - s) + (s - 1) * r * t ** (r - 1)) / (r - 1)
+                return slope * mpmath.cospi(q * t)
+
+            exact = mpmath.quad(wave, mpmath.linspace(0, 1, 2 + int(q)))
+            assert float(ramp.spectrum_factor(q)) == pytest.approx(float(exact), abs=3e-15)
+    if ramp.exponent is None:
+        assert float(ramp.spectrum_factor(1.0)) == pytest.approx((1.0 - ramp.slope) / 2.0, abs=1e-15)
 
 
 def test_slope_zero_leaves_no_second_order_content():
@@ -118,7 +152,7 @@ def test_slope_zero_leaves_no_second_order_content():
 
 
 def test_trade_off_rises_on_one_side_and_falls_on_the_other():
-    t = slope_trade_off(1.312 * A, A, [0.5, 1.0, 2.0, 5.0], above=20.0)
+    t = slope_trade_off([LoadingFunction(1.312 * A, A, ramp=Ramp(s, 7)) for s in (0.5, 1.0, 2.0, 5.0)], above=20.0)
     assert (np.diff(t.high_frequency_content) > 0).all()
     assert (np.diff(t.length_per_load) < 0).all()
 
