@@ -86,7 +86,31 @@ def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> Sec
 
 
 def _mesh(tooth: Tooth, bore_radius: float, settings: MeshSettings, started: float) -> SectorMesh:
-    chains = sector_boundary(tooth, bore_radius, settings)
+    mesh = mesh_inside(sector_boundary(tooth, bore_radius, settings), tooth.teeth, started)
+    if settings.order > 2:
+        check_cubic_edges(mesh)
+    return mesh
+
+
+def mesh_inside(chains: list[Chain], teeth: int, started: float | None = None) -> SectorMesh:
+    """Fill a closed boundary of one sector with curved triangles.
+
+    Parameters
+    ----------
+    chains : list of Chain
+        As `sector_boundary` makes them; sides of another mesh's boundary make sectors that fit each other.
+    teeth : int
+    started : float, optional
+        When the work began [s], of `time.perf_counter`.
+
+    Raises
+    ------
+    InputError
+        If an element is turned inside out.
+    FegearError
+        If gmsh fails.
+    """
+    started = time.perf_counter() if started is None else started
     polygon = np.hstack([chain.vertices[:, :-1] for chain in chains])
     vertices, triangles = _fill(polygon)
     starts = np.cumsum([0] + [chain.vertices.shape[1] - 1 for chain in chains])
@@ -106,10 +130,7 @@ def _mesh(tooth: Tooth, bore_radius: float, settings: MeshSettings, started: flo
     for name, parts in runs.items():
         edges[name] = np.hstack([numbered[f"{name}:{i}"] for i in range(len(parts))])
     joined = {name: np.concatenate(parts, axis=2) for name, parts in bends.items()}
-    mesh = SectorMesh(points, six, edges, tooth.teeth, GENERATED, time.perf_counter() - started, joined)
-    if settings.order > 2:
-        check_cubic_edges(mesh)
-    return mesh
+    return SectorMesh(points, six, edges, teeth, GENERATED, time.perf_counter() - started, joined)
 
 
 def _bends(chain: Chain) -> NDArray[np.float64]:

@@ -1,0 +1,42 @@
+"""Write solid_calculix.json: a whole gear of ten teeth by CalculiX, spur and with 20 degrees of helix (run by hand).
+
+python tests/other_codes/make_solid_calculix.py [spur|helical|deck]...
+
+Edges and layers of the finer mesh are half as long as those of the coarser one. On an idle machine of two cores the
+coarser mesh takes half a minute a load, the finer one some minutes; 8 GB.
+"""
+
+import json
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+import solid_by_calculix as calculix
+
+FILE = Path(__file__).with_name("solid_calculix.json")
+#: Edge lengths in the section as a multiple of the finest, layers at the ends of the face and inside it [modules].
+LEVELS = {"coarse": (2.8, 0.5, 0.5), "fine": (1.4, 0.25, 0.25)}
+CASES = {"spur": (0.0, ("middle", "front")), "helical": (20.0, ("middle", "front", "back"))}
+
+
+def made(case, level):
+    """Numbers of one gear on one mesh, and the seconds they took."""
+    degrees, loaded = CASES[case]
+    mesh, bands = calculix.solid(np.radians(degrees), *LEVELS[level])
+    started = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        fields = calculix.solve(Path(folder), "g", mesh, bands, loaded)
+    return calculix.told(mesh, bands, fields) | {"seconds": round(time.perf_counter() - started, 1)}
+
+
+if __name__ == "__main__":
+    for case in sys.argv[1:] or CASES:
+        for level in LEVELS:
+            found = json.loads(FILE.read_text()) if FILE.exists() else {}
+            found.setdefault(case, {"helix_angle": CASES[case][0]})[level] = made(case, level)
+            FILE.write_text(json.dumps(found, indent=1) + "\n")
+            print(case, level, found[case][level]["nodes"], found[case][level]["seconds"], flush=True)
