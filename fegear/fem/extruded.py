@@ -7,6 +7,7 @@ a spur gear has tau = 0, a right hand a positive one.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.arrays import Array, Index
-    from fegear.fem.section import Section
+    from fegear.fem.gear_section import Section
     from fegear.geometry.tooth import Tooth
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
@@ -155,8 +156,9 @@ def graded_stations(face_width: float, through: Sequence[float], finest: float, 
     """
     half = 0.5 * face_width
     wanted = np.unique(np.round([-half, half, *(place for place in through if -half < place < half)], 12))
+    wanted[0], wanted[-1] = -half, half
     stations = [wanted[:1]]
-    for a, b in zip(wanted[:-1], wanted[1:], strict=True):
+    for a, b in pairwise(wanted):
         s = np.linspace(a, b, 257)
         density = 1.0 / np.minimum(finest + growth * (half - np.abs(s)), largest)
         count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
@@ -194,7 +196,7 @@ def pressed_band(
     Raises
     ------
     RangeError
-        If the band reaches past an end of the flank or of the face.
+        If the band reaches past an end of the flank or of the face, or its pressure has a kink inside a layer.
     """
     flank = mesh.section.boundaries["flank", number]
     edges = flank[:, np.argsort(np.hypot(*mesh.section.points[:, flank[2]]))]
@@ -208,7 +210,8 @@ def pressed_band(
         raise RangeError("half_width", f"{half_width:.6g} modules", "reaches past an end of the flank")
     if not (mesh.stations[0] - 1e-9 <= low <= top <= high <= mesh.stations[-1] + 1e-9) or low == high:
         raise RangeError("hat", str(hat), f"must ascend within the face, {-half:.6g} to {half:.6g} modules")
-
+    if np.abs(mesh.stations[:, None] - np.array(hat)).min(axis=0).max() > 1e-9:
+        raise RangeError("hat", str(hat), "must lie on stations of the mesh")
     # Along the flank: s = place + a sin(theta), (2 / pi) cos^2(theta) dtheta of the load; on each edge Gauss points.
     bounds = np.arcsin(np.clip((arc - place) / half_width, -1.0, 1.0))
     width = 0.5 * np.diff(bounds)

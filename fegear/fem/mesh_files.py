@@ -59,6 +59,28 @@ def write_mesh_file(
     mesh.write(path, file_format="gmsh22", binary=False)
 
 
+def write_solid_file(
+    path: Path, points: Array, wedges: Index, hexahedra: Index, point_data: Mapping[str, Array]
+) -> None:
+    """Write quadratic wedges and hexahedra with nodal fields as VTU.
+
+    Parameters
+    ----------
+    path : Path
+    points : ndarray, shape (3, N)
+    wedges : ndarray of int, shape (15, M)
+    hexahedra : ndarray of int, shape (20, K)
+    point_data : mapping of str to ndarray, shape (N,) or (N, 3)
+    """
+    import meshio
+    from meshio._mesh import topological_dimension
+
+    topological_dimension.setdefault("wedge15", 3)  # meshio 5.3 reads and writes these, but forgot to list them here
+    cells = [("wedge15", wedges.T), ("hexahedron20", hexahedra.T)]
+    mesh = meshio.Mesh(points.T, [(kind, block) for kind, block in cells if block.size], point_data=dict(point_data))
+    mesh.write(path, binary=True, compression="zlib")
+
+
 def read_mesh_file(path: Path) -> Any:
     """Read a mesh of any format that meshio knows.
 

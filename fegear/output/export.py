@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
 
-FORMATS = ("dxf", "msh", "vtu", "inp")
+FORMATS = ("dxf", "msh", "vtu", "inp", "solid-inp", "solid-vtu")
+_SOLID = {"solid-inp", "solid-vtu"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +102,12 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
         from fegear.output.mesh_export import write_meshes
 
         settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
-        written += write_meshes(scene.gears[name], folder, file_name(name), set(meshes), settings, mesh)
+        if plane := wanted.difference({"dxf"}, _SOLID):
+            written += write_meshes(scene.gears[name], folder, file_name(name), plane, settings, mesh)
+        if solid := wanted & _SOLID:
+            from fegear.output.solid_export import write_solid
+
+            written += write_solid(scene.gears[name], folder, file_name(name), solid, mesh=mesh)
         if relieved:
             remarks.append(f"Gear {name}, {', '.join(meshes)}: flanks as generated, without the relief of the case.")
     if scene.case.gear[name].spacing_errors is not None:

@@ -1,4 +1,4 @@
-"""The solid gear for Abaqus and CalculiX (``.inp``): wedges and hexahedra, the pressed band as nodal loads."""
+"""The solid gear for Abaqus, CalculiX (``.inp``) and ParaView (``.vtu``): hexahedra, wedges, pressed bands as loads."""
 
 from __future__ import annotations
 
@@ -6,19 +6,116 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.errors import InputError
+from fegear.fem.extruded import extruded, graded_stations, pressed_band
+from fegear.fem.gear_section import gear_section, uneven_section
+from fegear.fem.mesh_files import write_solid_file
 from fegear.output.dxf import AS_GENERATED
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from fegear.arrays import Array, Index
     from fegear.fem.extruded import SolidMesh
+    from fegear.fem.mesh import SectorMesh
     from fegear.geometry import Gear
 
 _MM = 1e3
 #: Abaqus' names of the elements.
 _WEDGE, _HEXAHEDRON = "C3D15", "C3D20"
+#: Half-width of a band's pressure and half the length of its hat along the face [modules]; at most this share of the
+#: room between the band's centre and the nearer end of the flank.
+_HALF_WIDTH, _HALF_LENGTH, _SHARE_OF_ROOM = 0.25, 0.5, 0.7
+#: Edges in the section as a multiple of the usual ones; layers at the ends of the face and the thickest [modules].
+_COARSENESS, _FIRST_LAYER, _LAYER = 1.4, 0.2, 0.5
+#: Layers grow by so much per length from the nearer end.
+_GROWTH = 0.5
+#: Force of a band [N].
+_FORCE = 1e3
+#: More nodes than this are a file that no program reads.
+_MOST_NODES = 3_000_000
+
+
+def write_solid(
+    gear: Gear,
+    folder: Path,
+    name: str,
+    formats: set[str],
+    *,
+    radius: float | None = None,
+    face_positions: Sequence[float] = (0.0,),
+    mesh: SectorMesh | None = None,
+) -> list[Path]:
+    """Write the whole solid gear with a pressed band at each face position, as ``<name>_solid.inp`` and ``.vtu``.
+
+    Parameters
+    ----------
+    gear : Gear
+    folder : Path
+    name : str
+    formats : set of {"solid-inp", "solid-vtu"}
+    radius : float, optional
+        Of the bands' middle [m]; by default the pitch radius, or the flank's end nearest to it.
+    face_positions : sequence of float
+        Of the bands, from the middle of the face [m].
+    mesh : SectorMesh, optional
+        A user's own sector mesh, taken for all teeth; else the loaded tooth's is finer than the others'.
+
+    Returns
+    -------
+    list of Path
+
+    Raises
+    ------
+    InputError
+        If a band lies off the face, or the mesh would have more nodes than programs read.
+    """
+    one, half = gear.module, 0.5 * gear.face_width / gear.module
+    places = np.array([float(p) for p in face_positions]) / one
+    off = places[np.abs(places) > half * (1.0 + 1e-9)]
+    if off.size:
+        end = half * one * _MM
+        rule = f"lies off the face, which runs from {-end:.6g} to {end:.6g} mm"
+        raise InputError("face_positions", f"{off[0] * one * _MM:.6g} mm", rule)
+    hats = [(max(p - _HALF_LENGTH, -half), float(p), min(p + _HALF_LENGTH, half)) for p in np.clip(places, -half, half)]
+    section = (
+        gear_section(dict.fromkeys(range(gear.teeth), mesh))
+        if mesh
+        else uneven_section(gear.tooth, gear.bore_radius / one, _COARSENESS)
+    )
+    stations = graded_stations(2.0 * half, [x for hat in hats for x in hat], _FIRST_LAYER, _GROWTH, _LAYER)
+    nodes = int(1.3 * section.points.shape[1] * stations.size)
+    if nodes > _MOST_NODES:
+        rule = f"would make a mesh of about {nodes:.1g} nodes, and {_MOST_NODES:.0e} is the most"
+        raise InputError("--format", "solid", rule, "choose a narrower face, fewer face positions or fewer teeth")
+    solid = extruded(section, stations, 0.0)
+    place = min(max(gear.pitch_radius if radius is None else radius, gear.form_radius), gear.involute_tip_radius)
+    width = min(_HALF_WIDTH, _SHARE_OF_ROOM * _room(gear, place))
+    bands = {
+        f"radius {place * _MM:.6g} mm, half-width {width * one * _MM:.6g} mm, "
+        f"face position {hat[1] * one * _MM:.6g} mm": pressed_band(solid, gear.tooth, place / one, width, hat)
+        for hat in hats
+    }
+    written = []
+    if "solid-inp" in formats:
+        written.append(folder / f"{name}_solid.inp")
+        write_solid_inp(written[-1], gear, solid, bands, _FORCE, {})
+    if "solid-vtu" in formats:
+        written.append(folder / f"{name}_solid.vtu")
+        data = {f"force_{i}": _FORCE * forces.T for i, forces in enumerate(bands.values())}
+        write_solid_file(written[-1], solid.points * one * _MM, solid.wedges, solid.hexahedra, data)
+    return written
+
+
+def _room(gear: Gear, radius: float) -> float:
+    """Length of the flank from a radius to its nearer end [modules]."""
+    tooth, one = gear.tooth, gear.module
+    low, at, high = (
+        0.5 * tooth.base_radius * float(tooth.roll(r)) ** 2
+        for r in (tooth.form_radius, radius / one, tooth.involute_tip_radius)
+    )
+    return min(at - low, high - at)
 
 
 def _number(x: float) -> str:
@@ -102,7 +199,7 @@ def write_solid_inp(
             out += [f"{node + 1}, {c + 1}, {_number(forces[c, node] * force)}" for c in range(3)]
         if not printed:
             out += ["*NODE FILE", "U", "*EL FILE", "S"]
-        for number_set in printed or {"FLANK_0": None}:
+        for number_set in printed or ("FLANK_0",):
             out += [f"*NODE PRINT, NSET={number_set.upper()}", "U"]
         out.append("*END STEP")
     path.write_text("\n".join(out) + "\n", encoding="ascii")

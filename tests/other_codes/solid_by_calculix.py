@@ -12,12 +12,9 @@ import subprocess
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fegear.fem.boundary import sector_boundary
 from fegear.fem.extruded import extruded, graded_stations, pressed_band
+from fegear.fem.gear_section import uneven_section
 from fegear.fem.root_stress import extreme
-from fegear.fem.section import gear_section
-from fegear.fem.sector import mesh_inside
-from fegear.fem.settings import MeshSettings
 from fegear.geometry import BasicRack, Gear, Material, Tooth
 from fegear.output.solid_export import write_solid_inp
 
@@ -54,48 +51,11 @@ def hat(place):
     return max(place - SPACING, -half), place, min(place + SPACING, half)
 
 
-def section(coarseness):
-    """All teeth: tooth 0 fine, its neighbours less so, the others coarse; their sides are those of tooth 0."""
-    fine, near, far = (_settings(coarseness, role) for role in ("loaded", "near", "far"))
-    own = {c.name: c for c in sector_boundary(TOOTH, BORE, fine)}
-    shared = ("bore", "side_a", "side_b")
-
-    def mesh(settings):
-        chains = sector_boundary(TOOTH, BORE, settings)
-        return mesh_inside([own[c.name] if c.name in shared else c for c in chains], TEETH)
-
-    loaded, near, far = mesh(fine), mesh(near), mesh(far)
-    first = -((TEETH - 1) // 2)
-    return gear_section({k: loaded if k == 0 else near if abs(k) == 1 else far for k in range(first, first + TEETH)})
-
-
-def _settings(f, role):
-    root, flank, end, grows = {
-        "loaded": (0.055, 0.055, 0.05, 0.3),
-        "near": (0.11, 0.11, 0.1, 0.45),
-        "far": (0.2, 0.3, 0.2, 0.6),
-    }[role]
-    return MeshSettings(
-        root_edge_length=root * f,
-        root_fraction=4 * root * f,
-        flank_edge_length=flank * f,
-        tip_edge_length=end * f,
-        junction_edge_length=end * f,
-        back_edge_length=0.4 * f,
-        growth=grows,
-        tip_growth=grows,
-        side_growth=0.45,
-        body_fraction=1.0,
-        rim_fraction=0.35 * f,
-        order=2,
-    )
-
-
 def solid(beta, coarseness, finest, largest):
     """The solid and the nodal forces of each band."""
     kinks = sorted({place for _, at in BANDS.values() for place in hat(at)})
     stations = graded_stations(FACE, kinks, finest, 0.5, largest)
-    mesh = extruded(section(coarseness), stations, twist_of(beta))
+    mesh = extruded(uneven_section(TOOTH, BORE, coarseness), stations, twist_of(beta))
     bands = {
         name: pressed_band(mesh, TOOTH, RADIUS, HALF_WIDTH, hat(place), tooth) for name, (tooth, place) in BANDS.items()
     }

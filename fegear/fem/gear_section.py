@@ -8,19 +8,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.fem.boundary import sector_boundary
+from fegear.fem.sector import mesh_inside
+from fegear.fem.settings import MeshSettings
 from fegear.fem.whole_gear import SIDES
 from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from fegear.arrays import Array, Index
     from fegear.fem.mesh import SectorMesh
+    from fegear.geometry.tooth import Tooth
 
 #: Two triangles become a quadrilateral whose corners are at least so square: the sine of its most oblique angle.
 _SQUAREST = 0.55
 #: Nodes of neighbouring sectors this near to each other, as a share of the gear's size, are one.
 _SAME = 1e-9
+#: Edges along the fillets, along the flank and at its ends [modules], and how fast they grow: of the loaded tooth, its
+#: neighbours, the others.
+_EDGES = ((0.055, 0.055, 0.05, 0.3), (0.11, 0.11, 0.1, 0.45), (0.2, 0.3, 0.2, 0.6))
+_SHARED = ("bore", *SIDES)
 
 
 @dataclass(frozen=True)
@@ -98,25 +106,64 @@ def gear_section(sectors: Mapping[int, SectorMesh]) -> Section:
     merged = np.arange(count)
     for k in row if closed else row[:-1]:
         after = k + 1 if k + 1 in sectors else row[0]
-        a, b = _side(every, places["side_b", k]), _side(every, places["side_a", after])
+        a, b = _side(every, places[_facing(sectors[k])[1], k]), _side(every, places[_facing(sectors[after])[0], after])
         if a.size != b.size or np.abs(every[:, a] - every[:, b]).max() > _SAME * np.abs(every).max():
             raise InputError(
                 "mesh", sectors[after].origin, "has sides whose nodes do not fit each other after one pitch's turn"
             )
         merged[b] = a
-    # A node of two seams (there is none but in a sector without width) would need a second look-up.
     triangles_, quadrilaterals_ = merged[np.hstack(triangles)], merged[np.hstack(quadrilaterals)]
     used = np.unique(np.concatenate([triangles_.reshape(-1), quadrilaterals_.reshape(-1)]))
     number = np.full(count, -1)
     number[used] = np.arange(used.size)
-    kept = {
-        key: number[merged[edges]] for key, edges in places.items() if key[0] not in SIDES or _outer(key, row, closed)
-    }
+    kept = {key: number[merged[edges]] for key, edges in places.items() if key[0] not in SIDES}
     return Section(every[:, used], number[triangles_], number[quadrilaterals_], kept, teeth, closed)
 
 
-def _outer(key: tuple[str, int], row: Sequence[int], closed: bool) -> bool:
-    return not closed and key in ((SIDES[0], row[0]), (SIDES[1], row[-1]))
+def uneven_section(tooth: Tooth, bore_radius: float, coarseness: float = 1.0) -> Section:
+    """All teeth of a gear for one load: tooth 0 fine, its neighbours less so, the others coarse.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    bore_radius : float
+        [modules].
+    coarseness : float
+        Edge lengths as a multiple of the usual ones, .055 modules along fillet and flank of tooth 0.
+
+    Returns
+    -------
+    Section
+    """
+    boundaries = [sector_boundary(tooth, bore_radius, _settings(coarseness, *edges)) for edges in _EDGES]
+    # Neighbours fit: all have the sides and the bore of tooth 0.
+    shared = {chain.name: chain for chain in boundaries[0] if chain.name in _SHARED}
+    kinds = [mesh_inside([shared.get(c.name, c) for c in chains], tooth.teeth) for chains in boundaries]
+    first = -((tooth.teeth - 1) // 2)
+    return gear_section({k: kinds[min(abs(k), 2)] for k in range(first, first + tooth.teeth)})
+
+
+def _settings(f: float, root: float, flank: float, end: float, growth: float) -> MeshSettings:
+    return MeshSettings(
+        root_edge_length=root * f,
+        root_fraction=4.0 * root * f,
+        flank_edge_length=flank * f,
+        tip_edge_length=end * f,
+        junction_edge_length=end * f,
+        back_edge_length=0.4 * f,
+        growth=growth,
+        tip_growth=growth,
+        side_growth=0.45,
+        body_fraction=1.0,
+        rim_fraction=0.35 * f,
+        order=2,
+    )
+
+
+def _facing(mesh: SectorMesh) -> tuple[str, str]:
+    """Names of the sides that face the tooth before and the tooth after."""
+    a, b = SIDES
+    return (a, b) if mesh.points[0, mesh.edges[a][2]].sum() < mesh.points[0, mesh.edges[b][2]].sum() else (b, a)
 
 
 def _side(points: Array, edges: Index) -> Index:
