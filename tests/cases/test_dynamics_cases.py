@@ -35,6 +35,12 @@ def test_four_square_increments():
     assert q.max() == pytest.approx(5.57, abs=0.01)
     assert f[int(q.argmax())] == pytest.approx(3500.0, abs=60.0)
     assert np.interp(5833.0, f, q) == pytest.approx(0.44, abs=0.01)
+    ends = tables["dynamic_increments_asymptotes"]
+    np.testing.assert_allclose(ends["modulus_I_II"], q, rtol=1e-14)
+    low, high = (np.hypot(ends[f"{end}_I_II_re"], ends[f"{end}_I_II_im"]) for end in ("low", "high"))
+    assert low[0] == pytest.approx(q[0], rel=0.01)
+    assert np.all(np.diff(np.log(low)) > 0.0)
+    np.testing.assert_allclose(high * f**2, high[0] * f[0] ** 2, rtol=1e-12)
 
 
 def test_four_square_tooth_force():

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from exact_increments import exact_increments
 
+from fegear.dynamics.asymptotes import high_frequency_increments, low_frequency_increments, low_frequency_terms
 from fegear.dynamics.increments import dynamic_increments
 from fegear.dynamics.matrices import static_forces
 from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train
@@ -109,16 +110,54 @@ def test_four_square_rig_equals_the_closed_form(zeta_3):
 
 
 def test_asymptotes_of_the_paper():
-    """(2.62), (2.64), (2.65) and (2.66), the last with a plus sign; the deviation is of the next order."""
+    """(2.62), (2.64), (2.65) and (2.66), the last with a plus sign."""
     c1, c2, c3, ca = damping_constants()
-    train, cs = four_square(), sum((c1, c2, c3))
-    low, high = 2 * np.pi * 1e-4, 2 * np.pi * 1e7
-    q = dynamic_increments(train, low)
-    assert q[0, 0] == pytest.approx(-1j * (ca + c2 * (c1 + c3) / cs) * low * C1 / R**2, rel=1e-5)
-    assert q[0, 1] == pytest.approx(-1j * low * C1 / R**2 * (ca + c2 * c3 / cs), rel=1e-5)
-    q = dynamic_increments(train, high)
-    assert 1 + q[0, 0] == pytest.approx(-(R**2 / C1) * (I1 + I2) / (I1 * I2 * high**2), rel=1e-2)
-    assert q[0, 1] == pytest.approx(R**2 / C2 / (I1 * high**2), rel=1e-2)
+    train, cs, f = four_square(), sum((c1, c2, c3)), 2 * np.pi * np.array([0.1, 700.0, 9e4])
+    low, high = low_frequency_increments(train, f), high_frequency_increments(train, f)
+    np.testing.assert_allclose(low[0, 0], -1j * (ca + c2 * (c1 + c3) / cs) * f * C1 / R**2, rtol=1e-5)
+    np.testing.assert_allclose(low[0, 1], -1j * f * C1 / R**2 * (ca + c2 * c3 / cs), rtol=1e-5)
+    np.testing.assert_allclose(high[0, 0], -1 - R**2 / C1 * (I1 + I2) / (I1 * I2 * f**2), rtol=1e-12)
+    np.testing.assert_allclose(high[0, 1], R**2 / C2 / (I1 * f**2), rtol=1e-12)
+
+
+def test_asymptotes_are_what_increments_tend_to():
+    """Long-digit increments far below and far above every natural frequency: the misfit shrinks with the distance."""
+    for train in (
+        four_square(),
+        Train(BODIES, SHAFTS, MESHES),
+        Train(BODIES, SHAFTS, MESHES, (Damper("motor", None, 0.1), Damper("a", "d", 3.0))),
+    ):
+        _, power = low_frequency_terms(train)
+        assert set(power.ravel()) <= {0, 1, 2}
+        for f in (1e-5, 1e-6):
+            w = 2 * np.pi * f
+            exact = exact_increments(train, w, digits=50)
+            # c is read off where the power is whole to 1e-6
+            np.testing.assert_allclose(low_frequency_increments(train, w), exact, rtol=2e-6 + 1e-2 * f / 1e-5)
+        left = []
+        for f in (1e7, 1e8):
+            w = 2 * np.pi * f
+            exact = exact_increments(train, w, digits=50)
+            found = high_frequency_increments(train, w)
+            assert np.all((found == 0.0) == (train.approach @ train.approach.T == 0.0))
+            left.append(np.abs(found - exact).max())
+        assert left[1] < 0.02 * left[0]
+
+
+def test_a_locked_power_loop_and_free_discs_have_low_frequency_terms_too():
+    loop = Train(
+        (Body("1", 0.004), Body("1b", 0.003), Body("2", 0.001), Body("2b", 0.002)),
+        (Shaft("s1", "1", "1b", 2e4, 0.05), Shaft("s2", "2", "2b", 1e4, 0.02)),
+        (Mesh("p", "1", "2", 0.04, 0.04, 28, 28, 8e7, 50.0), Mesh("q", "1b", "2b", -0.05, -0.05, 35, 35, 4e8, 20.0)),
+    )
+    c, power = low_frequency_terms(loop)
+    assert np.all(power == 0)
+    np.testing.assert_allclose(c, dynamic_increments(loop, 0.0).real, rtol=1e-6)
+    # two free discs: Q = (w/w_n)^2/(1 - (w/w_n)^2), w_n^2 = 4, so Q = -s^2/4 to begin with
+    discs = Train((Body("1", 1.0), Body("2", 1.0)), meshes=(Mesh("I", "1", "2", 1.0, 1.0, 20, 20, 2.0),))
+    c, power = low_frequency_terms(discs)
+    assert power[0, 0] == 2
+    assert c[0, 0] == pytest.approx(-0.25, rel=1e-5)
 
 
 def test_second_resonance_appears_near_2000_hz_when_the_torque_applier_is_damped_less():

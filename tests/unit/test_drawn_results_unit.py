@@ -21,7 +21,7 @@ from fegear.results.dynamic_factor import _figure as _factor_figure
 from fegear.results.gear_data import Drawing
 from fegear.results.loaded_pair import engagement_marks, pitch_marks
 from fegear.results.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
-from fegear.results.train_response import _campbell_figure
+from fegear.results.natural_modes import _campbell_figure
 from fegear.studies.swept import Swept, varying
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3)

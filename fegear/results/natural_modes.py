@@ -1,4 +1,4 @@
-"""Stages ``natural-modes`` and ``dynamic-increments``: what the train is, before anything excites it."""
+"""Stage ``natural-modes``: natural frequencies of the train and where harmonics of its meshes meet them."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.engine.citation import Citation, citing
 from fegear.engine.colours import DASHES
 from fegear.engine.figure import Axis, Bars, Curve, Figure, Mark, Panel, Points
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Stage
 from fegear.results import forecasts
 from fegear.results.gear_train import TRAIN_SOURCES, gear_train, needs_train, the_train
 
@@ -39,15 +38,6 @@ class ModesData:
     train: GearTrain
     modes: Modes
     campbell: Campbell | None
-
-
-@dataclass(frozen=True)
-class IncrementsData:
-    """Q_ij over frequency, shape (meshes, meshes, F)."""
-
-    train: GearTrain
-    frequencies: NDArray[np.float64]
-    increments: NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -117,44 +107,6 @@ def _present_modes(known: ModesData, asked: SpeedsInputs) -> Outcome:
         Value(f"natural_frequency_{k}", float(found.frequencies[k]), "Hz", None, "undamped") for k in count[1:]
     )
     return Outcome(known, tuple(tables), values, figures=_modes_figures(known, asked.speed))
-
-
-@dataclass(frozen=True)
-class FrequencyInputs:
-    """Frequencies of the static transmission error [Hz]."""
-
-    frequencies: NDArray[np.float64]
-
-
-def _increments(asked: FrequencyInputs, upstream: Upstream, _work: Work) -> IncrementsData:
-    from fegear.dynamics.increments import dynamic_increments
-
-    data = gear_train(upstream)
-    found = dynamic_increments(data.train, 2.0 * math.pi * asked.frequencies)
-    return IncrementsData(data, asked.frequencies, np.asarray(found, dtype=np.complex128))
-
-
-def _present_increments(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
-    data, frequencies, found = known.train, known.frequencies, known.increments
-    columns = [Column("frequency", frequencies, "Hz", "of the static transmission error")]
-    values = []
-    for i, first in enumerate(data.names):
-        for j, second in enumerate(data.names):
-            q, name = found[i, j], f"Q_{first}_{second}"
-            meaning = f"dynamic increment of mesh {first} per static transmission error of mesh {second}"
-            columns += [Column(f"{name}_re", q.real, "", meaning), Column(f"{name}_im", q.imag, "", meaning)]
-            at = int(np.argmax(np.abs(q)))
-            values.append(
-                Value(
-                    f"{name}_largest",
-                    float(abs(q[at])),
-                    "",
-                    None,
-                    f"modulus, at {frequencies[at]:.6g} Hz of those asked for",
-                )
-            )
-    table = Table("dynamic_increments", tuple(columns), "Dynamic increment functions")
-    return Outcome(known, (table,), tuple(values), figures=(_increments_figure(known),))
 
 
 def _modes_figures(data: ModesData, speed: float) -> tuple[Figure, ...]:
@@ -240,32 +192,6 @@ def _critical_figure(train: GearTrain, diagram: Campbell) -> tuple[Figure, ...]:
     ),)  # fmt: skip
 
 
-def _increments_figure(data: IncrementsData) -> Figure:
-    names = data.train.names
-    panels = tuple(
-        Panel(
-            Axis("frequency", "Hz", log=True), Axis(f"|Q| of mesh {first}", log=True),
-            tuple(
-                Curve(data.frequencies, np.abs(data.increments[i, j]), f"error of mesh {second}", f"series:{j}")
-                for j, second in enumerate(names)
-            ),
-        )
-        for i, first in enumerate(names)
-    )  # fmt: skip
-    return Figure(
-        "dynamic_increments", "Dynamic increment functions",
-        "Dynamic increment functions: how much the force of one mesh, over its stiffness, differs from the "
-        "quasi-static one for a static transmission error of its own or of another mesh.",
-        panels,
-    )  # fmt: skip
-
-
-def _increments_forecast(scene: Scene, _subject: str) -> Forecast:
-    """One small solution for each frequency and pair of meshes."""
-    count, (meshes, bodies) = scene.case.dynamics.frequencies.count, forecasts.sizes(scene)
-    return Forecast({"frequencies": count}, 0.005 + 1.3e-6 * count * meshes**2 * bodies)
-
-
 NATURAL_MODES = Stage(
     name="natural-modes",
     title="Natural frequencies and Campbell diagram",
@@ -278,18 +204,4 @@ NATURAL_MODES = Stage(
     present=_present_modes,
     cites=TRAIN_SOURCES,
     forecast=lambda _scene, _subject: forecasts.constant(0.005),
-)
-
-DYNAMIC_INCREMENTS = Stage(
-    name="dynamic-increments",
-    title="Dynamic increment functions",
-    results=("dynamic-increments",),
-    about="dynamic increment functions of every mesh over frequency (Mark)",
-    subjects=the_train,
-    needs=needs_train,
-    inputs=lambda scene, _subject: FrequencyInputs(scene.case.dynamics.frequencies.array),
-    compute=_increments,
-    present=_present_increments,
-    cites=citing(Citation("mark", "transmission-error dynamic increment functions", "Eqs. 2.57 to 2.66")),
-    forecast=_increments_forecast,
 )
