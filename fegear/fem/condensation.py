@@ -22,10 +22,12 @@ if TYPE_CHECKING:
 
 #: Unknowns that a smallest part has about, with its elements' own ones gone: fewer cost calls, more cost arithmetic.
 _SMALLEST_PART = 160
+#: Runs of unknowns on average at least so long are added run by run.
+_SHORTEST_RUN = 24
 
 
 @dataclass(frozen=True)
-class _Eliminated:
+class Eliminated:
     """What one part (or a stack of elements) eliminated: u_gone = -factor^-T border u_left."""
 
     gone: Index
@@ -49,7 +51,7 @@ class Condensed:
     kept: Index
     stiffness: Array
     size: int
-    steps: tuple[_Eliminated, ...]
+    steps: tuple[Eliminated, ...]
 
     def expand(self, displacement: Array) -> Array:
         """Displacement of every unknown from that of the kept ones (unloaded elsewhere), shape (size, P)."""
@@ -88,21 +90,21 @@ def condense(elasticity: SectorElasticity, kept: Index, held: Index, *, expandab
     FegearError
         If the stiffness is not positive definite.
     """
-    steps: list[_Eliminated] = []
+    steps: list[Eliminated] = []
     matrices, dofs = _without_inner(elasticity, steps if expandable else None)
-    leaf, depth = _halved(elasticity.centres, dofs.size)
-    number, level_start, old = _numbered(dofs, leaf, depth, elasticity.size, kept, held)
+    leaf, depth = halved(elasticity.centres, dofs.size, _SMALLEST_PART)
+    number, level_start, old = numbered(dofs, leaf, depth, elasticity.size, kept, held)
     parts = _smallest_parts(matrices, number[dofs], leaf, depth, level_start[-1])
     for level in range(depth + 1):
         if level:
-            parts = [_joined(*parts[i : i + 2]) for i in range(0, len(parts), 2)]
-        parts = [_reduced(*part, level_start[level + 1], old, steps if expandable else None) for part in parts]
+            parts = [joined(*parts[i : i + 2]) for i in range(0, len(parts), 2)]
+        parts = [reduced(*part, level_start[level + 1], old, steps if expandable else None) for part in parts]
     ((left, stiffness),) = parts
     order = np.searchsorted(left, number[kept])
     return Condensed(kept, stiffness[np.ix_(order, order)], elasticity.size, tuple(steps))
 
 
-def _without_inner(elasticity: SectorElasticity, steps: list[_Eliminated] | None) -> tuple[Array, Index]:
+def _without_inner(elasticity: SectorElasticity, steps: list[Eliminated] | None) -> tuple[Array, Index]:
     """Elements without the unknowns that are their own (orders 3 and 4), all at once."""
     k, dofs, inside = elasticity.stiffness, elasticity.element_dofs, elasticity.inside
     if inside == 0:
@@ -111,15 +113,24 @@ def _without_inner(elasticity: SectorElasticity, steps: list[_Eliminated] | None
     border = cast("Array", np.linalg.solve(factor, k[:, -inside:, :-inside]))
     if steps is not None:
         gone, left = dofs[:, -inside:], dofs[:, :-inside]
-        steps.append(_Eliminated(gone, left, factor, border))
+        steps.append(Eliminated(gone, left, factor, border))
     return k[:, :-inside, :-inside] - border.transpose(0, 2, 1) @ border, dofs[:, :-inside]
 
 
-def _halved(centres: Array, incidences: int) -> tuple[Index, int]:
-    """Smallest part of each element, numbered so that parts 2 i and 2 i + 1 join, and how often was halved."""
+def halved(centres: Array, incidences: int, smallest: int) -> tuple[Index, int]:
+    """Smallest part of each element, numbered so that parts 2 i and 2 i + 1 join, and how often was halved.
+
+    Parameters
+    ----------
+    centres : ndarray, shape (2, M)
+    incidences : int
+        Unknowns of all elements, one by one.
+    smallest : int
+        Unknowns that a smallest part has about.
+    """
     elements = centres.shape[1]
     unknowns = 0.5 * incidences  # each is shared by two elements, about
-    depth = max(0, round(np.log2(unknowns / _SMALLEST_PART)))
+    depth = max(0, round(np.log2(unknowns / smallest)))
     groups = [np.arange(elements)]
     for _ in range(depth):
         halves = []
@@ -135,7 +146,7 @@ def _halved(centres: Array, incidences: int) -> tuple[Index, int]:
     return leaf, depth
 
 
-def _numbered(
+def numbered(
     dofs: Index, leaf: Index, depth: int, size: int, kept: Index, held: Index
 ) -> tuple[Index, list[int], Index]:
     """New number of each unknown, in the order of elimination; where each level starts; the old numbers."""
@@ -173,19 +184,26 @@ def _smallest_parts(matrices: Array, number: Index, leaf: Index, depth: int, fre
     return parts
 
 
-def _joined(one: tuple[Index, Array], other: tuple[Index, Array]) -> tuple[Index, Array]:
+def joined(one: tuple[Index, Array], other: tuple[Index, Array]) -> tuple[Index, Array]:
+    """Unknowns of two parts and the sum of their stiffness."""
     every = np.union1d(one[0], other[0])
     n = every.size
-    entries = np.zeros(n * n)
+    entries = np.zeros((n, n))
     for ids, block in (one, other):
         at = np.searchsorted(every, ids)
-        entries[(at[:, None] * n + at).reshape(-1)] += block.reshape(-1)  # takes two thirds of the time of two indices
-    return every, entries.reshape(n, n)
+        starts = np.flatnonzero(np.diff(at, prepend=-2) != 1)
+        if starts.size * _SHORTEST_RUN > at.size:
+            entries.reshape(-1)[(at[:, None] * n + at).reshape(-1)] += block.reshape(-1)  # quicker than two indices
+            continue
+        runs = [(first, slice(at[first], at[first] + end - first), end) for first, end in
+                zip(starts.tolist(), [*starts[1:].tolist(), at.size], strict=True)]  # fmt: skip
+        for first, rows, end in runs:
+            for begin, columns, stop in runs:
+                entries[rows, columns] += block[first:end, begin:stop]
+    return every, entries
 
 
-def _reduced(
-    ids: Index, stiffness: Array, end: int, old: Index, steps: list[_Eliminated] | None
-) -> tuple[Index, Array]:
+def reduced(ids: Index, stiffness: Array, end: int, old: Index, steps: list[Eliminated] | None) -> tuple[Index, Array]:
     """Eliminate the unknowns numbered below `end`, which come first."""
     from scipy.linalg import lapack
 
@@ -197,5 +215,5 @@ def _reduced(
         raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
     border = cast("Array", lapack.dtrtrs(factor, stiffness[:n, n:], lower=1)[0]) if n < ids.size else stiffness[:n, n:]
     if steps is not None:
-        steps.append(_Eliminated(old[ids[:n]], old[ids[n:]], factor, border))
+        steps.append(Eliminated(old[ids[:n]], old[ids[n:]], factor, border))
     return ids[n:], stiffness[n:, n:] - border.T @ border

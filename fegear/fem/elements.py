@@ -121,6 +121,38 @@ class SectorElements:
         _refuse_inverted(basis.mapping.detDF(basis.X, tind=chosen), self.origin)
         return _gradients(basis), basis.dx
 
+    def integration(self) -> tuple[Array, Array, Array, Array]:
+        """Shape functions, their gradients and the places of the quadrature points, for integrals of both.
+
+        Returns
+        -------
+        values : ndarray, shape (n, q)
+        gradient : ndarray, shape (M, n, 2, q)
+            [1/modules].
+        place : ndarray, shape (2, M, q)
+            From the gear's centre [modules].
+        area : ndarray, shape (M, q)
+            That each point stands for [modules^2].
+
+        Raises
+        ------
+        InputError
+            If an element is turned inside out.
+        """
+        basis = self._basis(intorder=_CURVED_DEGREE)
+        _refuse_inverted(basis.mapping.detDF(basis.X), self.origin)
+        values = np.stack([np.asarray(shape)[0] for (shape,) in basis.basis])
+        return values, _gradients(basis), basis.mapping.F(basis.X) + self.tip, basis.dx
+
+    def node_places(self) -> Array:
+        """Where the nodes lie, shape (2, N) [modules from the gear's centre]."""
+        from skfem import MappingIsoparametric
+
+        at = MappingIsoparametric(self.grid, self.grid.elem()).F(_element(self.order).doflocs.T)
+        places = np.empty((2, int(self.dofs.N)))
+        places[:, self.element_nodes] = at
+        return places + self.tip[:, :, 0]
+
     def gradients_at_nodes(self) -> Array:
         """Gradients of the shape functions of every element at its own nodes, shape (M, n, 2, n) [1/modules]."""
         places = _element(self.order).doflocs.T
@@ -203,6 +235,28 @@ def _refuse_inverted(determinant: Array, origin: str) -> None:
             f"has {int(inverted.sum())} curved elements that are turned inside out",
             "mesh finer near curved boundaries",
         )
+
+
+def line_functions(degree: int, places: Array) -> tuple[Array, Array]:
+    """Functions of one line element on [0, 1]: two that are linear, then integrated Legendre polynomials.
+
+    Parameters
+    ----------
+    degree : int
+        At least 3.
+    places : ndarray, shape (q,)
+
+    Returns
+    -------
+    values, slopes : ndarray, shape (degree + 1, q)
+        From the third on they vanish at both ends; their slopes are orthogonal to each other.
+    """
+    from skfem import ElementLinePp
+
+    # A new element for every set of places: it keeps what it evaluated and looks at their number only.
+    element = ElementLinePp(degree)
+    found = [element.lbasis(places[None], i) for i in range(degree + 1)]
+    return np.stack([value for value, _ in found]), np.stack([slope[0] for _, slope in found])
 
 
 def _element(order: int) -> Any:

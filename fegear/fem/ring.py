@@ -158,8 +158,6 @@ def close_ring(
     FegearError
         If the stiffness is singular.
     """
-    from scipy.linalg import lapack
-
     if sector_teeth and not 2 * reach + 1 <= sector_teeth <= mesh.teeth:
         raise InputError(
             "sector_teeth", sector_teeth, f"must lie between {2 * reach + 1} and {mesh.teeth}",
@@ -175,25 +173,64 @@ def close_ring(
     sides = np.concatenate([side_a, side_b])
     inner = np.setdiff1d(ports, np.concatenate([bore, sides]))
     sector = condense(elasticity, np.concatenate([sides, inner]), bore, expandable=expandable)
-    condensed = time.perf_counter()
     m, n = side_a.size, sides.size
     turn = np.zeros((n, n))
     turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / z)
+    return closed_ring(sector, m, turn, z, reach, sector_teeth=sector_teeth, started=started)
+
+
+def closed_ring(
+    sector: Condensed,
+    side: int,
+    turn: Array | None,
+    teeth: int,
+    reach: int,
+    *,
+    sector_teeth: int = 0,
+    started: float | None = None,
+) -> Ring:
+    """Close a ring of condensed sectors.
+
+    Parameters
+    ----------
+    sector : Condensed
+        Its first kept unknowns are those of side A, then those of side B, in the same order.
+    side : int
+        m, unknowns of one side.
+    turn : ndarray, shape (2 m, 2 m), optional
+        From components that agree between neighbours (polar ones) to the sector's own; None if these do.
+    teeth, reach : int
+        z and K.
+    sector_teeth : int
+        As for `close_ring`.
+    started : float, optional
+        Clock (`time.perf_counter`) when condensing began.
+
+    Returns
+    -------
+    Ring
+    """
+    from scipy.linalg import lapack
+
+    condensed = time.perf_counter()
+    m, n = side, 2 * side
     S = sector.stiffness
     factor, failed = lapack.dpotrf(S[n:, n:], lower=1)
     if failed:
         raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
     own = np.zeros_like(S)
-    triangle = np.tril(cast("Array", lapack.dpotri(factor, lower=1)[0])) if inner.size else S[n:, n:]
+    triangle = np.tril(cast("Array", lapack.dpotri(factor, lower=1)[0])) if n < S.shape[0] else S[n:, n:]
     own[n:, n:] = triangle + np.tril(triangle, -1).T
-    follow = np.vstack([turn, -own[n:, n:] @ (S[n:, :n] @ turn)])
-    border = S[:n, n:] @ follow[n:]
-    held = turn.T @ (S[:n, :n] @ turn + border)
+    turned = S[:, :n] if turn is None else S[:, :n] @ turn
+    follow = np.vstack([np.eye(n) if turn is None else turn, -own[n:, n:] @ turned[n:]])
+    held = turned[:n] + S[:n, n:] @ follow[n:]
+    if turn is not None:
+        held = turn.T @ held
     held = 0.5 * (held + held.T)
     if sector_teeth:
         from_a, from_b = chain_coupling(held, sector_teeth, reach)
     else:
-        from_a = _coupling(held, z, reach + 1)
+        from_a = _coupling(held, teeth, reach + 1)
         from_b = {k: from_a[k - 1] for k in range(-reach, reach + 2)}
     return Ring(
         sector=sector,
@@ -202,9 +239,12 @@ def close_ring(
         own=own,
         from_a=from_a,
         from_b=from_b,
-        teeth=z,
+        teeth=teeth,
         reach=reach,
-        seconds={"condensation": condensed - started, "ring": time.perf_counter() - condensed},
+        seconds={
+            "condensation": condensed - (condensed if started is None else started),
+            "ring": time.perf_counter() - condensed,
+        },
     )
 
 

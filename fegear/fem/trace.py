@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from fegear.errors import RangeError
 
 if TYPE_CHECKING:
     from fegear.arrays import Array, Index
-    from fegear.fem.elasticity import SectorElasticity
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.tooth import Tooth
 
@@ -161,6 +160,11 @@ class LoadedFlank:
         roll_squared = np.maximum(r * r / self.base_radius**2 - 1.0, 0.0)
         return np.interp(roll_squared, self.roll_squared, self.arc[self.first_flank_edge : self.after_flank_edge + 1])
 
+    def radius_of_arc(self, arc: Array) -> Array:
+        """Radius of flank points, the reverse of `arc_of_radius` [modules]."""
+        run = self.arc[self.first_flank_edge : self.after_flank_edge + 1]
+        return np.asarray(self.base_radius * np.sqrt(1.0 + np.interp(arc, run, self.roll_squared)))
+
     def _inward(self, arc: Array) -> tuple[Index, Array, Array]:
         """Edge, place on it and unit vector against the normal at points of the run: shapes (P,), (P,), (2, P)."""
         edge = np.clip(np.searchsorted(self.arc, arc, side="right") - 1, 0, self.arc.size - 2)
@@ -196,6 +200,36 @@ class LoadedFlank:
             (a patch that reaches over a tip rounding must not turn with it). As a left factor it is the
             pressure-weighted mean deflection.
         """
+        edge, position, xi, weight = self._pressed(arc, half_width)
+        inward = self._normal(edge, xi)
+        # of the flank's last edge: a small rounding may be a single edge, whose own tangent there is degrees off
+        last = self._normal(np.array([self.after_flank_edge - 1]), np.array([1.0]))
+        inward[:, edge >= self.after_flank_edge] = last[:, :, None]
+        shape = lagrange(self.order, xi) * weight
+        count = np.size(arc)
+        return np.concatenate([self._summed(edge, position, shape * along, count) for along in inward])
+
+    def normal_patches(self, arc: Array, half_width: Array) -> Array:
+        """Shares of the run's nodes in unit contacts, shape (nodes, P): loads on unknowns against the flank's normal.
+
+        Parameters
+        ----------
+        arc, half_width : ndarray, shape (P,)
+            As for `patches`.
+        """
+        edge, position, xi, weight = self._pressed(arc, half_width)
+        return self._summed(edge, position, lagrange(self.order, xi) * weight, np.size(arc))
+
+    def _pressed(self, arc: Array, half_width: Array) -> tuple[Index, Index, Array, Array]:
+        """Gauss points of contacts' pressures on the edges under them.
+
+        Returns
+        -------
+        edge, position : ndarray of int, shape (n,)
+            Edge, and number of the contact.
+        xi, weight : ndarray, shape (n, q)
+            Places on the edge; shares of a load that is one in total.
+        """
         s, a = np.atleast_1d(arc), np.broadcast_to(half_width, np.shape(np.atleast_1d(arc)))
         bounds = np.arcsin(np.clip((self.arc[:, None] - s) / a, -1.0, 1.0))  # (n + 1, P)
         half = 0.5 * (bounds[1:] - bounds[:-1])
@@ -205,21 +239,31 @@ class LoadedFlank:
         weight = h * _GAUSS[1] * (2.0 / np.pi) * np.cos(theta) ** 2
         length = np.diff(self.arc)[edge][:, None]
         xi = (s[position][:, None] + a[position][:, None] * np.sin(theta) - self.arc[edge][:, None]) / length
-        inward = self._normal(edge, xi)
-        # of the flank's last edge: a small rounding may be a single edge, whose own tangent there is degrees off
-        last = self._normal(np.array([self.after_flank_edge - 1]), np.array([1.0]))
-        inward[:, edge >= self.after_flank_edge] = last[:, :, None]
-        values = np.einsum("inq,cnq,nq->cni", lagrange(self.order, xi), inward, weight)
-        loads = np.zeros((2, self.nodes, s.size))
-        node = edge[:, None] * self.order + np.arange(self.order + 1)
-        for c in range(2):
-            np.add.at(loads[c], (node, position[:, None]), values[c])
         total = np.zeros(s.size)
         np.add.at(total, position, weight.sum(axis=1))
-        return loads.reshape(2 * self.nodes, -1) / total
+        return edge, position, xi, weight / total[position][:, None]
+
+    def _summed(self, edge: Index, position: Index, values: Array, count: int) -> Array:
+        """Sum what Gauss points give the nodes of their edge, (order + 1, n, q), over contacts: shape (nodes, P)."""
+        loads = np.zeros((self.nodes, count))
+        node = edge[:, None] * self.order + np.arange(self.order + 1)
+        np.add.at(loads, (node, position[:, None]), values.sum(axis=2).T)
+        return loads
 
 
-def loaded_flank(mesh: SectorMesh, elasticity: SectorElasticity, tooth: Tooth, margin: float) -> LoadedFlank:
+class BoundaryUnknowns(Protocol):
+    """Unknowns along named boundaries, as `SectorElasticity` has them."""
+
+    @property
+    def edge_dofs(self) -> dict[str, Index]:
+        """Unknowns (x and y) of the nodes along each edge, from its first to its second vertex."""
+
+    @property
+    def order(self) -> int:
+        """Order of the elements."""
+
+
+def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: Tooth, margin: float) -> LoadedFlank:
     """Collect the loaded run: the right flank, and `margin` [modules] of a smooth fillet or tip rounding beside it."""
 
     def upward(name: str) -> tuple[Index, Index, Array]:

@@ -1,0 +1,38 @@
+"""Teeth with a width: influence functions of the whole solid gear, spur and helical, at the cost of one tooth.
+
+    from fegear.fem.solid import bands, hats, solid_influence
+
+    known = solid_influence(section, tau, width, poisson_ratio, bore_radius)   # lengths in modules of the section
+    contact = hats(radius, stations, known.band_half_width(radius), slope=slope)
+    known.deflection(k, contact, contact)               # (P, P), 1 / (E module) per unit force
+    known.fillet_stress(k, "tension", contact, zeta)    # (3, points, Z, P), 1 / module^2 per unit force
+    known.error, known.seconds, known.settings
+
+- `section` is the transverse section (`fegear.geometry.Tooth`), its lengths in its own modules, tooth 0 on the y axis,
+  loaded flank at x > 0, tooth k = +1 clockwise. z runs along the axis out of that drawing, 0 in the middle of the face;
+  `tau` = tan(beta) / r is the twist per module, positive for a right hand: the section at z is turned counterclockwise
+  by tau z.
+- A band (`Bands`) is a semi-elliptic pressure up the flank times a profile along the face, and carries a unit of
+  transverse force. `hats` puts them on the stations of a contact line; `slope` is d(arc up the flank)/dz of that line.
+  Deflections are -N . u with N = (n, tau t . x), the approach along the transverse line of action, weighted with the
+  watched band's own pressure: c_k(p, q) = c_-k(q, p).
+- Deflections are those of the pressed bands as wide as they are given (`band_half_width` is what the section resolves).
+- Fillet stresses are of the free surface: up the fillet in the transverse section, across it, shear between both;
+  `known.fine.fillets[side]` says where the points lie (`place` in the section at z = 0, `arc`, `tangent_angle`).
+"""
+
+from fegear.fem.solid.bands import Bands, bands, hats
+from fegear.fem.solid.influence import SolidInfluence, solid_influence
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import SolidSolution, solve_solid
+
+__all__ = [
+    "Bands",
+    "SolidInfluence",
+    "SolidSettings",
+    "SolidSolution",
+    "bands",
+    "hats",
+    "solid_influence",
+    "solve_solid",
+]

@@ -1,0 +1,157 @@
+"""Pressed bands on the twisted flank: a semi-elliptic pressure up the flank times a profile along the face."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.errors import RangeError
+from fegear.frozen import ReadOnlyArrays
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.arrays import Array
+    from fegear.fem.solid.face import FaceFunctions
+    from fegear.fem.trace import LoadedFlank
+
+Profile = Literal["hat", "even"]
+#: Ends of a band this near to an end face, as a share of the width, lie on it.
+_ON_FACE = 1e-9
+
+
+@dataclass(frozen=True)
+class Bands(ReadOnlyArrays):
+    """Bands that carry a unit force each, along the transverse line of action.
+
+    Parameters
+    ----------
+    radius : ndarray, shape (P,)
+        Where the middle of each band lies on the flank [modules].
+    zeta : ndarray, shape (P,)
+        Where it lies along the face, 0 in the middle of the width [modules].
+    before, after : ndarray, shape (P,)
+        How far it reaches toward -z and +z [modules]; one of both may be 0.
+    half_width : ndarray, shape (P,)
+        Half-width of the pressure up the flank, in the transverse section [modules].
+    slope : ndarray, shape (P,)
+        Arc length up the flank per length along the face at which the band runs: that of the contact line.
+    profile : {"hat", "even"}
+        Along the face: falling linearly to both ends, or constant.
+    """
+
+    radius: Array
+    zeta: Array
+    before: Array
+    after: Array
+    half_width: Array
+    slope: Array
+    profile: Profile = "hat"
+
+    @property
+    def count(self) -> int:
+        """Number of bands."""
+        return int(self.radius.size)
+
+
+def bands(
+    radius: ArrayLike,
+    zeta: ArrayLike,
+    reach: ArrayLike,
+    half_width: ArrayLike,
+    *,
+    after: ArrayLike | None = None,
+    slope: ArrayLike = 0.0,
+    profile: Profile = "hat",
+) -> Bands:
+    """Bands from anything that broadcasts together.
+
+    Parameters
+    ----------
+    radius, zeta : array_like
+        [modules].
+    reach : array_like
+        How far they reach toward -z, and toward +z unless `after` is given [modules].
+    half_width : array_like
+        [modules].
+    after, slope, profile
+        See `Bands`.
+    """
+    parts = (radius, zeta, reach, reach if after is None else after, half_width, slope)
+    flat = [np.array(x).ravel() for x in np.broadcast_arrays(*(np.asarray(part, dtype=float) for part in parts))]
+    return Bands(flat[0], flat[1], flat[2], flat[3], flat[4], flat[5], profile)
+
+
+def hats(radius: ArrayLike, stations: ArrayLike, half_width: ArrayLike, *, slope: ArrayLike = 0.0) -> Bands:
+    """Hats on a chain of stations along the face, each falling to its neighbours; half hats at both ends.
+
+    Parameters
+    ----------
+    radius : array_like, shape (P,) or ()
+        Of the stations [modules].
+    stations : array_like, shape (P,)
+        Ascending [modules].
+    half_width, slope : array_like, shape (P,) or ()
+    """
+    z = np.asarray(stations, dtype=float)
+    steps = np.diff(z)
+    return bands(
+        radius, z, np.concatenate([[0.0], steps]), half_width, after=np.concatenate([steps, [0.0]]), slope=slope
+    )
+
+
+def loads_of(pressed: Bands, flank: LoadedFlank, face: FaceFunctions) -> Array:
+    """Loads on the flank's ports, shape (nodes * functions, P), node by node; as a left factor the mean deflection.
+
+    Raises
+    ------
+    RangeError
+        If a band reaches over an end face, has no extent or no width.
+    """
+    _check(pressed, face)
+    arc = flank.arc_of_radius(pressed.radius)
+    low, high = pressed.zeta - pressed.before, pressed.zeta + pressed.after
+    cuts = [low, pressed.zeta, high, *(np.clip(x, low, high) for x in face.breaks[1:-1])]
+    ends = np.sort(np.stack(cuts), axis=0)
+    # A straight profile and, along a sloping line, a pressure that moves up the flank: some points more than for these.
+    x, w = np.polynomial.legendre.leggauss(max(face.degrees) // 2 + 4)
+    half = 0.5 * np.diff(ends, axis=0)[:, :, None]
+    z = 0.5 * (ends[1:] + ends[:-1])[:, :, None] + half * x  # (pieces, P, q)
+    weight = half * w
+    if pressed.profile == "hat":
+        away = z - pressed.zeta[:, None]
+        side = np.where(away < 0.0, pressed.before[:, None], pressed.after[:, None])
+        weight = weight * (1.0 - np.abs(away) / np.where(side > 0.0, side, 1.0))
+    weight = weight / weight.sum(axis=(0, 2), keepdims=True)
+    shape = face.at(z.ravel())[0].reshape(face.count, *z.shape)
+    if not pressed.slope.any():
+        along = np.einsum("kspq,spq->kp", shape, weight)
+        up = flank.normal_patches(arc, pressed.half_width)
+        return np.asarray(np.einsum("np,kp->nkp", up, along).reshape(-1, pressed.count))
+    a = np.broadcast_to(pressed.half_width[:, None], z.shape)
+    place = np.clip(arc[:, None] + pressed.slope[:, None] * (z - pressed.zeta[:, None]), *_room(flank, a))
+    up = flank.normal_patches(place.ravel(), a.ravel()).reshape(flank.nodes, *z.shape)
+    loads = np.einsum("nspq,kspq->nkp", up, shape * weight, optimize=True)
+    return np.asarray(loads.reshape(-1, pressed.count))
+
+
+def _room(flank: LoadedFlank, half_width: Array) -> tuple[Array, Array]:
+    """Where a pressure's middle may lie so that it stays on the flank."""
+    most = np.minimum(half_width, 0.5 * (flank.flank_end - flank.flank_start))
+    return flank.flank_start + most, flank.flank_end - most
+
+
+def _check(pressed: Bands, face: FaceFunctions) -> None:
+    half = 0.5 * face.width * (1.0 + _ON_FACE)
+    over = (pressed.zeta - pressed.before < -half) | (pressed.zeta + pressed.after > half)
+    if over.any() or not np.isfinite(pressed.zeta).all():
+        at = pressed.zeta[np.argmax(over)]
+        raise RangeError(
+            "zeta", f"{at:.6g} modules", f"is the middle of a band that reaches over an end face at {half:.6g} modules"
+        )
+    if not ((pressed.before >= 0.0) & (pressed.after >= 0.0) & (pressed.before + pressed.after > 0.0)).all():
+        raise RangeError("reach", "not positive", "must be positive: a band has an extent along the face")
+    if not (np.isfinite(pressed.half_width) & (pressed.half_width > 0.0)).all():
+        raise RangeError("half_width", "not positive", "must be positive and finite")

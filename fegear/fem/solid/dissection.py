@@ -1,0 +1,147 @@
+"""Static condensation of the solid sector onto its ports, by halving the section again and again.
+
+The section's unknowns are ordered by nested dissection as in the plane (`fegear.fem.condensation`); each stands for as
+many unknowns of the solid as it has functions along the face. The halves are worked off depth first, so that few
+matrices exist at a time, and a smallest part is formed when its turn comes: its section matrices are short sums over
+its elements, and the block between two functions along the face is a multiple of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.condensation import Condensed, Eliminated, halved, joined, numbered, reduced
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array, Index, Mask
+    from fegear.fem.solid.face import FaceFunctions
+    from fegear.fem.solid.section import Section
+
+#: Unknowns of the section that a smallest part has about, those inside its elements among them.
+_SMALLEST_PART = 60
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """Unknowns of the solid: which functions along the face each unknown of the section has.
+
+    Parameters
+    ----------
+    number : ndarray of int, shape (size of the section, functions)
+        Number of the unknown, section by section unknown; -1 where there is none.
+    """
+
+    number: Index
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return int(self.number.max()) + 1
+
+    def of(self, section_unknowns: Index) -> Index:
+        """Unknowns of some of the section's, one after the other, short waves last."""
+        found = self.number[section_unknowns]
+        return found[found >= 0]
+
+
+def unknowns(has: Mask) -> Unknowns:
+    """Number the unknowns.
+
+    Parameters
+    ----------
+    has : ndarray of bool, shape (size of the section, functions)
+    """
+    number = np.full(has.shape, -1, dtype=np.int64)
+    number[has] = np.arange(int(has.sum()))
+    return Unknowns(number)
+
+
+def condense_solid(
+    section: Section, face: FaceFunctions, known: Unknowns, kept: Index, *, expandable: bool = False
+) -> Condensed:
+    """Eliminate all unknowns but those of some of the section's.
+
+    Parameters
+    ----------
+    section : Section
+    face : FaceFunctions
+    known : Unknowns
+    kept : ndarray of int
+        Unknowns of the section; all that they stand for is kept, in this order.
+    expandable : bool
+        Whether `Condensed.expand` will be asked for; it takes memory.
+
+    Returns
+    -------
+    Condensed
+
+    Raises
+    ------
+    FegearError
+        If the stiffness is not positive definite.
+    """
+    dofs = section.element_dofs
+    leaf, depth = halved(section.centres, dofs.size, _SMALLEST_PART)
+    counts = (known.number >= 0).sum(axis=1)
+    held = np.flatnonzero(counts == 0)
+    order, level_start, old = numbered(dofs, leaf, depth, section.size, np.setdiff1d(kept, held), held)
+    # Each unknown of the section brings its functions along the face to its place in the order of elimination.
+    first = np.concatenate([[0], np.cumsum(counts[old])])
+    rank = np.where(known.number >= 0, np.cumsum(known.number >= 0, axis=1) - 1, 0)
+    number = np.where(known.number >= 0, first[order][:, None] + rank, -1)
+    ends = [int(first[start]) for start in level_start]
+    natural = np.empty(known.size, dtype=np.int64)
+    natural[number[number >= 0]] = known.number[known.number >= 0]
+    steps: list[Eliminated] | None = [] if expandable else None
+    members = [np.flatnonzero(leaf == i) for i in range(1 << depth)]
+
+    def part(level: int, i: int) -> tuple[Index, Array]:
+        if level == 0:
+            ids, matrix = _smallest(section, face, number, members[i])
+        else:
+            ids, matrix = joined(part(level - 1, 2 * i), part(level - 1, 2 * i + 1))
+        return reduced(ids, matrix, ends[level + 1], natural, steps)
+
+    left, stiffness = part(depth, 0)
+    wanted = known.of(kept)
+    place = np.empty(known.size, dtype=np.int64)
+    place[natural[left]] = np.arange(left.size)
+    at = place[wanted]
+    return Condensed(wanted, stiffness[np.ix_(at, at)], known.size, tuple(steps or ()))
+
+
+def _smallest(section: Section, face: FaceFunctions, number: Index, elements: Index) -> tuple[Index, Array]:
+    """Unknowns (ascending in the order of elimination) and stiffness of a few elements."""
+    dofs = section.element_dofs[elements]
+    every, local = np.unique(dofs, return_inverse=True)
+    local = local.reshape(dofs.shape)
+    n = every.size
+    place = (local[:, :, None] * n + local[:, None, :]).ravel()
+    # Unknowns with many functions first: those that have a function are then the first so many.
+    counts = (number[every] >= 0).sum(axis=1)
+    highest = np.where(counts > 0, number.shape[1] - np.argmax(number[every][:, ::-1] >= 0, axis=1), 0)
+    sequence = np.argsort(-highest, kind="stable")
+    sums = []
+    for matrices in section.stiffness:
+        total = np.bincount(place, matrices[elements].ravel(), n * n).reshape(n, n)
+        sums.append(total[np.ix_(sequence, sequence)])
+    a00, a01, a11 = sums
+    a10 = np.ascontiguousarray(a01.T)
+    reach = np.array([int((highest > k).sum()) for k in range(number.shape[1])])
+    used = int((reach > 0).sum())
+    start = np.concatenate([[0], np.cumsum(reach[:used])])
+    ids = np.concatenate([number[every[sequence[: reach[k]]], k] for k in range(used)])
+    matrix = np.zeros((ids.size, ids.size))
+    m0, m1, m2 = (product[:used, :used] for product in face.products)
+    for k, m in np.argwhere((m0 != 0.0) | (m1 != 0.0) | (m1.T != 0.0) | (m2 != 0.0)).tolist():
+        rows, columns = slice(0, reach[k]), slice(0, reach[m])
+        block = matrix[start[k] : start[k + 1], start[m] : start[m + 1]]
+        for a, factor in ((a00, m0[k, m]), (a01, m1[k, m]), (a10, m1[m, k]), (a11, m2[k, m])):
+            if factor != 0.0:
+                block += factor * a[rows, columns]
+    sequence = np.argsort(ids)
+    sequence = sequence[ids[sequence] >= 0]
+    return ids[sequence], matrix[np.ix_(sequence, sequence)]

@@ -1,0 +1,126 @@
+"""Functions along the face: polynomials over the whole width, or over pieces where the hub holds only a part of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.elements import line_functions
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array, Index
+
+#: Points of a Gauss rule that integrates half a hat times a function along the face, beyond half its degree.
+_MORE_POINTS = 2
+
+
+@dataclass(frozen=True)
+class FaceFunctions:
+    """Continuous piecewise polynomials of z, long waves first.
+
+    One piece over the whole width is the rule: away from the contact the solution is smooth along the face, and global
+    polynomials converge faster than layers of elements. The functions are hierarchical: the first few of them span
+    polynomials of lower degree, which is all that reaches a place far from the flank.
+
+    Parameters
+    ----------
+    breaks : tuple of float
+        Ends of the pieces, from one end face to the other [modules].
+    degrees : tuple of int
+        Of the polynomials on each piece, at least 3.
+    """
+
+    breaks: tuple[float, ...]
+    degrees: tuple[int, ...]
+
+    @property
+    def width(self) -> float:
+        """Face width [modules]."""
+        return self.breaks[-1] - self.breaks[0]
+
+    @property
+    def count(self) -> int:
+        """Number of functions."""
+        return len(self.breaks) + sum(degree - 1 for degree in self.degrees)
+
+    @cached_property
+    def _numbers(self) -> list[Index]:
+        """Function of each of a piece's own: first its two ends, then the others by their degree over its length."""
+        ends = len(self.breaks)
+        lengths = np.diff(self.breaks)
+        inner = [(n / lengths[i], i, n) for i, degree in enumerate(self.degrees) for n in range(2, degree + 1)]
+        numbers = [np.empty(degree + 1, dtype=np.int64) for degree in self.degrees]
+        for i, own in enumerate(numbers):
+            own[:2] = i, i + 1
+        for place, (_, i, n) in enumerate(sorted(inner)):
+            numbers[i][n] = ends + place
+        return numbers
+
+    def at(self, zeta: Array) -> tuple[Array, Array]:
+        """Values and slopes of every function at places on the face, shape (count, P) each."""
+        breaks = np.asarray(self.breaks)
+        piece = np.clip(np.searchsorted(breaks, zeta, side="right") - 1, 0, len(self.degrees) - 1)
+        values, slopes = np.zeros((2, self.count, zeta.size))
+        for i, degree in enumerate(self.degrees):
+            here = np.flatnonzero(piece == i)
+            length = breaks[i + 1] - breaks[i]
+            value, slope = line_functions(degree, (zeta[here] - breaks[i]) / length)
+            rows = self._numbers[i][:, None]
+            values[rows, here], slopes[rows, here] = value, slope / length
+        return values, slopes
+
+    @cached_property
+    def products(self) -> tuple[Array, Array, Array]:
+        """Integrals of P_k P_l, P_k P_l' and P_k' P_l', shape (count, count) each; entries of no size are zero."""
+        place, weight = self.quadrature()
+        values, slopes = self.at(place)
+        found = [(values * weight) @ values.T, (values * weight) @ slopes.T, (slopes * weight) @ slopes.T]
+        for matrix in found:
+            matrix[np.abs(matrix) < 1e-13 * np.abs(matrix).max()] = 0.0
+        return found[0], found[1], found[2]
+
+    def quadrature(self) -> tuple[Array, Array]:
+        """Gauss points and weights that integrate products of two functions exactly, shape (q,) each [modules]."""
+        places, weights = [], []
+        for low, high, degree in zip(self.breaks, self.breaks[1:], self.degrees, strict=False):
+            x, w = np.polynomial.legendre.leggauss(degree + 1)
+            places.append(0.5 * (low + high) + 0.5 * (high - low) * x)
+            weights.append(0.5 * (high - low) * w)
+        return np.concatenate(places), np.concatenate(weights)
+
+    def vanishing_on(self, low: float, high: float) -> Index:
+        """Functions that are zero everywhere between two breaks, ascending."""
+        breaks = np.asarray(self.breaks)
+        inside = [i for i in range(len(self.degrees)) if breaks[i] >= low - 1e-9 and breaks[i + 1] <= high + 1e-9]
+        touched = np.concatenate([self._numbers[i] for i in inside]) if inside else np.zeros(0, dtype=np.int64)
+        return np.setdiff1d(np.arange(self.count), touched)
+
+
+def face_functions(width: float, degree: int, held: tuple[float, float] | None = None) -> FaceFunctions:
+    """Functions over a face width.
+
+    Parameters
+    ----------
+    width : float
+        [modules]; the face runs from -width / 2 to width / 2.
+    degree : int
+        Degree over the whole width.
+    held : (float, float), optional
+        Part of the width on which the bore is held; its ends become breaks between pieces, whose degrees go with the
+        root of their lengths: what changes at the ends of the hub needs short waves beside them.
+
+    Returns
+    -------
+    FaceFunctions
+    """
+    half = 0.5 * width
+    if held is None:
+        return FaceFunctions((-half, half), (degree,))
+    near = 1e-6 * width
+    between = [x for x in held if -half + near < x < half - near]
+    breaks = (-half, *between, half)
+    share = np.sqrt(np.diff(breaks) / width)
+    return FaceFunctions(breaks, tuple(max(4, round(degree * float(s))) for s in share))

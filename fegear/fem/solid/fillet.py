@@ -1,0 +1,146 @@
+"""Surface stress on the fillets of a twisted tooth, from the displacement of the surface itself.
+
+The fillet carries no load, so the stress in its surface follows from the three surface strains. With t the tangent in
+the section, J a quarter turn and g = tau J x + k the tangent along the helix through a point, the displacement u = R v
+stretches the surface by
+
+    e_ss = t . v_,s    e_zz = g . (v_,z + tau J v)    2 e_sz = g . v_,s + t . (v_,z + tau J v)
+
+in skew coordinates; turned to t and the direction b across it in the surface they give
+sigma_tt = (e_tt + nu e_bb) / (1 - nu^2) and so on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.solid.section import upward
+from fegear.fem.trace import lagrange, lagrange_slope
+from fegear.frozen import ReadOnlyArrays
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array, Index
+    from fegear.fem.solid.section import Section
+
+
+@dataclass(frozen=True)
+class SolidFillet(ReadOnlyArrays):
+    """Points up a fillet, in every section alike.
+
+    Parameters
+    ----------
+    nodes : ndarray of int, shape (n,)
+        Nodes of the section, each once.
+    values, slopes : ndarray, shape (points, n)
+        Shape functions, and their derivatives along the arc [1/modules].
+    tangent, place : ndarray, shape (2, points)
+        Up the tooth; [modules] in the section at z = 0.
+    arc : ndarray, shape (points,)
+        Arc length from the root land [modules].
+    tangent_angle : ndarray, shape (points,)
+        Angle between tangent and the tooth's centre line [rad].
+    length : float
+        [modules].
+    """
+
+    nodes: Index
+    values: Array
+    slopes: Array
+    tangent: Array
+    place: Array
+    arc: Array
+    tangent_angle: Array
+    length: float
+
+
+def solid_fillet(section: Section, name: str) -> SolidFillet:
+    """Points of a fillet: the Gauss points of its edges, where derivatives converge fastest.
+
+    Parameters
+    ----------
+    section : Section
+    name : {"fillet", "back_fillet"}
+    """
+    p = section.order
+    xi, weight = np.polynomial.legendre.leggauss(p)
+    xi, weight = 0.5 + 0.5 * xi, 0.5 * weight
+    edges, places = upward(section, name)
+    curve = places.shape[1] - 1
+    place = np.einsum("cin,iq->cnq", places, lagrange(curve, xi))
+    tangent = np.einsum("cin,iq->cnq", places, lagrange_slope(curve, xi))
+    speed = np.hypot(*tangent)
+    nodes, local = np.unique(edges, return_inverse=True)
+    local = local.reshape(edges.shape)
+    values, slopes = np.zeros((2, edges.shape[1], p, nodes.size))
+    for e in range(edges.shape[1]):
+        values[e][:, local[:, e]] = lagrange(p, xi).T
+        slopes[e][:, local[:, e]] = (lagrange_slope(p, xi) / speed[e]).T
+    lengths = (speed * weight).sum(axis=1)
+    # Arc length at the points: exact for a polynomial of the edge's degree along it.
+    inside = np.stack([np.polynomial.polynomial.polyval(x, _integral(xi, speed)) for x in xi], axis=1)
+    arc = np.concatenate([[0.0], np.cumsum(lengths)])[:-1, None] + inside
+    unit = tangent / speed
+    return SolidFillet(
+        nodes=nodes,
+        values=values.reshape(-1, nodes.size),
+        slopes=slopes.reshape(-1, nodes.size),
+        tangent=unit.reshape(2, -1),
+        place=place.reshape(2, -1),
+        arc=arc.reshape(-1),
+        tangent_angle=np.arctan2(np.abs(unit[0]), unit[1]).reshape(-1),
+        length=float(lengths.sum()),
+    )
+
+
+def _integral(xi: Array, speed: Array) -> Array:
+    """Coefficients of the integral from 0 of the polynomial through speeds at xi, one column per edge."""
+    coefficients = np.linalg.solve(np.vander(xi, increasing=True), speed.T)
+    powers = np.arange(1, xi.size + 1)
+    return np.concatenate([np.zeros((1, speed.shape[0])), coefficients / powers[:, None]])
+
+
+def surface_stress(
+    fillet: SolidFillet, tau: float, poisson_ratio: float, displacement: Array, values: Array, slopes: Array
+) -> Array:
+    """Stress in the surface, E = 1.
+
+    Parameters
+    ----------
+    fillet : SolidFillet
+    tau : float
+        [rad/module].
+    poisson_ratio : float
+    displacement : ndarray, shape (n, 3, functions, P)
+        v (x, y, z) at the fillet's nodes, function by function along the face.
+    values, slopes : ndarray, shape (functions, Z)
+        Of the functions where the stress is wanted.
+
+    Returns
+    -------
+    ndarray, shape (3, points, Z, P)
+        Along the tangent t in the section, across it (b, in the surface, all but along the axis), and the shear
+        between both.
+    """
+    along = np.einsum("pn,nckr->pckr", fillet.slopes, displacement, optimize=True)
+    here = np.einsum("pn,nckr->pckr", fillet.values, displacement, optimize=True)
+    up = np.einsum("pckr,kz->cpzr", along, values, optimize=True)
+    helix = np.einsum("pckr,kz->cpzr", here, slopes, optimize=True)
+    v = np.einsum("pckr,kz->cpzr", here, values, optimize=True)
+    helix[0] -= tau * v[1]
+    helix[1] += tau * v[0]
+    x, y = fillet.place[:, :, None, None]
+    tx, ty = fillet.tangent[:, :, None, None]
+    gx, gy = -tau * y, tau * x
+    e_ss = tx * up[0] + ty * up[1]
+    e_zz = gx * helix[0] + gy * helix[1] + helix[2]
+    e_sz = 0.5 * (gx * up[0] + gy * up[1] + up[2] + tx * helix[0] + ty * helix[1])
+    skew = tx * gx + ty * gy
+    across = np.sqrt(1.0 + gx**2 + gy**2 - skew**2)
+    e_tb = (e_sz - skew * e_ss) / across
+    e_bb = (e_zz - skew**2 * e_ss - 2.0 * skew * across * e_tb) / across**2
+    nu = poisson_ratio
+    modulus = 1.0 / (1.0 - nu * nu)
+    return np.stack([modulus * (e_ss + nu * e_bb), modulus * (e_bb + nu * e_ss), e_tb / (1.0 + nu)])

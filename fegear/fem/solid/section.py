@@ -1,0 +1,203 @@
+"""The transverse section of one tooth sector: nodes, their axes, and the section's share of the stiffness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.fem.elements import sector_elements
+from fegear.fem.solid.strains import hooke, strain_functions
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array, Index
+    from fegear.fem.mesh import SectorMesh
+
+
+@dataclass(frozen=True)
+class Section:
+    """The section's matrices, element by element; E = 1.
+
+    Unknown 3 i + c is component c of node i along the node's own axes: radial, tangential and axial on the sides;
+    against the flank's normal (the port of a contact), along its tangent and axial on the loaded flank; x, y and z
+    elsewhere.
+
+    Parameters
+    ----------
+    stiffness : tuple of three ndarray, shape (M, 3 n, 3 n)
+        Integrals of B0' C B0, B0' C B1 and B1' C B1 (`strains`).
+    element_dofs : ndarray of int, shape (M, 3 n)
+    centres : ndarray, shape (2, M)
+        Where the elements lie [modules].
+    axes : ndarray, shape (N, 3, 3)
+        Columns are the axes of each node.
+    places : ndarray, shape (2, N)
+        [modules].
+    edge_nodes : dict of str to ndarray of int, shape (order + 1, edges)
+        Nodes along each boundary edge, from its first to its second vertex.
+    edge_places : dict of str to ndarray, shape (2, 3 or 4, edges)
+        Evenly spaced nodes of each boundary edge's own curve in that direction [modules].
+    side_a, side_b : ndarray of int, shape (m,)
+        Nodes of the sides from the bore outward.
+    order : int
+    tau : float
+        Twist [rad/module].
+    poisson_ratio : float
+    """
+
+    stiffness: tuple[Array, Array, Array]
+    element_dofs: Index
+    centres: Array
+    axes: Array
+    places: Array
+    edge_nodes: dict[str, Index]
+    edge_places: dict[str, Array]
+    side_a: Index
+    side_b: Index
+    order: int
+    tau: float
+    poisson_ratio: float
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns of the section."""
+        return 3 * self.places.shape[1]
+
+    def nodes_of(self, *names: str) -> Index:
+        """Nodes of boundaries, each once, ascending."""
+        found = [self.edge_nodes[name].ravel() for name in names if name in self.edge_nodes]
+        return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
+
+
+def upward(section: Section, name: str) -> tuple[Index, Array]:
+    """Edges of a boundary that climbs the tooth, each from its lower to its higher vertex, the lowest first.
+
+    Returns
+    -------
+    nodes : ndarray of int, shape (order + 1, edges)
+    places : ndarray, shape (2, 3 or 4, edges)
+        [modules].
+    """
+    nodes, places = section.edge_nodes[name], section.edge_places[name]
+    rising = np.hypot(*places[:, 0]) < np.hypot(*places[:, -1])
+    # The curve's middle decides for edges whose ends lie on the root circle alike.
+    order = np.argsort(np.hypot(*places[:, 1]) + np.hypot(*places[:, -2]))
+    return np.where(rising, nodes, nodes[::-1])[:, order], np.where(rising, places, places[:, ::-1])[:, :, order]
+
+
+def flank_normals(tangent: Array, place: Array, tau: float) -> Array:
+    """Unnormalised normals of the twisted flank out of the material, N = (n, tau t . x), shape (3, ...).
+
+    Their length on an involute is 1 / cos(beta_b): a pressure p on the area of the flank is the force -p N ds dz, and
+    -N . u is the approach along the transverse line of action.
+
+    Parameters
+    ----------
+    tangent : ndarray, shape (2, ...)
+        Unit tangents of the section's outline, counterclockwise round the material.
+    place : ndarray, shape (2, ...)
+        [modules].
+    tau : float
+    """
+    return np.stack([tangent[1], -tangent[0], tau * (tangent * place).sum(axis=0)])
+
+
+def make_section(mesh: SectorMesh, order: int, tau: float, poisson_ratio: float, base_radius: float) -> Section:
+    """Integrate the section's matrices.
+
+    Parameters
+    ----------
+    mesh : SectorMesh
+    order : {2, 3, 4}
+        Order of the displacement in the section.
+    tau : float
+        [rad/module].
+    poisson_ratio : float
+    base_radius : float
+        [modules].
+
+    Returns
+    -------
+    Section
+
+    Raises
+    ------
+    InputError
+        If the sides do not match node by node.
+    """
+    elements = sector_elements(mesh, order)
+    nodes, places = elements.element_nodes, elements.node_places()
+    edge_nodes = {name: elements.nodes_along(edges) for name, edges in mesh.edges.items()}
+    side_a, side_b = (_outward(edge_nodes[name], places) for name in ("side_a", "side_b"))
+    _check_sides(side_a, side_b, places, mesh.teeth)
+    axes = _axes(places, np.concatenate([side_a, side_b]), np.unique(edge_nodes["flank"]), base_radius, tau)
+    values, gradient, place, area = elements.integration()
+    c = hooke(poisson_ratio)
+    count, n = nodes.shape
+    functions = []
+    for b in strain_functions(values, gradient, place, tau):
+        turned = np.einsum("mqsnc,mncd->mqsnd", b, axes[nodes])
+        functions.append(turned.reshape(count, -1, 3 * n))
+    weighted = [
+        (np.einsum("st,mqtu->mqsu", c, b.reshape(count, -1, 6, 3 * n)) * area[:, :, None, None]).reshape(b.shape)
+        for b in functions
+    ]
+    b0, b1 = (b.transpose(0, 2, 1) for b in functions)
+    return Section(
+        stiffness=(b0 @ weighted[0], b0 @ weighted[1], b1 @ weighted[1]),
+        element_dofs=(3 * nodes[:, :, None] + np.arange(3)).reshape(count, -1),
+        centres=mesh.points[:, mesh.triangles[:3]].mean(axis=1),
+        axes=axes,
+        places=places,
+        edge_nodes=edge_nodes,
+        edge_places={name: elements.places_along(edges) + elements.tip for name, edges in mesh.edges.items()},
+        side_a=side_a,
+        side_b=side_b,
+        order=order,
+        tau=tau,
+        poisson_ratio=poisson_ratio,
+    )
+
+
+def _outward(edges: Index, places: Array) -> Index:
+    nodes = np.unique(edges)
+    return nodes[np.argsort(np.hypot(*places[:, nodes]))]
+
+
+def _check_sides(side_a: Index, side_b: Index, places: Array, teeth: int) -> None:
+    if side_a.size == side_b.size:
+        a, b = places[:, side_a], places[:, side_b]
+        turn = 2.0 * np.pi / teeth
+        turned = np.stack([np.cos(turn) * a[0] + np.sin(turn) * a[1], np.cos(turn) * a[1] - np.sin(turn) * a[0]])
+        if np.abs(turned - b).max() < 1e-6 * np.abs(b).max():
+            return
+    raise InputError(
+        "mesh", "side_a, side_b", "do not carry the same nodes, so the sectors cannot be joined",
+        "mesh side_b as side_a turned by one pitch",
+    )  # fmt: skip
+
+
+def _axes(places: Array, sides: Index, flank: Index, base_radius: float, tau: float) -> Array:
+    """Axes of every node, shape (N, 3, 3)."""
+    axes = np.tile(np.eye(3), (places.shape[1], 1, 1))
+    x, y = places[:, sides] / np.hypot(*places[:, sides])
+    axes[sides, :2, 0] = np.stack([x, y], axis=1)
+    axes[sides, :2, 1] = np.stack([y, -x], axis=1)
+    # On the involute: the normal touches the base circle, so the tangent is the point's direction turned by the
+    # pressure angle toward the tooth.
+    x, y = places[:, flank]
+    r = np.hypot(x, y)
+    cos = np.minimum(base_radius / r, 1.0)
+    sin = np.sqrt(1.0 - cos * cos)
+    tangent = np.stack([cos * x - sin * y, sin * x + cos * y]) / r
+    normal = flank_normals(tangent, places[:, flank], tau)
+    length = (normal * normal).sum(axis=0)
+    # Unknowns a with u = sum of axes times a, the first of which is a_0 = -N . u.
+    axes[flank, :, 0] = (-normal / length).T
+    axes[flank, :2, 1] = tangent.T
+    axes[flank, 2, 1] = 0.0
+    second = np.cross(normal.T, axes[flank, :, 1])
+    axes[flank, :, 2] = second / np.linalg.norm(second, axis=1)[:, None]
+    return axes

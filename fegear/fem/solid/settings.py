@@ -1,0 +1,74 @@
+"""Every choice that trades accuracy against time for teeth with a width, in modules."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields, replace
+
+from fegear.errors import InputError
+from fegear.fem.settings import MeshSettings
+
+#: A section as coarse as its order allows: some 170 triangles.
+_SECTION = MeshSettings(
+    root_edge_length=0.3, root_fraction=1.0, flank_edge_length=0.3, tip_edge_length=0.2, junction_edge_length=0.2,
+    back_edge_length=0.8, growth=0.6, tip_growth=0.5, side_growth=0.8, body_fraction=1.8, rim_fraction=0.45,
+    order=3,
+)  # fmt: skip
+
+#: By how much the solution that shows the error is coarser.
+COARSER = 1.35
+
+
+@dataclass(frozen=True, slots=True)
+class SolidSettings:
+    """Edge lengths and order of the section, functions along the face, and the width of the pressed bands.
+
+    Parameters
+    ----------
+    section : MeshSettings
+        Of the section's mesh and the order of its elements.
+    waves_per_module : float
+        Degree of the polynomials along the face per module of width.
+    least_degree : int
+        Their lowest degree, for narrow gears.
+    wave_reach, fewest_waves : float
+        A node at the distance d from the loaded flank has wave_reach * width / (2 d) + fewest_waves functions along
+        the face, at most all.
+    band_half_width : float
+        Half-width of the pressure that loads the flank.
+    """
+
+    section: MeshSettings = field(default=_SECTION)
+    waves_per_module: float = 1.5
+    least_degree: int = 8
+    wave_reach: float = 2.5
+    fewest_waves: float = 6.0
+    band_half_width: float = 0.25
+
+    def __post_init__(self) -> None:
+        """Refuse settings that make no mesh."""
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if f.name != "section" and not (math.isfinite(value) and value > 0.0):
+                raise InputError(f"accuracy.{f.name}", value, "must be positive and finite")
+        if self.least_degree < 3:
+            raise InputError("accuracy.least_degree", self.least_degree, "must be at least 3")
+
+    def degree(self, width: float) -> int:
+        """Degree of the polynomials along a face [modules]."""
+        return max(int(self.least_degree), math.ceil(self.waves_per_module * width))
+
+    def scaled(self, factor: float) -> SolidSettings:
+        """Return a coarser (factor > 1) or finer set: everything that leaves an error changes, the band apart."""
+        return replace(
+            self,
+            section=self.section.scaled(factor),
+            waves_per_module=self.waves_per_module / factor,
+            least_degree=max(3, round(self.least_degree / factor)),
+            wave_reach=self.wave_reach / factor,
+            fewest_waves=self.fewest_waves / factor,
+        )
+
+    def coarser(self) -> SolidSettings:
+        """The set whose solution shows the error of this one's."""
+        return self.scaled(COARSER)

@@ -1,0 +1,259 @@
+"""One solid ring solved: what flank and fillets answer to forces on the flank; module 1, Young's modulus 1."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.ring import closed_ring
+from fegear.fem.root_stress import extreme
+from fegear.fem.sector import mesh_sector
+from fegear.fem.solid.bands import Bands, loads_of
+from fegear.fem.solid.dissection import condense_solid
+from fegear.fem.solid.face import FaceFunctions, face_functions
+from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
+from fegear.fem.solid.section import Section, make_section, upward
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.waves import solid_unknowns
+from fegear.fem.trace import LoadedFlank, loaded_flank
+from fegear.one_thread import one_thread
+from fegear.tally import tallied
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+
+    from fegear.arrays import Array, Index
+    from fegear.fem.influence import Side
+    from fegear.fem.mesh import SectorMesh
+    from fegear.geometry.tooth import Tooth
+
+#: A pressure takes this share of the room to the nearer end of the flank, and at least this share of the flank.
+_ROOM_SHARE, _NARROWEST = 0.7, 0.02
+_FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
+
+
+@dataclass(frozen=True)
+class SolidSolution:
+    """What one solid ring answers: deflections of the flank and of the fillets under forces on the flank.
+
+    Parameters
+    ----------
+    tooth : Tooth
+        The transverse section.
+    tau : float
+        Twist [rad/module], positive for a right hand.
+    width : float
+        [modules].
+    bore_radius : float
+        [modules].
+    held : (float, float) or None
+        Part of the width on which the bore is held.
+    poisson_ratio : float
+    face : FaceFunctions
+    flank : LoadedFlank
+    compliance : mapping of int to ndarray, shape (n, n)
+        Approach -N . u of the flank of tooth k under forces on tooth 0; node by node, function by function.
+    fillets : mapping of {"tension", "compression"} to SolidFillet
+    displacement : mapping of (int, side) to ndarray, shape (nodes, 3, functions, n)
+        Of a fillet's nodes on tooth k, in the axes of its own tooth.
+    reach, unknowns : int
+        K: neighbours -K..K are known; size of the sector's system.
+    settings : SolidSettings
+    seconds : mapping of str to float
+    """
+
+    tooth: Tooth
+    tau: float
+    width: float
+    bore_radius: float
+    held: tuple[float, float] | None
+    poisson_ratio: float
+    face: FaceFunctions
+    flank: LoadedFlank
+    compliance: Mapping[int, Array]
+    fillets: Mapping[Side, SolidFillet]
+    displacement: Mapping[tuple[int, Side], Array]
+    reach: int
+    unknowns: int
+    settings: SolidSettings
+    seconds: Mapping[str, float]
+
+    def band_half_width(self, radius: ArrayLike) -> Array:
+        """Half-width of a pressure that the section resolves, shape (P,) [modules]: less beside the flank's ends."""
+        arc = self.flank.arc_of_radius(np.atleast_1d(np.asarray(radius, dtype=float)))
+        room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
+        length = self.flank.flank_end - self.flank.flank_start
+        return np.clip(_ROOM_SHARE * room, _NARROWEST * length, self.settings.band_half_width)
+
+    def deflection(self, k: int, watched: Bands, pressed: Bands) -> Array:
+        """c_k: mean approach of bands on tooth k under a unit force on bands of tooth 0, shape (P, Q) [1/(E module)].
+
+        Along the transverse line of action, weighted with the pressure of the watched band, so that
+        c_k(p, q) = c_-k(q, p) to round-off.
+        """
+        loads = loads_of(pressed, self.flank, self.face)
+        own = loads if watched is pressed else loads_of(watched, self.flank, self.face)
+        return np.asarray(own.T @ self.compliance[k] @ loads)
+
+    def largest_root_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> tuple[Array, Array]:
+        """Largest tension (or compression) up a fillet of tooth k at places along the face, shape (Z, P) each.
+
+        Returns
+        -------
+        value, arc : ndarray
+            Tangential stress in the transverse section [1/module^2] and where it sits [modules].
+        """
+        stress = self.fillet_stress(k, side, pressed, zeta)[0]
+        arc, sign = self.fillets[side].arc, 1.0 if side == "tension" else -1.0
+        flat = stress.reshape(stress.shape[0], -1)
+        value, place = extreme(flat, arc, sign, self.fillets[side].length)
+        return value.reshape(stress.shape[1:]), place.reshape(stress.shape[1:])
+
+    def fillet_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> Array:
+        """Surface stress of a fillet of tooth k per unit force on bands of tooth 0 [1/module^2].
+
+        Parameters
+        ----------
+        k : int
+        side : {"tension", "compression"}
+            Below the loaded flank, or on the other side of the tooth.
+        pressed : Bands
+        zeta : array_like, shape (Z,)
+            Where along the face [modules].
+
+        Returns
+        -------
+        ndarray, shape (3, points, Z, P)
+            Along the fillet in the transverse section, across it (all but axial), and the shear between both.
+        """
+        values, slopes = self.face.at(np.atleast_1d(np.asarray(zeta, dtype=float)))
+        moved = self.displacement[k, side] @ loads_of(pressed, self.flank, self.face)
+        return surface_stress(self.fillets[side], self.tau, self.poisson_ratio, moved, values, slopes)
+
+
+@tallied("tooth shapes")
+def solve_solid(
+    tooth: Tooth,
+    tau: float,
+    width: float,
+    poisson_ratio: float,
+    bore_radius: float,
+    settings: SolidSettings | None = None,
+    *,
+    reach: int = 1,
+    held: tuple[float, float] | None = None,
+    mesh: SectorMesh | None = None,
+    sector_teeth: int = 0,
+    plane_strain: bool = False,
+) -> SolidSolution:
+    """Solve one solid ring for all that can be asked of its teeth.
+
+    Parameters
+    ----------
+    tooth : Tooth
+        The transverse section.
+    tau : float
+        Twist tan(beta) / r [rad/module], positive for a right hand (z along the axis, out of the drawing).
+    width : float
+        [modules].
+    poisson_ratio : float
+    bore_radius : float
+        [modules].
+    settings : SolidSettings, optional
+    reach : int
+        K: neighbours -K..K; at most (z - 1) // 2.
+    held : (float, float), optional
+        Part of the width, from -width / 2 to width / 2, on which the bore is held; by default all of it.
+    mesh : SectorMesh, optional
+        A section's mesh instead of the generated one.
+    sector_teeth : int
+        Solve a row of so many teeth with free sides, loaded in the middle, instead of the ring.
+    plane_strain : bool
+        Nothing moves along the axis: a check, which without a twist is the plane problem.
+
+    Returns
+    -------
+    SolidSolution
+    """
+    settings = settings or SolidSettings()
+    with one_thread():
+        return _solve(
+            tooth, tau, width, poisson_ratio, bore_radius, settings, reach, held, mesh, sector_teeth, plane_strain
+        )
+
+
+def _solve(
+    tooth: Tooth, tau: float, width: float, nu: float, bore_radius: float, settings: SolidSettings, reach: int,
+    held: tuple[float, float] | None, mesh: SectorMesh | None, sector_teeth: int, plane_strain: bool,
+) -> SolidSolution:  # fmt: skip
+    started = time.perf_counter()
+    reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
+    mesh = mesh_sector(tooth, bore_radius, settings.section) if mesh is None else mesh
+    section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius)
+    face = face_functions(width, settings.degree(width), held)
+    known = solid_unknowns(section, face, settings, held, plane_strain=plane_strain)
+    flank = loaded_flank(mesh, _Plane(section), tooth, margin=0.0)
+    fillets = {side: solid_fillet(section, name) for side, name in _FILLETS.items()}
+    integrated = time.perf_counter()
+    every = np.arange(3)
+    sides = [(3 * nodes[:, None] + every).ravel() for nodes in (section.side_a, section.side_b)]
+    ports = 3 * flank_nodes(section)
+    seen = [(3 * fillet.nodes[:, None] + every).ravel() for fillet in fillets.values()]
+    inner = np.setdiff1d(np.concatenate([ports, *seen]), np.concatenate(sides))
+    condensed = condense_solid(section, face, known, np.concatenate([*sides, inner]))
+    ring = closed_ring(
+        condensed, known.of(sides[0]).size, None, tooth.teeth, reach, sector_teeth=sector_teeth, started=integrated
+    )
+    closed = time.perf_counter()
+    loaded = known.of(ports)
+    response = ring.respond(loaded, np.concatenate([loaded, *(known.of(part) for part in seen)]))
+    compliance: dict[int, Array] = {}
+    displacement: dict[tuple[int, Side], Array] = {}
+    for k, u in response.items():
+        compliance[k] = np.ascontiguousarray(u[: loaded.size])
+        row = loaded.size
+        for side, part in zip(_FILLETS, seen, strict=True):
+            has = known.number[part] >= 0
+            local = np.zeros((*has.shape, loaded.size))
+            local[has] = u[row : row + int(has.sum())]
+            row += int(has.sum())
+            axes = section.axes[fillets[side].nodes]
+            local = local.reshape(-1, 3, *local.shape[1:])
+            displacement[k, side] = np.einsum("ncd,ndkr->nckr", axes, local, optimize=True)
+    seconds = {
+        "section": integrated - started,
+        **ring.seconds,
+        "influence": time.perf_counter() - closed,
+    }
+    return SolidSolution(
+        tooth, tau, width, bore_radius, held, nu, face, flank, compliance, fillets, displacement, reach, known.size,
+        settings, seconds,
+    )  # fmt: skip
+
+
+def flank_nodes(section: Section) -> Index:
+    """Nodes of the loaded flank from its lower end to the tip, shape (n,)."""
+    line, _ = upward(section, "flank")
+    return np.concatenate([line[0, :1], line[1:].T.ravel()])
+
+
+@dataclass(frozen=True)
+class _Plane:
+    """The section's boundary with plane unknowns, as the trace of the flank wants them."""
+
+    section: Section
+
+    @property
+    def order(self) -> int:
+        """Order of the elements."""
+        return self.section.order
+
+    @property
+    def edge_dofs(self) -> dict[str, Index]:
+        """Unknowns x and y of the nodes along each boundary edge, shape (2, order + 1, edges)."""
+        return {name: 2 * nodes + np.array([0, 1])[:, None, None] for name, nodes in self.section.edge_nodes.items()}
