@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from fegear.results import (
+    contact_lines,
     crosscheck,
     design_chart,
     dynamic_factor,
@@ -62,7 +63,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             relief_chart.ROBUSTNESS,
             loading_spectrum.LOADING_SPECTRUM,
         ),
-        "Helical pairs": (tooth_contact.TOOTH_CONTACT, transmissibility.TRANSMISSIBILITY),
+        "Helical pairs": (tooth_contact.TOOTH_CONTACT, contact_lines.CONTACT_LINES, transmissibility.TRANSMISSIBILITY),
         "Gear trains in motion": (
             gear_train.GEAR_TRAIN,
             natural_modes.NATURAL_MODES,

@@ -163,21 +163,21 @@ def _surfaces(contact: ToothContact, phi_1: float, phi_2: float) -> list[Surface
     found = []
     for k in range(-_BESIDE, _BESIDE + 1):
         turn = phi_1 - k * a.angular_pitch
-        for x, y, z1 in _tooth(flank.points(s, z), a.twist * z - 0.5 * a.angular_pitch):
+        for x, y, z1 in solid_tooth(flank.points(s, z), a.twist * z - 0.5 * a.angular_pitch):
             x1, y1 = np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y
             found.append(Surface(np.stack([x1, y1, z1]) * 1e3, "blue", name="pinion"))
     r = np.linspace(max(b.form_radius, b.base_radius * (1.0 + 1e-9)), b.tip_radius, _ACROSS)
     t, z = np.meshgrid(helicoid.tangent_length(r), along * b.face_width + pair.axial_offset)
     for k in range(-_BESIDE, _BESIDE + 1):
         turn = phi_2 - k * b.angular_pitch
-        for x, y, z2 in _tooth(helicoid.points(t, z), b.twist * z):
+        for x, y, z2 in solid_tooth(helicoid.points(t, z), b.twist * z):
             x2, y2 = np.cos(turn) * x + np.sin(turn) * y, -np.sin(turn) * x + np.cos(turn) * y
             fixed = pair.centre_distance - x2, -y2 * np.cos(g) - z2 * np.sin(g), z2 * np.cos(g) - y2 * np.sin(g)
             found.append(Surface(np.stack(fixed) * 1e3, "orange", 0.6, "gear"))
     return found
 
 
-def _tooth(flank: Array, middle: Array) -> list[Array]:
+def solid_tooth(flank: Array, middle: Array) -> list[Array]:
     """A tooth from a flank, shape (3, along, across), and the azimuth of its middle: flanks with top land, and ends."""
     x, y, z = flank
     c, s = np.cos(2.0 * middle), np.sin(2.0 * middle)

@@ -88,7 +88,8 @@ def _pairs(scene: Scene) -> tuple[str, ...]:
     return tuple(scene.helical_pairs)
 
 
-def _check(scene: Scene, name: str) -> None:
+def check_misalignment(scene: Scene, name: str) -> None:
+    """Refuse errors of a pair without the effect, and the effect without errors."""
     part = scene.case.pair[name]
     if part.misalignment is not None and not scene.case.effects.misalignment:
         raise InputError(
@@ -220,8 +221,8 @@ def _lead_remark(name: str, asked: ToothContactInputs) -> tuple[str, ...]:
     remark = (
         f"Pair {name}: a lead of {lead(pinion) * 1e3:.6g} mm that is off by {asked.lead * 1e3:.6g} mm is taken as "
         f"{angle * minutes:.6g}' of lead angle by Eq. 18 of TM-107451, which holds the pitch radius. Its Appendix 2 "
-        f"lets the radius follow: the lead as cut is off by {lead_error_as_cut(pinion, angle) * 1e3:.6g} mm, and by the "
-        f'given amount with lead_angle = "{other * minutes:.8g} arcmin".'
+        f"lets the radius follow: the lead as cut is off by {lead_error_as_cut(pinion, angle) * 1e3:.6g} mm, and by "
+        f'what is given with lead_angle = "{other * minutes:.8g} arcmin".'
     )
     return (remark,)
 
@@ -365,7 +366,7 @@ TOOTH_CONTACT = Stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
-    check=_check,
+    check=check_misalignment,
     effects=("misalignment",),
     cites=citing(
         Citation("litvin", "surfaces, tooth contact analysis, edge contact", "Appendices 1 to 5"),

@@ -70,6 +70,33 @@ def test_a_lead_error_counts_by_equation_18():
     assert exact["I.lead_error_as_cut"] == pytest.approx(1.92979, rel=1e-7), "the angle told in words"
 
 
+def test_contact_lines_of_the_aligned_drive():
+    tables, values, results = run("sources/litvin_fig01")
+    lines, length = tables["contact_lines_I"], tables["contact_line_length_I"]
+    assert list(lines)[:4] == ["line", "phi1", "u1", "theta1"]
+    # (A.1.1) for the left-hand pinion, with the parameters of the table alone.
+    rb, p = 30 * 5.08 / 2 / math.cos(math.radians(30)), 957.5574402 / (2.0 * math.pi)
+    rb *= math.cos(math.atan(math.tan(math.radians(20)) / math.cos(math.radians(30))))
+    slant = math.atan2(p, rb)
+    assert lines["r1"] == pytest.approx(np.hypot(rb, lines["u1"] * math.cos(slant)), rel=1e-9)
+    assert lines["z"] == pytest.approx(p * np.radians(lines["theta1"]) - lines["u1"] * math.sin(slant), abs=1e-7)
+    assert (length["length"].min(), length["length"].max()) == pytest.approx(
+        (values["I.contact_line_least"], values["I.contact_line_largest"]), rel=1e-6
+    )
+    assert not results.remarks
+    extra = ("effects.misalignment=true", "pair.I.misalignment={ shaft_angle = '3 arcmin' }")
+    _, same, results = run("sources/litvin_fig01", *extra)
+    assert same == values
+    assert "leave points in place of lines" in results.remarks[0]
+
+
+def test_contact_lines_of_spur_gears_have_no_u():
+    spur = [f"gear.{g}.{key}" for g in ("pinion", "gear") for key in ("helix_angle='0 deg'", "hand='spur'")]
+    tables, _, results = run("sources/litvin_fig01", *spur)
+    assert {"u1", "u2"} & set(tables["contact_lines_I"]) == set()
+    assert "u1 and u2 do not exist" in results.remarks[0]
+
+
 def test_kinds_of_contact_add_up():
     tables, values, _ = run("litvin_localised", "tooth_contact.positions=100")
     kinds, cycle = tables["tooth_contact_kinds_I"], tables["tooth_contact_I"]

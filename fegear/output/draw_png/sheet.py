@@ -52,6 +52,8 @@ class Sheet:
         """Whether the panel below has the same abscissa, which then names it for both."""
         i = row * self.columns + column
         below = i + self.columns
+        if self.panels[i][0].camera:
+            return False
         return below < len(self.panels) and self.panels[i][0].x.like(self.panels[below][0].x) and not any(
             panel.equal for panel, _ in self.panels
         )  # fmt: skip
@@ -61,6 +63,8 @@ class Sheet:
         if i % self.columns == 0:
             return False
         here, left = self.panels[i][0], self.panels[i - 1][0]
+        if here.camera or left.camera:  # a picture of a space, whose ordinate runs downwards
+            return False
         if here.equal and here.y.limits != left.y.limits:
             return False
         return here.y.like(left.y) and (not maps_of(here) or self._one_bar())
