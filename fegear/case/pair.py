@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from fegear.case.helical import MisalignmentPart, ModificationPart, build_pair
 from fegear.case.part import (
@@ -26,6 +26,11 @@ if TYPE_CHECKING:
     from fegear.geometry import Gear
     from fegear.geometry.helical_gear import HelicalGear
     from fegear.helical.pair import HelicalPair
+
+
+def _several(value: Any) -> Any:
+    """Let one name stand for a list of it."""
+    return (value,) if isinstance(value, str) else tuple(value) if isinstance(value, list) else value
 
 
 class CompliancePart(Part):
@@ -51,6 +56,25 @@ class CompliancePart(Part):
         return self
 
 
+RootStressName = Literal["fe", "cornell", "cornell-trochoid", "heywood", "iso-6336-3", "agma-908", "dolan-broghamer"]
+
+
+class RootStressPart(Part):
+    """``root_stress = { source = "cornell" }``: where root stresses come from; of a list the first is the result."""
+
+    source: Annotated[
+        tuple[RootStressName, ...],
+        BeforeValidator(_several, json_schema_input_type=RootStressName | list[RootStressName]),
+        Field(min_length=1),
+    ] = ("fe",)
+
+    @model_validator(mode="after")
+    def _each_once(self) -> Self:
+        if len(set(self.source)) < len(self.source):
+            raise refuse("names a source twice", "name each once", value=list(self.source), key="source")
+        return self
+
+
 class IsoPart(Part):
     """``iso_6336 = { edition = 2019, accuracy_grade = 4 }``: what ISO 6336-3 asks for beside the geometry."""
 
@@ -69,6 +93,7 @@ class PairPart(Part):
     loads: Annotated[list[PositiveForce], Field(min_length=1), at_most(1000, "loads")] | None = None
     speed: PositiveSpeed | None = None
     compliance: CompliancePart = Field(default_factory=CompliancePart)
+    root_stress: RootStressPart = Field(default_factory=RootStressPart)
     misalignment: MisalignmentPart | None = None
     modification: ModificationPart | None = None
     axial_offset: Length = 0.0
@@ -98,7 +123,7 @@ class PairPart(Part):
         InputError
             If a key asks for what is not computed for helical pairs.
         """
-        for key in ("compliance", "loads", "speed"):
+        for key in ("compliance", "root_stress", "loads", "speed"):
             if key in self.model_fields_set:
                 raise InputError(
                     f"{prefix}.{key}", "(given)", "is not computed for a helical pair yet: its flanks are rigid",

@@ -22,12 +22,26 @@ if TYPE_CHECKING:
 Side = Literal["tension", "compression"]
 
 
-class GearCompliance(Protocol):
-    """Influence functions of one gear's teeth."""
+class RootStressInfluence(Protocol):
+    """Root stress of one gear's teeth per unit line load, whether from finite elements or from a formula."""
 
     @property
     def reach(self) -> int:
         """K: neighbours k = -K..K are coupled; 0 when the source knows only the loaded tooth."""
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What the source says of its own values; empty when nothing."""
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Stress along a fillet of tooth k per unit line load at q of tooth 0, (points, Q) [1/m]; None if unknown."""
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """Estimated error of the largest root tension under the tooth's own load, (Q,) [1/m]; NaN if unknown."""
+
+
+class GearCompliance(RootStressInfluence, Protocol):
+    """Influence functions of one gear's teeth; their reach serves deflections and root stress."""
 
     @property
     def log_slope(self) -> float:
@@ -53,9 +67,6 @@ class GearCompliance(Protocol):
         Tooth k = +1 is the one on the side that the load comes from: ahead of a driving tooth, behind a driven one.
         """
 
-    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
-        """Stress along a fillet of tooth k per unit line load at q of tooth 0, (points, Q) [1/m]; None if unknown."""
-
     def describe(self) -> str:
         """Return one sentence: what this source includes and what not."""
 
@@ -64,6 +75,7 @@ class OneTooth:
     """Base of compliance sources that know one tooth: neither its neighbours nor its root stress."""
 
     __slots__ = ()
+    remarks = ()
 
     def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
         """Zero."""
@@ -72,6 +84,10 @@ class OneTooth:
     def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
         """Unknown."""
         return None
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """Unknown."""
+        return np.full(np.shape(radius_q), np.nan)
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,6 +48,7 @@ class FiniteElementCompliance:
 
     kinks = ()
     power = 0.0
+    remarks = ()
 
     @property
     def reach(self) -> int:
@@ -108,6 +109,11 @@ class FiniteElementCompliance:
         if abs(k) > self.reach:
             return np.zeros_like(self.influence.fillet_stress(0, side, radius_q))
         return self.influence.fillet_stress(k, side, radius_q)
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """What the finite elements leave in the largest root tension under the tooth's own load [1/m]."""
+        known = self.influence
+        return known.root_stress_error(0, "tension", np.clip(radius_q, known.lowest_radius, known.highest_radius))
 
     def describe(self) -> str:
         """Return what it includes."""

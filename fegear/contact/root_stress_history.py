@@ -11,7 +11,7 @@ from fegear.errors import InputError
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
-    from fegear.contact.compliance import Side
+    from fegear.contact.compliance import RootStressInfluence, Side
     from fegear.contact.engagement import Engagement, Loaded
     from fegear.contact.meshing import Contacts
     from fegear.geometry.pair import Member
@@ -46,16 +46,28 @@ class RootStressHistory:
 
 
 def root_stress_kernels(
-    engagement: Engagement, contacts: Contacts, member: Member, side: Side = "tension", beyond: int = 0
+    engagement: Engagement,
+    contacts: Contacts,
+    member: Member,
+    side: Side = "tension",
+    beyond: int = 0,
+    source: RootStressInfluence | None = None,
 ) -> Kernels:
     """Stress along the fillet of tooth k per unit line load at each contact, (points, n, P) for each k [1/m].
+
+    Parameters
+    ----------
+    engagement, contacts, member, side, beyond
+        See `root_stress_history`.
+    source : RootStressInfluence, optional
+        Where this gear's root stress comes from; by default where its compliance does.
 
     Raises
     ------
     InputError
-        If the compliance source of this gear knows no root stress.
+        If the source knows no root stress.
     """
-    source = engagement.compliance.source(member)
+    source = source or engagement.compliance.source(member)
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
     n, positions = radius.shape
     reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
@@ -66,8 +78,8 @@ def root_stress_kernels(
             raise InputError(
                 "results",
                 '"root-stress"',
-                f"cannot come from this compliance source ({source.describe()})",
-                'set pair.compliance.source = "fe"',
+                "cannot come from a compliance source that knows deflections alone",
+                'set pair.root_stress.source = "fe" or a formula',
             )
         kernels[k] = kernel.reshape(kernel.shape[0], n, positions)
     return kernels

@@ -47,6 +47,7 @@ class ShiftedCompliance:
 
     power = 0.0
     kinks = ()
+    remarks = ()
 
     def own(self, radius: ArrayLike) -> Array:
         """c_0 and its error [m^2/N]."""
@@ -65,6 +66,10 @@ class ShiftedCompliance:
     def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """As the base."""
         return self.base.root_stress(k, radius_q, side)
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """As the base."""
+        return self.base.root_stress_error(radius_q)
 
     def describe(self) -> str:
         """As the base, shifted."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.error_by_shift import solve_again
-from fegear.contact.fe_compliance import FiniteElementCompliance
 from fegear.contact.root_stress_history import root_stress_history, root_stress_kernels
 
 if TYPE_CHECKING:
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
+    from fegear.contact.compliance import RootStressInfluence
     from fegear.contact.engagement import Engagement, Loaded
     from fegear.geometry.pair import Member
 
@@ -29,15 +29,17 @@ class ToothStress:
     ----------
     x : ndarray, shape (P,)
         Position of the tooth's contact [m].
-    tension, compression : ndarray
-        Largest tension below the loaded flank and most negative compression on the other side [Pa].
+    tension : ndarray
+        Largest below the loaded flank [Pa].
+    compression : ndarray or None
+        Most negative of the other fillet [Pa]; None where the source knows none, as the formulas.
     tension_error : ndarray
-        Estimated [Pa].
+        Estimated [Pa]; NaN where the source does not know its own.
     """
 
     x: Array
     tension: Array
-    compression: Array
+    compression: Array | None
     tension_error: Array
 
 
@@ -53,7 +55,12 @@ def _states(e: Engagement, x: Array, loads: Sequence[float]) -> list[tuple[int, 
 
 
 def tooth_stress(
-    e: Engagement, shifted: Sequence[Engagement], loads: Sequence[float], x: ArrayLike, member: Member
+    e: Engagement,
+    shifted: Sequence[Engagement],
+    loads: Sequence[float],
+    x: ArrayLike,
+    member: Member,
+    source: RootStressInfluence | None = None,
 ) -> ToothStress:
     """Follow one tooth of a gear from a base pitch before its contact to one after it.
 
@@ -67,10 +74,20 @@ def tooth_stress(
     x : array_like, shape (P,)
         Roll positions over one base pitch [m].
     member : {"driver", "driven"}
+    source : RootStressInfluence, optional
+        Where the gear's root stress comes from; by default where its compliance does, which must be finite elements.
+
+    Raises
+    ------
+    InputError
+        If the source knows no root stress.
     """
     states = _states(e, np.asarray(x, dtype=float), loads)
     contacts = states[0][1].grid.contacts
-    pull, press = (root_stress_kernels(e, contacts, member, side, 1) for side in ("tension", "compression"))
+    pull = root_stress_kernels(e, contacts, member, "tension", 1, source)
+    ends = np.array([e.pair.radius(end, member) for end in (e.pair.x_start, e.pair.x_end)])
+    knows_both = (source or e.compliance.source(member)).root_stress(0, ends, "compression") is not None
+    press = root_stress_kernels(e, contacts, member, "compression", 1, source) if knows_both else {}
     xs: list[Array] = []
     tension: list[Array] = []
     compression: list[Array] = []
@@ -79,12 +96,12 @@ def tooth_stress(
     for row, state in states:
         if id(state) not in known:
             pulled = root_stress_history(e, state, member, "tension", 1, pull)
-            pressed = root_stress_history(e, state, member, "compression", 1, press)
+            pressed = root_stress_history(e, state, member, "compression", 1, press) if press else pulled
             off = np.zeros_like(pulled.stress)
             for other in shifted:
                 again = solve_again(other, state)
                 off = off + np.abs(root_stress_history(e, again, member, "tension", 1, pull).stress - pulled.stress)
-            off[1:-1] += _own_error(e, member, state)
+            off[1:-1] += _own_error(e, member, state, source)
             known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
         for found, values in zip((xs, tension, compression, error), known[id(state)], strict=True):
             found.append(values[row])
@@ -93,18 +110,15 @@ def tooth_stress(
     pitch = e.pair.base_pitch
     order = order[(x[order] > e.pair.x_start - pitch) & (x[order] < e.pair.x_end + pitch)]
     t, c, off = (np.concatenate(parts)[order] for parts in (tension, compression, error))
-    return ToothStress(x[order], t, c, off)
+    return ToothStress(x[order], t, c if press else None, off)
 
 
-def _own_error(e: Engagement, member: Member, state: Loaded) -> Array:
-    """What the finite elements leave in the stress of each tooth's own load, shape (n, P, L) [Pa]."""
-    source = e.compliance.source(member)
-    if not isinstance(source, FiniteElementCompliance):
-        return np.zeros(state.loads.shape)
+def _own_error(e: Engagement, member: Member, state: Loaded, source: RootStressInfluence | None) -> Array:
+    """What the source leaves in the stress of each tooth's own load, shape (n, P, L) [Pa]."""
+    stress = source or e.compliance.source(member)
     contacts = state.grid.contacts
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
-    ends = source.influence.lowest_radius, source.influence.highest_radius
-    few = np.linspace(max(radius.min(), ends[0]), min(radius.max(), ends[1]), 9)
-    usual = source.influence.root_stress_error(0, "tension", few)
+    few = np.linspace(radius.min(), radius.max(), 9)
+    usual = stress.root_stress_error(few)
     per_load = np.interp(radius, few, usual)
     return np.asarray(per_load[:, :, None] * state.loads / e.compliance.face_width)

@@ -12,12 +12,12 @@ from fegear.dynamics.tooth_force import root_stress
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
-    from fegear.contact.fe_compliance import FiniteElementCompliance
+    from fegear.contact.compliance import RootStressInfluence
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.tooth_force import ToothForce
     from fegear.geometry.pair import GearPair, Member
 
-#: Positions over the flank at which the finite elements' own error is asked for.
+#: Positions over the flank at which the source's own error is asked for.
 _FEW = 9
 
 
@@ -34,7 +34,7 @@ class ToothRootStress:
     static : ndarray
         Quasi-static.
     error : ndarray
-        What the finite elements leave in `own`.
+        What the source leaves in `own`; NaN where it does not know.
     """
 
     total: Array
@@ -44,14 +44,14 @@ class ToothRootStress:
 
 
 def tooth_root_stress(
-    source: FiniteElementCompliance, pair: GearPair, member: Member, around: dict[int, ToothForce]
+    source: RootStressInfluence, pair: GearPair, member: Member, around: dict[int, ToothForce]
 ) -> ToothRootStress:
     """Root stress of a tooth under its own force and those on the teeth around it.
 
     Parameters
     ----------
-    source : FiniteElementCompliance
-        Of its gear.
+    source : RootStressInfluence
+        Of its gear: `fegear.contact.finite_element_compliance` or `fegear.contact.formula_root_stress`.
     pair : GearPair
         As it runs.
     member : {"driver", "driven"}
@@ -96,7 +96,7 @@ def forces_around(
 
 
 def _kernels(
-    source: FiniteElementCompliance, pair: GearPair, member: Member, around: dict[int, ToothForce]
+    source: RootStressInfluence, pair: GearPair, member: Member, around: dict[int, ToothForce]
 ) -> dict[int, Array]:
     """Stress along the fillet of the tooth looked at per unit force on each tooth around it, (points, n) [Pa/N]."""
     width = min(pair.driver.face_width, pair.driven.face_width)
@@ -108,9 +108,9 @@ def _kernels(
     return found
 
 
-def _own_error(source: FiniteElementCompliance, pair: GearPair, member: Member, force: ToothForce) -> Array:
-    """What the finite elements leave in the stress of the tooth's own load [Pa]."""
+def _own_error(source: RootStressInfluence, pair: GearPair, member: Member, force: ToothForce) -> Array:
+    """What the source leaves in the stress of the tooth's own load [Pa]."""
     x = np.linspace(pair.x_start, pair.x_end, _FEW)
     width = min(pair.driver.face_width, pair.driven.face_width)
-    usual = source.influence.root_stress_error(0, "tension", pair.radius(x, member)) / width
+    usual = source.root_stress_error(pair.radius(x, member)) / width
     return np.asarray(np.interp(force.x, x, usual) * np.abs(force.total))

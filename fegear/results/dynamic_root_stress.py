@@ -7,25 +7,37 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.engine.citation import Citation, citing
+from fegear.engine.citation import Citation
 from fegear.engine.figure import Axis, Curve, Figure, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_inputs import gear_name
+from fegear.models.root_stress_source import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.models.train import train_part
 from fegear.results import forecasts
-from fegear.results.drawn_pair import LINE_OF_ACTION, path_marks
-from fegear.results.gear_solution import needs_solution, solution_of
+from fegear.results.drawn_pair import path_marks
+from fegear.results.gear_solution import solution_of
 from fegear.results.root_stress_history import table_names
+from fegear.results.root_stress_parts import (
+    cited_sources,
+    ending,
+    formula_remarks,
+    needs_sources,
+    seconds_of,
+    stress_sources,
+    told,
+)
+from fegear.results.tooth_force import over_time
 from fegear.results.train_parts import RPM, needs_one_speed, own_meshes
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from fegear.case.reading import Scene
     from fegear.dynamics.root_stress import ToothRootStress
+    from fegear.dynamics.tooth_force import ToothForce
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import Member
     from fegear.results.tooth_force import ToothForceData
@@ -33,10 +45,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DynamicRootStress:
-    """Root stress of one tooth of either gear over the positions of the force."""
+    """Root stress of one tooth of either gear over the positions of the force, by every source, and their notes."""
 
     force: ToothForceData
-    stress: Mapping[Member, ToothRootStress]
+    stress: Mapping[Member, Mapping[str, ToothRootStress]]
+    notes: Mapping[Member, Mapping[str, tuple[str, ...]]]
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -46,11 +59,11 @@ def _check(scene: Scene, name: str) -> None:
             "results", '"root-stress-history"', "and dynamic-root-stress would write the same tables",
             "ask for dynamic-root-stress alone: it holds the quasi-static stress too",
         )  # fmt: skip
+    check_formulas(scene, train_part(scene).pair_of(name), tips=False)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    pair = scene.case.pair[train_part(scene).pair_of(name)]
-    return (Task("tooth-force", name), *needs_solution(pair.driver, pair.driven))
+    return (Task("tooth-force", name), *needs_sources(scene, train_part(scene).pair_of(name)))
 
 
 @dataclass(frozen=True)
@@ -63,14 +76,18 @@ class DynamicRootInputs:
         Of the body that speeds refer to [rad/s].
     coupled : bool
         Whether the loads of the teeth around count.
-    mesh : str
+    sources : tuple of str
+        Of root stress; the first is the result.
+    mesh, pair : str
     gears, labels : mapping of str to str
         Names of the gears, and ends of the tables' names, by member.
     """
 
     speed: float
     coupled: bool
+    sources: tuple[str, ...]
     mesh: str
+    pair: str
     gears: Mapping[Member, str]
     labels: Mapping[Member, str] = field(compare=False)
 
@@ -79,69 +96,103 @@ def _inputs(scene: Scene, name: str) -> DynamicRootInputs:
     pair = train_part(scene).pair_of(name)
     gears = {member: gear_name(scene, pair, member) for member in MEMBERS}
     labels = {member: label.removeprefix(f"{pair}_") for member, label in table_names(scene, pair).items()}
-    coupled = scene.case.effects.neighbour_coupling
-    return DynamicRootInputs(scene.case.dynamics.one_speed, coupled, name, gears, labels)
+    coupled, speed = scene.case.effects.neighbour_coupling, scene.case.dynamics.one_speed
+    return DynamicRootInputs(speed, coupled, stress_sources(scene, pair), name, pair, gears, labels)
 
 
 def _compute(asked: DynamicRootInputs, upstream: Upstream, work: Work) -> DynamicRootStress:
-    from fegear.contact import finite_element_compliance
     from fegear.dynamics.root_stress import forces_around, tooth_root_stress
 
     data: ToothForceData = upstream[Task("tooth-force", asked.mesh)]
-    mesh, stress = data.train.meshes[data.mesh], {}
+    mesh = data.train.meshes[data.mesh]
+    solved = {} if FINITE_ELEMENTS not in asked.sources else {g: solution_of(upstream, g) for g in asked.gears.values()}
+    stress: dict[Member, dict[str, ToothRootStress]] = {member: {} for member in MEMBERS}
+    notes: dict[Member, dict[str, tuple[str, ...]]] = {member: {} for member in MEMBERS}
+    around: dict[int, dict[int, ToothForce]] = {}
     for member in MEMBERS:
-        source = finite_element_compliance(solution_of(upstream, asked.gears[member]))
-        reach = source.reach if asked.coupled else 0
-        around = forces_around(data.train, data.mesh, data.force, data.number, asked.speed, data.harmonics, reach)
-        stress[member] = tooth_root_stress(source, mesh.pair, mesh.role(member), around)
-        work.progress(len(stress) / len(MEMBERS))
-    return DynamicRootStress(data, stress)
+        gear, role = asked.gears[member], mesh.role(member)
+        for name in asked.sources:
+            source = root_stress_source(name, asked.pair, gear, mesh.pair, role, solved, tips=False)
+            reach = source.reach if asked.coupled else 0
+            if reach not in around:
+                around[reach] = forces_around(
+                    data.train, data.mesh, data.force, data.number, asked.speed, data.harmonics, reach
+                )
+            stress[member][name] = tooth_root_stress(source, mesh.pair, role, around[reach])
+            notes[member][name] = source.remarks
+        work.progress((1 + MEMBERS.index(member)) / len(MEMBERS))
+    return DynamicRootStress(data, stress, notes)
 
 
 def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
     name, force, tables, values = asked.mesh, made.force.force, [], []
-    for member, s in made.stress.items():
+    for member, found in made.stress.items():
         gear = asked.gears[member]
-        tables.append(
-            Table(
-                f"root_stress_history_{name}_{asked.labels[member]}",
-                (
-                    Column("t", force.time, "s", "from the mesh's phase zero"),
-                    Column("x", force.x, "mm", "place of the tooth's contact on the line of action"),
-                    Column("stress", s.total, "MPa", "largest root tension of the loaded tooth, all meshes' shares"),
-                    Column("stress_own_mesh", s.own, "MPa", "without the other meshes' share"),
-                    Column("static_stress", s.static, "MPa", "quasi-static"),
-                    Column("stress_error", s.error, "MPa", "what the finite elements leave in stress_own_mesh"),
-                ),
-                f"Dynamic root stress of gear {gear} as {member}, mesh {name}",
-            )
-        )
-        worst = int(np.argmax(s.own))
-        values.append(
-            Value(f"{name}.{member}.largest_dynamic_root_tension", float(s.own[worst]), "MPa", float(s.error[worst]),
-                  f"gear {gear}, without the other meshes, contact at x = {force.x[worst] * 1e3:.5g} mm")
-        )  # fmt: skip
-    return Outcome(made, tuple(tables), tuple(values), figures=(_figure(made, asked.speed),))
+        columns = [
+            Column("t", force.time, "s", "from the mesh's phase zero"),
+            Column("x", force.x, "mm", "place of the tooth's contact on the line of action"),
+        ]
+        for k, (source, s) in enumerate(found.items()):
+            end, by = ending(asked.sources, k), told(source)
+            known = not np.isnan(s.error).any()
+            columns += [
+                Column(f"stress{end}", s.total, "MPa", f"largest root tension by {by}, all meshes' shares"),
+                Column(f"stress_own_mesh{end}", s.own, "MPa", "without the other meshes' share"),
+                Column(f"static_stress{end}", s.static, "MPa", "quasi-static"),
+            ]
+            if known:
+                columns.append(Column(f"stress_error{end}", s.error, "MPa", f"what {by} leave in stress_own_mesh{end}"))
+            worst = int(np.argmax(s.own))
+            values.append(
+                Value(f"{name}.{member}.largest_dynamic_root_tension{end}", float(s.own[worst]), "MPa",
+                      float(s.error[worst]) if known else None,
+                      f"gear {gear}, {by}, without the other meshes, contact at x = {force.x[worst] * 1e3:.5g} mm")
+            )  # fmt: skip
+        title = f"Dynamic root stress of gear {gear} as {member}, mesh {name}"
+        tables.append(Table(f"root_stress_history_{name}_{asked.labels[member]}", tuple(columns), title))
+    notes = {asked.gears[member]: found for member, found in made.notes.items()}
+    remarks = formula_remarks(asked.pair, notes, coupled=asked.coupled)
+    settings: dict[str, object] = {"root_stress": list(asked.sources)}
+    return Outcome(made, tuple(tables), tuple(values), settings, remarks, (_figure(made, asked),))
 
 
-def _figure(data: DynamicRootStress, speed: float) -> Figure:
-    name, x, curves = data.force.train.names[data.force.mesh], data.force.force.x * 1e3, []
-    for member, stress in data.stress.items():
-        curves.append(Curve(x, stress.total * 1e-6, f"{member}, dynamic", member, dash="solid"))
-        curves.append(Curve(x, stress.static * 1e-6, f"{member}, quasi-static", member, dash="dash", width=1.2))
-    marks = path_marks(data.force.train.meshes[data.force.mesh].pair)
+def _figure(data: DynamicRootStress, asked: DynamicRootInputs) -> Figure:
+    force, train = data.force.force, data.force.train
+    name, x, panels = asked.mesh, force.x * 1e3, []
+    others = len(train.names) > 1
+    for member, found in data.stress.items():
+        curves = []
+        for k, (source, s) in enumerate(found.items()):
+            by = f", {told(source)}" if len(found) > 1 else ""
+            curves.append(Curve(x, s.own * 1e-6, f"static and own increment{by}", f"series:{k}"))
+            if k == 0:
+                if others:
+                    total = Curve(x, s.total * 1e-6, f"with the other meshes{by}", "with other meshes", width=1.2)
+                    curves.append(total)
+                curves.append(Curve(x, s.static * 1e-6, f"quasi-static{by}", "static"))
+        marks = path_marks(train.meshes[data.force.mesh].pair)
+        stress = Axis("largest root tension", "MPa", zero=True)
+        title = f"Gear {asked.gears[member]} as {member}"
+        panels.append(Panel(over_time(force), stress, tuple(curves), marks, title))
     return Figure(
         f"dynamic_root_stress_{name}",
         f"Dynamic root stress of mesh {name}",
-        f"Mesh {name}: root stress of one tooth of either gear through its engagement, with and without vibration.",
-        (Panel(LINE_OF_ACTION, Axis("largest root tension", "MPa", zero=True), tuple(curves), marks),),
-        under=f"{speed * RPM:.6g} rpm",
+        f"Mesh {name}: root stress of one tooth of either gear through its engagement, with and without vibration. "
+        "A to E: points of the path of contact.",
+        tuple(panels),
+        under=f"{asked.speed * RPM:.6g} rpm",
     )
 
 
-def _forecast(scene: Scene, _name: str) -> Forecast:
-    """Root stress from the influence functions, whatever the compliances come from, and the neighbours' forces."""
-    return forecasts.constant(0.12 if scene.case.effects.neighbour_coupling else 0.04)
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """Root stress from influence functions or formulas, and the neighbours' forces."""
+    sources = stress_sources(scene, train_part(scene).pair_of(name))
+    return forecasts.constant((0.12 if scene.case.effects.neighbour_coupling else 0.04) + seconds_of(sources))
+
+
+def _cites(scene: Scene, name: str) -> Iterator[Citation]:
+    yield Citation("mark", "root stress of a single tooth in motion", "Eq. 3.37")
+    yield from cited_sources(scene, train_part(scene).pair_of(name))
 
 
 DYNAMIC_ROOT_STRESS = Stage(
@@ -156,6 +207,6 @@ DYNAMIC_ROOT_STRESS = Stage(
     present=_present,
     check=_check,
     effects=("neighbour_coupling",),
-    cites=citing(Citation("mark", "root stress of a single tooth in motion", "section 3")),
+    cites=_cites,
     forecast=_forecast,
 )

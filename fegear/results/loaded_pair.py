@@ -134,6 +134,8 @@ class LoadedPairInputs:
 def _inputs(scene: Scene, name: str) -> LoadedPairInputs:
     asked, wanted = pair_inputs(scene, name), scene.case.results
     answers = tuple(dict.fromkeys(_ANSWERS[result] for result in wanted if result in _ANSWERS))
+    if asked.compliance.source != "fe":  # knows no root stress: that of formulas follows the tooth's own load
+        answers = tuple(dict.fromkeys("load on a tooth pair" if a == "root tension" else a for a in answers))
     loads = tuple(sorted({asked.loads[0], asked.nominal, asked.loads[-1]}))
     if not _FOR_ALL_LOADS & set(wanted):
         loads = (asked.nominal,)

@@ -7,56 +7,80 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.engine.citation import Citation, citing
+from fegear.engine.citation import Citation
 from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
-from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_checks import check_relief
 from fegear.models.pair_inputs import gear_name
+from fegear.models.root_stress_source import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.results import forecasts
-from fegear.results.loaded_pair import EFFECTS, engagement_marks, needs_pair, spur_pairs
-from fegear.results.sources import RING
+from fegear.results.gear_solution import solution_of
+from fegear.results.loaded_pair import EFFECTS, engagement_marks, loaded_pair, needs_pair, spur_pairs
+from fegear.results.root_stress_parts import (
+    cited_sources,
+    ending,
+    formula_remarks,
+    needs_sources,
+    seconds_of,
+    stress_sources,
+    told,
+)
 from fegear.results.transmission_error import POSITIONS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from fegear.case.reading import Scene
     from fegear.contact.tooth_stress import ToothStress
-    from fegear.engine.stage import Upstream, Work
+    from fegear.engine.stage import Task, Upstream, Work
     from fegear.geometry.pair import Member
     from fegear.models.loaded_pair import LoadedPair
 
 
 @dataclass(frozen=True)
 class RootStressData:
-    """What the stage hands to pictures."""
+    """Root stress of one tooth of either gear by every source, and what formulas say of their values."""
 
     pair: LoadedPair
-    stress: dict[Member, ToothStress]
+    stress: dict[Member, dict[str, ToothStress]]
+    notes: dict[Member, dict[str, tuple[str, ...]]]
 
 
 def _check(scene: Scene, name: str) -> None:
     check_relief(scene, name)
-    source = scene.case.pair[name].compliance.source
-    if source != "fe":
-        raise InputError(f"pair.{name}.compliance.source", f'"{source}"', "knows no root stress", 'set source = "fe"')
+    check_formulas(scene, name, tips=scene.case.effects.corner_contact)
 
 
-def _table(name: str, gear: str, s: ToothStress, i: int, rate: float | None, loads: tuple[float, ...]) -> Table:
-    columns = [
-        Column("x", s.x, "mm", "position of the tooth's contact on the line of action"),
-        Column("stress", s.tension[:, i], "MPa", "largest tangential tension of the fillet below the loaded flank"),
-        Column("compression", s.compression[:, i], "MPa", "most negative stress of the other fillet"),
-        Column("stress_error", s.tension_error[:, i], "MPa", "estimated error of stress"),
-    ]
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    return (*needs_pair(scene, name), *needs_sources(scene, name))
+
+
+def _table(
+    name: str, gear: str, found: Mapping[str, ToothStress], i: int, rate: float | None, loads: tuple[float, ...]
+) -> Table:
+    sources = tuple(found)
+    first = found[sources[0]]
+    columns = [Column("x", first.x, "mm", "position of the tooth's contact on the line of action")]
     if rate is not None:
-        columns.insert(0, Column("t", (s.x - s.x[0]) / rate, "s", "from the first position"))
-    for k, load in enumerate(loads):
-        if k != i:
-            columns.append(Column(f"stress at {load:.6g} N", s.tension[:, k], "MPa", "as stress, under this load"))
+        columns.insert(0, Column("t", (first.x - first.x[0]) / rate, "s", "from the first position"))
+    for k, (source, s) in enumerate(found.items()):
+        end = ending(sources, k)
+        meaning = f"largest tangential tension of the fillet below the loaded flank, by {told(source)}"
+        columns.append(Column(f"stress{end}", s.tension[:, i], "MPa", meaning))
+        if s.compression is not None:
+            columns.append(
+                Column(f"compression{end}", s.compression[:, i], "MPa", "most negative stress of the other fillet")
+            )
+        if not np.isnan(s.tension_error).any():
+            columns.append(
+                Column(f"stress_error{end}", s.tension_error[:, i], "MPa", f"estimated error of stress{end}")
+            )
+        for j, load in enumerate(loads):
+            if j != i:
+                head = f"stress{end} at {load:.6g} N"
+                columns.append(Column(head, s.tension[:, j], "MPa", f"as stress{end}, under this load"))
     return Table(f"root_stress_history_{name}", tuple(columns), f"Root stress of a tooth of gear {gear} in the mesh")
 
 
@@ -75,6 +99,10 @@ class RootStressInputs:
     ----------
     rate : float or None
         Velocity of the contact along the line of action [m/s], where the case gives a speed.
+    sources : tuple of str
+        Of root stress; the first is the result.
+    coupled, tips : bool
+        Whether neighbours' loads count, and whether tip corners touch beyond the path of contact.
     name : str
         Of the pair.
     labels, gears : mapping of str to str
@@ -82,6 +110,9 @@ class RootStressInputs:
     """
 
     rate: float | None
+    sources: tuple[str, ...]
+    coupled: bool
+    tips: bool
     name: str = field(compare=False)
     labels: Mapping[Member, str] = field(compare=False)
     gears: Mapping[Member, str] = field(compare=False)
@@ -90,22 +121,32 @@ class RootStressInputs:
 def _inputs(scene: Scene, name: str) -> RootStressInputs:
     speed = scene.case.pair[name].speed
     rate = None if speed is None else speed * scene.pairs[name].driver.base_radius
-    gears = {member: gear_name(scene, name, member) for member in MEMBERS}
-    return RootStressInputs(rate, name, table_names(scene, name), gears)
+    gears, effects = {member: gear_name(scene, name, member) for member in MEMBERS}, scene.case.effects
+    sources = stress_sources(scene, name)
+    labels = table_names(scene, name)
+    return RootStressInputs(rate, sources, effects.neighbour_coupling, effects.corner_contact, name, labels, gears)
 
 
-def _compute(_inputs: RootStressInputs, upstream: Upstream, work: Work) -> RootStressData:
+def _compute(asked: RootStressInputs, upstream: Upstream, work: Work) -> RootStressData:
     from fegear.contact.mesh_curve import roll_positions
     from fegear.contact.tooth_stress import tooth_stress
 
-    (found,) = upstream.values()
-    pair: LoadedPair = found.pair
+    pair = loaded_pair(upstream, asked.name)
+    solved = {} if FINITE_ELEMENTS not in asked.sources else {g: solution_of(upstream, g) for g in asked.gears.values()}
     x = roll_positions(pair.engagement, POSITIONS)
-    stress: dict[Member, ToothStress] = {}
+    stress: dict[Member, dict[str, ToothStress]] = {}
+    notes: dict[Member, dict[str, tuple[str, ...]]] = {}
     for number, member in enumerate(MEMBERS):
-        stress[member] = tooth_stress(pair.engagement, pair.shifted, pair.loads, x, member)
+        gear = asked.gears[member]
+        stress[member], notes[member] = {}, {}
+        for name in asked.sources:
+            source = root_stress_source(
+                name, asked.name, gear, pair.engagement.pair, member, solved, tips=asked.tips
+            )  # fmt: skip
+            stress[member][name] = tooth_stress(pair.engagement, pair.shifted, pair.loads, x, member, source)
+            notes[member][name] = source.remarks
         work.progress((number + 1) / len(MEMBERS))
-    return RootStressData(pair, stress)
+    return RootStressData(pair, stress, notes)
 
 
 def _present(data: RootStressData, inputs: RootStressInputs) -> Outcome:
@@ -113,51 +154,76 @@ def _present(data: RootStressData, inputs: RootStressInputs) -> Outcome:
     i = pair.loads.index(pair.nominal)
     tables, values = [], []
     for member, label in inputs.labels.items():
-        s, gear = data.stress[member], inputs.gears[member]
-        tables.append(_table(label, gear, s, i, inputs.rate, pair.loads))
-        worst, least = int(np.argmax(s.tension[:, i])), int(np.argmin(s.compression[:, i]))
-        values += [
-            Value(
-                f"{name}.{member}.largest_root_tension", float(s.tension[worst, i]), "MPa",
-                float(s.tension_error[worst, i]), f"gear {gear}, contact at x = {s.x[worst] * 1e3:.5g} mm",
-            ),
-            Value(
-                f"{name}.{member}.largest_root_compression", float(s.compression[least, i]), "MPa", None,
-                f"gear {gear}, contact at x = {s.x[least] * 1e3:.5g} mm",
-            ),
-            Value(
-                f"{name}.{member}.root_stress_range", float(np.ptp(s.tension[:, i])), "MPa", None,
-                "largest less smallest stress below the loaded flank over the mesh",
-            ),
-        ]  # fmt: skip
-    figures = (_figure(name, data, inputs.gears),)
-    return Outcome(data, tuple(tables), tuple(values), figures=figures)
+        gear = inputs.gears[member]
+        tables.append(_table(label, gear, data.stress[member], i, inputs.rate, pair.loads))
+        for k, (source, s) in enumerate(data.stress[member].items()):
+            values += _values(f"{name}.{member}", ending(inputs.sources, k), f"gear {gear}, {told(source)}", s, i)
+    settings: dict[str, object] = {"root_stress": list(inputs.sources)}
+    notes = {inputs.gears[member]: found for member, found in data.notes.items()}
+    remarks = formula_remarks(name, notes, coupled=inputs.coupled)
+    return Outcome(data, tuple(tables), tuple(values), settings, remarks, (_figure(name, data, inputs.gears),))
+
+
+def _values(of: str, end: str, by: str, s: ToothStress, i: int) -> list[Value]:
+    """Largest stresses by one source, under load `i`."""
+    worst = int(np.argmax(s.tension[:, i]))
+    error = float(s.tension_error[worst, i])
+    values = [
+        Value(
+            f"{of}.largest_root_tension{end}", float(s.tension[worst, i]), "MPa", None if np.isnan(error) else error,
+            f"{by}, contact at x = {s.x[worst] * 1e3:.5g} mm",
+        ),
+        Value(
+            f"{of}.root_stress_range{end}", float(np.ptp(s.tension[:, i])), "MPa", None,
+            "largest less smallest stress below the loaded flank over the mesh",
+        ),
+    ]  # fmt: skip
+    if s.compression is not None:
+        least = int(np.argmin(s.compression[:, i]))
+        place = f"{by}, contact at x = {s.x[least] * 1e3:.5g} mm"
+        values.insert(
+            1, Value(f"{of}.largest_root_compression{end}", float(s.compression[least, i]), "MPa", None, place)
+        )
+    return values
 
 
 def _figure(name: str, data: RootStressData, gears: Mapping[Member, str]) -> Figure:
-    pair, stress = data.pair, data.stress
-    i, curves = pair.loads.index(pair.nominal), []
-    for member, s in stress.items():
-        tension, error, compression = (v[:, i] * 1e-6 for v in (s.tension, s.tension_error, s.compression))
-        label = f"{member} {gears[member]}"
-        curves.append(Curve(s.x * 1e3, tension, f"{label}, tension", member, error))
-        curves.append(Curve(s.x * 1e3, compression, f"{label}, compression", f"{member} compression", width=1.2))
-    largest = " and ".join(f"{s.tension[:, i].max() * 1e-6:.4g} MPa ({member})" for member, s in stress.items())
+    pair = data.pair
+    i, curves, largest = pair.loads.index(pair.nominal), [], []
+    several = len(data.stress["driver"]) > 1
+    for g, (member, found) in enumerate(data.stress.items()):
+        for k, (source, s) in enumerate(found.items()):
+            label = f"{member} {gears[member]}" + (f", {told(source)}" if several else "")
+            tension, error = s.tension[:, i] * 1e-6, s.tension_error[:, i] * 1e-6
+            role = f"series:{g + 2 * k}" if k else member
+            curves.append(
+                Curve(s.x * 1e3, tension, f"{label}, tension", role, None if np.isnan(error).any() else error)
+            )
+            if s.compression is not None:
+                style = f"{member} compression"
+                curves.append(Curve(s.x * 1e3, s.compression[:, i] * 1e-6, f"{label}, compression", style, width=1.2))
+            largest.append(f"{tension.max():.4g} MPa ({member}{f', {told(source)}' if several else ''})")
     x = Axis("position of the tooth's contact on the line of action", "mm")
     return Figure(
         f"root_stress_history_{name}",
         f"Root stress through the mesh of pair {name}",
-        f"Pair {name} at {pair.nominal:.5g} N: fillet stress of one tooth, its own load's and its neighbours' "
-        f"added. A to E: points of the path of contact. Largest tension {largest}.",
+        f"Pair {name} at {pair.nominal:.5g} N: fillet stress of one tooth; by finite elements its own load's and its "
+        f"neighbours' added. A to E: points of the path of contact. Largest tension {' and '.join(largest)}.",
         (Panel(x, Axis("largest root stress", "MPa"), tuple(curves), (*engagement_marks(pair), Mark("y", 0.0))),),
         under=f"{pair.nominal:.5g} N",
     )
 
 
-def _forecast(scene: Scene, _name: str) -> Forecast:
-    """Kernels of both gears over the path, and those of their neighbours."""
+def _cites(scene: Scene, name: str) -> Iterator[Citation]:
+    yield from cited_sources(scene, name)
+    yield Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """Kernels of both gears over the path, those of their neighbours, and the formulas' tables."""
     seconds = 0.25 if scene.case.effects.corner_contact else 0.12
-    return forecasts.constant(seconds if scene.case.effects.neighbour_coupling else 0.3 * seconds)
+    seconds *= 1.0 if scene.case.effects.neighbour_coupling else 0.3
+    return forecasts.constant(seconds + seconds_of(stress_sources(scene, name)))
 
 
 ROOT_STRESS_HISTORY = Stage(
@@ -166,14 +232,12 @@ ROOT_STRESS_HISTORY = Stage(
     results=("root-stress-history",),
     about="root stress of both gears as a tooth passes through the mesh",
     subjects=spur_pairs,
-    needs=needs_pair,
+    needs=_needs,
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
     effects=EFFECTS,
-    cites=citing(
-        *RING, Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")
-    ),
+    cites=_cites,
     forecast=_forecast,
 )

@@ -23,13 +23,23 @@ CLOSED_FORM_COMPLIANCES: dict[str, tuple[Citation, ...]] = {
         Citation("sainsot", "compliance of the gear body", "Eqs. 14 and 15, Table 1"),
     ),
 }
-ROOT_STRESS_FORMULAS = (
+_CORNELL_STRESS = (
     Citation("cornell", "root stress"),
     Citation("mark", "the form in which Cornell's formula is computed", "Eqs. B.1 to B.10"),
-    Citation("heywood", "fillet stress of a loaded projection"),
-    Citation("kelley-pedersen", "Heywood's formula for gear teeth"),
-    Citation("iso-6336-3", "Y_F, Y_S and nominal root stress", "method B, clauses 5 to 9"),
-    Citation("agma-908", "geometry factor J", "section 5"),
-    Citation("dolan-broghamer", "stress concentration in the fillet"),
-    Citation("lewis", "section of a beam of uniform strength"),
+)
+_HEYWOOD = Citation("heywood", "fillet stress of a loaded projection")
+ROOT_STRESS_CITATIONS: dict[str, tuple[Citation, ...]] = {
+    "fe": RING,
+    "cornell": _CORNELL_STRESS,
+    "cornell-trochoid": _CORNELL_STRESS,
+    "heywood": (_HEYWOOD, Citation("kelley-pedersen", "Heywood's formula for gear teeth")),
+    "iso-6336-3": (Citation("iso-6336-3", "Y_F, Y_S and nominal root stress", "method B, clauses 5 to 9"),),
+    "agma-908": (Citation("agma-908", "geometry factor J", "section 5"),),
+    "dolan-broghamer": (
+        Citation("dolan-broghamer", "stress concentration in the fillet"),
+        Citation("lewis", "section of a beam of uniform strength"),
+    ),
+}
+ROOT_STRESS_FORMULAS = tuple(
+    dict.fromkeys(one for name, found in ROOT_STRESS_CITATIONS.items() if name != "fe" for one in found)
 )

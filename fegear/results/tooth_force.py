@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
+from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel, Scale
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.results.drawn_pair import LINE_OF_ACTION, path_marks
@@ -127,6 +127,13 @@ def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
     return Outcome(made, (table,), tuple(values), settings, remarks, (_tooth_force_figure(made, asked.speed),))
 
 
+def over_time(force: ToothForce) -> Axis:
+    """The line of action as abscissa, with the time on the far side."""
+    return replace(
+        LINE_OF_ACTION, second=Scale("time from the mesh's phase zero", "ms", force.x * 1e3, force.time * 1e3)
+    )
+
+
 def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
     force, names = data.force, data.train.names
     name, x, marks = names[data.mesh], force.x * 1e3, path_marks(data.train.meshes[data.mesh].pair)
@@ -142,7 +149,7 @@ def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
         f"Mesh {name}: force on one tooth pair from its first contact at A to its last at E; the level line "
         "is the mean mesh force. Below: what the vibration adds, by the mesh that excites it.",
         (
-            Panel(LINE_OF_ACTION, Axis("tooth force", "N", zero=True), tuple(top), (*marks, mean), height=1.2),
+            Panel(over_time(force), Axis("tooth force", "N", zero=True), tuple(top), (*marks, mean), height=1.2),
             Panel(LINE_OF_ACTION, Axis("increment", "N"), tuple(below), marks, height=0.8),
         ),
         under=f"{speed * RPM:.6g} rpm",

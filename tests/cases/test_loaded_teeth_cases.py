@@ -199,7 +199,6 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("calculix_pair", ("effects.spacing_errors=true",), "finds no gear with spacing_errors"),
         ("mark_tip_relief", ("effects.neighbour_coupling=true",), "neighbour_coupling.*is not known"),
         ("mark_tip_relief", ('effects.hertz="linear"',), "cannot change the contact"),
-        ("mark_tip_relief", ('results=["root-stress-history"]',), "knows no root stress"),
         ("mark_tip_relief", ('pair.I.compliance.file="none.csv"',), "is no file"),
         ("mark_tip_relief", ('pair.I.compliance.file="data/mark_table2_relief.csv"',), "neither a column compliance"),
         ("mark_tip_relief", ('gear.test.relief={tip={amount="1 um"}}',), "exactly one way"),

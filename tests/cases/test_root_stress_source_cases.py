@@ -1,0 +1,143 @@
+"""Cases that choose where their root stress comes from: a formula's chain by hand, beside finite elements, refusals."""
+
+import math
+from functools import cache, partial
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from fegear.case.pair import RootStressName
+from fegear.case.reading import read_scene
+from fegear.contact.formula_root_stress import formula_root_stress
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.errors import InputError
+from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
+from fegear.results.catalogue import STAGES
+from fegear.results.sources import ROOT_STRESS_CITATIONS
+from fegear.solution_cache import SolutionCache
+
+CACHE = SolutionCache()
+CASES = Path(__file__).parents[2] / "cases"
+HISTORY = 'results=["root-stress-history"]'
+#: A pair in closed form throughout, and the rig with the paper's own root.
+PAIR = ("calculix_pair", HISTORY, 'pair.I.compliance.source="weber-banaschek"', "effects={}", "pair.I.loads=['800 N']")
+RIG = ("four_square_dynamics", 'results=["dynamic-root-stress"]')
+
+
+@cache
+def run(name, *overrides):
+    scene = read_scene(CASES / f"{name}.toml", overrides)
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
+    tables = {table.name: {column.head: column.values for column in table.columns} for table in results.tables}
+    return scene, tables, {value.name: value for value in results.values}, results
+
+
+def source(*names):
+    return f"pair.I.root_stress={{source={list(names)}}}"
+
+
+def test_every_formula_can_be_chosen_and_is_cited():
+    names = set(get_args(RootStressName))
+    assert names == {"fe", *ROOT_STRESS_SOURCES} == set(ROOT_STRESS_CITATIONS)
+
+
+@pytest.mark.parametrize("name", [n for n in ROOT_STRESS_SOURCES if n != "cornell-trochoid"])
+def test_table_over_the_flank_is_the_formula(name, rng=np.random.default_rng(7)):
+    gear = read_scene(CASES / "cornell_test_gear.toml").gears["test"]
+    ends = gear.form_radius, gear.involute_tip_radius
+    table = formula_root_stress(gear, name, *ends)
+    for radius in (*ends, *rng.uniform(*ends, 5)):
+        direct = ROOT_STRESS_SOURCES[name].formula(gear.tooth, radius / gear.module).stress / gear.module
+        assert float(table.root_stress(0, radius, "tension")[0, 0]) == pytest.approx(direct, rel=1e-5)
+    assert not table.root_stress(1, radius, "tension").any()
+    assert table.root_stress(0, radius, "compression") is None
+    assert np.isnan(table.root_stress_error(radius)).all()
+
+
+@pytest.mark.parametrize("name", ["cornell", "iso-6336-3"])
+def test_history_is_load_times_formula_on_both_gears(name):
+    """No finite element anywhere: the load on the pair from load sharing, the formula by hand at each contact."""
+    scene, tables, values, results = run(*PAIR[:2], *PAIR[2:], source(name))
+    assert not any("gear-solution" in str(task) for task in results.outcomes)
+    pair = scene.pairs["I"]
+    shared = run(PAIR[0], 'results=["load-sharing"]', *PAIR[2:])[1]["load_sharing_I"]
+    for label, member in (("I_a", "driver"), ("I_a_driven", "driven")):
+        table = tables[f"root_stress_history_{label}"]
+        assert not any("compression" in head or "error" in head for head in table)
+        x, stress = table["x [mm]"], table["stress [MPa]"]
+        on = (x > pair.x_start * 1e3 + 0.01) & (x < pair.x_end * 1e3 - 0.01)
+        load = np.interp(x, shared["x [mm]"], shared["load [N]"])
+        gear, width = pair.gear(member), min(pair.driver.face_width, pair.driven.face_width)
+        for i in np.flatnonzero(on)[::23]:
+            radius = float(pair.radius(x[i] * 1e-3, member))
+            per_load = ROOT_STRESS_SOURCES[name].formula(gear.tooth, radius / gear.module).stress / gear.module
+            assert stress[i] == pytest.approx(per_load * load[i] / width * 1e-6, rel=2e-3)
+        assert not stress[~on & ((x < pair.x_start * 1e3 - 0.01) | (x > pair.x_end * 1e3 + 0.01))].any()
+        assert values[f"I.{member}.largest_root_tension"].si_error is None
+    # identical gears: what the driver's tooth feels at x, the driven one's feels at -x
+    a, b = (tables[f"root_stress_history_{label}"] for label in ("I_a", "I_a_driven"))
+    mirrored = np.interp(-a["x [mm]"], b["x [mm]"], b["stress [MPa]"])
+    assert np.median(np.abs(mirrored - a["stress [MPa]"])) < 1e-3 * a["stress [MPa]"].max()
+
+
+def test_formula_stands_beside_finite_elements_and_changes_nothing_of_theirs():
+    coarse = ("effects.corner_contact=false", "accuracy={tolerance=5e-3}", "pair.I.loads=['800 N']")
+    _, alone, told, _ = run("calculix_pair", HISTORY, *coarse)
+    _, both, found, results = run("calculix_pair", HISTORY, *coarse, source("fe", "cornell"))
+    _, turned, other, _ = run("calculix_pair", HISTORY, *coarse, source("cornell", "fe"))
+    for label in ("I_a", "I_a_driven"):
+        a, b, c = (one[f"root_stress_history_{label}"] for one in (alone, both, turned))
+        for key in a:
+            np.testing.assert_array_equal(a[key], b[key])
+        np.testing.assert_array_equal(b["stress [MPa]"], c["stress_fe [MPa]"])
+        np.testing.assert_array_equal(b["compression [MPa]"], c["compression_fe [MPa]"])
+        np.testing.assert_array_equal(b["stress_cornell [MPa]"], c["stress [MPa]"])
+    assert set(told) < set(found)
+    assert found["I.driver.largest_root_tension_cornell"].si == other["I.driver.largest_root_tension"].si
+    assert any("own load alone" in remark for remark in results.remarks)
+    names = [curve.name for figure in results.figures for panel in figure.made().panels for curve in panel.items]
+    assert sum("cornell" in name for name in names) == 2
+    assert sum("finite elements" in name for name in names) == 4
+
+
+def test_dynamic_root_stress_is_tooth_force_times_formula():
+    scene, tables, values, results = run(*RIG[:1], 'results=["tooth-force", "dynamic-root-stress"]', source("cornell"))
+    assert not any("gear-solution" in str(task) for task in results.outcomes)
+    force, pair = tables["tooth_force_I"], scene.pairs["I"]
+    gear = pair.driver
+    for label, member in (("I_test", "driver"), ("I_test_driven", "driven")):
+        table = tables[f"root_stress_history_{label}"]
+        for column, load in (
+            ("stress [MPa]", "force_with_others [N]"), ("stress_own_mesh [MPa]", "force [N]"),
+            ("static_stress [MPa]", "static [N]"),
+        ):  # fmt: skip
+            for i in range(5, 200, 39):
+                radius = float(pair.radius(table["x [mm]"][i] * 1e-3, member))
+                per_load = ROOT_STRESS_SOURCES["cornell"].formula(gear.tooth, radius / gear.module).stress
+                expected = per_load / gear.module * force[load][i] / gear.face_width
+                assert table[column][i] * 1e6 == pytest.approx(expected, rel=1e-5)
+        assert "stress_error [MPa]" not in table
+        assert values[f"I.{member}.largest_dynamic_root_tension"].si_error is None
+
+
+@pytest.mark.parametrize(
+    ("case", "overrides", "words"),
+    [
+        ("calculix_pair", (HISTORY, source("cornel")), r"root_stress.*source.*cornel"),
+        ("calculix_pair", (HISTORY, source("fe", "fe")), "names a source twice"),
+        ("calculix_pair", (HISTORY, "pair.I.root_stress={source=[]}"), "root_stress"),
+        ("calculix_pair", (HISTORY, "pair.I.root_stress={sourc='fe'}"), 'unknown key; known here: source'),
+        (
+            "calculix_pair", (HISTORY, "gear.a.teeth=80", "gear.a.bore_radius='60 mm'", source("cornell")),
+            "pair.I.root_stress.source = \"cornell\": does not hold .* no radial flank.*gear a.*choose",
+        ),
+        ("litvin_lead", ('pair.I.root_stress={source="cornell"}',), "not computed for a helical pair"),
+    ],
+)  # fmt: skip
+def test_refusals_say_what_to_do(case, overrides, words):
+    with pytest.raises(InputError, match=words):
+        scene = read_scene(CASES / f"{case}.toml", overrides)
+        make_plan(scene, STAGES)
