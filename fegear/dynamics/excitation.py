@@ -222,6 +222,15 @@ class MeshExcitation:
         found: Array = np.take_along_axis(level, enough[None], axis=0)[0]
         return found
 
+    def place(self, slot: int, phase: ArrayLike) -> Array:
+        """Position of the tooth pair in a slot [base pitches from the pitch point]."""
+        s = np.asarray(phase, dtype=float)
+        return np.asarray(s - np.floor(s) + self.first_slot + slot)
+
+    def tooth_force(self, slot: int, phase: ArrayLike, approach: ArrayLike) -> Array:
+        """Force on the tooth pair in a slot [N] where the gears approach by so much [m]; never a pull."""
+        return np.maximum(self.stiffness[slot](phase) * (np.asarray(approach) - self.separation[slot](phase)), 0.0)
+
     def transmission_error(self, load: float, *, one_sided: bool = True, tolerance: float = 1e-11) -> Periodic:
         """Static transmission error [m] under a constant load [N] as a periodic function, kinks found."""
         parts = (*self.stiffness, *self.separation)

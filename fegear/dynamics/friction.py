@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -69,6 +69,47 @@ def benedict_kelley(line_load: ArrayLike, viscosity: float, sliding: ArrayLike, 
     return found
 
 
+class Sliding(NamedTuple):
+    """Where tooth friction acts, and how fast the flanks move there; arrays over the positions asked for.
+
+    Attributes
+    ----------
+    arm_driver, arm_driven : ndarray
+        Distance of the friction force from the gears' axes [m]: the flanks' radii of curvature.
+    sliding : ndarray
+        Tangential speed of the driver's flank less that of the driven one [m/s]; negative before the pitch point.
+    rolling : ndarray
+        Sum of both [m/s], V_R of TM-100180.
+    """
+
+    arm_driver: Array
+    arm_driven: Array
+    sliding: Array
+    rolling: Array
+
+
+def sliding_contact(
+    x: ArrayLike, radius_driver: float, radius_driven: float, pressure_angle: float, speed: float
+) -> Sliding:
+    """Lever arms and speeds of the flanks on the line of action.
+
+    Parameters
+    ----------
+    x : array_like
+        Position from the pitch point, positive toward the driver's tip [m].
+    radius_driver, radius_driven : float
+        Base radii [m].
+    pressure_angle : float
+        Working pressure angle [rad].
+    speed : float
+        Of the contact along the line of action, the speed of the base circles [m/s].
+    """
+    place, tangent = np.asarray(x, dtype=float), math.tan(pressure_angle)
+    arm_1, arm_2 = radius_driver * tangent + place, radius_driven * tangent - place
+    v_1, v_2 = speed / radius_driver * arm_1, speed / radius_driven * arm_2
+    return Sliding(arm_1, arm_2, v_1 - v_2, v_1 + v_2)
+
+
 @tallied("friction fits")
 def with_friction(
     excitation: MeshExcitation,
@@ -117,7 +158,6 @@ def with_friction(
     speed = mesh_frequency * base_pitch  # of the contact along the line of action
     radii = (mesh.radius_a, mesh.radius_b) if a_drives else (mesh.radius_b, mesh.radius_a)
     radius_1, radius_2 = (abs(r) for r in radii)  # of the gear that drives, of the driven one
-    reach_1, reach_2 = (r * math.tan(pressure_angle) for r in (radius_1, radius_2))
     # the gears approach as the driver turns forward and the driven gear back
     sense_1, sense_2 = math.copysign(1.0, radii[0]), -math.copysign(1.0, radii[1])
     kinks = tuple(excitation.contact_changes(load)) if load > 0.0 else ()
@@ -130,16 +170,14 @@ def with_friction(
         key = phase.tobytes()
         if key not in known:  # the torques of all slots are asked for at the same places
             known[key] = excitation.approach(load, phase)
-        return np.maximum(excitation.stiffness[j](phase) * (known[key] - excitation.separation[j](phase)), 0.0)
+        return excitation.tooth_force(j, phase, known[key])
 
     def torque(j: int, phase: Array, *, driver: bool) -> Array:
-        x = (phase - np.floor(phase) + excitation.first_slot + j) * base_pitch
-        arm_1, arm_2 = reach_1 + x, reach_2 - x
-        v_1, v_2 = speed / radius_1 * arm_1, speed / radius_2 * arm_2
+        at = sliding_contact(excitation.place(j, phase) * base_pitch, radius_1, radius_2, pressure_angle, speed)
         bears = np.where(excitation.stiffness[j](phase) > 0.0, 1.0, 0.0)
-        mu = coefficient(np.abs(v_1 - v_2), v_1 + v_2, static_force(j, phase)) * bears
-        slip = np.sign(v_1 - v_2)
-        return -slip * mu * arm_1 * sense_1 if driver else slip * mu * arm_2 * sense_2
+        mu = coefficient(np.abs(at.sliding), at.rolling, static_force(j, phase)) * bears
+        slip = np.sign(at.sliding)
+        return -slip * mu * at.arm_driver * sense_1 if driver else slip * mu * at.arm_driven * sense_2
 
     def fitted(j: int, *, driver: bool) -> Periodic:
         return Periodic.fit(

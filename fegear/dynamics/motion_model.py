@@ -97,8 +97,8 @@ def friction_loss_torque(model: MotionModel) -> Array:
         error = excitation.approach(model.static[m], s)
         ratio_a, ratio_b = train.ratios[train.dof[mesh.a]], train.ratios[train.dof[mesh.b]]
         own = 0.0
-        for k, e, (on_a, on_b) in zip(excitation.stiffness, excitation.separation, excitation.friction, strict=True):
-            force = np.maximum(k(s) * (error - e(s)), 0.0)
+        for slot, (on_a, on_b) in enumerate(excitation.friction):
+            force = excitation.tooth_force(slot, s, error)
             own += float(np.mean(force * (ratio_a * on_a(s) + ratio_b * on_b(s))))
         if own > 0.0:
             raise InputError(

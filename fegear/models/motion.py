@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.motion_model import MotionModel
     from fegear.dynamics.steady_state import SteadyState
+    from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True)
@@ -68,14 +69,15 @@ def motion_inputs(scene: Scene) -> MotionInputs:
     )  # fmt: skip
 
 
-def _coefficient(part: FrictionPart, width: float) -> Callable[[Array, Array, Array], Array]:
+def friction_coefficient(part: FrictionPart, pair: GearPair) -> Callable[[Array, Array, Array], Array]:
+    """Friction coefficient of a law from sliding speed, sum of the rolling speeds [m/s] and tooth force [N]."""
     from fegear.dynamics.friction import benedict_kelley, buckingham
 
     if part.law == "buckingham":
         return lambda sliding, _rolling, _force: buckingham(sliding)
     if part.law == "constant":
         return lambda sliding, _rolling, _force: np.full(np.shape(sliding), part.coefficient or 0.0)
-    viscosity = part.viscosity or 0.0
+    viscosity, width = part.viscosity or 0.0, min(pair.driver.face_width, pair.driven.face_width)
     return lambda sliding, rolling, force: benedict_kelley(np.asarray(force) / width, viscosity, sliding, rolling)
 
 
@@ -97,10 +99,9 @@ def excitations_at(asked: MotionInputs, data: GearTrain, speed: float) -> tuple[
         if not asked.contact_loss:
             excitation = excitation.never_parting(one.force)
         if asked.friction:
-            width = min(one.pair.driver.face_width, one.pair.driven.face_width)
             excitation = with_friction(
                 excitation, mesh, one.pair.base_pitch, one.pair.working_pressure_angle, float(frequency), one.force,
-                _coefficient(asked.law, width), a_drives=one.a_drives,
+                friction_coefficient(asked.law, one.pair), a_drives=one.a_drives,
             )  # fmt: skip
         found.append(excitation)
     return tuple(found)

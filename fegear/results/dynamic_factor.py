@@ -15,7 +15,7 @@ from fegear.errors import InputError
 from fegear.models.motion import motion_inputs
 from fegear.models.train import train_part
 from fegear.results.gear_train import gear_train, needs_train
-from fegear.results.train_parts import meshes, needs_speeds, pull_remarks
+from fegear.results.train_parts import carries_nothing, meshes, needs_speeds, pull_remarks
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 
 _RPM = 30.0 / np.pi
-#: A mesh with less of the largest mean force carries none.
-_NO_SHARE = 1e-9
 
 #: A change of the dynamic factor from one speed to the next that is too large to see peaks between them.
 _COARSE = 0.1
@@ -90,7 +88,7 @@ def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFact
 
     data, motion = gear_train(upstream), asked.motion
     speeds, i = motion.speeds / data.speed_ratio, data.train.mesh_index(asked.mesh)
-    if data.forces[i] <= _NO_SHARE * float(np.max(np.abs(data.forces))):
+    if carries_nothing(data, i):
         return DynamicFactorData(None, data.speed_of)
     pull = None
     if motion.in_time:

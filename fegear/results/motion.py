@@ -57,14 +57,20 @@ class SweepInputs:
     effects: EffectsPart = field(compare=False)
 
 
-def check_motion(scene: Scene, _subject: str = "") -> None:
-    """Refuse friction where teeth are lumped, and backlash that nothing looks at."""
+def check_friction(scene: Scene, _subject: str = "") -> None:
+    """Refuse friction where teeth are coupled or touch off the path."""
     effects = scene.case.effects
     if effects.friction and (effects.neighbour_coupling or effects.corner_contact):
         raise InputError(
             "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
             "switch neighbour_coupling and corner_contact off",
         )  # fmt: skip
+
+
+def check_motion(scene: Scene, subject: str = "") -> None:
+    """Refuse friction where teeth are lumped."""
+    check_friction(scene, subject)
+    effects = scene.case.effects
     if effects.friction and not effects.parametric:
         raise InputError(
             "effects.friction", "true", "needs tooth pairs that come and go", "set effects.parametric = true"

@@ -5,15 +5,20 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.errors import InputError
 from fegear.models.neglected_effects import percent
 from fegear.models.train import train_part
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
+    from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.pull import Pull
 
 RPM = 30.0 / math.pi
+#: A mesh with less of the largest mean force carries none.
+_NO_SHARE = 1e-9
 
 
 def meshes(scene: Scene) -> tuple[str, ...]:
@@ -24,6 +29,11 @@ def meshes(scene: Scene) -> tuple[str, ...]:
 def own_meshes(scene: Scene) -> tuple[str, ...]:
     """Meshes whose teeth are described by their own pair."""
     return tuple(name for name in meshes(scene) if train_part(scene).mesh[name].like is None)
+
+
+def carries_nothing(data: GearTrain, mesh: int) -> bool:
+    """Whether a mesh idles."""
+    return bool(data.forces[mesh] <= _NO_SHARE * float(np.max(np.abs(data.forces))))
 
 
 def needs_one_speed(scene: Scene, _subject: str) -> None:

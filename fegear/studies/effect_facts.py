@@ -55,7 +55,7 @@ FACTS: dict[str, EffectFact] = {
     ),
     "friction": EffectFact(
         "teeth that slide put a torque on both gears",
-        "`parametric`, no `neighbour_coupling`, no `corner_contact`",
+        "`parametric` where it moves, no `neighbour_coupling`, no `corner_contact`",
         ("friction fits",),
     ),
     "parametric": EffectFact(

@@ -8,13 +8,15 @@ import pytest
 
 from fegear.dynamics.excitation import MeshExcitation
 from fegear.dynamics.friction import benedict_kelley, buckingham, with_friction
+from fegear.dynamics.friction_over_path import friction_over_path
 from fegear.dynamics.lin_model import FourInertia
 from fegear.dynamics.motion_model import MotionModel, friction_loss_torque
 from fegear.dynamics.periodic import Periodic
 from fegear.dynamics.steady_state import steady_state
 from fegear.dynamics.train import Mesh
-from fegear.dynamics.train_mesh import a_drives
+from fegear.dynamics.train_mesh import TrainMesh, a_drives
 from fegear.errors import InputError, RangeError
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
 
 INCH, POUND = 0.0254, 4.4482216152605
 BASE, ANGLE = 0.04177, math.radians(20.0)
@@ -196,3 +198,78 @@ def test_friction_made_for_the_wrong_driver_is_refused():
                 friction_loss_torque(model)
         else:
             assert friction_loss_torque(model)[3] > 0.0  # the load, which drives now, gives more
+
+
+def loaded(ratio=1.0, a_drives=True):
+    """A gear pair at work in a train, of real gears and springs of one stiffness."""
+    steel = Material(206.8e9, 0.3, 7850.0)
+    made = [
+        Gear(Tooth(z, BasicRack(1.0, 1.25, 0.25, ANGLE)), 3.175e-3, 0.01, 0.0254, steel, "strain")
+        for z in (28, round(28 * ratio))
+    ]
+    pair = GearPair(*made)
+    springs = MeshExcitation.from_tooth_pair(
+        lambda x: 3e8 * np.ones_like(x), lambda x: np.zeros_like(x), pair.x_start, pair.x_end, pair.base_pitch
+    )
+    return TrainMesh.under(pair, springs, FORCE, a_drives=a_drives)
+
+
+def buckingham_law(sliding, _rolling, _force):
+    return buckingham(sliding)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 2.5])
+def test_friction_over_the_path_in_closed_form(ratio):
+    """A constant coefficient: mu W |v_s| of the sharing pairs by quadrature, torques by lever arms, power by both."""
+    mesh, mu, frequency = loaded(ratio), 0.06, 2000.0
+    pair = mesh.pair
+    found = friction_over_path(mesh, frequency, lambda v, *_: np.full(np.shape(v), mu), 301)
+    w_1 = frequency * 2 * math.pi / pair.driver.teeth
+    w_2 = w_1 * pair.driver.teeth / pair.driven.teeth
+    np.testing.assert_allclose(found.sliding, (w_1 + w_2) * found.x, atol=1e-9)
+    # one pair's friction takes mu W |v_s| at every place
+    taken = -(found.torque_driver * w_1 + found.torque_driven * w_2)
+    np.testing.assert_allclose(taken, mu * found.load * np.abs(found.sliding), rtol=1e-9, atol=1e-6)
+    # equal springs: half the load where two pairs touch, all of it where one does
+    x = np.linspace(pair.x_start, pair.x_end, 200_001)
+    alone = (x > pair.x_lpstc) & (x < pair.x_hpstc)
+    mean = np.trapezoid(mu * np.where(alone, 1.0, 0.5) * FORCE * (w_1 + w_2) * np.abs(x), x) / pair.base_pitch
+    assert found.loss == pytest.approx(mean, rel=1e-4)
+    assert found.mean_coefficient == pytest.approx(mu, rel=1e-12)
+    assert found.loss_error < 1e-9 * found.loss
+    assert found.power == pytest.approx(FORCE * w_1 * pair.driver.base_radius)
+    # both pairs together: the pair one base pitch behind or ahead
+    k = int(np.argmin(np.abs(found.x - 0.9 * pair.x_end)))
+    other = np.interp(found.x[k] - pair.base_pitch, found.x, found.torque_driver)
+    assert found.total_driver[k] == pytest.approx(found.torque_driver[k] + other, rel=1e-3)
+
+
+def test_friction_over_the_path_is_the_friction_of_the_motion():
+    """The same torques as the springs in motion have, for laws that depend on sliding, rolling and load."""
+    mesh, train_mesh = loaded(1.0), Mesh("g", "a", "b", 1.0, 1.0, 28, 28, 3e8)
+    train_mesh = replace(train_mesh, radius_a=mesh.pair.driver.base_radius, radius_b=-mesh.pair.driven.base_radius)
+    for law in (buckingham_law, lambda v, r, w: benedict_kelley(w / 0.0254, 0.02, v, r)):
+        found = friction_over_path(mesh, 1500.0, law)
+        rubbed = with_friction(
+            mesh.excitation, train_mesh, mesh.pair.base_pitch, mesh.pair.working_pressure_angle, 1500.0, FORCE, law,
+            tolerance=1e-9,
+        )  # fmt: skip
+        place = found.x / mesh.pair.base_pitch
+        clear = np.flatnonzero(np.abs(place) > 0.02)
+        for k in clear[::17]:
+            slot = math.floor(place[k]) - rubbed.first_slot
+            on_a, on_b = (float(f(place[k])) * found.load[k] for f in rubbed.friction[slot])
+            assert on_a == pytest.approx(found.torque_driver[k], rel=1e-5)
+            assert on_b == pytest.approx(found.torque_driven[k], rel=1e-5)
+
+
+def test_friction_over_the_path_of_coupled_teeth_is_refused():
+    mesh = replace(loaded(), excitation=MeshExcitation.from_mesh(Periodic.constant(3e8)))
+    with pytest.raises(InputError, match="tooth pairs"):
+        friction_over_path(mesh, 1500.0, buckingham_law)
+
+
+def test_no_friction_no_torque():
+    found = friction_over_path(loaded(), 1500.0, lambda v, *_: np.zeros_like(v))
+    assert not np.any(found.torque_driver)
+    assert (found.loss, found.mean_coefficient) == (0.0, 0.0)
