@@ -20,6 +20,7 @@ from fegear.case.stiffness import StiffnessPart
 from fegear.case.study import StudyPart
 from fegear.case.train import TrainPart
 from fegear.case.transmissibility import TransmissibilityPart
+from fegear.case.transmission_error import TransmissionErrorPart
 
 
 class Case(Part):
@@ -35,6 +36,7 @@ class Case(Part):
     transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
     design: DesignPart | None = None
     loading: LoadingPart | None = None
+    transmission_error: TransmissionErrorPart = Field(default_factory=TransmissionErrorPart)
     train: TrainPart | None = None
     dynamics: DynamicsPart = Field(default_factory=DynamicsPart)
     effects: EffectsPart = Field(default_factory=EffectsPart)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel, Scale, Stems
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Forecast, Stage, Subject
+from fegear.engine.stage import Forecast, Stage
 from fegear.models.pair_checks import check_relief
 from fegear.results import forecasts
 from fegear.results.loaded_pair import (
@@ -23,16 +23,20 @@ from fegear.results.loaded_pair import (
     spur_pairs,
     under,
 )
+from fegear.results.mark_transmission_error import mark_data, present_mark
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.case.transmission_error import TransmissionErrorPart
     from fegear.contact import FourierSeries, Loaded, TransmissionError
     from fegear.contact.error_by_shift import TransmissionErrorShift
+    from fegear.engine.figure import DeferredFigure
     from fegear.engine.stage import Upstream, Work
     from fegear.models.loaded_pair import LoadedPair
+    from fegear.results.mark_transmission_error import MarkData
 
-
+#: Harmonics of the series.
 HARMONICS = 64
 #: Roll positions of the table over the base pitch; those on either side of every jump come in addition.
 POSITIONS = 200
@@ -65,6 +69,8 @@ class TransmissionErrorData:
         Estimated errors at the nominal load.
     mesh_compliance : float
         Mean of 1/K_T of perfect flanks [m/N].
+    by_mark : MarkData or None
+        Mark's series at the nominal load, where the case asks for it.
     """
 
     pair: LoadedPair
@@ -74,6 +80,19 @@ class TransmissionErrorData:
     rotational: FourierSeries | None
     shift: TransmissionErrorShift | None
     mesh_compliance: float
+    by_mark: MarkData | None
+
+
+@dataclass(frozen=True)
+class TransmissionErrorInputs:
+    """What is read of the case beside the loaded pair."""
+
+    part: TransmissionErrorPart
+    name: str = field(compare=False)
+
+
+def _inputs(scene: Scene, name: str) -> TransmissionErrorInputs:
+    return TransmissionErrorInputs(scene.case.transmission_error, name)
 
 
 def _curve_columns(curve: Loaded, stiffness: Array, i: int) -> tuple[Column, ...]:
@@ -124,7 +143,7 @@ def _te_values(prefix: str, te: TransmissionError, shifts: TransmissionErrorShif
     )
 
 
-def _compute(_inputs: Subject, upstream: Upstream, work: Work) -> TransmissionErrorData:
+def _compute(asked: TransmissionErrorInputs, upstream: Upstream, work: Work) -> TransmissionErrorData:
     from fegear.contact import revolution, transmission_error
     from fegear.contact.error_by_shift import transmission_error_shift
     from fegear.contact.mesh_curve import roll_positions, secant_stiffness
@@ -142,10 +161,13 @@ def _compute(_inputs: Subject, upstream: Upstream, work: Work) -> TransmissionEr
     rotational = revolution(e, pair.nominal, e.cycles, 3 * e.cycles) if uneven and e.cycles <= _MOST_CYCLES else None
     compliance = pair_stiffness(e, pair.nominal, HARMONICS).mean_compliance
     shift = transmission_error_shift(exact[i], pair.shifted)
-    return TransmissionErrorData(pair, tuple(exact), curve, secant_stiffness(curve), rotational, shift, compliance)
+    by_mark = mark_data(e, exact[i], asked.part.terms) if asked.part.method == "mark-series" else None
+    return TransmissionErrorData(
+        pair, tuple(exact), curve, secant_stiffness(curve), rotational, shift, compliance, by_mark
+    )
 
 
-def _present(data: TransmissionErrorData, inputs: Subject) -> Outcome:
+def _present(data: TransmissionErrorData, inputs: TransmissionErrorInputs) -> Outcome:
     name, pair, curve, stiffness, shifts = inputs.name, data.pair, data.curve, data.stiffness, data.shift
     e, i = pair.engagement, pair.loads.index(pair.nominal)
     te = data.exact[i]
@@ -188,8 +210,15 @@ def _present(data: TransmissionErrorData, inputs: Subject) -> Outcome:
             "over which rotational harmonics of spacing errors are computed, so these are neglected. Give the "
             "errors of one gear alone to see its harmonics."
         )
-    settings = {"harmonics": HARMONICS, "positions": POSITIONS}
-    figures = _figures(name, data, None if shifts is None else shifts.amplitude)
+    settings: dict[str, object] = {"harmonics": HARMONICS, "positions": POSITIONS}
+    figures: tuple[Figure | DeferredFigure, ...] = _figures(name, data, None if shifts is None else shifts.amplitude)
+    if data.by_mark is not None:
+        more = present_mark(name, data.by_mark, data.rotational)
+        tables += more.tables
+        values += more.values
+        remarks += more.remarks
+        figures = (*figures, *more.figures)
+        settings |= more.settings
     return Outcome(data, tuple(tables), tuple(values), settings, tuple(remarks), figures)
 
 
@@ -319,13 +348,13 @@ TRANSMISSION_ERROR = Stage(
     about="loaded transmission error, mesh stiffness, their harmonics, and both over load",
     subjects=spur_pairs,
     needs=needs_pair,
-    inputs=Subject.of,
+    inputs=_inputs,
     compute=_compute,
     present=_present,
     check=check_relief,
     effects=EFFECTS,
     cites=citing(
-        Citation("mark", "static transmission error, its Fourier series and the mean compliance", "1.1 to 1.11, A.11"),
+        Citation("mark", "static transmission error, its Fourier series and the mean compliance", "1.1 to 1.32, A.11"),
         Citation("lin-townsend-oswald", "effective error A_e"),
         Citation("harris", "transmission error over the mesh cycle for a family of loads"),
     ),

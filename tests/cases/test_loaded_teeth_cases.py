@@ -210,6 +210,7 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
             ('gear.test.relief={tip={amount="1 um", start_radius="40 mm"}}',),
             "inside the base circle",
         ),
+        ("mark_tip_relief", ("transmission_error.terms=5",), 'only with method = "mark-series"'),
         ("calculix_pair", ('gear.a.spacing_errors=["1 um"]', "effects.spacing_errors=true"), "each of the 28 teeth"),
         ("mark_minimum_excitation", ('design.length="20 mm"',), "beyond the path"),
         ("mark_minimum_excitation", ('design.length="5 mm"',), "below 1 no pair"),
@@ -244,6 +245,37 @@ def test_spacing_errors_give_rotational_harmonics():
     assert rotational["n"][np.argmax(rotational["amplitude"][:27])] == 1
     assert rotational["amplitude"][0] == pytest.approx(3.0, rel=0.03)
     assert values["I.te_largest_rotational"].value == pytest.approx(rotational["amplitude"][0], rel=1e-12)
+
+
+def test_marks_series_beside_the_exact_transmission_error():
+    """method = "mark-series": the exact numbers stay what they are; series, its limit and closed forms stand beside."""
+    tables, _, results = run("sources/mark_series")
+    plain = run("sources/mark_series", "transmission_error={}")[0]
+    for name, table in plain.items():
+        for head, column in table.items():
+            np.testing.assert_array_equal(tables[name][head], column)
+    assert not any("series" in name or "convergence" in name for name in plain)
+    found = tables["transmission_error_series_I"]
+    np.testing.assert_allclose(found["limit"], found["exact"], atol=1e-9)
+    assert np.all(np.abs(found["series"] - found["exact"]) <= found["truncation"] + 1e-9)
+    convergence = tables["transmission_error_convergence_I"]
+    assert np.all(convergence["error"] <= 2.0 * convergence["bound"] + 1e-15)
+    assert convergence["error"][-1] < 1e-14 < 1e-3 < convergence["error_convolved"][-1]
+    spacing = tables["transmission_error_rotational_series_I"]
+    assert spacing["closed_form"][0] == pytest.approx(spacing["exact"][0], rel=1e-3)
+    assert 28 not in spacing["n"]
+    keys = [figure.key for figure in results.figures]
+    assert {f"transmission_error_{k}_I" for k in ("series", "convergence", "rotational_series")} <= set(keys)
+    assert not any("series" in remark for remark in results.remarks)
+
+
+def test_marks_series_says_where_pairs_part():
+    """At a tenth of the load the relief keeps a pair off: no number of terms brings the series to the exact method."""
+    tables, _, results = run("sources/mark_series", "pair.I.load='160 N'", "transmission_error.terms=40")
+    found = tables["transmission_error_series_I"]
+    assert found["truncation"].max() < 1e-9
+    assert np.abs(found["series"] - found["exact"]).max() > 0.1
+    assert any("every pair on the path as loaded" in remark for remark in results.remarks)
 
 
 def fed_back(tables, folder):
