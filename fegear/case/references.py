@@ -31,7 +31,7 @@ def check_references(case: Case, gears: Collection[str], pairs: Collection[str])
     train = case.train
     known = {
         "gear": gears, "spur gear": gears, "pair": pairs, "spur pair": pairs,
-        "body": train.body if train else (), "mesh": train.mesh if train else (),
+        "gear pair": case.pair, "body": train.body if train else (), "mesh": train.mesh if train else (),
     }  # fmt: skip
     for key, name, kind in _references(case):
         if name is not None and name not in known[kind]:
@@ -50,6 +50,10 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
         yield "design.pair", case.design.pair, "pair"
     if case.loading is not None:
         yield "loading.pair", case.loading.pair, "pair"
+    for name, part in case.transmissibility.items():
+        error = part.excitation.transmission_error if part.excitation else None
+        key = f"transmissibility.{name}.excitation.transmission_error.pair"
+        yield key, error.pair if error else None, "gear pair"
     if case.train is not None:
         yield from _of_train(case.train)
         dynamics = case.dynamics

@@ -161,7 +161,7 @@ def test_blankenship_singh():
     assert modes["Lambda"] == pytest.approx([1.65451, 0.78400, 0.44871, 0.39390, 0.26800], abs=0.51e-5)
     assert modes["Delta_normal"] == pytest.approx([1.0, 0.1956, 0.2628, 0.0282, 0.0442], abs=0.51e-4)
     assert len(response["Lambda"]) == 2000
-    assert len(response) == 2 + 2 * 2 * 25
+    assert len(response) == 2 + 2 * 2 * 25 + 25
     assert values["I.omega"] == pytest.approx(math.sqrt(2.0 * 3e8 / 2.882) / (2.0 * math.pi), rel=1e-12)
     spur, _, _ = run("blankenship_singh", "transmissibility.I.mesh={ stiffness = '3e8 N/m' }")
     assert spur["helical_modes_I"]["Lambda"][0] == pytest.approx(1.61803, abs=0.51e-5)
