@@ -12,6 +12,7 @@ from fegear.results import (
     dynamic_factor,
     dynamic_increments,
     dynamic_root_stress,
+    flank_generation,
     followed_modes,
     gear_solution,
     gear_train,
@@ -69,6 +70,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
         "Helical pairs": (
             tooth_contact.TOOTH_CONTACT,
             contact_lines.CONTACT_LINES,
+            flank_generation.FLANK_GENERATION,
             transmissibility.TRANSMISSIBILITY,
             followed_modes.FOLLOWED_MODES,
             pair_forces.PAIR_FORCES,
