@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -26,9 +26,6 @@ from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, Material, Tooth
 from fegear.geometry.over_balls import over_balls
 from fegear.geometry.plausible import refuse_material
-
-if TYPE_CHECKING:
-    from fegear.geometry.helical_gear import HelicalGear
 
 #: Names of the geometry layer that a case file calls otherwise.
 _KEYS = {
@@ -120,6 +117,11 @@ class GearPart(Part):
         """Whether the gear is described as a helical one (of helix angle zero as the limit)."""
         return self.helix_angle is not None
 
+    @property
+    def has_helix(self) -> bool:
+        """Whether its teeth are not straight."""
+        return bool(self.helix_angle)
+
     @model_validator(mode="after")
     def _one_size(self) -> Self:
         if self.is_helical:
@@ -139,46 +141,30 @@ class GearPart(Part):
         return self
 
     def _check_helical(self) -> None:
-        """Refuse keys that the helical gear does not know."""
+        """Refuse sizes of the section across the axis, and keys of what is computed in a plane."""
         if (self.normal_module is None) == (self.normal_diametral_pitch is None):
             remedy = 'write normal_module = "5 mm" or normal_diametral_pitch = "5 / inch"'
             raise refuse("must be given once for a helical gear", remedy, key="normal_module")
-        known = {
-            "teeth", "pressure_angle", "tip_diameter", "face_width", "material", "helix_angle", "hand",
-            "normal_module", "normal_diametral_pitch", "rack", "rim_thickness",
-        }  # fmt: skip
-        for key in sorted(self.model_fields_set - known):
-            if key in ("module", "diametral_pitch"):
+        for key in ("module", "diametral_pitch"):
+            if key in self.model_fields_set:
                 raise refuse("is that of a spur gear", f"write normal_{key} for a gear with a helix_angle", key=key)
-            raise refuse(
-                "is not computed for a gear with a helix_angle yet", f"remove {key}: results do without it", key=key
-            )
+        for key in ("plane", "spacing_errors", "tooth_mesh", "tooth_mesh_fillet"):
+            if self.has_helix and key in self.model_fields_set:
+                raise refuse(
+                    "is not computed for a gear with a helix_angle yet", f"remove {key}: results do without it", key=key
+                )
         for key in ("hand", "face_width"):
             if getattr(self, key) is None:
                 raise refuse("is missing for a helical gear", f"give {key}", key=key)
 
-    def build_helical(self, prefix: str) -> HelicalGear:
-        """Make the helical gear."""
-        from fegear.geometry.helical_gear import HelicalGear
-
-        module = self.normal_module if self.normal_module is not None else 1.0 / (self.normal_diametral_pitch or 1.0)
-        try:
-            return HelicalGear(
-                self.teeth,
-                module,
-                self.pressure_angle,
-                self.helix_angle or 0.0,
-                self.face_width or math.nan,
-                self.hand or "spur",
-                tip_radius=math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter,
-            )
-        except InputError as error:
-            raise at(prefix, error, {"tip_radius": "tip_diameter", "normal_pressure_angle": "pressure_angle"}) from None
-
     @property
     def module_length(self) -> float:
-        """The module m [m]."""
-        return self.module if self.module is not None else 1.0 / (self.diametral_pitch or math.nan)
+        """The normal module m_n [m], that of a spur gear's only section."""
+        if self.is_helical:
+            given = self.normal_module, self.normal_diametral_pitch
+        else:
+            given = self.module, self.diametral_pitch
+        return given[0] if given[0] is not None else 1.0 / (given[1] or math.nan)
 
     def build(self, prefix: str) -> Gear:
         """Make the gear; errors of the geometry are reported under the keys of the case file.
@@ -196,15 +182,17 @@ class GearPart(Part):
                 tip_radius=math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter / m,
                 tip_rounding=self.tip_radius_rounding / m,
                 tip_chamfer=self.tip_chamfer / m,
+                helix_angle=self.helix_angle or 0.0,
             )
             self._refuse_thick_rim(tooth.root_radius * m)
             bore = 0.5 * tooth.root_radius * m if self.bore_radius is None else self.bore_radius
             width = 1e-3 if self.face_width is None else self.face_width
-            gear = Gear(tooth, m, bore, width, self.material.build(), self.plane)
+            gear = Gear(tooth, m, bore, width, self.material.build(), self.plane, self.hand or "spur")
             if self.ball_diameter is not None:
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
         except InputError as error:
-            raise at(prefix, self._in_words_of_the_case(error), _KEYS) from None
+            names = _KEYS | ({"module": "normal_module"} if self.is_helical else {})
+            raise at(prefix, self._in_words_of_the_case(error), names) from None
         return gear
 
     def _refuse_thick_rim(self, root_radius: float) -> None:

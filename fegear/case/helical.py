@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from fegear.case.part import Angle, InverseLength, Length, LengthOrZero, Part, PositiveForce, refuse
 
 if TYPE_CHECKING:
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry import Gear, GearPair
     from fegear.helical.pair import HelicalPair, Misalignment
 
 
@@ -32,7 +32,7 @@ class MisalignmentPart(Part):
             raise refuse("contradicts lead_angle", "give either the error of the lead or that of its angle", key="lead")
         return self
 
-    def build(self, pinion: HelicalGear) -> Misalignment:
+    def build(self, pinion: Gear) -> Misalignment:
         """Make the errors."""
         from fegear.helical.lead_error import lead_angle_error
         from fegear.helical.pair import Misalignment
@@ -52,7 +52,7 @@ class ModificationPart(Part):
     crown: LengthOrZero = 0.0
     absorb: bool = False
 
-    def crown_coefficient(self, pinion: HelicalGear) -> float:
+    def crown_coefficient(self, pinion: Gear) -> float:
         """Crown as a turn of the section per squared height [rad/m^2]."""
         arm = pinion.base_radius * math.cos(pinion.base_helix_angle)
         return self.crown / (arm * (0.5 * pinion.face_width) ** 2)
@@ -66,21 +66,21 @@ class ToothContactPart(Part):
 
 
 def build_pair(
-    pinion: HelicalGear,
-    gear: HelicalGear,
+    design: GearPair,
     errors: MisalignmentPart | None,
     change: ModificationPart | None,
     axial_offset: float,
 ) -> HelicalPair:
-    """Make a helical pair from its parts."""
+    """The flanks of a pair with their errors and modification; the driver is the pinion."""
     from fegear.helical.pair import HelicalPair, Misalignment
 
     change = change or ModificationPart()
     return HelicalPair(
-        pinion,
-        gear,
-        Misalignment() if errors is None else errors.build(pinion),
+        design.driver,
+        design.driven,
+        Misalignment() if errors is None else errors.build(design.driver),
         parabola=change.parabola,
-        crown=change.crown_coefficient(pinion),
+        crown=change.crown_coefficient(design.driver),
         axial_offset=axial_offset,
+        design_distance=design.centre_distance,
     )

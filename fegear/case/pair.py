@@ -24,7 +24,6 @@ from fegear.geometry import GearPair
 
 if TYPE_CHECKING:
     from fegear.geometry import Gear
-    from fegear.geometry.helical_gear import HelicalGear
     from fegear.helical.pair import HelicalPair
 
 
@@ -115,8 +114,8 @@ class PairPart(Part):
         except InputError as error:
             raise at(prefix, error, {"pair": ""}) from None
 
-    def build_helical(self, gears: dict[str, HelicalGear], prefix: str, *, misaligned: bool) -> HelicalPair:
-        """Make a helical pair; its errors count only where the scene calls for misalignment.
+    def build_helical(self, design: GearPair, prefix: str, *, misaligned: bool) -> HelicalPair:
+        """Make the flanks of a pair; their errors count only where the scene calls for misalignment.
 
         Raises
         ------
@@ -124,21 +123,14 @@ class PairPart(Part):
             If a key asks for what is not computed for helical pairs.
         """
         for key in ("compliance", "root_stress", "loads", "speed"):
-            if key in self.model_fields_set:
+            if key in self.model_fields_set and design.driver.helix_angle != 0.0:
                 raise InputError(
                     f"{prefix}.{key}", "(given)", "is not computed for a helical pair yet: its flanks are rigid",
                     f"remove {key}; tooth_contact.load gives contact ellipses, load or torque the crosscheck",
                 )  # fmt: skip
-        if self.centre_distance is not None:
-            raise InputError(
-                f"{prefix}.centre_distance", f"{self.centre_distance * 1e3:.9g} mm",
-                "has no meaning for a helical pair",
-                "give misalignment = { centre_distance = ... }, the error against the design",
-            )  # fmt: skip
         try:
             return build_pair(
-                gears[self.driver],
-                gears[self.driven],
+                design,
                 self.misalignment if misaligned else None,
                 self.modification,
                 self.axial_offset,

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from fegear.geometry import Gear, GearPair
-    from fegear.geometry.helical_gear import HelicalGear
     from fegear.helical.pair import HelicalPair
 
 
@@ -40,9 +39,11 @@ class Scene:
     folder : Path
         Where relative file names in the case start.
     gears : dict of str to Gear
+        Spur and helical ones.
     pairs : dict of str to GearPair
-    helical_gears : dict of str to HelicalGear
+        Of either.
     helical_pairs : dict of str to HelicalPair
+        The flanks of those pairs whose gears are described with a helix angle, zero included, and their errors.
     text : str
         The case file as it was written, with the ``--set`` options as comments in front; empty for a case that was
         never a file.
@@ -55,10 +56,19 @@ class Scene:
     folder: Path
     gears: dict[str, Gear]
     pairs: dict[str, GearPair]
-    helical_gears: dict[str, HelicalGear] = field(default_factory=dict)
     helical_pairs: dict[str, HelicalPair] = field(default_factory=dict)
     text: str = ""
     document: Mapping[str, object] = field(default_factory=dict)
+
+    @property
+    def spur_gears(self) -> dict[str, Gear]:
+        """The gears without a helix: those that results of plane teeth are about."""
+        return {name: gear for name, gear in self.gears.items() if gear.helix_angle == 0.0}
+
+    @property
+    def spur_pairs(self) -> dict[str, GearPair]:
+        """The pairs of spur gears."""
+        return {name: pair for name, pair in self.pairs.items() if pair.driver.helix_angle == 0.0}
 
     def file(self, text: str, key: str) -> Path:
         """Return the path of a file that the case names, or refuse if it is not there."""
@@ -147,27 +157,26 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
         case = Case.model_validate(document, context={BARE_SI: bare_si})
     except ValidationError as error:
         raise refusal(error) from None
-    gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items() if not part.is_helical}
-    helical_gears = {key: part.build_helical(f"gear.{key}") for key, part in case.gear.items() if part.is_helical}
+    gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items()}
     for key, pair in case.pair.items():
         for role in ("driver", "driven"):
             if (gear := getattr(pair, role)) not in case.gear:
                 rule, remedy = "is no gear of this case", nearest(gear, case.gear)
                 raise InputError(f"pair.{key}.{role}", f'"{gear}"', rule, remedy)
-        if (pair.driver in gears) != (pair.driven in gears):
+        if (gears[pair.driver].helix_angle == 0.0) != (gears[pair.driven].helix_angle == 0.0):
             raise InputError(
                 f"pair.{key}.driven", f'"{pair.driven}"', "is helical where its mate is not, or the other way round",
-                'describe both with helix_angle (a spur gear with "0 deg" and hand = "spur")',
+                "give both the same helix_angle and opposite hands",
             )  # fmt: skip
-    spur = {key: pair for key, pair in case.pair.items() if pair.driver in gears}
-    pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in spur.items()}
+    pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
     helical_pairs = {
-        key: pair.build_helical(helical_gears, f"pair.{key}", misaligned=case.effects.misalignment)
+        key: pair.build_helical(pairs[key], f"pair.{key}", misaligned=case.effects.misalignment)
         for key, pair in case.pair.items()
-        if key not in spur
+        if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical
     }
-    check_references(case, gears, pairs)
-    return Scene(case, name, folder, gears, pairs, helical_gears, helical_pairs, document=document)
+    scene = Scene(case, name, folder, gears, pairs, helical_pairs, document=document)
+    check_references(scene)
+    return scene
 
 
 def apply_override(document: dict[str, Any], override: str) -> None:

@@ -11,27 +11,26 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from fegear.case.model import Case
+    from fegear.case.reading import Scene
     from fegear.case.train import TrainPart
 
 
-def check_references(case: Case, gears: Collection[str], pairs: Collection[str]) -> None:
+def check_references(scene: Scene) -> None:
     """Refuse names that nothing in the case has, whether or not a wanted result reads them.
 
     Parameters
     ----------
-    case : Case
-    gears, pairs : collection of str
-        Names of the spur gears and of their pairs.
+    scene : Scene
 
     Raises
     ------
     InputError
         With the nearest name.
     """
-    train = case.train
-    known = {
-        "gear": gears, "spur gear": gears, "pair": pairs, "spur pair": pairs,
-        "gear pair": case.pair, "body": train.body if train else (), "mesh": train.mesh if train else (),
+    case, train = scene.case, scene.case.train
+    known: dict[str, Collection[str]] = {
+        "gear": scene.gears, "spur gear": scene.spur_gears, "pair": scene.pairs, "spur pair": scene.spur_pairs,
+        "body": train.body if train else (), "mesh": train.mesh if train else (),
     }  # fmt: skip
     for key, name, kind in _references(case):
         if name is not None and name not in known[kind]:
@@ -45,15 +44,11 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
     yield "cost.gear", case.cost.gear, "spur gear"
     yield "cost.pair", case.cost.pair, "spur pair"
     if case.study is not None:
-        yield "study.gear", case.study.gear, "gear"
+        yield "study.gear", case.study.gear, "spur gear"
     if case.design is not None:
-        yield "design.pair", case.design.pair, "pair"
+        yield "design.pair", case.design.pair, "spur pair"
     if case.loading is not None:
-        yield "loading.pair", case.loading.pair, "pair"
-    for name, part in case.transmissibility.items():
-        error = part.excitation.transmission_error if part.excitation else None
-        key = f"transmissibility.{name}.excitation.transmission_error.pair"
-        yield key, error.pair if error else None, "gear pair"
+        yield "loading.pair", case.loading.pair, "spur pair"
     if case.train is not None:
         yield from _of_train(case.train)
         dynamics = case.dynamics

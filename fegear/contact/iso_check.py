@@ -19,29 +19,26 @@ if TYPE_CHECKING:
     from fegear.fem import GearInfluence
     from fegear.fem.settings import MeshSettings
     from fegear.formulas.iso6336_stiffness import Stiffness
-    from fegear.geometry import BasicRack, GearPair
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
     from fegear.solution_cache import SolutionCache
 
 
 @dataclass(frozen=True, slots=True)
 class HelicalCheck:
-    """A helical pair as ISO 6336 rates it: gears without profile shift, cut by racks in the normal section.
+    """A helical pair as ISO 6336 rates it.
 
     Parameters
     ----------
-    gears : tuple of HelicalGear
+    gears : tuple of Gear
         Driver and driven.
-    racks : tuple of BasicRack
     contact_ratio, overlap_ratio : float
         epsilon_alpha, epsilon_beta.
     line_load : float
         F_t / b [N/m].
     """
 
-    gears: tuple[HelicalGear, HelicalGear]
-    racks: tuple[BasicRack, BasicRack]
+    gears: tuple[Gear, Gear]
     contact_ratio: float
     overlap_ratio: float
     line_load: float
@@ -135,28 +132,24 @@ def rated_helical_pair(
     cache : SolutionCache, optional
     """
     found = []
-    for gear, rack, rim in zip(check.gears, check.racks, rims, strict=True):
+    for gear, rim in zip(check.gears, rims, strict=True):
 
-        def rate(
-            gear: HelicalGear = gear, rack: BasicRack = rack, rim: float | None = rim
-        ) -> tuple[rating.RootRating, float]:
+        def rate(gear: Gear = gear, rim: float | None = rim) -> tuple[rating.RootRating, float]:
             load = rating.ToothLoad(
                 check.line_load, rating.virtual_contact_ratio(gear, check.contact_ratio), check.overlap_ratio,
                 gear.helix_angle,
             )  # fmt: skip
-            one = rating.rate_helical(gear, rack, load, choice, rim)
-            tension = virtual_root_stress(gear, rack, one.load_diameter, settings, cache).tension
+            one = rating.rate_helical(gear, load, choice, rim)
+            tension = virtual_root_stress(gear, one.load_diameter, settings, cache).tension
             normal = check.line_load / math.cos(gear.normal_pressure_angle)
-            return one, normal * tension / gear.normal_module
+            return one, normal * tension / gear.module
 
         both = attempt(rate)
         if both.value is None:
             found.append(_nothing(Outcome(None, both.reason)))
             continue
         one, fe = both.value
-        form = check.line_load / gear.normal_module * one.form.Y_F * one.form.Y_S
+        form = check.line_load / gear.module * one.form.Y_F * one.form.Y_S
         found.append(RatedGear(Outcome(one), form, fe, ""))
-    stiffness = attempt(
-        partial(rating.helical_stiffness, check.gears, check.racks, check.contact_ratio, check.line_load)
-    )
+    stiffness = attempt(partial(rating.helical_stiffness, check.gears, check.contact_ratio, check.line_load))
     return RatedPair((found[0], found[1]), stiffness)

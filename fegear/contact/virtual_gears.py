@@ -13,12 +13,10 @@ import numpy as np
 
 from fegear.fem import solve_gear
 from fegear.formulas.iso6336_root_stress import virtual_teeth
-from fegear.geometry import Gear, Tooth
+from fegear.geometry import Gear
 
 if TYPE_CHECKING:
     from fegear.fem.settings import MeshSettings
-    from fegear.geometry import BasicRack
-    from fegear.geometry.helical_gear import HelicalGear
     from fegear.solution_cache import SolutionCache
 
 
@@ -39,8 +37,7 @@ class VirtualRootStress:
 
 
 def virtual_root_stress(
-    gear: HelicalGear,
-    rack: BasicRack,
+    gear: Gear,
     load_diameter: float,
     settings: MeshSettings,
     cache: SolutionCache | None = None,
@@ -49,9 +46,8 @@ def virtual_root_stress(
 
     Parameters
     ----------
-    gear : HelicalGear
-    rack : BasicRack
-        That cuts the normal section.
+    gear : Gear
+        The helical gear; its virtual one has its rack and profile shift.
     load_diameter : float
         d_en of the virtual gear [modules]; whole gears take the load at the same height above the pitch circle.
     settings : MeshSettings
@@ -59,14 +55,12 @@ def virtual_root_stress(
         Of solved teeth.
     """
     z_n = virtual_teeth(gear.teeth, gear.helix_angle, gear.normal_pressure_angle)
-    addendum = (gear.tip_radius - gear.pitch_radius) / gear.normal_module
-    cutter = replace(rack, pressure_angle=gear.normal_pressure_angle)
+    m, addendum = gear.module, gear.tooth.tip_radius - gear.tooth.pitch_radius
     counts = sorted({math.floor(z_n + 1e-9), math.ceil(z_n - 1e-9)})
     found = []
     for z in counts:
-        tooth = Tooth(z, cutter, tip_radius=0.5 * z + addendum)
+        tooth = replace(gear.tooth, teeth=z, tip_radius=0.5 * z + addendum, helix_angle=0.0)
         radius = 0.5 * (load_diameter - z_n + z)
-        m = gear.normal_module
         wheel = Gear(tooth, m, 0.5 * tooth.root_radius * m)
         known = solve_gear(wheel, settings, reach=0, estimate_error=False, cache=cache)
         found.append(m * float(known.largest_root_stress(0, "tension", np.array([radius * m]))[0][0]))

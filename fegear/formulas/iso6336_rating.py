@@ -7,7 +7,7 @@ at the outer point of single pair contact of the virtual pair (ISO 6336-3, 6.2).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
@@ -15,8 +15,7 @@ from fegear.formulas import iso6336_root_stress as root
 from fegear.formulas.iso6336_stiffness import Stiffness, stiffness
 
 if TYPE_CHECKING:
-    from fegear.geometry import BasicRack, GearPair
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
 
 
@@ -138,57 +137,50 @@ def rate_spur(
     return rate(root.rack_tooth(gear.tooth), d_en, gear.module, load, choice, backup)
 
 
-def virtual_tooth(gear: HelicalGear, rack: BasicRack) -> root.RackTooth:
-    """The virtual spur tooth of a helical gear without profile shift, cut by `rack` in its normal section."""
+def virtual_tooth(gear: Gear) -> root.RackTooth:
+    """The virtual spur tooth of a helical gear: its rack and its profile shift on z_n teeth."""
     z_n = root.virtual_teeth(gear.teeth, gear.helix_angle, gear.normal_pressure_angle)
-    return root.RackTooth(z_n, 0.0, rack.dedendum, rack.tip_radius, gear.normal_pressure_angle, rack.residual_undercut)
+    return replace(root.rack_tooth(gear.tooth), teeth=z_n)
 
 
-def virtual_contact_ratio(gear: HelicalGear, contact_ratio: float) -> float:
+def virtual_contact_ratio(gear: Gear, contact_ratio: float) -> float:
     """epsilon_alpha_n = epsilon_alpha / cos^2(beta_b) (ISO 6336-3, 6.2)."""
     return contact_ratio / math.cos(gear.base_helix_angle) ** 2
 
 
-def rate_helical(
-    gear: HelicalGear, rack: BasicRack, load: ToothLoad, choice: RatingChoice, rim_thickness: float | None = None
-) -> RootRating:
+def rate_helical(gear: Gear, load: ToothLoad, choice: RatingChoice, rim_thickness: float | None = None) -> RootRating:
     """Rate a helical gear through its virtual spur tooth.
 
     Parameters
     ----------
-    gear : HelicalGear
-        Without profile shift.
-    rack : BasicRack
-        That cuts the normal section.
+    gear : Gear
     load : ToothLoad
     choice : RatingChoice
     rim_thickness : float, optional
         [m]; None for a solid gear.
     """
-    tooth = virtual_tooth(gear, rack)
-    addendum = (gear.tip_radius - gear.pitch_radius) / gear.normal_module
+    tooth = virtual_tooth(gear)
+    addendum = (gear.tip_radius - gear.pitch_radius) / gear.module
     d_en = root.outer_single_contact_diameter(tooth, tooth.teeth + 2.0 * addendum, load.contact_ratio)
-    height = (addendum + rack.dedendum) * gear.normal_module
-    backup = math.inf if rim_thickness is None else rim_thickness / height
-    return rate(tooth, d_en, gear.normal_module, load, choice, backup)
+    backup = math.inf if rim_thickness is None else rim_thickness / (gear.tip_radius - gear.root_radius)
+    return rate(tooth, d_en, gear.module, load, choice, backup)
 
 
-def helical_stiffness(
-    gears: tuple[HelicalGear, HelicalGear], racks: tuple[BasicRack, BasicRack], contact_ratio: float, line_load: float
-) -> Stiffness:
-    """c' and c_gamma of a helical pair of steel gears without profile shift; the one with fewer teeth is the pinion.
+def helical_stiffness(gears: tuple[Gear, Gear], contact_ratio: float, line_load: float) -> Stiffness:
+    """c' and c_gamma of a helical pair of steel gears; the one with fewer teeth is the pinion.
 
     Parameters
     ----------
-    gears : (HelicalGear, HelicalGear)
-    racks : (BasicRack, BasicRack)
+    gears : (Gear, Gear)
     contact_ratio : float
         Transverse contact ratio epsilon_alpha.
     line_load : float
         F_t / b [N/m].
     """
-    (a, rack_a), (b, rack_b) = sorted(zip(gears, racks, strict=True), key=lambda pair: pair[0].teeth)
+    a, b = sorted(gears, key=lambda g: (g.teeth, -g.tooth.profile_shift))
     return stiffness(
-        (a.teeth, b.teeth), contact_ratio, helix_angle=a.helix_angle, dedendum=(rack_a.dedendum, rack_b.dedendum),
+        (a.teeth, b.teeth), contact_ratio, helix_angle=a.helix_angle,
+        profile_shift=(a.tooth.profile_shift, b.tooth.profile_shift),
+        dedendum=(a.tooth.rack.dedendum, b.tooth.rack.dedendum),
         pressure_angle=a.normal_pressure_angle, specific_load=line_load,
     )  # fmt: skip

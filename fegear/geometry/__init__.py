@@ -1,4 +1,4 @@
-"""Exact gear geometry: rack, generated tooth, gear and pair."""
+"""Exact gear geometry: rack, generated tooth, gear and pair, spur and helical alike."""
 
 from fegear.geometry.gear import Gear, Material
 from fegear.geometry.interference import Interference, interference

@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair
 
-#: Least transverse tooth thickness at the tip circle in modules; case-hardened teeth want 0.4.
+#: Least normal tooth thickness at the tip circle in modules; case-hardened teeth want 0.4.
 LEAST_TIP_THICKNESS = 0.2
 #: Least room between a tip circle and the mating root circle, in modules.
 LEAST_TIP_CLEARANCE = 0.1
-#: Least contact ratio that is usual for a quiet drive.
+#: Least contact ratio, overlap included, that is usual for a quiet drive.
 LEAST_CONTACT_RATIO = 1.2
 #: Least rim below the root circle, in depths of a tooth: thinner rims bend with their teeth (Y_B of ISO 6336-3 is 1).
 LEAST_RIM = 1.2
@@ -52,10 +52,8 @@ class Check(NamedTuple):
 
 
 def tip_thickness(gear: Gear) -> float:
-    """Transverse tooth thickness on the circle where the involute ends [m]."""
-    tooth = gear.tooth
-    half = float(tooth.half_thickness_angle(tooth.involute_tip_radius))
-    return 2.0 * half * tooth.involute_tip_radius * gear.module
+    """Normal tooth thickness on the circle where the involute ends [m]."""
+    return gear.normal_thickness(gear.involute_tip_radius)
 
 
 def gear_checks(name: str, gear: Gear) -> tuple[Check, ...]:
@@ -86,8 +84,8 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
     pair : GearPair
     """
     checks = [
-        Check(name, "transverse contact ratio", pair.contact_ratio, LEAST_CONTACT_RATIO, "",
-              "lengthen the teeth or raise their number"),
+        Check(name, "transverse contact ratio" if pair.overlap_ratio == 0.0 else "total contact ratio",
+              pair.total_contact_ratio, LEAST_CONTACT_RATIO, "", "lengthen the teeth or raise their number"),
         Check(name, "backlash along the line of action", pair.normal_backlash, 0.0, "mm",
               "widen the centre distance or thin the teeth"),
     ]  # fmt: skip

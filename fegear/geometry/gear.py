@@ -142,6 +142,21 @@ class Gear:
         return self.tooth.teeth
 
     @property
+    def angular_pitch(self) -> float:
+        """2 pi / z [rad]."""
+        return 2.0 * math.pi / self.teeth
+
+    @property
+    def half_base_tooth_angle(self) -> float:
+        """psi_b, half the angle of a tooth on the base cylinder [rad]; eta of TM-107451."""
+        return self.tooth.base_half_angle
+
+    @property
+    def half_base_space_angle(self) -> float:
+        """Half the angle of a tooth space on the base cylinder [rad]; mu of TM-107451."""
+        return 0.5 * self.angular_pitch - self.tooth.base_half_angle
+
+    @property
     def helix_angle(self) -> float:
         """Helix angle beta on the pitch cylinder [rad], without the sign of the hand."""
         return self.tooth.helix_angle
@@ -159,6 +174,11 @@ class Gear:
         """
         size = self.tooth.twist / self.module
         return -size if self.hand == "left" else size
+
+    @property
+    def lead(self) -> float:
+        """p_z, height of one turn of the helix [m]; infinite for a spur gear."""
+        return math.inf if self.twist == 0.0 else 2.0 * math.pi / abs(self.twist)
 
     @property
     def transverse_module(self) -> float:
@@ -204,6 +224,11 @@ class Gear:
     def involute_tip_radius(self) -> float:
         """r_Fa, where the involute ends [m]."""
         return self.tooth.involute_tip_radius * self.module
+
+    def normal_thickness(self, radius: float) -> float:
+        """Thickness of a tooth at a radius [m], normal to its helix there: s_n = s_t cos(beta) [m]."""
+        arc = 2.0 * radius * float(self.tooth.half_thickness_angle(radius / self.module))
+        return arc * math.cos(math.atan(self.twist * radius))
 
     @property
     def base_pitch(self) -> float:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.gear import Gear
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class InvoluteHelicoid:
     offset: float
 
     @classmethod
-    def of(cls, gear: HelicalGear, x_axis: Literal["space", "tooth"]) -> InvoluteHelicoid:
+    def of(cls, gear: Gear, x_axis: Literal["space", "tooth"]) -> InvoluteHelicoid:
         """Flank of `gear` whose x axis runs through the middle of a space (the pinion) or of a tooth (the gear)."""
         offset = gear.half_base_tooth_angle if x_axis == "tooth" else -gear.half_base_space_angle
         return cls(gear.base_radius, gear.twist, offset)

@@ -19,7 +19,7 @@ _R40 = (
 
 
 class OverBalls(NamedTuple):
-    """What a gauge reads over two balls or pins; spur gears read the same over either.
+    """What a gauge reads over two balls; spur gears read the same over pins.
 
     Attributes
     ----------
@@ -39,8 +39,9 @@ class OverBalls(NamedTuple):
 def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
     """Dimension over two balls in opposite tooth spaces, or in the two that are nearest to it with odd teeth.
 
-    Thickness allowances count, as in `span`. With alpha_K the pressure angle at the centre of the ball,
-    inv(alpha_K) = D_M / d_b - (half the angle of a tooth space on the base circle).
+    Thickness allowances count, as in `span`. With alpha_K the transverse pressure angle at the centre of the ball,
+    inv(alpha_K) = D_M / (d_b cos(beta_b)) - (half the angle of a tooth space on the base circle). On helical teeth the
+    balls lie in one section across the axis; pins along an odd number of helical spaces would read otherwise.
 
     Parameters
     ----------
@@ -56,12 +57,13 @@ def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
     if not (math.isfinite(ball_diameter) and ball_diameter > 0.0):
         raise GeometryError("ball_diameter", ball_diameter, "must be positive and finite")
     base, space = gear.base_radius, math.pi / gear.teeth - gear.tooth.base_half_angle
-    rise = 0.5 * ball_diameter / base - space
+    lean = math.cos(gear.base_helix_angle)
+    rise = 0.5 * ball_diameter / lean / base - space
     if rise <= 0.0:
         raise _refused(gear, ball_diameter, "is so small that it falls between the base circle's points")
     angle = float(pressure_angle_of_inv(rise))
-    contact = math.hypot(base, base * math.tan(angle) - 0.5 * ball_diameter)
-    if base * math.tan(angle) < 0.5 * ball_diameter or contact < gear.form_radius:
+    contact = math.hypot(base, base * math.tan(angle) - 0.5 * ball_diameter * lean)
+    if base * math.tan(angle) < 0.5 * ball_diameter * lean or contact < gear.form_radius:
         raise _refused(gear, ball_diameter, "touches the flanks below the start of the involute")
     if contact > gear.involute_tip_radius:
         raise _refused(gear, ball_diameter, "touches no involute: it lies on the tips")
@@ -90,7 +92,13 @@ def touching_ball(gear: Gear) -> float:
         radius = 0.5 * (tooth.form_radius + tooth.involute_tip_radius)
     roll = float(tooth.roll(radius))
     space = math.pi / tooth.teeth - float(tooth.half_thickness_angle(radius))
-    return 2.0 * gear.base_radius * (math.tan(math.atan(roll) + space) - roll)
+    centre = math.atan(roll) + space  # pressure angle at the ball's centre, for a spur gear
+    steep = math.tan(gear.base_helix_angle) ** 2
+    target = centre + steep * roll  # centre + steep tan(centre) = target, by Newton's rule
+    for _ in range(50 if steep else 0):
+        off = centre + steep * math.tan(centre) - target
+        centre -= off / (1.0 + steep / math.cos(centre) ** 2)
+    return 2.0 * gear.base_radius * (math.tan(centre) - roll) / math.cos(gear.base_helix_angle)
 
 
 def usual_ball(gear: Gear) -> float:

@@ -26,7 +26,10 @@ _ROUND_OFF = 1e-14
 
 @dataclass(frozen=True)
 class GearPair:
-    """An external spur gear pair; x runs along the line of action from the pitch point toward the driver's tip.
+    """Two external gears on parallel axes, spur or helical, in the section across the axes.
+
+    x runs along the transverse line of action from the pitch point toward the driver's tip. Lengths and angles without
+    "normal" in their name are those of the section; those of spur gears are both.
 
     Parameters
     ----------
@@ -39,7 +42,7 @@ class GearPair:
     Raises
     ------
     GeometryError
-        If the base pitches differ, the teeth jam or never meet.
+        If hands, helix angles or base pitches do not go together, or the teeth jam or never meet.
     """
 
     driver: Gear
@@ -49,6 +52,15 @@ class GearPair:
     def __post_init__(self) -> None:
         """Fill in the centre distance and refuse pairs that cannot run."""
         a, b = self.driver, self.driven
+        if {a.hand, b.hand} not in ({"left", "right"}, {"spur"}):
+            raise GeometryError(
+                "hand",
+                f"{a.hand} driver, {b.hand} driven",
+                "parallel axes need opposite hands, or two spur gears",
+                "turn the hand of one gear",
+            )
+        if a.hand != "spur":
+            self._check_helix()
         if abs(a.base_pitch - b.base_pitch) > 1e-9 * a.base_pitch:
             raise GeometryError(
                 "pair",
@@ -75,11 +87,22 @@ class GearPair:
                 "centre_distance", f"{distance * 1e3:.6g} mm", "is so large that the flanks never meet", "lower it"
             )
 
+    def _check_helix(self) -> None:
+        """Refuse helical gears that are cut by different racks."""
+        for key in ("module", "normal_pressure_angle", "helix_angle"):
+            mine, other = getattr(self.driver, key), getattr(self.driven, key)
+            if abs(mine - other) > 1e-12 * max(abs(mine), abs(other)):
+                raise GeometryError(
+                    "normal_module" if key == "module" else key,
+                    f"{mine:.9g} (driver), {other:.9g} (driven)",
+                    "must be equal by design",
+                    "give both gears the same normal module, pressure angle and helix angle",
+                )
+
     def _working_angle(self, *, allowance: bool) -> float:
         a, b = self.driver.tooth, self.driven.tooth
-        alpha = a.rack.pressure_angle
         shifts = a.generating_shift + b.generating_shift if allowance else a.profile_shift + b.profile_shift
-        value = float(inv(alpha)) + 2.0 * shifts * math.tan(alpha) / (a.teeth + b.teeth)
+        value = float(inv(a.pressure_angle)) + 2.0 * shifts * math.tan(a.rack.pressure_angle) / (a.teeth + b.teeth)
         if value <= 0.0:
             raise GeometryError(
                 "profile_shift", f"sum {shifts:.6g}", "is so negative that the pair has no working pressure angle"
@@ -93,20 +116,31 @@ class GearPair:
 
     @cached_property
     def working_pressure_angle(self) -> float:
-        """alpha_w [rad]."""
+        """alpha_wt [rad]."""
         return math.acos(min((self.driver.base_radius + self.driven.base_radius) / self.centre_distance, 1.0))
+
+    @cached_property
+    def working_helix_angle(self) -> float:
+        """beta_w on the working pitch cylinders [rad]: tan(beta_w) = tan(beta_b) / cos(alpha_wt)."""
+        return math.atan(math.tan(self.driver.base_helix_angle) / math.cos(self.working_pressure_angle))
 
     @property
     def normal_backlash(self) -> float:
-        """Gap between the back flanks along the line of action when the front flanks touch [m] (ISO 21771, 5.4.6)."""
+        """j_bn, gap between the back flanks along their normal when the front flanks touch [m] (ISO 21771, 5.4.6)."""
         turn = float(inv(self.working_pressure_angle)) - float(inv(self._working_angle(allowance=True)))
         if abs(turn) < _ROUND_OFF:  # the centre distance that leaves none: no backlash, not -8e-15 mm
             return 0.0
-        return 2.0 * (self.driver.base_radius + self.driven.base_radius) * turn
+        along = 2.0 * (self.driver.base_radius + self.driven.base_radius) * turn  # the transverse line of action
+        return along * math.cos(self.driver.base_helix_angle)
+
+    @property
+    def circumferential_backlash(self) -> float:
+        """j_wt, the same as an arc of the working pitch circles [m]: j_bn / (cos(alpha_wt) cos(beta_b))."""
+        return self.normal_backlash / (math.cos(self.working_pressure_angle) * math.cos(self.driver.base_helix_angle))
 
     @property
     def base_pitch(self) -> float:
-        """p_b [m], the distance of successive contacts along the line of action."""
+        """p_bt [m], the distance of successive contacts along the line of action."""
         return self.driver.base_pitch
 
     @property
@@ -169,6 +203,21 @@ class GearPair:
     def contact_ratio(self) -> float:
         """Transverse contact ratio epsilon_alpha."""
         return self.path_length / self.base_pitch
+
+    @property
+    def face_width(self) -> float:
+        """Common face width of gears that stand middle to middle [m]."""
+        return min(self.driver.face_width, self.driven.face_width)
+
+    @property
+    def overlap_ratio(self) -> float:
+        """epsilon_beta: how many pitches the helix advances over the common face; zero for spur gears."""
+        return self.face_width * abs(self.driver.twist) / self.driver.angular_pitch
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """epsilon_gamma = epsilon_alpha + epsilon_beta."""
+        return self.contact_ratio + self.overlap_ratio
 
     @property
     def x_lpstc(self) -> float:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array, Complex
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.gear import Gear
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,14 @@ class RackFlank:
 
     The cutter's generators run along the teeth, so that a shift along them is a screw motion of the pinion: the
     surface is one transverse profile, turned by ``twist z - crown z^2``. The profile's parameter is s, the length
-    along the cutter's straight profile from the pitch line toward the pinion's tip (-u_c in the paper). In complex
+    along the cutter's straight profile from its reference line toward the pinion's tip (-u_c in the paper, whose gears
+    have no profile shift: there the reference line is the pitch line). In complex
     form, x + i y of the section z = 0 is W(s) = exp(-i psi) (r_p + x + i Y), where (x, y_t) is the cutter's
     transverse profile, Y = -x x'/y_t' puts the normal through the pitch point and psi = (Y - y_t)/r_p.
 
     Parameters
     ----------
-    gear : HelicalGear
+    gear : Gear
         The pinion whose design (or wrongly cut) parameters hold.
     parabola : float
         a_c [1/m]: the cutter's profile leaves the straight line by a_c s^2; 0 for the involute, positive removes
@@ -44,7 +45,7 @@ class RackFlank:
         If the parabola leaves no regular flank between form circle and tip.
     """
 
-    gear: HelicalGear
+    gear: Gear
     parabola: float = 0.0
     crown: float = 0.0
 
@@ -70,9 +71,9 @@ class RackFlank:
         """x + i y_t of the cutter's transverse profile and two derivatives (A.5.6 in the transverse plane)."""
         a, g = self.parabola, self.gear
         sn, cn, cb = math.sin(g.normal_pressure_angle), math.cos(g.normal_pressure_angle), math.cos(g.helix_angle)
-        half_width = 0.25 * math.pi * g.normal_module
+        half_width, shift = 0.25 * math.pi * g.module, g.tooth.generating_shift * g.module
         return (
-            s * (cn - a * s * sn) - 1j * (s * (sn + a * s * cn) + half_width) / cb,
+            shift + s * (cn - a * s * sn) - 1j * (s * (sn + a * s * cn) + half_width) / cb,
             (cn - 2.0 * a * sn * s) - 1j * (sn + 2.0 * a * cn * s) / cb,
             np.full(s.shape, -2.0 * a * (sn + 1j * cn / cb)),
         )
@@ -112,28 +113,32 @@ class RackFlank:
     def s_tip(self) -> float:
         """Parameter of the tip edge [m]."""
         g = self.gear
-        top = 4.0 * (g.tip_radius - g.pitch_radius) / math.cos(g.normal_pressure_angle)
-        return (
-            self._s_of_radius(g.tip_radius, 0.0, max(top, g.normal_module))
-            if top > 0.0
-            else self._below_pitch(g.tip_radius)
-        )
+        return self._s_of_radius(g.involute_tip_radius, self.s_form, self._straight(g.tip_radius) + 3.0 * g.module)
 
-    def _below_pitch(self, radius: float) -> float:
+    def _straight(self, radius: float) -> float:
+        """Parameter at which a cutter without parabola touches at a radius [m]: height above the pole over cos."""
         g = self.gear
-        base = -g.pitch_radius * math.sin(g.transverse_pressure_angle) ** 2 / math.cos(g.normal_pressure_angle)
-        return self._s_of_radius(radius, base, 0.0)
+        sin_t, cos_t = math.sin(g.transverse_pressure_angle), math.cos(g.transverse_pressure_angle)
+        tangent = math.sqrt(max(radius**2 - g.base_radius**2, 0.0))
+        height = (tangent - g.base_radius * sin_t / cos_t) * sin_t
+        return (height - g.tooth.generating_shift * g.module) / math.cos(g.normal_pressure_angle)
 
     @cached_property
     def s_form(self) -> float:
-        """Parameter of the start of the flank [m]: the cutter's working depth, or where undercut ends the flank."""
+        """Parameter of the start of the flank [m]: where the cutter's ends, or where undercut ends it."""
         g = self.gear
-        deepest = -g.flank_depth / math.cos(g.normal_pressure_angle)
-        # Undercut starts where the profile's derivative turns over; the flank is regular on this side of it.
-        s = np.linspace(deepest, 0.0, 2001)
-        _, dc, _, _, _, stretch = self._generation(s)
-        bad = np.flatnonzero((stretch <= 0.0) | (dc.imag >= 0.0) | (dc.real <= 0.0))
-        return float(s[min(bad[-1] + 1, s.size - 1)]) if bad.size else deepest
+        rack, m = g.tooth.rack, g.module
+        depth = rack.tip_centre_depth + rack.tip_radius * math.sin(rack.pressure_angle)
+        deepest, pitch_line = -depth * m / math.cos(rack.pressure_angle), self._straight(g.pitch_radius)
+        if deepest < pitch_line:
+            # Undercut starts where the profile's derivative turns over; the flank is regular on this side of it.
+            s = np.linspace(deepest, pitch_line, 2001)
+            _, dc, _, _, _, stretch = self._generation(s)
+            bad = np.flatnonzero((stretch <= 0.0) | (dc.imag >= 0.0) | (dc.real <= 0.0))
+            deepest = float(s[min(bad[-1] + 1, s.size - 1)]) if bad.size else deepest
+        if not g.tooth.undercut:
+            return deepest
+        return self._s_of_radius(g.form_radius, deepest, max(self._straight(g.form_radius), deepest) + m)
 
     def azimuth_turn(self, z: ArrayLike) -> Array:
         """Turn of the section at z against the section z = 0 [rad]."""

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 def span(gear: Gear, teeth: int) -> float:
     """Base tangent length W_k over k teeth [m]: k - 1 base pitches and one tooth thickness on the base circle.
 
-    Thickness allowances count: it is what the drawing's nominal value becomes by its allowance.
+    On helical teeth the discs stand along the normal of the flanks, which lies in the plane tangent to the base
+    cylinder and leans by beta_b: all of it is shortened by cos(beta_b), and the discs touch W_k sin(beta_b) apart along
+    the axis. Thickness allowances count: it is what the drawing's nominal value becomes by its allowance.
 
     Parameters
     ----------
@@ -25,12 +27,13 @@ def span(gear: Gear, teeth: int) -> float:
     Raises
     ------
     GeometryError
-        If k is less than 1 or the discs do not touch involutes.
+        If k is less than 1, the discs do not touch involutes, or the face is narrower than W_k sin(beta_b).
     """
     if teeth < 1:
         raise GeometryError("teeth", teeth, "must be at least 1")
-    length = (teeth - 1) * gear.base_pitch + 2.0 * gear.base_radius * gear.tooth.base_half_angle
-    radius = math.hypot(gear.base_radius, 0.5 * length)
+    lean = math.cos(gear.base_helix_angle)
+    length = ((teeth - 1) * gear.base_pitch + 2.0 * gear.base_radius * gear.tooth.base_half_angle) * lean
+    radius = math.hypot(gear.base_radius, 0.5 * length * lean)
     if not gear.form_radius <= radius <= gear.involute_tip_radius:
         raise GeometryError(
             "teeth",
@@ -39,7 +42,28 @@ def span(gear: Gear, teeth: int) -> float:
             f"{gear.form_radius * 1e3:.6g} mm to {gear.involute_tip_radius * 1e3:.6g} mm",
             f"measure over {span_teeth(gear)} teeth",
         )
+    apart = length * math.sin(gear.base_helix_angle)
+    if apart > gear.face_width:
+        raise GeometryError(
+            "face_width",
+            f"{gear.face_width * 1e3:.6g} mm",
+            f"is too narrow for a span over {teeth} teeth, whose discs touch {apart * 1e3:.6g} mm apart along the axis",
+            "measure over fewer teeth, or over balls",
+        )
     return length
+
+
+def usual_span(gear: Gear) -> tuple[int, float] | None:
+    """Number of teeth and base tangent length [m] of the measurement that `span_teeth` would take.
+
+    A face too narrow for the lean of helical teeth takes fewer teeth; None where no number is left.
+    """
+    for teeth in range(span_teeth(gear), 0, -1):
+        try:
+            return teeth, span(gear, teeth)
+        except GeometryError:
+            continue
+    return None
 
 
 def span_teeth(gear: Gear) -> int:
@@ -47,4 +71,5 @@ def span_teeth(gear: Gear) -> int:
     middle = 0.5 * (gear.form_radius + gear.involute_tip_radius)
     half = math.sqrt(max(middle**2 - gear.base_radius**2, 0.0))
     base_thickness = 2.0 * gear.base_radius * gear.tooth.base_half_angle
-    return max(1, round((2.0 * half - base_thickness) / gear.base_pitch) + 1)
+    across = 2.0 * half / math.cos(gear.base_helix_angle) ** 2
+    return max(1, round((across - base_thickness) / gear.base_pitch) + 1)

@@ -1,11 +1,11 @@
 """Tooth contact analysis of helical pairs, aligned and misaligned."""
 
-from fegear.geometry.helical_gear import HelicalGear
+from fegear.helical.as_cut import as_cut
 from fegear.helical.contact import MeshCycle, ToothContact, mesh_cycle, tooth_contact
 from fegear.helical.pair import HelicalPair, Misalignment
 from fegear.helical.pair_contact import PairContact, pair_contact
 
 __all__ = [
-    "HelicalGear", "HelicalPair", "MeshCycle", "Misalignment", "PairContact", "ToothContact", "mesh_cycle",
-    "pair_contact", "tooth_contact",
+    "HelicalPair", "MeshCycle", "Misalignment", "PairContact", "ToothContact", "as_cut", "mesh_cycle", "pair_contact",
+    "tooth_contact",
 ]  # fmt: skip

@@ -8,24 +8,18 @@ from typing import TYPE_CHECKING
 from fegear.errors import InputError, RangeError
 
 if TYPE_CHECKING:
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.gear import Gear
 
 #: A lead that is off by more than this share is another design.
 _LARGEST_SHARE = 0.2
 
 
-def lead(gear: HelicalGear) -> float:
-    """H = 2 pi p = pi N m_n / cos(lambda_p) [m] (A.2.5, A.2.8, A.2.9); infinite for a spur gear."""
-    sine = math.sin(gear.helix_angle)
-    return math.pi * gear.teeth * gear.normal_module / sine if sine else math.inf
-
-
-def lead_angle_error(pinion: HelicalGear, lead_error: float) -> float:
+def lead_angle_error(pinion: Gear, lead_error: float) -> float:
     """Delta lambda_p1 = sin(2 lambda_p1) Delta H_1 / (2 H_1) [rad], on the pitch cylinder of the design (Eq. 18).
 
     Parameters
     ----------
-    pinion : HelicalGear
+    pinion : Gear
         As designed.
     lead_error : float
         Delta H_1 [m], positive where the lead is too long.
@@ -38,10 +32,10 @@ def lead_angle_error(pinion: HelicalGear, lead_error: float) -> float:
         If the lead is off by more than a fifth.
     """
     _refuse(pinion, lead_error)
-    return 0.5 * math.sin(2.0 * pinion.lead_angle) * lead_error / lead(pinion)
+    return 0.5 * math.sin(2.0 * pinion.helix_angle) * lead_error / pinion.lead
 
 
-def lead_error_as_cut(pinion: HelicalGear, lead_angle: float) -> float:
+def lead_error_as_cut(pinion: Gear, lead_angle: float) -> float:
     """Delta H_1 [m] of the pinion that Appendix 2 makes of a lead angle error [rad], without cancellation.
 
     Appendix 2 lets the pitch radius follow the lead angle, so that H = pi N m_n / cos(lambda_p); Eq. 18 holds the
@@ -49,30 +43,30 @@ def lead_error_as_cut(pinion: HelicalGear, lead_angle: float) -> float:
     """
     wrong = pinion.helix_angle - lead_angle
     rise = 2.0 * math.cos(pinion.helix_angle - 0.5 * lead_angle) * math.sin(0.5 * lead_angle)
-    return math.pi * pinion.teeth * pinion.normal_module * rise / (math.sin(pinion.helix_angle) * math.sin(wrong))
+    return math.pi * pinion.teeth * pinion.module * rise / (math.sin(pinion.helix_angle) * math.sin(wrong))
 
 
-def lead_angle_error_of_cut(pinion: HelicalGear, lead_error: float) -> float:
+def lead_angle_error_of_cut(pinion: Gear, lead_error: float) -> float:
     """Lead angle error [rad] at which the pinion of Appendix 2 has a lead that is off by `lead_error` [m].
 
     The inverse of `lead_error_as_cut`; raises as `lead_angle_error` does.
     """
     _refuse(pinion, lead_error)
     sine = math.sin(pinion.helix_angle)
-    wrong = sine / (1.0 + lead_error / lead(pinion))
+    wrong = sine / (1.0 + lead_error / pinion.lead)
     if wrong >= 1.0:
         raise RangeError("lead", f"{lead_error * 1e3:.6g} mm", "leaves no lead angle", "give a smaller error")
     # sin(beta) - sin(beta') over cos(beta) + cos(beta') is the tangent of half the difference of the angles.
-    change = sine * lead_error / (lead(pinion) + lead_error)
+    change = sine * lead_error / (pinion.lead + lead_error)
     return 2.0 * math.atan(change / (math.cos(pinion.helix_angle) + math.sqrt((1.0 - wrong) * (1.0 + wrong))))
 
 
-def _refuse(pinion: HelicalGear, lead_error: float) -> None:
+def _refuse(pinion: Gear, lead_error: float) -> None:
     shown = f"{lead_error * 1e3:.6g} mm"
     if pinion.helix_angle == 0.0:
         raise InputError("lead", shown, "has no meaning for a spur gear, whose lead is infinite", "give lead_angle")
-    if not abs(lead_error) <= _LARGEST_SHARE * lead(pinion):
+    if not abs(lead_error) <= _LARGEST_SHARE * pinion.lead:
         raise RangeError(
-            "lead", shown, f"is no small error of a lead of {lead(pinion) * 1e3:.6g} mm",
+            "lead", shown, f"is no small error of a lead of {pinion.lead * 1e3:.6g} mm",
             f"keep it within {_LARGEST_SHARE:.0%} of it",
         )  # fmt: skip

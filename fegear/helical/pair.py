@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 
 from fegear.errors import GeometryError, InputError, RangeError
 from fegear.geometry.helicoid import InvoluteHelicoid
+from fegear.geometry.pair import GearPair
 from fegear.geometry.rack_flank import RackFlank
+from fegear.helical.as_cut import as_cut
 
 if TYPE_CHECKING:
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.gear import Gear
 
 #: Largest error angle for which the contact analysis is meant [rad]; beyond it a drive is a crossed-axis drive.
 LARGEST_ERROR = math.radians(3.0)
@@ -57,7 +59,7 @@ class Misalignment:
 
 @dataclass(frozen=True)
 class HelicalPair:
-    """A helical pair with parallel axes by design.
+    """A pair of helical or spur gears with parallel axes by design, and the rigid flanks that touch.
 
     The fixed frame has its z axis along the pinion's axis and its x axis toward the gear. The pinion turns
     counter-clockwise by phi_1 and drives; the gear turns clockwise by phi_2. At phi_1 = phi_2 = 0 the middle of a
@@ -65,8 +67,8 @@ class HelicalPair:
 
     Parameters
     ----------
-    pinion, gear : HelicalGear
-        As designed; hands must be opposite, angles and modules equal.
+    pinion, gear : Gear
+        As designed: what `GearPair` takes.
     errors : Misalignment
     parabola : float
         a_c of the pinion's cutter [1/m] (see `RackFlank`).
@@ -74,6 +76,8 @@ class HelicalPair:
         Lengthwise crown of the pinion [rad/m^2] (see `RackFlank`).
     axial_offset : float
         Height of the gear's mid face above the pinion's [m].
+    design_distance : float
+        Centre distance by design [m]; NaN, the default, is the one that the profile shifts give without backlash.
 
     Raises
     ------
@@ -81,28 +85,18 @@ class HelicalPair:
         If hands, angles or modules contradict each other or the gears do not reach each other.
     """
 
-    pinion: HelicalGear
-    gear: HelicalGear
+    pinion: Gear
+    gear: Gear
     errors: Misalignment = field(default_factory=Misalignment)
     parabola: float = 0.0
     crown: float = 0.0
     axial_offset: float = 0.0
+    design_distance: float = math.nan
 
     def __post_init__(self) -> None:
         """Refuse gears that cannot mesh."""
         a, b = self.pinion, self.gear
-        if {a.hand, b.hand} not in ({"left", "right"}, {"spur"}):
-            raise GeometryError(
-                "hand", f"{a.hand} pinion, {b.hand} gear", "parallel axes need opposite hands, or two spur gears",
-                "turn the hand of one gear",
-            )  # fmt: skip
-        for key in ("normal_module", "normal_pressure_angle", "helix_angle"):
-            mine, other = getattr(a, key), getattr(b, key)
-            if abs(mine - other) > 1e-12 * max(abs(mine), abs(other)):
-                raise GeometryError(
-                    key, f"{mine:.9g} (pinion), {other:.9g} (gear)", "must be equal by design",
-                    "describe a wrongly cut pinion through its errors",
-                )  # fmt: skip
+        _ = self.design  # refuses gears that do not mesh
         reach = 0.5 * (a.face_width + b.face_width) - abs(self.axial_offset)
         if not (math.isfinite(self.axial_offset) and reach > 1e-3 * min(a.face_width, b.face_width)):
             raise GeometryError(
@@ -117,9 +111,14 @@ class HelicalPair:
             )  # fmt: skip
 
     @cached_property
-    def cut_pinion(self) -> HelicalGear:
+    def design(self) -> GearPair:
+        """The pair without errors."""
+        return GearPair(self.pinion, self.gear, self.design_distance)
+
+    @cached_property
+    def cut_pinion(self) -> Gear:
         """The pinion with its errors of manufacture."""
-        return self.pinion.with_errors(profile_angle=self.errors.profile_angle, lead_angle=self.errors.lead_angle)
+        return as_cut(self.pinion, profile_angle=self.errors.profile_angle, lead_angle=self.errors.lead_angle)
 
     @cached_property
     def flank(self) -> RackFlank:
@@ -133,8 +132,9 @@ class HelicalPair:
 
     @cached_property
     def centre_distance(self) -> float:
-        """E [m]: the sum of the pitch radii as cut, plus its own error."""
-        return self.cut_pinion.pitch_radius + self.gear.pitch_radius + self.errors.centre_distance
+        """E [m]: that of the design, plus what the pinion's pitch radius grows as cut, plus its own error."""
+        grown = self.cut_pinion.pitch_radius - self.pinion.pitch_radius
+        return self.design.centre_distance + grown + self.errors.centre_distance
 
     @property
     def ratio(self) -> float:
@@ -166,15 +166,15 @@ class HelicalPair:
 
         slack = 1e-9 * line
         return (
-            line - tangent(b.tip_radius, b.base_radius) < tangent(a.form_radius, a.base_radius) - slack,
-            line - tangent(a.tip_radius, a.base_radius) < tangent(b.form_radius, b.base_radius) - slack,
+            line - tangent(b.involute_tip_radius, b.base_radius) < tangent(a.form_radius, a.base_radius) - slack,
+            line - tangent(a.involute_tip_radius, a.base_radius) < tangent(b.form_radius, b.base_radius) - slack,
         )
 
     @property
     def path_start(self) -> float:
         """Base tangent length of the pinion [m] where the gear's tip, or the pinion's form circle, starts contact."""
         rb, E = self.gear.base_radius, self.centre_distance
-        by_tip = E * math.sin(self.working_pressure_angle) - math.sqrt(self.gear.tip_radius**2 - rb**2)
+        by_tip = E * math.sin(self.working_pressure_angle) - math.sqrt(self.gear.involute_tip_radius**2 - rb**2)
         form = self.cut_pinion.form_radius
         return max(by_tip, math.sqrt(max(form**2 - self.cut_pinion.base_radius**2, 0.0)))
 
@@ -182,7 +182,7 @@ class HelicalPair:
     def path_end(self) -> float:
         """Base tangent length of the pinion [m] where its tip, or the gear's form circle, ends contact."""
         rb, E = self.cut_pinion.base_radius, self.centre_distance
-        by_tip = math.sqrt(self.cut_pinion.tip_radius**2 - rb**2)
+        by_tip = math.sqrt(self.cut_pinion.involute_tip_radius**2 - rb**2)
         form = math.sqrt(max(self.gear.form_radius**2 - self.gear.base_radius**2, 0.0))
         return min(by_tip, E * math.sin(self.working_pressure_angle) - form)
 

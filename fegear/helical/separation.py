@@ -81,7 +81,7 @@ class Placement:
             twist_2=b.twist,
             base_1=a.base_radius,
             base_2=b.base_radius,
-            tip_2=b.tip_radius,
+            tip_2=b.involute_tip_radius,
             form_2=b.form_radius,
             offset_2=pair.mating_flank.offset,
             pressure_angle=pair.working_pressure_angle,

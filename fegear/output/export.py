@@ -20,7 +20,10 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
 
 FORMATS = ("dxf", "msh", "vtu", "inp", "solid-inp", "solid-vtu")
-_SOLID = {"solid-inp", "solid-vtu"}
+#: Those that hold a mesh of the solid gear.
+_SOLID = frozenset({"solid-inp", "solid-vtu"})
+#: Those that hold the plane mesh of a spur gear.
+_PLANE = frozenset({"msh", "vtu", "inp"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +46,8 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
     """Write every format of every named gear.
 
     Drawings hold the flanks with the relief that the case gives them; meshes hold the generated flanks, because relief
-    enters fegear's own contact as a distance, not as a change of the mesh. Helical gears are left out.
+    enters fegear's own contact as a distance, not as a change of the mesh. A helical gear is drawn in its section
+    across the axis; its plane mesh would be no gear and is left out.
 
     Parameters
     ----------
@@ -64,19 +68,19 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
         raise InputError("--format", f'"{one}"', "is no format that fegear writes", nearest(one, FORMATS))
     if not wanted:
         raise InputError("--format", f'"{formats}"', "names no format", f"choose from {', '.join(FORMATS)}")
-    every = [*scene.gears, *scene.helical_gears]
+    every = list(scene.gears)
     for name in names:
         if name not in every:
             raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, every))
-    spur = [name for name in names or every if name in scene.gears]
-    helical = [name for name in names or every if name in scene.helical_gears]
-    if not spur:
+    chosen = list(names or every)
+    helical = [name for name in chosen if name not in scene.spur_gears]
+    plane = ", ".join(sorted(wanted.intersection(_PLANE)))
+    if len(helical) == len(chosen) and wanted <= _PLANE:
         which = "is helical" if len(helical) == 1 else "are helical"
-        remedy = "only spur gears can be exported: a helical gear is described by its flanks, without root and bore"
-        raise InputError("--gear", ", ".join(helical), which, remedy)
+        raise InputError("--gear", ", ".join(helical), which, f"{plane} hold plane meshes of spur gears; write dxf")
     written: list[Path] = []
-    remarks = [f"Gear {name} is helical: nothing is written for it." for name in helical]
-    for name in spur:
+    remarks = [f"Gear {name} is helical: no {plane} is written for it." for name in helical if plane]
+    for name in chosen:
         files, left_out = _export_gear(scene, folder, name, wanted)
         written += files
         remarks += left_out
@@ -84,7 +88,7 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
 
 
 def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tuple[list[Path], list[str]]:
-    """Write the wanted formats of a spur gear: files, and remarks on its relief."""
+    """Write the wanted formats of a gear: files, and remarks on its relief."""
     found = described_relief(scene, name)
     relieved = scene.case.gear[name].relief is not None
     written: list[Path] = []
@@ -96,20 +100,23 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
             remarks.append(f"Gear {name}, DXF: relief as in pair {found.pair}; in other pairs it would end elsewhere.")
         if found.left_out:
             remarks.append(f"Gear {name}, DXF: flanks without relief, because {found.left_out}.")
+        if name not in scene.spur_gears:
+            remarks.append(f"Gear {name}, DXF: the section across the axis.")
         written += write_dxf(scene.gears[name], folder, file_name(name), found.relief, flanks)
-    meshes = sorted(wanted.difference({"dxf"}))
+    meshes = wanted.intersection(_PLANE if name in scene.spur_gears else ()) | (wanted & _SOLID)
     if meshes:
-        from fegear.output.mesh_export import write_meshes
-
         settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
-        if plane := wanted.difference({"dxf"}, _SOLID):
+        if plane := meshes & _PLANE:
+            from fegear.output.mesh_export import write_meshes
+
             written += write_meshes(scene.gears[name], folder, file_name(name), plane, settings, mesh)
-        if solid := wanted & _SOLID:
+        if solid := meshes & _SOLID:
             from fegear.output.solid_export import write_solid
 
             written += write_solid(scene.gears[name], folder, file_name(name), solid, mesh=mesh)
         if relieved:
-            remarks.append(f"Gear {name}, {', '.join(meshes)}: flanks as generated, without the relief of the case.")
+            told = ", ".join(sorted(meshes))
+            remarks.append(f"Gear {name}, {told}: flanks as generated, without the relief of the case.")
     if scene.case.gear[name].spacing_errors is not None:
         remarks.append(f"Gear {name}: teeth evenly spaced, without the spacing errors of the case.")
     return written, remarks

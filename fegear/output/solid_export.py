@@ -89,7 +89,7 @@ def write_solid(
     if nodes > _MOST_NODES:
         rule = f"would make a mesh of about {nodes:.1g} nodes, and {_MOST_NODES:.0e} is the most"
         raise InputError("--format", "solid", rule, "choose a narrower face, fewer face positions or fewer teeth")
-    solid = extruded(section, stations, 0.0)
+    solid = extruded(section, stations, gear.twist * one)
     place = min(max(gear.pitch_radius if radius is None else radius, gear.form_radius), gear.involute_tip_radius)
     width = min(_HALF_WIDTH, _SHARE_OF_ROOM * _room(gear, place))
     bands = {

@@ -57,9 +57,14 @@ def _pairs(scene: Scene) -> tuple[str, ...]:
     chosen, gears = scene.case.stiffness.pair, chosen_gears(scene)
     return tuple(
         name
-        for name in scene.pairs
+        for name in scene.spur_pairs
         if chosen in (None, name) and {scene.case.pair[name].driver, scene.case.pair[name].driven} & set(gears)
     )
+
+
+def _helical(scene: Scene) -> tuple[str, ...]:
+    """The pairs that ISO 6336 rates through their virtual spur teeth."""
+    return tuple(name for name in scene.pairs if name not in scene.spur_pairs)
 
 
 def _pair_check(scene: Scene, name: str) -> PairCheck:
@@ -76,7 +81,7 @@ def _pair_check(scene: Scene, name: str) -> PairCheck:
 def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
     gears = {name: scene.gears[name] for name in chosen_gears(scene)}
     pairs, settings = _pairs(scene), mesh_settings(scene.case.accuracy)
-    iso = {name: iso_inputs(scene, name, settings) for name in (*pairs, *scene.helical_pairs)}
+    iso = {name: iso_inputs(scene, name, settings) for name in (*pairs, *_helical(scene))}
     return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso)
 
 
@@ -157,8 +162,8 @@ def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:
     """Every closed form for every gear and pair; helical pairs solve two virtual spur gears for each of theirs."""
-    virtual = 4 * len(scene.helical_pairs) * seconds_of_gear(mesh_settings(scene.case.accuracy))
-    return forecasts.constant(0.05 + 0.08 * (len(scene.gears) + len(scene.pairs)) + virtual)
+    virtual = 4 * len(_helical(scene)) * seconds_of_gear(mesh_settings(scene.case.accuracy))
+    return forecasts.constant(0.05 + 0.08 * (len(scene.spur_gears) + len(scene.spur_pairs)) + virtual)
 
 
 CROSSCHECK = Stage(
@@ -166,7 +171,7 @@ CROSSCHECK = Stage(
     title="Closed forms against finite elements",
     results=("crosscheck",),
     about="closed forms for stiffness and root stress (ISO 6336, AGMA 908 and others) beside finite elements",
-    subjects=lambda scene: (_WHOLE,) if scene.gears or scene.helical_pairs else (),
+    subjects=lambda scene: (_WHOLE,) if scene.spur_gears or _helical(scene) else (),
     needs=_needs,
     inputs=_inputs,
     compute=_compute,

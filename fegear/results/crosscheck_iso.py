@@ -41,7 +41,7 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
 
     choice = RatingChoice(part.iso_6336.edition, part.iso_6336.accuracy_grade)
     rims = (scene.case.gear[names[0]].rim_thickness, scene.case.gear[names[1]].rim_thickness)
-    if name in scene.pairs:
+    if name in scene.spur_pairs:
         return IsoInputs(names, choice, rims)
     pair = scene.helical_pairs[name]
     width = pair.overlap[1] - pair.overlap[0]
@@ -50,11 +50,7 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
     if part.torque is not None:
         force = part.torque / driver.pitch_radius
     load = USUAL_LINE_LOAD if force is None else force / width
-    first, second = (scene.case.gear[gear] for gear in names)
-    racks = (first.rack.build(first.pressure_angle), second.rack.build(second.pressure_angle))
-    check = HelicalCheck(
-        (pair.pinion, pair.gear), racks, pair.transverse_contact_ratio, pair.overlap_ratio, load
-    )  # fmt: skip
+    check = HelicalCheck((pair.pinion, pair.gear), pair.transverse_contact_ratio, pair.overlap_ratio, load)
     return IsoInputs(names, choice, rims, check, settings, force is None)
 
 

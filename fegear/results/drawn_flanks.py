@@ -76,7 +76,7 @@ def _pattern(name: str, contact: ToothContact, bearing: Bearing | None, load: fl
         (pair.gear, single.z2, single.r2, pair.axial_offset, "gear"),
     ):
         half = 0.5 * gear.face_width
-        low, high = gear.form_radius, gear.tip_radius
+        low, high = gear.form_radius, gear.involute_tip_radius
         width = centre + half * np.array([-1.0, 1.0, 1.0, -1.0, -1.0])
         side = np.stack([width, np.array([low, low, high, high, low])])
         items: list[Curve | Points] = [outline(side * 1e3, "", "ink", 1.0)]
@@ -166,7 +166,7 @@ def _surfaces(contact: ToothContact, phi_1: float, phi_2: float) -> list[Surface
         for x, y, z1 in solid_tooth(flank.points(s, z), a.twist * z - 0.5 * a.angular_pitch):
             x1, y1 = np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y
             found.append(Surface(np.stack([x1, y1, z1]) * 1e3, "blue", name="pinion"))
-    r = np.linspace(max(b.form_radius, b.base_radius * (1.0 + 1e-9)), b.tip_radius, _ACROSS)
+    r = np.linspace(max(b.form_radius, b.base_radius * (1.0 + 1e-9)), b.involute_tip_radius, _ACROSS)
     t, z = np.meshgrid(helicoid.tangent_length(r), along * b.face_width + pair.axial_offset)
     for k in range(-_BESIDE, _BESIDE + 1):
         turn = phi_2 - k * b.angular_pitch

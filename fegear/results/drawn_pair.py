@@ -85,12 +85,14 @@ def pair_figure(name: str, drawing: Drawing) -> Figure:
     pair, names = drawing.pairs[name], drawing.members[name]
     single = 1.0 <= pair.contact_ratio < 2.0
     alone = "; between B and D it is alone" if single else "; at every B and D the number of pairs in contact changes"
+    alone += " in one section" if pair.driver.helix_angle else ""
     return Figure(
         f"gear_data_{name}",
         f"Pair {name} in mesh",
         f"Pair {name}: {names[0]} drives (below), {names[1]} is driven (above). Drawn where the flanks touch at the "
         f"pitch point. A tooth pair comes into contact at A and leaves it at E{alone}. Specific sliding is negative "
-        "where a flank is dragged, below its own pitch circle.",
+        "where a flank is dragged, below its own pitch circle."
+        + (" All of it lies in the section across the axes." if pair.driver.helix_angle else ""),
         (_drawn(pair), _sliding(pair)),
     )
 

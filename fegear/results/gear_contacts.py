@@ -19,8 +19,13 @@ USUAL_HALF_WIDTH = 0.02
 
 
 def chosen_gears(scene: Scene) -> tuple[str, ...]:
-    """The gear that ``[stiffness]`` names; every gear of the case if it names none."""
-    return (scene.case.stiffness.gear,) if scene.case.stiffness.gear else tuple(scene.gears)
+    """The spur gear that ``[stiffness]`` names; every spur gear of the case if it names none."""
+    named = scene.case.stiffness.gear
+    if named is not None and named not in scene.spur_gears:
+        raise InputError(
+            "stiffness.gear", f'"{named}"', "is helical, and its teeth are no plane problem", "name a spur gear"
+        )
+    return tuple(scene.spur_gears) if named is None else (named,)
 
 
 def _pair_of(scene: Scene, name: str) -> tuple[GearPair, Member] | None:

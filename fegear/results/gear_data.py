@@ -13,7 +13,7 @@ from fegear.geometry.checks import tip_thickness
 from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.path_of_contact import active_profile, specific_sliding
-from fegear.geometry.span import span, span_teeth
+from fegear.geometry.span import usual_span
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -44,7 +44,7 @@ class Drawing:
 
 
 def drawing_of(scene: Scene) -> Drawing:
-    """What a case says of its spur gears and pairs."""
+    """What a case says of its gears and pairs."""
     parts = scene.case.pair
     members = {name: (parts[name].driver, parts[name].driven) for name in scene.pairs}
     balls = {name: d for name in scene.gears if (d := scene.case.gear[name].ball_diameter) is not None}
@@ -67,20 +67,16 @@ def measurement_columns(drawing: Drawing, names: Sequence[str]) -> tuple[Column,
     """Thicknesses, span and dimension over balls of some gears."""
     gears = [drawing.gears[name] for name in names]
     found = [measured(drawing.gears[name], drawing.balls.get(name)) for name in names]
-    counts = [span_teeth(gear) for gear in gears]
-
-    def thickness(gear: Gear) -> float:
-        tooth = gear.tooth
-        return 2.0 * gear.pitch_radius * float(tooth.half_thickness_angle(tooth.pitch_radius))
+    spans = [usual_span(gear) or (np.nan, np.nan) for gear in gears]
+    normal = "normal tooth thickness s_n" if _helical(gears) else "tooth thickness s"
 
     return (
-        Column("tooth_thickness", np.array([thickness(gear) for gear in gears]), "mm",
-               "tooth thickness s at d"),
+        Column("tooth_thickness", np.array([gear.normal_thickness(gear.pitch_radius) for gear in gears]), "mm",
+               f"{normal} at d"),
         Column("tip_thickness", np.array([tip_thickness(gear) for gear in gears]), "mm",
-               "tooth thickness at d_Fa"),
-        Column("span_teeth", np.array(counts), "", "teeth in the span k"),
-        Column("span", np.array([span(g, k) for g, k in zip(gears, counts, strict=True)]), "mm",
-               "span W_k"),
+               f"{normal.rpartition(' ')[0]} at d_Fa"),
+        Column("span_teeth", np.array([count for count, _ in spans]), "", "teeth in the span k"),
+        Column("span", np.array([length for _, length in spans]), "mm", "span W_k"),
         Column("ball_diameter", np.array([np.nan if one is None else one.ball_diameter for one in found]), "mm",
                "ball or pin D_M"),
         Column("over_balls", np.array([np.nan if one is None else one.dimension for one in found]), "mm",
@@ -88,9 +84,18 @@ def measurement_columns(drawing: Drawing, names: Sequence[str]) -> tuple[Column,
     )  # fmt: skip
 
 
+def _helical(gears: Sequence[Gear]) -> bool:
+    return any(gear.helix_angle != 0.0 for gear in gears)
+
+
 def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
-    """Which gears have no dimension over balls, and why."""
-    return tuple(
+    """Which gears have no span or no dimension over balls, and why."""
+    spanless = tuple(
+        f"Gear {name} has no span: its face is too narrow for discs that touch its leaning flanks."
+        for name, gear in drawing.gears.items()
+        if usual_span(gear) is None
+    )
+    return spanless + tuple(
         f"Gear {name} has no dimension over balls: none that touches both flanks stands out of the tooth space."
         for name, gear in drawing.gears.items()
         if measured(gear, drawing.balls.get(name)) is None
@@ -107,8 +112,7 @@ def _tooth_columns(names: Sequence[str], gears: Sequence[Gear]) -> tuple[Column,
     return (
         Column("gear", np.array(names), "", "gear"),
         column("teeth", [gear.teeth for gear in gears], "", "number of teeth z"),
-        column("module", [gear.module for gear in gears], "mm", "module m"),
-        column("pressure_angle", [gear.tooth.rack.pressure_angle for gear in gears], "deg", "pressure angle α"),
+        *_section_columns(gears),
         column("profile_shift", [gear.tooth.profile_shift for gear in gears], "", "profile shift coefficient x"),
         column("face_width", [gear.face_width for gear in gears], "mm", "face width b"),
         diameter("reference_diameter", "pitch_radius", "reference diameter d"),
@@ -117,6 +121,29 @@ def _tooth_columns(names: Sequence[str], gears: Sequence[Gear]) -> tuple[Column,
         diameter("root_diameter", "root_radius", "root diameter d_f"),
         diameter("root_form_diameter", "form_radius", "root form diameter d_Ff"),
         diameter("tip_form_diameter", "involute_tip_radius", "tip form diameter d_Fa"),
+    )
+
+
+def _section_columns(gears: Sequence[Gear]) -> tuple[Column, ...]:
+    """Module and pressure angle of the rack, and for helical gears what they become across the axis."""
+
+    def column(name: str, attribute: str, unit: str, meaning: str) -> Column:
+        return Column(name, np.array([getattr(gear, attribute) for gear in gears]), unit, meaning)
+
+    if not _helical(gears):
+        return (
+            column("module", "module", "mm", "module m"),
+            column("pressure_angle", "normal_pressure_angle", "deg", "pressure angle α"),
+        )
+    return (
+        column("module", "module", "mm", "normal module m_n"),
+        column("pressure_angle", "normal_pressure_angle", "deg", "normal pressure angle α_n"),
+        column("helix_angle", "helix_angle", "deg", "helix angle β"),
+        column("hand", "hand", "", "hand of the helix"),
+        column("lead", "lead", "mm", "lead p_z"),
+        column("transverse_module", "transverse_module", "mm", "transverse module m_t"),
+        column("transverse_pressure_angle", "transverse_pressure_angle", "deg", "transverse pressure angle α_t"),
+        column("base_helix_angle", "base_helix_angle", "deg", "base helix angle β_b"),
     )
 
 
@@ -163,11 +190,22 @@ def lone_table(drawing: Drawing) -> Table | None:
 
 def pair_values(name: str, pair: GearPair) -> tuple[Value, ...]:
     """The numbers of a pair as a whole."""
+    more: tuple[Value, ...] = ()
+    if pair.driver.helix_angle != 0.0:
+        more = (
+            Value(f"{name}.overlap_ratio", pair.overlap_ratio, "", 0.0, "overlap ratio, faces middle to middle"),
+            Value(f"{name}.total_contact_ratio", pair.total_contact_ratio, "", 0.0, "total contact ratio"),
+            Value(f"{name}.working_helix_angle", pair.working_helix_angle, "deg", 0.0, "working helix angle"),
+            Value(f"{name}.circumferential_backlash", pair.circumferential_backlash, "mm", 0.0,
+                  "backlash on the working pitch circle"),
+        )  # fmt: skip
     return (
         Value(f"{name}.contact_ratio", pair.contact_ratio, "", 0.0, "transverse contact ratio"),
         Value(f"{name}.centre_distance", pair.centre_distance, "mm", 0.0, "working centre distance"),
         Value(f"{name}.working_pressure_angle", pair.working_pressure_angle, "deg", 0.0, "working pressure angle"),
         Value(f"{name}.path_length", pair.path_length, "mm", 0.0, "length of the path of contact"),
         Value(f"{name}.base_pitch", pair.base_pitch, "mm", 0.0, "base pitch"),
-        Value(f"{name}.normal_backlash", pair.normal_backlash, "mm", 0.0, "backlash along the line of action"),
-    )
+        Value(f"{name}.normal_backlash", pair.normal_backlash, "mm", 0.0, "backlash along the line of action"
+              if pair.driver.helix_angle == 0.0 else "backlash normal to the flanks"),
+        *more,
+    )  # fmt: skip

@@ -61,10 +61,10 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
     )
     values = tuple(value for name, pair in pairs.items() for value in pair_values(name, pair))
     remarks = tuple(
-        f"Pair {name}: the contact ratio of {pair.contact_ratio:.4f} is below 1: no teeth are on the path at some "
-        "roll positions. Lengthen the teeth, raise their number or lower the centre distance."
+        f"Pair {name}: the contact ratio of {pair.total_contact_ratio:.4f} is below 1: no teeth are on the path at "
+        "some roll positions. Lengthen the teeth, raise their number or lower the centre distance."
         for name, pair in pairs.items()
-        if pair.contact_ratio < 1.0
+        if pair.total_contact_ratio < 1.0
     )
     remarks += tuple(
         f"Pair {name}: {sentence}."

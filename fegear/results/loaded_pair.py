@@ -85,8 +85,9 @@ def pitch_marks(pair: LoadedPair, x: Array) -> tuple[Mark, ...]:
 
 def spur_pairs(scene: Scene) -> tuple[str, ...]:
     """All pairs of spur gears that carry a load; all pairs where none does, so that the missing load is reported."""
-    loaded = tuple(name for name, pair in scene.pairs.items() if scene.case.pair[name].normal_load(pair) is not None)
-    return loaded or tuple(scene.pairs)
+    pairs = scene.spur_pairs
+    loaded = tuple(name for name, pair in pairs.items() if scene.case.pair[name].normal_load(pair) is not None)
+    return loaded or tuple(pairs)
 
 
 def needs_pair(_scene: Scene, name: str) -> tuple[Task, ...]:

@@ -37,7 +37,7 @@ _RATIO = "root stress, formula / FE"
 
 def _gear(scene: Scene) -> str:
     study = scene.case.study
-    return (study.gear if study else None) or next(iter(scene.gears))
+    return (study.gear if study else None) or next(iter(scene.spur_gears))
 
 
 def _study(scene: Scene) -> StudyPart:
@@ -48,9 +48,9 @@ def _study(scene: Scene) -> StudyPart:
 
 def _check(scene: Scene, _subject: str) -> None:
     study = _study(scene)
-    if study.gear is None and len(scene.gears) > 1:
+    if study.gear is None and len(scene.spur_gears) > 1:
         raise InputError(
-            "study.gear", "(not given)", "must say which gear is varied", f"one of {', '.join(scene.gears)}"
+            "study.gear", "(not given)", "must say which gear is varied", f"one of {', '.join(scene.spur_gears)}"
         )
     name = _gear(scene)
     for key in ("tip_diameter", "tooth_mesh"):
@@ -273,7 +273,7 @@ ROOT_STRESS_STUDY = Stage(
     title="Root-stress formulas against finite elements over many gears",
     results=("root-stress-study",),
     about="where each root-stress formula is high or low, over many gears",
-    subjects=lambda scene: ("",) if scene.gears else (),
+    subjects=lambda scene: ("",) if scene.spur_gears else (),
     inputs=_inputs,
     compute=_compute,
     present=_present,

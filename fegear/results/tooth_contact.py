@@ -13,7 +13,7 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
-from fegear.helical.lead_error import lead, lead_angle_error_of_cut, lead_error_as_cut
+from fegear.helical.lead_error import lead_angle_error_of_cut, lead_error_as_cut
 from fegear.results.drawn_flanks import tooth_contact_figures
 
 if TYPE_CHECKING:
@@ -72,6 +72,8 @@ class ToothContactInputs:
         Key of a load that the case gives and no wanted result takes; else empty.
     lead : float or None
         Error of the pinion's lead that the case gives in place of a lead angle [m].
+    relieved : tuple of str
+        Gears whose relief the analysis does not know.
     """
 
     pair: HelicalPair
@@ -82,6 +84,7 @@ class ToothContactInputs:
     name: str = field(compare=False)
     ignored: str = field(default="", compare=False)
     lead: float | None = field(default=None, compare=False)
+    relieved: tuple[str, ...] = field(default=(), compare=False)
 
 
 def _pairs(scene: Scene) -> tuple[str, ...]:
@@ -219,7 +222,7 @@ def _lead_remark(name: str, asked: ToothContactInputs) -> tuple[str, ...]:
     other = lead_angle_error_of_cut(pinion, asked.lead)
     minutes = math.degrees(60.0)
     remark = (
-        f"Pair {name}: a lead of {lead(pinion) * 1e3:.6g} mm that is off by {asked.lead * 1e3:.6g} mm is taken as "
+        f"Pair {name}: a lead of {pinion.lead * 1e3:.6g} mm that is off by {asked.lead * 1e3:.6g} mm is taken as "
         f"{angle * minutes:.6g}' of lead angle by Eq. 18 of TM-107451, which holds the pitch radius. Its Appendix 2 "
         f"lets the radius follow: the lead as cut is off by {lead_error_as_cut(pinion, angle) * 1e3:.6g} mm, and by "
         f'what is given with lead_angle = "{other * minutes:.8g} arcmin".'
@@ -235,8 +238,8 @@ def _values(name: str, t: ToothContact) -> tuple[Value, ...]:
         Value(f"{name}.te_max", t.maximum.value, "arcsec", t.maximum.error, "largest transmission error"),
         Value(f"{name}.te_min", t.minimum.value, "arcsec", t.minimum.error, "smallest transmission error"),
         Value(f"{name}.transverse_contact_ratio", pair.transverse_contact_ratio, "", 0.0, "aligned drive"),
-        Value(f"{name}.overlap_ratio", pair.overlap_ratio, "", 0.0, "common face over axial pitch"),
-        Value(f"{name}.centre_distance", pair.centre_distance, "mm", 0.0, "with the pinion as cut"),
+        Value(f"{name}.common_overlap_ratio", pair.overlap_ratio, "", 0.0, "common face over axial pitch"),
+        Value(f"{name}.centre_distance_as_cut", pair.centre_distance, "mm", 0.0, "with the pinion as cut"),
         _surface_share(name, t),
         *_lead_values(name, pair),
     )
@@ -299,6 +302,7 @@ def _inputs(scene: Scene, name: str) -> ToothContactInputs:
         next((key for key in ("load", "torque") if getattr(part, key) is not None), "")
         if "crosscheck" not in scene.case.results else "",
         part.misalignment.lead if part.misalignment is not None else None,
+        tuple(gear for gear in dict.fromkeys((part.driver, part.driven)) if scene.case.gear[gear].relief is not None),
     )  # fmt: skip
 
 
@@ -339,6 +343,13 @@ def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
         settings |= {"load": asked.load, "contact_modulus": asked.modulus}
     if data.bearing is not None:
         remarks += _ellipse_remarks(name, contact, data.bearing)
+    if asked.relieved:
+        of = " and ".join(f"gear {gear}" for gear in asked.relieved)
+        idle = (
+            f"Pair {name}: the relief of {of} changes nothing here: tooth contact analysis takes the flanks as cut, "
+            "with the pair's own modification."
+        )
+        remarks += (idle,)
     if asked.ignored:
         idle = (
             f"Pair {name}: {asked.ignored} changes nothing here: tooth contact analysis takes the flanks as rigid. "

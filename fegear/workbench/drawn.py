@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,8 +12,8 @@ from fegear.geometry.outline import gear_outline
 from fegear.output.draw_plotly.notebook import still_html
 
 if TYPE_CHECKING:
+    from fegear import geometry
     from fegear.arrays import Array
-    from fegear.geometry import Gear as SpurGear
     from fegear.workbench.gear import Gear
     from fegear.workbench.pair import Pair
     from fegear.workbench.results import Results
@@ -28,7 +27,7 @@ def _circle(radius: float) -> Array:
     return radius * np.stack([np.cos(angle), np.sin(angle)])
 
 
-def gear_figure(name: str, gear: SpurGear) -> Figure:
+def gear_figure(name: str, gear: geometry.Gear) -> Figure:
     """The whole gear: outline, pitch circle, and where the body is held."""
     points = gear_outline(gear, _CHORD) * 1e3
     lines = (
@@ -38,7 +37,8 @@ def gear_figure(name: str, gear: SpurGear) -> Figure:
     )
     return Figure(
         f"gear_{name}", f"Gear {name}",
-        f"{gear.teeth} teeth, module {gear.module * 1e3:.6g} mm, profile shift {gear.tooth.profile_shift:.4g}.",
+        f"{gear.teeth} teeth, module {gear.module * 1e3:.6g} mm, profile shift {gear.tooth.profile_shift:.4g}"
+        + (f"; the section across the axis, {gear.hand} hand." if gear.helix_angle else "."),
         (Panel(Axis("x", "mm"), Axis("y", "mm"), lines, equal=True, height=1.5),),
     )  # fmt: skip
 
@@ -49,14 +49,10 @@ def _data_html(data: Results) -> str:
 
 
 def gear_html(gear: Gear) -> str:
-    """Drawing and data of a gear; of a helical one its description alone."""
-    if not gear.is_spur:
-        return f"<code>{escape(repr(gear))}</code>"
-    return still_html(gear_figure(gear.name, gear.spur)) + _data_html(gear.data)
+    """Drawing and data of a gear."""
+    return still_html(gear_figure(gear.name, gear.geometry)) + _data_html(gear.data)
 
 
 def pair_html(pair: Pair) -> str:
-    """Drawing and data of a pair; of a helical one its description alone."""
-    if not pair.is_spur:
-        return f"<code>{escape(repr(pair))}</code>"
+    """Drawing and data of a pair."""
     return "".join(still_html(figure.made()) for figure in pair.data.figures) + _data_html(pair.data)

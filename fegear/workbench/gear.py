@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from fegear.case.reading import build_scene
-from fegear.errors import InputError
 from fegear.solution_cache import SolutionCache
 from fegear.workbench.keys import brief
 from fegear.workbench.run import run_scene
@@ -16,9 +15,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
 
+    from fegear import geometry
     from fegear.case.reading import Scene
-    from fegear.geometry import Gear as SpurGear
-    from fegear.geometry.helical_gear import HelicalGear
     from fegear.workbench.keys import GearKeys, Length
     from fegear.workbench.results import Results
 
@@ -79,33 +77,12 @@ class Gear:
     @property
     def is_spur(self) -> bool:
         """Whether its teeth are straight."""
-        return self.name in self._scene.gears
+        return self.name in self._scene.spur_gears
 
     @property
-    def spur(self) -> SpurGear:
-        """The spur gear of the geometry package, in SI throughout.
-
-        Raises
-        ------
-        InputError
-            If the gear is helical.
-        """
-        if not self.is_spur:
-            raise InputError("gear", f'"{self.name}"', "is helical", "its geometry is .helical")
+    def geometry(self) -> geometry.Gear:
+        """The gear of the geometry package, spur or helical, in SI throughout."""
         return self._scene.gears[self.name]
-
-    @property
-    def helical(self) -> HelicalGear:
-        """The helical gear of the geometry package, in SI throughout.
-
-        Raises
-        ------
-        InputError
-            If the gear is a spur gear.
-        """
-        if self.is_spur:
-            raise InputError("gear", f'"{self.name}"', "is a spur gear", "its geometry is .spur")
-        return self._scene.helical_gears[self.name]
 
     @cached_property
     def data(self) -> Results:

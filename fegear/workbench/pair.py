@@ -100,32 +100,27 @@ class Pair:
     @property
     def is_spur(self) -> bool:
         """Whether its teeth are straight."""
-        return self.name in self._scene.pairs
+        return self.name in self._scene.spur_pairs
 
     @property
-    def spur(self) -> GearPair:
-        """The spur pair of the geometry package, in SI throughout.
-
-        Raises
-        ------
-        InputError
-            If the pair is helical.
-        """
-        if not self.is_spur:
-            raise InputError("pair", f'"{self.name}"', "is helical", "its geometry is .helical")
+    def geometry(self) -> GearPair:
+        """The pair of the geometry package, spur or helical, in SI throughout."""
         return self._scene.pairs[self.name]
 
     @property
-    def helical(self) -> HelicalPair:
-        """The helical pair of the geometry package, in SI throughout.
+    def flanks(self) -> HelicalPair:
+        """The flanks of the pair with errors and modification, for tooth contact analysis.
 
         Raises
         ------
         InputError
-            If the pair is one of spur gears.
+            If the gears are described without a helix angle; one of zero is enough.
         """
-        if self.is_spur:
-            raise InputError("pair", f'"{self.name}"', "is of spur gears", "its geometry is .spur")
+        if self.name not in self._scene.helical_pairs:
+            raise InputError(
+                "helix_angle", "(not given)", "is what tooth contact analysis starts from",
+                'describe both gears with normal_module, helix_angle = "0 deg" and hand = "spur"',
+            )  # fmt: skip
         return self._scene.helical_pairs[self.name]
 
     @cached_property

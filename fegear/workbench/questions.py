@@ -95,7 +95,7 @@ def _loaded(
     several = listed(given)
     if several is None:
         return pair.document(**{key: given})
-    radius = 1.0 if torque is None else pair.spur.driver.base_radius
+    radius = 1.0 if torque is None else pair.geometry.driver.base_radius
     return pair.document(loads=[in_si(one, dimension, key) / radius for one in several])
 
 

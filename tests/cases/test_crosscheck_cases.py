@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 
 from fegear.case.reading import read_scene
 from fegear.cli import app
@@ -24,7 +25,6 @@ from fegear.formulas.iso6336_rating import RatingChoice, ToothLoad, rate_helical
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import SOURCES
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
-from fegear.geometry.helical_gear import HelicalGear
 from fegear.models.settings import mesh_settings
 from fegear.results.catalogue import STAGES
 
@@ -225,17 +225,17 @@ def test_without_a_helix_the_virtual_tooth_is_the_tooth():
     choice = RatingChoice()
     load = ToothLoad(1e5 * math.cos(rack.pressure_angle), pair.contact_ratio)
     for member, gear in zip(("driver", "driven"), spur, strict=True):
-        straight = HelicalGear(gear.teeth, 4e-3, rack.pressure_angle, 0.0, 0.02, "spur")
-        one, other = rate_helical(straight, rack, load, choice), rate_spur(pair, member, 1e5, choice)
+        straight = helical_gear(gear.teeth, 4e-3, rack.pressure_angle, 0.0, 0.02, "spur")
+        one, other = rate_helical(straight, load, choice), rate_spur(pair, member, 1e5, choice)
         assert one.stress == pytest.approx(other.stress, rel=1e-9)
         assert one.load_diameter == pytest.approx(other.load_diameter, rel=1e-12)
     # Between whole numbers of teeth the finite elements follow; on them they are those of the wheel itself.
     coarse = MeshSettings().scaled(1.6)
     tension = {}
     for beta, teeth in ((0.0, 25), (math.radians(9.0), 25), (0.0, 26)):
-        gear = HelicalGear(teeth, 4e-3, rack.pressure_angle, beta, 0.02, "spur" if beta == 0.0 else "left")
-        z_n = rate_helical(gear, rack, load, choice).teeth
-        tension[z_n] = virtual_root_stress(gear, rack, z_n + 1.0, coarse).tension
+        gear = helical_gear(teeth, 4e-3, rack.pressure_angle, beta, 0.02, "spur" if beta == 0.0 else "left")
+        z_n = rate_helical(gear, load, choice).teeth
+        tension[z_n] = virtual_root_stress(gear, z_n + 1.0, coarse).tension
     low, middle, high = tension
     assert 25.0 == low < middle < high == 26.0
     part = (1.0 / low - 1.0 / middle) / (1.0 / low - 1.0 / high)

@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import ellipe, ellipk
 
 from fegear.errors import InputError
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, pair_contact
+from fegear.helical import HelicalPair, Misalignment, pair_contact
 from fegear.helical.curvature import contact_ellipse, parting
 from fegear.helical.separation import Placement
 
@@ -59,7 +60,7 @@ def test_nonsense_is_refused():
 def test_relative_curvature_is_that_of_the_gap(beta, crown):
     hands = ("left", "right") if beta else ("spur", "spur")
     a, b = (
-        HelicalGear(n, 5e-3, math.radians(20.0), math.radians(beta), 0.04, h)
+        helical_gear(n, 5e-3, math.radians(20.0), math.radians(beta), 0.04, h)
         for n, h in zip((31, 57), hands, strict=True)
     )
     pair = HelicalPair(a, b, Misalignment(shaft_angle=5e-4), parabola=3.0, crown=crown)

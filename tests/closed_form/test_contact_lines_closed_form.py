@@ -5,12 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.errors import InputError
 from fegear.geometry.helicoid import InvoluteHelicoid
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, pair_contact
+from fegear.helical import HelicalPair, Misalignment, pair_contact
 from fegear.helical.contact_lines import aligned, contact_lines, line_contact, line_ends, line_length
 
 DEG = math.pi / 180.0
@@ -18,8 +19,8 @@ DEG = math.pi / 180.0
 
 def make(n1=30, n2=100, beta=30.0, hand="left", width=0.04064, width_2=0.04064, offset=0.0, apart=0.0):
     other = {"left": "right", "right": "left", "spur": "spur"}[hand]
-    a = HelicalGear(n1, 5.08e-3, 20.0 * DEG, beta * DEG, width, hand)
-    b = HelicalGear(n2, 5.08e-3, 20.0 * DEG, beta * DEG, width_2, other)
+    a = helical_gear(n1, 5.08e-3, 20.0 * DEG, beta * DEG, width, hand)
+    b = helical_gear(n2, 5.08e-3, 20.0 * DEG, beta * DEG, width_2, other)
     return HelicalPair(a, b, Misalignment(centre_distance=apart), axial_offset=offset)
 
 

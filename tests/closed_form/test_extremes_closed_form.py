@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.errors import GeometryError
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, pair_contact, tooth_contact
+from fegear.helical import HelicalPair, Misalignment, pair_contact, tooth_contact
 from fegear.helical.extremes import extremes
 
 DEG, ARCMIN = math.pi / 180.0, math.pi / 10800.0
@@ -89,7 +90,7 @@ def random_drives(count, seed):
         teeth, narrow = (rng.integers(20, 60), rng.integers(20, 120)), rng.choice([1.0, 0.9])
         try:
             gears = [
-                HelicalGear(int(z), 4e-3, alpha, beta, b, str(hand))
+                helical_gear(int(z), 4e-3, alpha, beta, b, str(hand))
                 for z, b, hand in zip(teeth, (width, narrow * width), hands, strict=True)
             ]
             found.append(HelicalPair(*gears, Misalignment(*errors, centre), parabola, crown, offset))

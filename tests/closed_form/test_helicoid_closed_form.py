@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.geometry.helical_gear import HelicalGear
 from fegear.geometry.helicoid import InvoluteHelicoid
 from fegear.geometry.rack_flank import RackFlank
+from fegear.helical.as_cut import as_cut
 
 DEG = math.pi / 180.0
 
@@ -18,9 +19,10 @@ DEG = math.pi / 180.0
 def helical_gears(draw, low_teeth=18):
     beta = draw(st.sampled_from([0.0, 1e-9, 0.01, 0.3, 0.6]))
     hand = "spur" if beta == 0.0 else draw(st.sampled_from(["left", "right"]))
-    return HelicalGear(
-        draw(st.integers(low_teeth, 200)), draw(st.sampled_from([1e-3, 5e-3])), 20.0 * DEG, beta, 0.03, hand
-    )
+    return helical_gear(
+        draw(st.integers(low_teeth, 200)), draw(st.sampled_from([1e-3, 5e-3])), 20.0 * DEG, beta, 0.03, hand,
+        profile_shift=draw(st.sampled_from([0.0, 0.4, -0.25])), thickness_allowance=draw(st.sampled_from([0.0, 0.02])),
+    )  # fmt: skip
 
 
 def grid(flank, n=6):
@@ -30,11 +32,11 @@ def grid(flank, n=6):
 
 
 def test_surfaces_are_those_of_appendix_1():
-    gear = HelicalGear(30, 5.08e-3, 20.0 * DEG, 30.0 * DEG, 0.04, "left")
+    gear = helical_gear(30, 5.08e-3, 20.0 * DEG, 30.0 * DEG, 0.04, "left")
     rb, mu, p = gear.base_radius, gear.half_base_space_angle, 1.0 / abs(gear.twist)
     lb = math.atan(p / rb)
     assert lb == pytest.approx(
-        math.atan(math.tan(gear.lead_angle) / math.cos(gear.transverse_pressure_angle)), abs=1e-15
+        math.atan(1.0 / math.tan(gear.helix_angle) / math.cos(gear.transverse_pressure_angle)), abs=1e-15
     )
     u, theta = np.meshgrid(np.linspace(0.02, 0.05, 5), np.linspace(-0.2, 0.9, 5))
     a = theta + mu
@@ -47,7 +49,7 @@ def test_surfaces_are_those_of_appendix_1():
     assert np.abs(flank.points(u * math.cos(lb), paper[2]) - paper).max() < 1e-15
     assert np.abs(flank.normals(u * math.cos(lb), paper[2]) + normal).max() < 1e-14  # the paper's point inward
 
-    gear = HelicalGear(100, 5.08e-3, 20.0 * DEG, 30.0 * DEG, 0.04, "right")
+    gear = helical_gear(100, 5.08e-3, 20.0 * DEG, 30.0 * DEG, 0.04, "right")
     rb, eta, p = gear.base_radius, gear.half_base_tooth_angle, 1.0 / gear.twist
     a = theta - eta
     paper = np.stack([
@@ -76,7 +78,7 @@ def test_derivative_normal_and_curvature_of_the_generated_flank_agree_with_diffe
     flank = RackFlank(gear, parabola, crown)
     s, z = grid(flank)
     s = s - 0.01 * (flank.s_tip - flank.s_form)
-    h = 1e-6 * gear.normal_module
+    h = 1e-6 * gear.module
     ws = (flank.profile(s + h)[0] - flank.profile(s - h)[0]) / (2.0 * h)
     assert np.abs(ws - flank.profile(s)[1]).max() < 1e-7
     xs = (flank.points(s + h, z) - flank.points(s - h, z)) / (2.0 * h)
@@ -87,8 +89,8 @@ def test_derivative_normal_and_curvature_of_the_generated_flank_agree_with_diffe
     assert np.abs((n * xz).sum(0)).max() < 1e-6
     d = flank.profile(s)[1]
     turn = np.angle(flank.profile(s + h)[1] / flank.profile(s - h)[1]) / (2.0 * h)
-    assert -turn / np.abs(d) * gear.normal_module == pytest.approx(
-        flank.profile_curvature(s) * gear.normal_module, rel=1e-5, abs=1e-7
+    assert -turn / np.abs(d) * gear.module == pytest.approx(
+        flank.profile_curvature(s) * gear.module, rel=1e-5, abs=1e-7
     )
 
 
@@ -108,8 +110,15 @@ def test_helicoid_is_developable_and_its_separation_is_a_distance(gear):
     assert off == pytest.approx(np.full_like(off, h), rel=1e-9)
 
 
+@given(helical_gears(low_teeth=11))
+def test_the_generated_flank_reaches_from_the_form_circle_to_the_tip(gear):
+    flank = RackFlank(gear)
+    ends = [abs(complex(flank.profile(s)[0])) for s in (flank.s_form, flank.s_tip)]
+    assert ends == pytest.approx([gear.form_radius, gear.involute_tip_radius], rel=1e-9)
+
+
 def test_parabola_removes_what_the_cutter_adds():
-    gear = HelicalGear(30, 5.08e-3, 20.0 * DEG, 30.0 * DEG, 0.04, "left")
+    gear = helical_gear(30, 5.08e-3, 20.0 * DEG, 30.0 * DEG, 0.04, "left")
     a_c = 0.02  # small: the common normal turns by 2 a_c s, so that the loss is a_c s^2 to first order only
     flank, helicoid = RackFlank(gear, a_c), InvoluteHelicoid.of(gear, "space")
     s = np.linspace(flank.s_form, flank.s_tip, 41)
@@ -124,10 +133,10 @@ def test_parabola_removes_what_the_cutter_adds():
 
 
 def test_relations_of_appendix_2():
-    gear = HelicalGear(30, 0.0254 / 5.0, 20.0 * DEG, 30.0 * DEG, 0.04, "left")
+    gear = helical_gear(30, 0.0254 / 5.0, 20.0 * DEG, 30.0 * DEG, 0.04, "left")
     h = 1e-6
     # (15) to (17), differentials of the design parameters by the profile angle.
-    up, down = gear.with_errors(profile_angle=h), gear.with_errors(profile_angle=-h)
+    up, down = as_cut(gear, profile_angle=h), as_cut(gear, profile_angle=-h)
     alpha_n, alpha_t = gear.normal_pressure_angle, gear.transverse_pressure_angle
     d_alpha_t = (up.transverse_pressure_angle - down.transverse_pressure_angle) / (2.0 * h)
     assert d_alpha_t == pytest.approx(math.sin(2.0 * alpha_t) / math.sin(2.0 * alpha_n), rel=1e-8)
@@ -136,4 +145,4 @@ def test_relations_of_appendix_2():
     lb = 0.5 * math.pi - gear.base_helix_angle
     d_lb = -(up.base_helix_angle - down.base_helix_angle) / (2.0 * h)
     assert d_lb == pytest.approx(0.5 * math.sin(2.0 * lb) * math.tan(alpha_t) * d_alpha_t, rel=1e-8)
-    assert 1.0 / abs(gear.twist) == pytest.approx(gear.pitch_radius * math.tan(gear.lead_angle), rel=1e-14)
+    assert 1.0 / abs(gear.twist) == pytest.approx(gear.pitch_radius / math.tan(gear.helix_angle), rel=1e-14)

@@ -3,27 +3,28 @@
 import math
 
 import pytest
+from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.errors import InputError, RangeError
-from fegear.helical import HelicalGear
-from fegear.helical.lead_error import lead, lead_angle_error, lead_angle_error_of_cut, lead_error_as_cut
+from fegear.helical.as_cut import as_cut
+from fegear.helical.lead_error import lead_angle_error, lead_angle_error_of_cut, lead_error_as_cut
 
 DEG = math.pi / 180.0
 
 
 def gear(beta=30.0, hand="left", teeth=30):
-    return HelicalGear(teeth, 5.08e-3, 20.0 * DEG, beta * DEG, 0.04, hand)
+    return helical_gear(teeth, 5.08e-3, 20.0 * DEG, beta * DEG, 0.04, hand)
 
 
 @pytest.mark.parametrize("hand", ["left", "right"])
 @given(beta=st.floats(0.5, 50.0), teeth=st.integers(12, 200))
 def test_equation_18_is_the_derivative_at_a_fixed_pitch_radius(hand, beta, teeth):
     pinion = gear(beta, hand, teeth)
-    assert lead(pinion) == pytest.approx(2.0 * math.pi / abs(pinion.twist), rel=1e-12)
-    step = 1e-6 * lead(pinion)
-    angles = [math.atan((lead(pinion) + sign * step) / (2.0 * math.pi * pinion.pitch_radius)) for sign in (-1, 1)]
+    assert pinion.lead == pytest.approx(2.0 * math.pi / abs(pinion.twist), rel=1e-12)
+    step = 1e-6 * pinion.lead
+    angles = [math.atan((pinion.lead + sign * step) / (2.0 * math.pi * pinion.pitch_radius)) for sign in (-1, 1)]
     assert lead_angle_error(pinion, 2.0 * step) == pytest.approx(angles[1] - angles[0], rel=1e-8)
 
 
@@ -31,11 +32,11 @@ def test_equation_18_is_the_derivative_at_a_fixed_pitch_radius(hand, beta, teeth
 @given(beta=st.floats(2.0, 50.0), minutes=st.floats(-60.0, 60.0))
 def test_the_lead_as_cut_is_that_of_appendix_2(hand, beta, minutes):
     pinion, angle = gear(beta, hand), minutes * DEG / 60.0
-    cut = pinion.with_errors(lead_angle=angle)
+    cut = as_cut(pinion, lead_angle=angle)
     by_hand = 2.0 * math.pi * (1.0 / abs(cut.twist) - 1.0 / abs(pinion.twist))
     found = lead_error_as_cut(pinion, angle)
-    assert found == pytest.approx(by_hand, abs=1e-12 * lead(pinion) / math.sin(pinion.helix_angle))
-    if abs(found) < 0.2 * lead(pinion):
+    assert found == pytest.approx(by_hand, abs=1e-12 * pinion.lead / math.sin(pinion.helix_angle))
+    if abs(found) < 0.2 * pinion.lead:
         assert lead_angle_error_of_cut(pinion, found) == pytest.approx(angle, rel=1e-9, abs=1e-15)
 
 
@@ -49,7 +50,7 @@ def test_small_errors_keep_their_digits_and_the_readings_differ_by_the_sine_squa
 
 def test_leads_that_mean_nothing_are_refused():
     with pytest.raises(InputError, match="spur gear, whose lead is infinite"):
-        lead_angle_error(HelicalGear(30, 5e-3, 0.35, 0.0, 0.04, "spur"), 1e-3)
+        lead_angle_error(helical_gear(30, 5e-3, 0.35, 0.0, 0.04, "spur"), 1e-3)
     for change in (0.5, -0.5, math.nan, math.inf):
         with pytest.raises(RangeError, match="no small error of a lead of 957"):
             lead_angle_error(gear(), change)

@@ -166,13 +166,20 @@ def test_meshes_with_their_remark_are_read_by_other_programs(tmp_path):
         gmsh.finalize()
 
 
-def test_helical_gears_are_refused_with_a_sentence(tmp_path):
+def test_a_helical_gear_is_drawn_across_its_axis_and_has_no_plane_mesh(tmp_path):
     """A helical case wrote nothing and said nothing."""
     both = 'title = "H"\nresults = ["tooth-contact"]\n' + HELICAL.format("a", "left") + HELICAL.format("b", "right")
     scene = scene_of(tmp_path, both + '[pair.I]\ndriver = "a"\ndriven = "b"\n')
     with pytest.raises(InputError, match="are helical"):
-        export_gears(scene, tmp_path, (), "dxf")
+        export_gears(scene, tmp_path, (), "msh,inp")
     with pytest.raises(InputError, match="is helical"):
-        export_gears(scene, tmp_path, ("a",), "dxf")
-    assert not list(tmp_path.glob("*.dxf"))
-    assert math.isfinite(scene.helical_gears["a"].tip_radius)
+        export_gears(scene, tmp_path, ("a",), "vtu")
+    assert not list(tmp_path.iterdir()) or {path.name for path in tmp_path.iterdir()} == {"case.toml"}
+    done = export_gears(scene, tmp_path, ("a",), "dxf,msh")
+    assert len(done.files) == 4
+    assert any("no msh is written" in remark for remark in done.remarks)
+    (line,) = ezdxf.readfile(tmp_path / "a_gear_polyline.dxf").modelspace().query("LWPOLYLINE")
+    x, y = np.array(line.get_points("xy")).T
+    tip, root = 45.0 / math.cos(math.radians(20.0)) + 3.0, 45.0 / math.cos(math.radians(20.0)) - 3.75
+    assert np.hypot(x, y).max() == pytest.approx(tip, rel=1e-9)
+    assert np.hypot(x, y).min() == pytest.approx(root, abs=1e-3)

@@ -4,13 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import root
 
 from fegear.errors import GeometryError
 from fegear.geometry.rack_flank import RackFlank
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, mesh_cycle, pair_contact, tooth_contact
+from fegear.helical import HelicalPair, Misalignment, as_cut, mesh_cycle, pair_contact, tooth_contact
 from fegear.helical.bracket import falling_bracket, falling_root
 
 DEG, ARCMIN, ARCSEC = math.pi / 180.0, math.pi / 10800.0, math.pi / 648000.0
@@ -18,8 +19,8 @@ DEG, ARCMIN, ARCSEC = math.pi / 180.0, math.pi / 10800.0, math.pi / 648000.0
 
 def make(n1=30, n2=100, beta=30.0, hand="left", width=0.04064, mn=5.08e-3, alpha=20.0, errors=None, **more):
     other = {"left": "right", "right": "left", "spur": "spur"}[hand]
-    a = HelicalGear(n1, mn, alpha * DEG, beta * DEG, width, hand)
-    b = HelicalGear(n2, mn, alpha * DEG, beta * DEG, more.pop("width_2", width), other)
+    a = helical_gear(n1, mn, alpha * DEG, beta * DEG, width, hand)
+    b = helical_gear(n2, mn, alpha * DEG, beta * DEG, more.pop("width_2", width), other)
     return HelicalPair(a, b, errors or Misalignment(), **more)
 
 
@@ -202,7 +203,12 @@ def crossed_contact(pair, phi_1):
     """Surface-to-surface contact of crossed involute helicoids: Appendix 4, steps 1 to 7, as a linear system."""
     a, b, g = pair.cut_pinion, pair.gear, pair.errors.shaft_angle
     l1, l2 = 0.5 * math.pi - a.base_helix_angle, 0.5 * math.pi - b.base_helix_angle
-    p1, p2, mu, eta = 1.0 / abs(a.twist), 1.0 / abs(b.twist), a.half_base_space_angle, b.half_base_tooth_angle
+    p1, p2, mu, eta = (
+        1.0 / abs(a.twist),
+        1.0 / abs(b.twist),
+        a.half_base_space_angle,
+        b.half_base_tooth_angle,
+    )
     F2 = math.acos((math.cos(l1) - math.cos(l2) * math.cos(g)) / (math.sin(l2) * math.sin(g)))
     F1 = math.asin(math.sin(l2) * math.sin(F2) / math.sin(l1))
     theta_1 = F1 - mu + phi_1
@@ -317,4 +323,4 @@ def test_bracketed_roots_are_found_or_pinned_to_the_end(centres, steep):
 
 def test_flank_of_the_pair_is_the_cut_one():
     pair = make(errors=Misalignment(lead_angle=3 * ARCMIN), parabola=1.0)
-    assert pair.flank == RackFlank(pair.pinion.with_errors(lead_angle=3 * ARCMIN), 1.0)
+    assert pair.flank == RackFlank(as_cut(pair.pinion, lead_angle=3 * ARCMIN), 1.0)

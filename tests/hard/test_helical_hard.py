@@ -5,6 +5,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -12,7 +13,7 @@ from fegear.dynamics.helical_pair import ReducedPairModel
 from fegear.dynamics.mesh_parameters import MeshParameters
 from fegear.dynamics.modal_indices import mode_table
 from fegear.dynamics.transmissibility import reduced_transmissibility
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, mesh_cycle, tooth_contact
+from fegear.helical import HelicalPair, Misalignment, mesh_cycle, tooth_contact
 from fegear.helical.curvature import contact_ellipse
 
 DEG, ARCMIN = math.pi / 180.0, math.pi / 10800.0
@@ -20,7 +21,7 @@ DEG, ARCMIN = math.pi / 180.0, math.pi / 10800.0
 
 def pair(beta, errors, teeth=(30, 61), width=0.03, parabola=0.0):
     hands = ("left", "right") if beta > 0.0 else ("spur", "spur")
-    gears = [HelicalGear(z, 4e-3, 20.0 * DEG, beta, width, h) for z, h in zip(teeth, hands, strict=True)]
+    gears = [helical_gear(z, 4e-3, 20.0 * DEG, beta, width, h) for z, h in zip(teeth, hands, strict=True)]
     return HelicalPair(*gears, errors, parabola=parabola)
 
 

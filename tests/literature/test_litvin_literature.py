@@ -9,9 +9,10 @@ import math
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 
 from fegear.errors import RangeError
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, mesh_cycle, pair_contact, tooth_contact
+from fegear.helical import HelicalPair, Misalignment, as_cut, mesh_cycle, pair_contact, tooth_contact
 from fegear.helical.bearing import bearing_contact
 from fegear.helical.predesign import absorb_linear_error, linear_error
 
@@ -21,7 +22,7 @@ INCH, ARCMIN, ARCSEC = 0.0254, math.pi / 10800.0, math.pi / 648000.0
 def drive(shaft=0.0, lead=0.0, profile=0.0, parabola=0.0):
     """30/100 teeth, alpha_n = 20 deg, P_n = 5/in, lambda_p = 60 deg, L = 1.6 in; errors in arc-min, a_c in 1/in."""
     pinion, gear = (
-        HelicalGear(n, INCH / 5.0, math.radians(20.0), math.radians(30.0), 1.6 * INCH, hand)
+        helical_gear(n, INCH / 5.0, math.radians(20.0), math.radians(30.0), 1.6 * INCH, hand)
         for n, hand in ((30, "left"), (100, "right"))
     )
     errors = Misalignment(shaft * ARCMIN, lead * ARCMIN, profile * ARCMIN)
@@ -154,11 +155,12 @@ def test_predesign_refuses_what_it_cannot_do():
     with pytest.raises(RangeError, match="must be positive"):
         absorb_linear_error(drive(shaft=3.0))
     stub = drive(parabola=0.08)
-    short = dataclasses.replace(stub.pinion, tip_radius=stub.pinion.pitch_radius + 1.5e-3)
+    low = dataclasses.replace(stub.pinion.tooth, tip_radius=(stub.pinion.pitch_radius + 1.5e-3) / stub.pinion.module)
+    short = dataclasses.replace(stub.pinion, tooth=low)
     stub = dataclasses.replace(stub, pinion=short)
     with pytest.raises(RangeError, match="over tip and root"):
         absorb_linear_error(stub, slope=0.01, face_share=0.1)
-    spur = [HelicalGear(30, 5e-3, 0.35, 0.0, 0.04, "spur") for _ in range(2)]
+    spur = [helical_gear(30, 5e-3, 0.35, 0.0, 0.04, "spur") for _ in range(2)]
     with pytest.raises(RangeError, match="helical drive"):
         absorb_linear_error(HelicalPair(*spur, parabola=1.0))
 
@@ -178,7 +180,7 @@ def test_contact_ellipses_lie_along_the_tooth():
 
 def test_equations_15_to_17_are_the_derivatives_of_appendix_2():
     pinion, step = drive().pinion, 1e-5
-    low, high = (pinion.with_errors(profile_angle=sign * step) for sign in (-1, 1))
+    low, high = (as_cut(pinion, profile_angle=sign * step) for sign in (-1, 1))
     alpha_n, alpha_t = pinion.normal_pressure_angle, pinion.transverse_pressure_angle
     lambda_b = 0.5 * math.pi - pinion.base_helix_angle
     by_alpha_n = math.sin(2.0 * alpha_t) / math.sin(2.0 * alpha_n)  # (15)
@@ -208,7 +210,10 @@ def test_appendix_4_is_the_whole_solution_where_both_errors_are_of_one_size(minu
     theta_2 = (y1 + u2 * math.sin(lb) * math.sin(gamma) + y2 * math.cos(gamma)) / (pb * math.sin(gamma))
     z = (u2 * math.sin(lb) - pb * theta_2) * math.cos(gamma) - y2 * math.sin(gamma)
     theta_1 = (z + u1 * math.sin(la)) / pa
-    phi_1, phi_2 = theta_1 + a.half_base_space_angle - Phi_1, Phi_2 - theta_2 + b.half_base_tooth_angle
+    phi_1, phi_2 = (
+        theta_1 + a.half_base_space_angle - Phi_1,
+        Phi_2 - theta_2 + b.half_base_tooth_angle,
+    )
     found = pair_contact(pair, [phi_1])
     assert found.kind[0] == "surface"
     # A.4.1 takes the difference of two cosines over a small sine: what is left of it is 1e-16 over the error.

@@ -152,11 +152,12 @@ def test_an_empty_spectrum_has_no_limits_of_its_own():
 
 
 def test_teeth_in_space_are_whole_and_mirror_their_flank():
-    from fegear.geometry.helical_gear import HelicalGear
+    from helical_gears import helical_gear
+
     from fegear.geometry.helicoid import InvoluteHelicoid
     from fegear.results.drawn_flanks import _tooth
 
-    gear = HelicalGear(20, 5e-3, math.radians(20.0), math.radians(25.0), 40e-3, "right")
+    gear = helical_gear(20, 5e-3, math.radians(20.0), math.radians(25.0), 40e-3, "right")
     flank = InvoluteHelicoid.of(gear, "tooth")
     radius, z = np.meshgrid(np.linspace(1.001 * gear.form_radius, gear.tip_radius, 5), np.linspace(-0.02, 0.02, 7))
     whole, *ends = _tooth(flank.points(flank.tangent_length(radius), z), gear.twist * z)
@@ -164,7 +165,7 @@ def test_teeth_in_space_are_whole_and_mirror_their_flank():
     assert [end.shape for end in ends] == [(3, 2, 5)] * 2
     assert np.hypot(whole[0], whole[1]) == pytest.approx(np.concatenate([radius, radius[:, ::-1]], axis=1))
     tips = np.arctan2(whole[1, :, 4:6], whole[0, :, 4:6])
-    assert tips[:, 0] - tips[:, 1] == pytest.approx(gear.tip_thickness_angle)
+    assert tips[:, 0] - tips[:, 1] == pytest.approx(2.0 * gear.tooth.tip_half_angle)
     assert tips.mean(axis=1) == pytest.approx(gear.twist * z[:, 0], abs=1e-12)
 
 

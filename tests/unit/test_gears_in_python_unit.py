@@ -50,16 +50,16 @@ def same(found, case, changes, results):
 
 
 def test_a_gear_is_the_one_of_the_case(pair):
-    assert pair.driver.spur == fegear.run(CASE, results=["geometry"]).scene.gears["pinion"]
-    assert pair.spur.contact_ratio == fegear.run(CASE, results=["geometry"]).scene.pairs["I"].contact_ratio
+    assert pair.driver.geometry == fegear.run(CASE, results=["geometry"]).scene.gears["pinion"]
+    assert pair.geometry.contact_ratio == fegear.run(CASE, results=["geometry"]).scene.pairs["I"].contact_ratio
     same(pair.data, CASE, {"effects": {}}, ["geometry"])
 
 
 @pytest.mark.parametrize("module", ["3 mm", 3e-3, np.float64(3e-3), pint.UnitRegistry().Quantity(3, "mm")])
 def test_quantities_are_texts_pint_or_si(module, pair):
     gear = fegear.Gear(**{**PINION, "module": module}, name="pinion")
-    assert gear.spur.module == pytest.approx(3e-3, rel=1e-15)
-    assert gear.spur.pitch_radius == pytest.approx(pair.driver.spur.pitch_radius, rel=1e-15)
+    assert gear.geometry.module == pytest.approx(3e-3, rel=1e-15)
+    assert gear.geometry.pitch_radius == pytest.approx(pair.driver.geometry.pitch_radius, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -188,13 +188,15 @@ def test_stiffness_and_root_stress_are_the_case_s():
 def test_a_helical_pair_is_described_and_refused_where_it_cannot_be_loaded():
     keys = {"normal_module": "3 mm", "helix_angle": "15 deg", "face_width": "20 mm"}
     helical = fegear.Pair(fegear.Gear(23, hand="right", **keys), fegear.Gear(57, hand="left", **keys))
-    assert helical.helical.overlap_ratio > 0.0
+    assert helical.geometry.overlap_ratio == pytest.approx(helical.flanks.overlap_ratio) != 0.0
     assert not helical.driver.is_spur
     with pytest.raises(InputError, match="is helical"):
         fegear.transmission_error(helical, torque="90 N*m")
-    with pytest.raises(InputError, match=r"its geometry is \.helical"):
-        helical.driver.spur  # noqa: B018
-    assert "Gear(23" in helical._repr_html_()
+    assert helical.driver.geometry.base_helix_angle > 0.0
+    assert "overlap ratio" in helical._repr_html_()
+    spur = fegear.Pair(fegear.Gear(23, "3 mm"), fegear.Gear(57, "3 mm"))
+    with pytest.raises(InputError, match="is what tooth contact analysis starts from"):
+        spur.flanks  # noqa: B018
 
 
 def test_type_checkers_know_the_keys_of_the_case():
@@ -218,7 +220,7 @@ def test_a_drawing_carries_the_relief_and_a_mesh_says_that_it_does_not(tmp_path,
     relief = {"tip": {"amount": "200 um", "start_radius": "36 mm"}}
     relieved = fegear.Pair(pair.driver.changed(relief=relief), pair.driven, compliance="weber-banaschek")
     plain, ground = (outline(one.export(tmp_path / name)[0]) for name, one in (("a", pair), ("b", relieved)))
-    tip = pair.driver.spur.tip_radius * 1e3
+    tip = pair.driver.geometry.tip_radius * 1e3
     thickness = [np.ptp(corners[np.hypot(*corners.T) > tip - 1e-6, 0]) for corners in (plain, ground)]
     assert thickness[0] - thickness[1] == pytest.approx(0.4, rel=0.3)  # both flanks, .2 mm each along their normals
     with pytest.warns(UserWarning, match="without the relief of the case"):

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 
 from fegear.case.reading import apply_override, build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
-from fegear.geometry.helical_gear import HelicalGear
 from fegear.geometry.plausible import deepest_relief, refuse_deep_relief
 from fegear.geometry.relief import roll_of_radius, tip_relief
 from fegear.models.pair_inputs import pair_inputs
@@ -139,10 +139,10 @@ def test_a_gear_of_pure_numbers_may_have_any_size():
 
 
 def test_millimetres_for_metres_are_refused_of_helical_gears():
-    with pytest.raises(InputError, match="normal_module = 3 m"):
-        HelicalGear(20, 3, math.radians(20), math.radians(15), 20, "left")
+    with pytest.raises(InputError, match="module = 3 m"):
+        helical_gear(20, 3, math.radians(20), math.radians(15), 20, "left")
     with pytest.raises(InputError, match="face_width = 20 m"):
-        HelicalGear(20, 3e-3, math.radians(20), math.radians(15), 20, "left")
+        helical_gear(20, 3e-3, math.radians(20), math.radians(15), 20, "left")
 
 
 def test_the_deepest_relief_is_just_taken():

@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 #: Which columns of the gear data stand together, in the order of a drawing.
 _GROUPS = (
-    ("Teeth", ("gear", "teeth", "module", "pressure_angle", "profile_shift", "face_width")),
+    ("Teeth", (
+        "gear", "teeth", "module", "pressure_angle", "helix_angle", "hand", "lead", "transverse_module",
+        "transverse_pressure_angle", "base_helix_angle", "profile_shift", "face_width",
+    )),
     ("Diameters", (
         "reference_diameter", "base_diameter", "tip_diameter", "tip_form_diameter", "active_tip_diameter",
         "hpstc_diameter", "lpstc_diameter", "active_root_diameter", "root_form_diameter", "root_diameter",
@@ -31,7 +34,7 @@ _GROUPS = (
 
 
 def gear_sections(results: Results) -> tuple[Section, ...]:
-    """A section for each pair, that in question first, and one for gears in no pair; empty without spur gears."""
+    """A section for each pair, that in question first, and one for gears in no pair; empty without gears."""
     drawing = drawing_of(results.scene)
     written = {table.name for table in results.tables}
     case = results.scene.case

@@ -149,7 +149,7 @@ def _pair(scene: Scene, names: list[str]) -> str:
 def _gear(scene: Scene, names: list[str], pair: str) -> str:
     if not set(names) & set(OF_GEAR):
         return ""
-    first = scene.case.pair[pair].driver if pair else next(iter(scene.gears), "")
+    first = scene.case.pair[pair].driver if pair else next(iter(scene.spur_gears), "")
     chosen = scene.case.cost.gear or scene.case.stiffness.gear or first
     if not chosen:
         raise InputError("gear", "(none)", "a spur gear is needed for these quantities", "describe one")
