@@ -155,12 +155,12 @@ def test_teeth_in_space_are_whole_and_mirror_their_flank():
     from helical_gears import helical_gear
 
     from fegear.geometry.helicoid import InvoluteHelicoid
-    from fegear.results.drawn_flanks import _tooth
+    from fegear.results.drawn_flanks import solid_tooth
 
     gear = helical_gear(20, 5e-3, math.radians(20.0), math.radians(25.0), 40e-3, "right")
     flank = InvoluteHelicoid.of(gear, "tooth")
     radius, z = np.meshgrid(np.linspace(1.001 * gear.form_radius, gear.tip_radius, 5), np.linspace(-0.02, 0.02, 7))
-    whole, *ends = _tooth(flank.points(flank.tangent_length(radius), z), gear.twist * z)
+    whole, *ends = solid_tooth(flank.points(flank.tangent_length(radius), z), gear.twist * z)
     assert whole.shape == (3, 7, 10)
     assert [end.shape for end in ends] == [(3, 2, 5)] * 2
     assert np.hypot(whole[0], whole[1]) == pytest.approx(np.concatenate([radius, radius[:, ::-1]], axis=1))
