@@ -17,16 +17,20 @@ def _both_shapes() -> list[Shape]:
 
 
 class ChartPart(Part):
-    """``chart = { amounts, lengths, loads, shape }``: candidates of equal tip relief on both gears."""
+    """``chart = { amounts | amounts_over_delta, lengths, loads, shape }``: equal tip reliefs on both gears."""
 
     amounts: Annotated[list[PositiveLength], Field(min_length=1)] | None = None
+    amounts_over_delta: Positive | None = None
     lengths: Positive | None = None
     loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = None
     shape: Shape = "linear"
 
     @model_validator(mode="after")
     def _feasible(self) -> Self:
-        counts = [len(values) for values in (self.amounts, self.lengths, self.loads) if values]
+        if self.amounts and self.amounts_over_delta:
+            raise refuse("contradicts amounts", "give either", key="amounts_over_delta")
+        amounts = self.amounts or self.amounts_over_delta
+        counts = [len(values) for values in (amounts, self.lengths, self.loads) if values]
         refuse_more(100_000, "candidates", *counts)
         return self
 

@@ -94,13 +94,22 @@ class FrictionPart(Part):
         return self
 
 
+class UnequalReliefPart(Part):
+    """``{ driver, driven, length }``: amounts of tip relief over Delta on the two gears, and L_n."""
+
+    driver: Annotated[Number, Field(ge=0.0)]
+    driven: Annotated[Number, Field(ge=0.0)]
+    length: PositiveNumber
+
+
 class DesignChartPart(Part):
-    """``chart = { mesh, amounts, lengths }``: tip relief on both gears, amounts over Delta and L_n of TM-89901."""
+    """``chart = { mesh, amounts, lengths, unequal }``: tip relief on both gears, over Delta and in L_n of TM-89901."""
 
     mesh: str | None = None
     amounts: Annotated[list[PositiveNumber], Field(min_length=1)]
     lengths: Annotated[list[PositiveNumber], Field(min_length=1)]
     shape: Literal["linear", "parabolic"] = "linear"
+    unequal: list[UnequalReliefPart] = Field(default_factory=list)
 
 
 class DynamicsPart(Part):

@@ -23,6 +23,7 @@ from fegear.results import (
     natural_modes,
     relief,
     relief_chart,
+    relief_curves,
     root_stress,
     root_stress_history,
     root_stress_study,
@@ -60,6 +61,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
         ),
         "Profile relief": (
             relief.RELIEF,
+            relief_curves.RELIEF_CURVES,
             relief_chart.RELIEF_CHART,
             relief_chart.ROBUSTNESS,
             loading_spectrum.LOADING_SPECTRUM,

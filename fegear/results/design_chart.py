@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from fegear.dynamics.factor_prediction import FactorLine, factor_between, factor_line
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
-from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Need, Stage, Task
 from fegear.errors import FegearError, InputError
-from fegear.models.motion import excitations_at, motion_inputs
+from fegear.geometry.pair import MEMBERS
+from fegear.models.motion import motion_inputs, steady_motions
 from fegear.models.pair_inputs import pair_inputs
 from fegear.models.tooth_influence import gear_to_solve
 from fegear.models.train import assemble, train_inputs, train_part
 from fegear.results import forecasts
+from fegear.results.design_chart_tables import chart_tables, chart_values, line_remark
+from fegear.results.drawn_design_chart import design_chart_figures
 from fegear.results.gear_train import gear_train, the_train
 from fegear.results.loaded_pair import loaded_pair
 from fegear.results.motion import check_motion
@@ -35,6 +39,11 @@ if TYPE_CHECKING:
     from fegear.models.tooth_influence import GearToSolve
     from fegear.models.train import TrainInputs
 
+#: Harmonics of the static transmission error that the chart keeps (TM-89901, Fig. 7).
+HARMONICS = 4
+#: Motions that are found here sooner than other processes start.
+_FEW = 300
+
 
 @dataclass(frozen=True)
 class ChartInputs:
@@ -44,6 +53,8 @@ class ChartInputs:
     ----------
     amounts, lengths : ndarray
         Of tip relief, over Delta and in L_n.
+    unequal : tuple of (float, float, float)
+        Amounts on driver and driven gear and length of reliefs that stand alone.
     shape : {"linear", "parabolic"}
     mesh : str
         That is relieved and looked at.
@@ -57,6 +68,7 @@ class ChartInputs:
 
     amounts: Array
     lengths: Array
+    unequal: tuple[tuple[float, float, float], ...]
     shape: Shape
     mesh: str
     train: TrainInputs
@@ -73,9 +85,35 @@ class Trial:
     train: GearTrain
     engagement: Engagement
     mesh: int
-    amount: float
+    amounts: tuple[float, float]
     length: float
     delta: float
+
+
+@dataclass(frozen=True)
+class UnequalRelief:
+    """A relief of its own on each gear; nan where there is no result.
+
+    Parameters
+    ----------
+    driver, driven, length : float
+        Amounts over Delta, and L_n.
+    dynamic_factor, speed, effective_error : float
+        Largest over the speeds, where [rad/s], and A_e [m].
+    between : float
+        Foretold from A_e between those of both amounts on both gears, at the same length (TM-89901, Fig. 11).
+    reason : str
+        Why there is no result.
+    """
+
+    driver: float
+    driven: float
+    length: float
+    dynamic_factor: float
+    speed: float
+    effective_error: float
+    between: float
+    reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -87,10 +125,15 @@ class DesignChartData:
     amounts, lengths : ndarray
     dynamic_factor, effective_error, speed, contact_loss, unsteady : ndarray
         Largest factor, A_e [m], speed of the largest [rad/s], share of the time without contact, unsteady speeds.
+    harmonics : ndarray, shape (4, amounts, lengths)
+        A_1 to A_4 of the static transmission error, 0-peak [m].
     reasons : tuple of str
         Why a point has no result, the last axis fastest; empty where it has one.
-    unmodified : float
-        Largest dynamic factor of perfect involutes.
+    unequal : tuple of UnequalRelief
+    line : FactorLine or None
+        Of the dynamic factor over A_e, through all points of the chart.
+    unmodified, unmodified_error : float
+        Largest dynamic factor and A_e [m] of perfect involutes.
     delta : float
         Welbourn's Delta [m].
     speed_of : str
@@ -104,46 +147,58 @@ class DesignChartData:
     speed: Array
     contact_loss: Array
     unsteady: Array
+    harmonics: Array
     reasons: tuple[str, ...]
+    unequal: tuple[UnequalRelief, ...]
+    line: FactorLine | None
     unmodified: float
+    unmodified_error: float
     delta: float
     speed_of: str
+
+    def best_for_all(self) -> tuple[float, float]:
+        """Length at which the worst of all amounts is least, and that factor; straight between the chart's lengths.
+
+        Nan where an amount has no results.
+        """
+        lengths = np.unique(np.concatenate([self.lengths, np.linspace(self.lengths[0], self.lengths[-1], 2001)]))
+        worst = np.max([np.interp(lengths, self.lengths, row) for row in self.dynamic_factor], axis=0)
+        k = int(np.argmin(worst))
+        return float(lengths[k]), float(worst[k])
 
 
 def chart_trial(trial: Trial) -> dict[str, float]:
     """Compute one point: largest dynamic factor over the case's speeds, where, and A_e of the static error."""
-    from fegear.dynamics.charts import speed_chart
+    from fegear.dynamics.charts import SpeedChart
     from fegear.dynamics.excitation import effective_error
     from fegear.dynamics.mesh_excitation import mesh_excitation
-    from fegear.dynamics.motion_model import MotionModel
     from fegear.geometry.relief import CombinedRelief, normalised_tip_relief
 
     asked, i = trial.inputs, trial.mesh
     pair = trial.engagement.pair
-    engagement = replace(trial.engagement, driver_relief=CombinedRelief(), driven_relief=CombinedRelief())
-    if trial.amount > 0.0:
-        amount = trial.amount * trial.delta
-        engagement = replace(
-            engagement,
-            driver_relief=normalised_tip_relief(pair, "driver", amount, trial.length, asked.shape),
-            driven_relief=normalised_tip_relief(pair, "driven", amount, trial.length, asked.shape),
-        )
+    driver, driven = (
+        normalised_tip_relief(pair, member, amount * trial.delta, trial.length, asked.shape)
+        if amount > 0.0 else CombinedRelief()
+        for member, amount in zip(MEMBERS, trial.amounts, strict=True)
+    )  # fmt: skip
+    engagement = replace(trial.engagement, driver_relief=driver, driven_relief=driven)
     mesh = trial.train.meshes[i]
     found = mesh_excitation(engagement if mesh.a_drives else engagement.reversed(), mesh.force)
     by_mesh = {name: one.excitation for name, one in zip(trial.train.names, trial.train.meshes, strict=True)}
     by_mesh[trial.train.names[i]] = replace(found, phase=mesh.excitation.phase)
     data = assemble(asked.train, by_mesh)
-    motion = asked.motion
-    speeds = motion.speeds / data.speed_ratio
-    model = MotionModel(data.train, excitations_at(motion, data, float(speeds[-1])), 1.0)
-    curve = speed_chart(model, speeds, mesh=i, direction=motion.direction, tolerance=motion.tolerance)
+    states = steady_motions(asked.motion, data)
+    curve = SpeedChart.of(asked.motion.speeds, states, i, float(data.forces[i]))
     worst, where = curve.worst
+    error = data.errors[i]
+    amplitudes = 2.0 * np.abs(error.fourier(error.pitches * np.arange(1, HARMONICS + 1)))
     return {
         "dynamic_factor": worst,
-        "speed": where * data.speed_ratio,
+        "speed": where,
         "contact_loss": float(curve.apart.max()),
         "unsteady": float(np.count_nonzero(curve.periods == 0)),
-        "effective_error": effective_error(data.errors[i]),
+        "effective_error": effective_error(error),
+        **{f"amplitude_{n + 1}": float(a) for n, a in enumerate(amplitudes)},
     }
 
 
@@ -152,7 +207,7 @@ def trial_content(trial: Trial) -> object:
     asked = trial.inputs
     return (
         asked.shape, asked.mesh, asked.train, asked.motion, asked.teeth, asked.gears,
-        trial.amount, trial.length, trial.delta,
+        trial.amounts, trial.length, trial.delta,
     )  # fmt: skip
 
 
@@ -178,8 +233,6 @@ def _check(scene: Scene, subject: str) -> None:
     needs_speeds(scene, subject)
     check_motion(scene)
     pair = train_part(scene).pair_of(_mesh(scene))
-    if scene.case.effects.friction:
-        raise InputError("effects.friction", "true", "is not known to design-chart", "remove it")
     ratio = scene.pairs[pair].contact_ratio
     if not 1.0 <= ratio < 2.0:
         raise InputError(
@@ -194,7 +247,8 @@ def _inputs(scene: Scene, _subject: str) -> ChartInputs:
     teeth = pair_inputs(scene, pair)
     solved = teeth.gears if teeth.compliance.source == "fe" else ()
     return ChartInputs(
-        np.unique(part.amounts), np.unique(part.lengths), part.shape, mesh, train_inputs(scene), motion_inputs(scene),
+        np.unique(part.amounts), np.unique(part.lengths), tuple((u.driver, u.driven, u.length) for u in part.unequal),
+        part.shape, mesh, train_inputs(scene), motion_inputs(scene),
         teeth, tuple(gear_to_solve(scene, gear) for gear in solved),
     )  # fmt: skip
 
@@ -208,89 +262,66 @@ def _compute(asked: ChartInputs, upstream: Upstream, work: Work) -> DesignChartD
     i = data.train.mesh_index(asked.mesh)
     engagement = loaded_pair(upstream, asked.teeth.name).engagement
     delta = welbourn_amount(engagement, float(data.forces[i]))
-    reliefs = [(0.0, 0.0), *((float(a), float(n)) for a in asked.amounts for n in asked.lengths)]
-    points = [Trial(asked, data, engagement, i, amount, length, delta) for amount, length in reliefs]
-    plain, *found = map_points(
-        chart_trial, points, work.executor, work.cache, key=trial_content, progress=work.progress
-    )
+    chart = [((float(a), float(a)), float(n)) for a in asked.amounts for n in asked.lengths]
+    # beside each unequal relief, both of its amounts on both gears
+    beside = [((a, b), n) for one, two, n in asked.unequal for a, b in ((one, two), (one, one), (two, two))]
+    reliefs = list(dict.fromkeys([((0.0, 0.0), 0.0), *chart, *(r if any(r[0]) else ((0.0, 0.0), 0.0) for r in beside)]))
+    points = [Trial(asked, data, engagement, i, amounts, length, delta) for amounts, length in reliefs]
+    executor = work.executor
+    if executor.scheduler is None and len(points) * asked.motion.speeds.size <= _FEW:
+        executor = replace(executor, here=True)
+    found_points = map_points(chart_trial, points, executor, work.cache, key=trial_content, progress=work.progress)
+    made = dict(zip(reliefs, found_points, strict=True))
+    plain, found = made[(0.0, 0.0), 0.0], [made[point] for point in chart]
     if isinstance(plain, Failure):
         raise FegearError(f"The unmodified gears of the design chart have no result: {plain.reason}")
 
     def grid(key: str) -> Array:
-        values = [np.nan if isinstance(one, Failure) else cast("dict[str, float]", one)[key] for one in found]
-        return np.array(values).reshape(asked.amounts.size, -1)
+        return np.array([_number(one, key) for one in found]).reshape(asked.amounts.size, -1)
 
+    factor, error = grid("dynamic_factor"), grid("effective_error")
+    at = {point: made[point if any(point[0]) else ((0.0, 0.0), 0.0)] for point in beside}
     return DesignChartData(
-        asked.amounts, asked.lengths, grid("dynamic_factor"), grid("effective_error"), grid("speed"),
-        grid("contact_loss"), grid("unsteady"), tuple(r.reason if isinstance(r, Failure) else "" for r in found),
-        cast("dict[str, float]", plain)["dynamic_factor"], delta, data.speed_of,
+        asked.amounts, asked.lengths, factor, error, grid("speed"), grid("contact_loss"), grid("unsteady"),
+        np.array([grid(f"amplitude_{n}") for n in range(1, HARMONICS + 1)]),
+        tuple(r.reason if isinstance(r, Failure) else "" for r in found),
+        tuple(_unequal(one, two, n, at) for one, two, n in asked.unequal), factor_line(error, factor),
+        _number(plain, "dynamic_factor"), _number(plain, "effective_error"), delta, data.speed_of,
+    )  # fmt: skip
+
+
+def _number(point: object, key: str) -> float:
+    """One number of a point; nan where it failed."""
+    return cast("dict[str, float]", point)[key] if isinstance(point, dict) else np.nan
+
+
+def _unequal(
+    driver: float, driven: float, length: float, at: dict[tuple[tuple[float, float], float], object]
+) -> UnequalRelief:
+    """A relief of its own on each gear, and its factor foretold from both amounts on both gears."""
+    point = at[(driver, driven), length]
+    known = [at[(amount, amount), length] for amount in (driver, driven)]
+    errors, factors = ([_number(one, key) for one in known] for key in ("effective_error", "dynamic_factor"))
+    error = _number(point, "effective_error")
+    return UnequalRelief(
+        driver, driven, length, _number(point, "dynamic_factor"), _number(point, "speed"), error,
+        factor_between(error, (errors[0], errors[1]), (factors[0], factors[1])), getattr(point, "reason", ""),
     )  # fmt: skip
 
 
 def _present(chart: DesignChartData, asked: ChartInputs) -> Outcome:
-    amounts, lengths = chart.amounts, chart.lengths
-    amount, length = np.repeat(amounts, lengths.size), np.tile(lengths, amounts.size)
-    table = Table(
-        f"design_chart_{asked.mesh}",
-        (
-            Column("amount", amount, "", "of tip relief over Delta"),
-            Column("length", length, "", "L_n, 1 from the tip to the HPSTC"),
-            Column("dynamic_factor", chart.dynamic_factor.ravel(), "", "largest over the speeds"),
-            Column("speed", chart.speed.ravel(), "rpm", f"of {chart.speed_of}, where it is largest"),
-            Column("effective_error", chart.effective_error.ravel(), "um", "A_e of the static transmission error"),
-            Column("contact_loss_fraction", chart.contact_loss.ravel(), "", "largest over the speeds"),
-            Column("unsteady_speeds", chart.unsteady.ravel(), "", "how many speeds have no repeating motion"),
-            Column("failure", np.array(chart.reasons, dtype=str), "", "why a point has no result"),
-        ),
-        f"Dynamic factor of mesh {asked.mesh} against tip relief",
-    )
-    about = "Welbourn's Delta: deflection at the HPSTC under the mean force"
-    values = [
-        Value("design_chart.delta", chart.delta, "um", None, about),
-        Value("design_chart.unmodified", chart.unmodified, "", None, "largest dynamic factor of perfect involutes"),
-    ]
-    for a, row in zip(amounts, chart.dynamic_factor, strict=True):
-        if np.isfinite(row).any():
-            k = int(np.nanargmin(row))
-            values += [
-                Value(f"design_chart.best_length_{a:g}", float(lengths[k]), "", None, f"L_n at {a:g} Delta"),
-                Value(f"design_chart.least_factor_{a:g}", float(row[k]), "", None, f"at {a:g} Delta"),
-            ]
     failures = tuple(
         f"amount {a:.4g} Delta, length {n:.4g}: {reason}"
-        for a, n, reason in zip(amount, length, chart.reasons, strict=True)
+        for (a, n), reason in zip(product(chart.amounts, chart.lengths), chart.reasons, strict=True)
         if reason
     )
-    settings: dict[str, object] = {"points": 1 + amount.size, "speeds": int(asked.motion.speeds.size)}
-    return Outcome(chart, (table,), tuple(values), settings, failures, _figures(chart))
-
-
-def _figures(chart: DesignChartData) -> tuple[Figure, ...]:
-    """Largest dynamic factor and A_e over the length of relief for every amount."""
-    if chart.lengths.size < 2:
-        return ()
-    factor, error = (
-        tuple(
-            Curve(chart.lengths, row, f"{amount:.4g} Δ", f"series:{k}", markers=True)
-            for k, (amount, row) in enumerate(zip(chart.amounts, rows, strict=True))
-        )
-        for rows in (chart.dynamic_factor, chart.effective_error * 1e6)
-    )
-    length = Axis("length of relief L_{n}")
-    plain = Mark("y", chart.unmodified, "unmodified")
-    return (
-        Figure(
-            "design_chart",
-            "Design chart of tip relief",
-            "Largest dynamic factor over the speeds, and effective error, against the length of tip relief (1 from the "
-            f"tip to the highest point of single contact), by amount over Δ = {chart.delta * 1e6:.4g} µm.",
-            (
-                Panel(length, Axis("largest dynamic factor"), factor, (plain,)),
-                Panel(length, Axis("effective error A_{e}", "um", zero=True), error),
-            ),
-            columns=2,
-        ),
-    )
+    settings: dict[str, object] = {
+        "points": 1 + chart.dynamic_factor.size + 3 * len(chart.unequal), "speeds": int(asked.motion.speeds.size)
+    }  # fmt: skip
+    return Outcome(
+        chart, chart_tables(chart, asked.mesh), chart_values(chart), settings, (*failures, *line_remark(chart)),
+        design_chart_figures(chart),
+    )  # fmt: skip
 
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
@@ -302,7 +333,7 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     part = scene.case.dynamics
     if part.chart is None:
         return Forecast()
-    points = 1 + len(part.chart.amounts) * len(part.chart.lengths)
+    points = 1 + len(part.chart.amounts) * len(part.chart.lengths) + 3 * len(part.chart.unequal)
     speeds = int(part.speed_values.size)
     return Forecast({"points": points, "speeds": speeds}, points * (0.1 + speeds * forecasts.seconds_per_speed(scene)))
 
@@ -318,7 +349,7 @@ DESIGN_CHART = Stage(
     compute=_compute,
     present=_present,
     check=_check,
-    effects=("contact_loss", "parametric"),
+    effects=("contact_loss", "friction", "parametric"),
     requires=(
         Need("contact_loss", "reliefs are chosen for the forces at which teeth part"),
         Need("parametric", "relief acts on single tooth pairs, and without it all are one spring"),

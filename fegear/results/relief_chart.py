@@ -69,7 +69,8 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
     asked, e = inputs.part, pair.engagement.unmodified()
     loads = np.array(asked.loads or pair.loads)
     delta = unit_amount(e, pair.nominal)
-    amounts = np.array(asked.amounts) if asked.amounts else delta * np.linspace(0.1, 1.6, 16)
+    shares = asked.amounts_over_delta or np.linspace(0.1, 1.6, 16)
+    amounts = np.array(asked.amounts) if asked.amounts else delta * np.array(shares)
     lengths = np.array(asked.lengths) if asked.lengths else np.linspace(0.05, 1.3, 26)
     chart = relief_chart(e, np.sort(amounts), np.sort(lengths), loads, asked.shape)
     work.progress(0.5)
@@ -254,7 +255,7 @@ def _robustness_figure(name: str, found: Mapping[str, Robustness], metric: str) 
 def _chart_forecast(scene: Scene, name: str) -> Forecast:
     """Candidates of the chart, and the optimiser."""
     chart = scene.case.design.chart if scene.case.design else None
-    amounts = len((chart and chart.amounts) or ()) or 16
+    amounts = len((chart and (chart.amounts or chart.amounts_over_delta)) or ()) or 16
     lengths = len((chart and chart.lengths) or ()) or 26
     loads = len((chart and chart.loads) or ()) or forecasts.loads(scene, name)
     corners = 3.0 if scene.case.effects.corner_contact else 1.0

@@ -299,7 +299,9 @@ def test_four_square_from_finite_elements():
 def test_lin_design_chart(tmp_path):
     """Figs. 9 and 10: with 0.75 Delta the best length is near 1.09; with a disk, a chart keeps its finished points."""
     overrides = (
-        "dynamics.chart={ amounts = [0.75], lengths = [0.7, 1.1, 1.28] }",
+        "dynamics.chart={ amounts = [0.75], lengths = [0.7, 1.1, 1.28], unequal = [ "
+        + ", ".join(f"{{ driver = 0.75, driven = {other}, length = 1.1 }}" for other in (0.75, 0.0))
+        + "] }",
         "dynamics.speeds=['9500 rpm', '10500 rpm']",
     )
     scene = read_scene(CASES / "lin_design_chart.toml", overrides)
@@ -311,6 +313,14 @@ def test_lin_design_chart(tmp_path):
     assert values["design_chart.best_length_0.75"] == pytest.approx(1.1)
     assert values["design_chart.least_factor_0.75"] < 1.15
     assert values["design_chart.unmodified"] == pytest.approx(2.130, abs=0.01)
+    # equal amounts named as unequal ones are the chart's own point; one relieved gear lies between none and both
+    unequal = tables["design_chart_unequal_I"]
+    assert unequal["dynamic_factor"][0] == table["dynamic_factor"][1]
+    assert np.isnan(unequal["between"][0])
+    assert table["dynamic_factor"][1] < unequal["dynamic_factor"][1] < values["design_chart.unmodified"]
+    assert values["design_chart.factor_0.75_0_1.1"] == unequal["dynamic_factor"][1]
+    first = np.array([table[f"amplitude_{n} [um]"] for n in range(1, 5)])
+    assert np.all(table["effective_error [um]"] > first[0] + np.sqrt(np.sum(first**2, axis=0)))
     # A_e ranks the lengths as the dynamic factor does
     assert np.argmin(table["effective_error [um]"]) == np.argmin(table["dynamic_factor"])
     kept = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*") if path.is_file()}
@@ -320,6 +330,23 @@ def test_lin_design_chart(tmp_path):
     assert np.array_equal(chart["dynamic_factor"], table["dynamic_factor"])
     written = set(tmp_path.rglob("*.entry"))
     assert written <= set(kept)  # nothing was computed again
+
+
+def test_design_chart_with_friction():
+    """A coefficient of zero changes nothing; a real one changes the factor as it does that of a sweep over speed."""
+    speeds = "dynamics.speeds=['6000 rpm', '10500 rpm']"
+    chart = "dynamics.chart={ amounts = [1.0], lengths = [1.0] }"
+
+    def unmodified(*overrides):
+        return run("lin_design_chart", speeds, chart, *overrides)[1]["design_chart.unmodified"]
+
+    dry = unmodified()
+    slippery = 'dynamics.friction={ law = "constant", coefficient = 0.0 }'
+    assert unmodified("effects.friction=true", slippery) == pytest.approx(dry, abs=1e-3)
+    rough = ("effects.friction=true", 'dynamics.friction={ law = "constant", coefficient = 0.1 }')
+    swept = run("lin_dynamic_factor", speeds, 'results=["dynamic-factor"]', *rough)[1]["I.largest_dynamic_factor"]
+    assert unmodified(*rough) == pytest.approx(swept, rel=1e-6)
+    assert abs(swept - dry) > 5e-3
 
 
 def test_two_stage_gearbox():
