@@ -34,7 +34,7 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
     key : str
         Where the case names the file, for messages.
     dimensions : mapping
-        Dimension of each column that may be there.
+        Dimension of each column that may be there; empty for plain numbers.
 
     Raises
     ------
@@ -58,7 +58,10 @@ def read_columns(path: Path, key: str, dimensions: Mapping[str, str]) -> dict[st
         name = match["name"]
         if name in columns:
             raise InputError(key, f'"{path.name}"', f"has two columns {name}", "leave one of them out")
-        scale = unit_size(match["unit"] or "", dimensions[name], f"{key}, column {name}")
+        if not dimensions[name] and match["unit"]:
+            raise InputError(key, f'"{path.name}"', f"has a unit over column {name}, a plain number", "leave it out")
+        dimension = dimensions[name]
+        scale = unit_size(match["unit"] or "", dimension, f"{key}, column {name}") if dimension else 1.0
         columns[name] = scale * np.array([_entry(row[i], path, key, f"line {number}, {name}") for number, row in rows])
     return columns
 

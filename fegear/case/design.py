@@ -6,7 +6,18 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Length, Number, Part, PositiveForce, PositiveLength, PositiveNumber, refuse, refuse_more
+from fegear.case.part import (
+    Angle,
+    Length,
+    Number,
+    Part,
+    PositiveForce,
+    PositiveLength,
+    PositiveNumber,
+    at_most,
+    refuse,
+    refuse_more,
+)
 
 Shape = Literal["linear", "parabolic"]
 Positive = Annotated[list[PositiveNumber], Field(min_length=1)]
@@ -65,6 +76,7 @@ class DesignPart(Part):
     inner_slope: Annotated[Number, Field(ge=0.0)] = 1.0
     peak: PositiveNumber | Literal["least-root-stress"] | None = None
     grind: list[Shape] = Field(default_factory=_both_shapes)
+    roll_angles: Annotated[list[Angle], Field(min_length=1), at_most(10_000, "roll angles")] | None = None
     metric: Literal["effective_error", "peak_to_peak"] = "peak_to_peak"
     chart: ChartPart = Field(default_factory=ChartPart)
     robustness: RobustnessPart = Field(default_factory=RobustnessPart)

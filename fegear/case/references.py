@@ -49,6 +49,10 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
         yield "design.pair", case.design.pair, "spur pair"
     if case.loading is not None:
         yield "loading.pair", case.loading.pair, "spur pair"
+    for name, part in case.transmissibility.items():
+        error = part.excitation.transmission_error if part.excitation else None
+        key = f"transmissibility.{name}.excitation.transmission_error.pair"
+        yield key, error.pair if error else None, "pair"
     if case.train is not None:
         yield from _of_train(case.train)
         dynamics = case.dynamics

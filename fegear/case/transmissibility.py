@@ -1,4 +1,7 @@
-"""``[transmissibility.NAME]``: a helical pair as rigid gears on bearings, and the frequencies to look at."""
+"""``[transmissibility.NAME]``: a helical pair as rigid gears on bearings, and what is looked at.
+
+Frequencies, parameters over which modes are followed, and an excitation: each in a table of its own.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from fegear.case.follow import FollowPart
+from fegear.case.pair_excitation import ExcitationPart
 from fegear.case.part import (
     Angle,
     Number,
@@ -110,6 +115,11 @@ class UnityRatioPart(Part):
     alpha_y: Number
     alpha_z: Number
     alpha_theta: Number
+    base_radius: PositiveLength | None = None
+
+
+#: Parameters of the unity-ratio pair alone.
+_OF_UNITY_RATIO = {"alpha_y", "alpha_z", "alpha_theta", "aspect_ratio"}
 
 
 class TransmissibilityPart(Part):
@@ -123,6 +133,8 @@ class TransmissibilityPart(Part):
     lambda_from: Annotated[Number, Field(ge=0.0)] = 0.01
     lambda_to: Annotated[Number, Field(gt=0.0)] = 2.0
     frequencies: Annotated[int, Field(ge=2, le=1_000_000)] = 400
+    follow: FollowPart | None = None
+    excitation: ExcitationPart | None = None
 
     @model_validator(mode="after")
     def _one_model(self) -> Self:
@@ -131,6 +143,9 @@ class TransmissibilityPart(Part):
             raise refuse("is not described", "give driver and driven, or unity_ratio", key="driver", value="(pair)")
         if self.lambda_to <= self.lambda_from:
             raise refuse("must be greater than lambda_from", key="lambda_to", value=self.lambda_to)
+        if self.follow is not None and self.unity_ratio is None:
+            for key in _OF_UNITY_RATIO & set(self.follow.ranges):
+                raise refuse("belongs to unity_ratio", "follow bearing_stiffness instead", key=f"follow.{key}")
         return self
 
     def _both(self) -> tuple[RigidGearPart, RigidGearPart]:
@@ -153,3 +168,16 @@ class TransmissibilityPart(Part):
             return HelicalPairModel(driver, driven, mesh, modal_damping=self.damping_ratio)
         except InputError as error:
             raise at(prefix, error) from None
+
+    def build_both(self, mesh: MeshParameters, prefix: str) -> HelicalPairModel:
+        """Make the model of both gears, in which every force on either has its place."""
+        model = self.build(mesh, prefix)
+        if self.unity_ratio is None:
+            return model  # type: ignore[return-value]  # driver and driven make no other
+        u = self.unity_ratio
+        if u.base_radius is None:
+            raise InputError(
+                f"{prefix}.unity_ratio.base_radius", "(not given)", "is needed for moments",
+                'write base_radius = "70.48 mm"',
+            )  # fmt: skip
+        return model.both_gears(u.base_radius, u.aspect_ratio * u.base_radius)  # type: ignore[union-attr]

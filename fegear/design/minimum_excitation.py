@@ -111,11 +111,15 @@ class MinimumExcitationRelief:
             total[loaded] += source.neighbour(-sign * ahead, here[loaded], there) * w / face
         return total
 
+    def deflection(self, x: ArrayLike) -> Array:
+        """Deflection of this gear's flank at x under the design loads, its own and its neighbours' [m] (4.5)."""
+        return self.deflection_by_own_load(x) + self.deflection_by_neighbours(x)
+
     @cached_property
     def offset(self) -> float:
         """Largest deflection over the design zone [m]: where the relief is zero."""
         x = np.concatenate([np.linspace(self.loading.x_start, self.loading.x_end, 1201), self.loading.kinks])
-        return float((self.deflection_by_own_load(x) + self.deflection_by_neighbours(x)).max())
+        return float(self.deflection(x).max())
 
     @cached_property
     def end_slopes(self) -> tuple[float, float]:
@@ -132,8 +136,7 @@ class MinimumExcitationRelief:
         before = np.maximum(self.loading.x_start - where, 0.0)
         after = np.maximum(where - self.loading.x_end, 0.0)
         first, last = self.end_slopes
-        deflection = self.deflection_by_own_load(where) + self.deflection_by_neighbours(where)
-        return np.asarray(self.offset - deflection + first * before + last * after)
+        return np.asarray(self.offset - self.deflection(where) + first * before + last * after)
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -191,6 +194,8 @@ class ReliefTable:
         Design load on the pair there [N].
     relief : ndarray
         Removal [m].
+    deflection : ndarray
+        Of this gear's flank under the design loads [m].
     """
 
     x: Array
@@ -198,6 +203,7 @@ class ReliefTable:
     roll_angle: Array
     load: Array
     relief: Array
+    deflection: Array
 
     def relieved(self) -> TabulatedRelief:
         """The relief that straight lines between the nodes make."""
@@ -274,4 +280,5 @@ def relief_table(relief: MinimumExcitationRelief, positions: int | ArrayLike | N
         np.asarray(pair.roll_angle(x, relief.member)),
         relief.load * relief.loading.fraction(x),
         relief.at(x),
+        relief.deflection(x),
     )

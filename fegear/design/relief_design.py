@@ -18,6 +18,8 @@ from fegear.geometry.relief import UNMODIFIED
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from numpy.typing import ArrayLike
+
     from fegear.arrays import Array
     from fegear.contact import Engagement, Loaded, TransmissionError
     from fegear.design.charts import Metric
@@ -163,6 +165,12 @@ def design_relief(
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read, load, task.harmonics).peak_to_peak
     return ReliefDesign(task, chosen, designed, reliefs, ground, te, curves, left, tables_leave)
+
+
+def relief_at(designed: Engagement, member: Member, roll_angles: ArrayLike) -> ReliefTable:
+    """Designed relief of one gear at roll angles of its own [rad], in their order."""
+    x = designed.pair.x_of_roll(np.asarray(roll_angles, dtype=float), member)
+    return relief_table(_own(designed, member), x)
 
 
 def _own(engagement: Engagement, member: Member) -> MinimumExcitationRelief:

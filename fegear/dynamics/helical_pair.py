@@ -268,6 +268,27 @@ class ReducedPairModel:
         bearing = np.diag(mesh.stiffness * ratios)
         return cls(mesh, masses, bearing, _no_matrix(), _no_matrix(), modal_damping, 0.5 * mass)
 
+    def both_gears(self, base_radius: float, half_face_width: float) -> HelicalPairModel:
+        """The ten degrees of freedom of the two equal gears on mirrored bearings, of which these are the mesh's.
+
+        Parameters
+        ----------
+        base_radius, half_face_width : float
+            a and b [m], by which q counts rotations.
+        """
+        size = np.array([1.0, 1.0, half_face_width, base_radius, base_radius])
+        inertia = self.mass[2:] * size[2:] ** 2
+
+        def gear(sign: Array) -> RigidGear:
+            side = sign * size
+            stiffness, damping = (side[:, None] * k * side for k in (self.bearing_stiffness, self.bearing_damping))
+            mass, three = float(self.mass[0]), (float(inertia[0]), float(inertia[1]), float(inertia[2]))
+            return RigidGear(mass, three, base_radius, half_face_width, stiffness, damping)
+
+        return HelicalPairModel(
+            gear(np.ones(5)), gear(np.diag(P)), self.mesh, self.mesh_damping_matrix, self.modal_damping
+        )
+
     @cached_property
     def mesh_stiffness_matrix(self) -> Array:
         """K_M over q [N/m], shape (5, 5)."""

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.dynamics.helical_pair import HelicalPairModel, P, ReducedPairModel
 from fegear.dynamics.natural_modes import undamped_modes
-from fegear.errors import ConvergenceError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from fegear.arrays import Array
 
@@ -23,6 +19,10 @@ if TYPE_CHECKING:
 
 #: Relative round-off beyond which fewer than half of the digits are left.
 HALF_THE_DIGITS = 1e-8
+#: A relative mesh displacement below this is none.
+_NONE = 1e-13
+#: Components of a shape that differ by less than this share are equal in size.
+_TIE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,32 +110,61 @@ def mode_table(model: Model) -> ModeTable:
     model : HelicalPairModel or ReducedPairModel
     """
     frequency, shapes = undamped_modes(model.mass, model.stiffness)
-    shapes = shapes / np.linalg.norm(shapes, axis=0)
-    relative = relative_motion(model, shapes)
-    c, s = np.cos(model.mesh.base_helix_angle), np.sin(model.mesh.base_helix_angle)
-    kappa, mu = model.mesh.kappa, model.mesh.mu
-    eta = c * relative[0] + s * relative[1] - s * relative[3] + c * relative[4]
-    theta = relative[2]
-    # Rigid motion leaves the mesh alone; what is left there is round-off.
-    eta, theta = (np.where(frequency > 0.0, v, 0.0) for v in (eta, theta))
-    small = 1e-13
-    eta, theta = (np.where(np.abs(v) < small, 0.0, v) for v in (eta, theta))
+    shapes = _same_way_up(shapes / np.linalg.norm(shapes, axis=0))
+    eta, theta = mesh_displacements(model, frequency, shapes)
     frequency_doubt, shape_doubt = _doubts(frequency)
-    energy = 0.5 * eta**2 + 0.5 * mu * theta**2
-    mixed = np.abs(kappa * eta * theta)
-    coupling = np.divide(mixed, energy, out=np.zeros_like(mixed), where=energy > 0.0)
+    kappa, mu = model.mesh.kappa, model.mesh.mu
     return ModeTable(
         ratio=frequency / model.natural_frequency,
         frequency=frequency,
         shapes=shapes,
-        normal=np.abs(eta) / max(np.abs(eta).max(), small),
-        bending=np.abs(theta) / max(np.abs(theta).max(), small),
-        coupling=coupling,
+        normal=over_largest(eta),
+        bending=over_largest(theta),
+        coupling=coupling(model, eta, theta),
         normal_force=np.abs(eta + kappa * theta),
         bending_moment=np.abs(kappa * eta + mu * theta),
         frequency_doubt=frequency_doubt,
         shape_doubt=shape_doubt,
     )
+
+
+def _same_way_up(shapes: Array) -> Array:
+    """Shapes with the sign that makes the first of their largest components positive."""
+    size = np.abs(shapes)
+    first = np.argmax(size >= (1.0 - _TIE) * size.max(axis=0), axis=0)
+    return np.asarray(shapes * np.sign(shapes[first, np.arange(shapes.shape[1])]))
+
+
+def mesh_displacements(model: Model, frequency: Array, shapes: Array) -> tuple[Array, Array]:
+    """Delta_eta and Delta_theta_x of mode shapes with their signs (26, 27), shape (n,) each.
+
+    Rigid-body motion leaves the mesh alone; what round-off leaves of it there is zero.
+
+    Parameters
+    ----------
+    model : HelicalPairModel or ReducedPairModel
+    frequency : ndarray, shape (n,)
+        Natural frequencies; zero for rigid-body motion.
+    shapes : ndarray, shape (dof, n)
+        Of unit Euclidean norm in q.
+    """
+    relative = relative_motion(model, shapes)
+    c, s = np.cos(model.mesh.base_helix_angle), np.sin(model.mesh.base_helix_angle)
+    eta = c * relative[0] + s * relative[1] - s * relative[3] + c * relative[4]
+    eta, theta = (np.where((frequency > 0.0) & (np.abs(v) >= _NONE), v, 0.0) for v in (eta, relative[2]))
+    return eta, theta
+
+
+def over_largest(index: Array) -> Array:
+    """Sizes over the largest of all modes."""
+    return np.asarray(np.abs(index) / max(float(np.abs(index).max()), _NONE))
+
+
+def coupling(model: Model, eta: Array, theta: Array) -> Array:
+    """abs(U_eta,theta / (U_eta + U_theta)) of mesh displacements (30); 0 where a mode leaves the mesh alone."""
+    energy = 0.5 * eta**2 + 0.5 * model.mesh.mu * theta**2
+    mixed = np.abs(model.mesh.kappa * eta * theta)
+    return np.divide(mixed, energy, out=np.zeros_like(mixed), where=energy > 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,107 +210,3 @@ def rank_modes(model: Model) -> list[RankedMode]:
             peak_r = 0.0 if table.frequency[r] == 0.0 else float(peak[r])
             rows.append(RankedMode(name, rank + 1, int(r) + 1, float(table.ratio[r]), float(weight[r]), peak_r))
     return rows
-
-
-@dataclass(frozen=True, eq=False)
-class TrackedModes:
-    """Modes followed over a parameter.
-
-    Parameters
-    ----------
-    values : ndarray, shape (m,)
-        Parameter values.
-    ratio : ndarray, shape (m, n)
-        Lambda of each branch, numbered by falling frequency at the first value.
-    shapes : ndarray, shape (m, dof, n)
-        Mass-normalised shapes, signs continuous.
-    likeness : float
-        Least modal assurance between neighbouring steps on any branch.
-    """
-
-    values: Array
-    ratio: Array
-    shapes: Array
-    likeness: float
-
-
-def track_modes(
-    build: Callable[[float], Model], values: ArrayLike, *, least: float = 0.8, depth: int = 20
-) -> TrackedModes:
-    """Follow modes by their shape over a parameter such as helix angle or bearing stiffness.
-
-    Steps between neighbouring values are halved until every mode resembles its successor. Branches that cross are
-    followed through; a veering much narrower than the steps counts as a crossing, because the shapes pass through it.
-
-    Parameters
-    ----------
-    build : callable
-        Parameter -> model; masses may change, the number of coordinates may not.
-    values : array_like, shape (m,)
-        Parameter values in the order to follow.
-    least : float
-        Least modal assurance to accept for a step.
-    depth : int
-        Largest number of halvings.
-
-    Raises
-    ------
-    ConvergenceError
-        If modes still change abruptly after that many halvings.
-    """
-    from scipy.optimize import linear_sum_assignment
-
-    grid = np.asarray(values, dtype=float)
-    if grid.ndim != 1 or grid.size < 1:
-        raise InputError("values", grid.shape, "must be at least one parameter value")
-
-    def modes(value: float) -> tuple[Array, Array, Array]:
-        model = build(value)
-        frequency, shape = undamped_modes(model.mass, model.stiffness)
-        return frequency / model.natural_frequency, shape, model.mass
-
-    def match(old: tuple[Array, Array, Array], new: tuple[Array, Array, Array]) -> tuple[Array, Array, float]:
-        likeness = _subspace_likeness(old, new)
-        _, order = linear_sum_assignment(-likeness)
-        chosen = new[1][:, order]
-        sign = np.sign(np.einsum("ir,i,ir->r", old[1], new[2], chosen))
-        return new[0][order], chosen * np.where(sign == 0.0, 1.0, sign), float(likeness[range(order.size), order].min())
-
-    def follow(
-        old: tuple[Array, Array, Array], start: float, stop: float, left: int
-    ) -> tuple[tuple[Array, Array, Array], float]:
-        new = modes(stop)
-        ratio, shape, likeness = match(old, new)
-        if likeness >= least:
-            return (ratio, shape, new[2]), likeness
-        if left == 0:
-            raise ConvergenceError(
-                f"Modes change abruptly between {start:.9g} and {stop:.9g} (likeness {likeness:.2g} after {depth} "
-                "halvings). The branches meet there: choose values that avoid the point."
-            )
-        middle, first = follow(old, start, 0.5 * (start + stop), left - 1)
-        state, second = follow(middle, 0.5 * (start + stop), stop, left - 1)
-        return state, min(first, second)
-
-    state, least_seen = modes(float(grid[0])), 1.0
-    states = [state]
-    for start, stop in pairwise(grid):
-        state, seen = follow(state, float(start), float(stop), depth)
-        least_seen = min(least_seen, seen)
-        states.append(state)
-    return TrackedModes(grid, np.array([s[0] for s in states]), np.array([s[1] for s in states]), least_seen)
-
-
-def _subspace_likeness(old: tuple[Array, Array, Array], new: tuple[Array, Array, Array]) -> Array:
-    """Modal assurance of all pairs; modes of one frequency count as one space, because their basis is arbitrary."""
-    root = np.sqrt(new[2])[:, None]
-    a, b = root * old[1], root * new[1]
-    assurance = (a.T @ b) ** 2 / np.outer((a**2).sum(0), (b**2).sum(0))
-    top = max(float(old[0].max()), 1e-300)
-    for ratio, axis in ((new[0], 1), (old[0], 0)):
-        alike = np.abs(ratio[:, None] - ratio[None, :]) <= 1e-7 * top
-        if alike.sum() > ratio.size:
-            shared = np.minimum(assurance @ alike if axis == 1 else alike @ assurance, 1.0)
-            single = alike.sum(axis=0) == 1
-            assurance = np.where(single[None, :] if axis == 1 else single[:, None], assurance, shared)
-    return assurance

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
     Model = HelicalPairModel | ReducedPairModel
 
+#: Twice a damping ratio, over the highest natural frequency, below which there is no damping.
+_UNDAMPED = 1e-14
+
 Method = Literal["direct", "modal", "state-space"]
 
 
@@ -41,6 +44,8 @@ class Transmissibility:
         Circular frequency [rad/s].
     G : ndarray
         Spectral mesh stiffness [N/m] (19).
+    G_minus_a : ndarray
+        G less the mesh's own dynamic stiffness a [N/m]: what the gears' motion adds, without cancellation.
     R_ii, R_ij : ndarray
         Mesh force transmissibility [1] (20).
     G_B_i, G_B_j : ndarray
@@ -52,6 +57,7 @@ class Transmissibility:
     ratio: Array
     frequency: Array
     G: Complex
+    G_minus_a: Complex
     R_ii: Complex
     R_ij: Complex
     G_B_i: Complex
@@ -72,6 +78,8 @@ class ReducedTransmissibility:
         Lambda and circular frequency [rad/s].
     G : ndarray
         a - 2 a H a [N/m]: the 2 because delta drives both gears and H is built from (m, 2 K_M + k_B) (37a).
+    G_minus_a : ndarray
+        -2 a H a [N/m], without cancellation (Fig. 4).
     R : ndarray
         a H [1] (38a); not symmetric although a and H are.
     G_B : ndarray
@@ -83,6 +91,7 @@ class ReducedTransmissibility:
     ratio: Array
     frequency: Array
     G: Complex
+    G_minus_a: Complex
     R: Complex
     G_B: Complex
     R_B: Complex
@@ -217,11 +226,12 @@ def transmissibility(model: HelicalPairModel, frequency: ArrayLike, method: Meth
     relative = H[:, :5] + P @ H[:, 5:]
     R = a @ relative
     drive = np.concatenate([a, P @ a], axis=1)
-    driven = H @ drive
+    driven, moved = H @ drive, -(R @ drive)
     return Transmissibility(
         ratio=w / model.natural_frequency,
         frequency=w,
-        G=a - R @ drive,
+        G=a + moved,
+        G_minus_a=moved,
         R_ii=R[:, :, :5],
         R_ij=R[:, :, 5:],
         G_B_i=b_i @ driven[:, :5],
@@ -249,4 +259,18 @@ def reduced_transmissibility(
     w, s, a, H = _at(model, frequency, method)
     b = model.bearing_stiffness + s * model.bearing_damping
     R = a @ H
-    return ReducedTransmissibility(w / model.natural_frequency, w, a - 2.0 * R @ a, R, b @ H @ a, b @ H)
+    moved = -2.0 * (R @ a)
+    return ReducedTransmissibility(w / model.natural_frequency, w, a + moved, moved, R, b @ H @ a, b @ H)
+
+
+def natural_frequencies(model: Model) -> tuple[Array, Array]:
+    """Natural frequencies of the flexible motion [rad/s], and those of them that nothing damps, rising.
+
+    Parameters
+    ----------
+    model : HelicalPairModel or ReducedPairModel
+    """
+    natural, _, damping = _flexible(model)
+    share = np.diag(damping) / max(float(natural.max(initial=0.0)), 1e-300)
+    flexible = natural > 0.0
+    return np.unique(natural[flexible]), np.unique(natural[flexible & (share <= _UNDAMPED)])

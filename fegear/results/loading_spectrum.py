@@ -41,6 +41,8 @@ class LoadingInputs:
         L, A and the middle of the path [m]; without a pair in base pitches, A = 1, about zero.
     load : float
         Design load [N]; 1 where loads are fractions of it.
+    path : float
+        Length of the pair's path of contact [m]; nan without a pair.
     name : str
         Of the pair, empty without one.
     """
@@ -50,6 +52,7 @@ class LoadingInputs:
     base_pitch: float
     centre: float
     load: float
+    path: float
     name: str = field(compare=False)
 
 
@@ -99,13 +102,13 @@ def _subjects(scene: Scene) -> tuple[str, ...]:
 def _inputs(scene: Scene, name: str) -> LoadingInputs:
     part = scene.case.loading or LoadingPart(contact_ratio=1.5)
     if not name:
-        return LoadingInputs(part, part.contact_ratio or math.nan, 1.0, 0.0, 1.0, "")
+        return LoadingInputs(part, part.contact_ratio or math.nan, 1.0, 0.0, 1.0, math.nan, "")
     pair = scene.pairs[name]
     length = part.length or (part.contact_ratio * pair.base_pitch if part.contact_ratio else pair.path_length)
     load = part.load or scene.case.pair[name].normal_load(pair)
     if load is None:
         raise InputError("loading.load", "(not given)", "is needed with a pair that has no load", 'write load = "1 kN"')
-    return LoadingInputs(part, length, pair.base_pitch, 0.5 * (pair.x_start + pair.x_end), load, name)
+    return LoadingInputs(part, length, pair.base_pitch, 0.5 * (pair.x_start + pair.x_end), load, pair.path_length, name)
 
 
 def loading_functions(asked: LoadingInputs) -> tuple[LoadingFunction, ...]:
@@ -197,6 +200,7 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
         outer = first.terms[0][2]
         values += [
             Value(f"{of}loading_base_pitch", asked.base_pitch, "mm", 0.0, "A"),
+            Value(f"{of}loading_path", asked.path, "mm", 0.0, "of contact of the pair"),
             Value(f"{of}loading_length", asked.length, "mm", 0.0, "L, over which a pair is loaded"),
             Value(f"{of}loading_ramp", outer, "mm", 0.0, "over which the load rises at initiation"),
         ]

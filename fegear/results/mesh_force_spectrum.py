@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -96,9 +97,12 @@ def _present(made: SpectrumData, asked: SpectrumInputs) -> Outcome:
         f"Spectrum of the force in mesh {name}",
     )  # fmt: skip
     values = tuple(
-        Value(f"{name}.largest_line_from_{other}", float(amplitude[j].max()), "N", None,
-              f"0-peak, harmonic {found.orders[int(amplitude[j].argmax())]:.6g}")
-        for j, other in enumerate(data.names)
+        value for j, other in enumerate(data.names) for value in (
+            Value(f"{name}.largest_line_from_{other}", float(amplitude[j].max()), "N", None,
+                  f"0-peak, harmonic {found.orders[int(amplitude[j].argmax())]:.6g}"),
+            Value(f"{name}.rms_from_{other}", math.sqrt(found.power_lines[i, j, :, 0].sum()), "N", None,
+                  "root mean square of all its lines"),
+        )
     )  # fmt: skip
     tables = [table]
     if made.waterfall is not None:
@@ -156,13 +160,14 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
         (Panel(Axis("frequency", "kHz", zero=True), force, tuple(lines)),),
         under=f"{rpm:.6g} rpm",
     )
+    figures = (spectrum, _power_figure(data, rpm))
     over = data.waterfall
     if over is None:
-        return (spectrum,)
+        return figures
     size = over.amplitudes[data.mesh]
     strong = size > max(_WEAKEST_OVER_SPEED * float(size.max()), _NO_FORCE)
     if not strong.any():
-        return (spectrum,)
+        return figures
     speed = np.broadcast_to(over.speeds * train.speed_ratio * RPM, size.shape)[strong]
     points = Points(
         over.frequencies[strong] * 1e-3, speed, shade=size[strong], shade_label="mesh force, 0-peak [N]", size=4.5,
@@ -174,7 +179,36 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
         f"Mesh {name}: lines of the mesh force over speed, down to a hundredth of the strongest.",
         (Panel(Axis("frequency", "kHz"), Axis(f"speed of {train.speed_of}", "rpm"), (points,)),),
     )
-    return spectrum, waterfall
+    return *figures, waterfall
+
+
+def _power_figure(data: SpectrumData, rpm: float) -> Figure:
+    """Every line as one-sided power, a panel for each exciting mesh: how the paper draws them."""
+    train, found = data.train, data.spectrum
+    name, panels = train.names[data.mesh], []
+    power = found.power_lines[data.mesh, :, :, 0]
+    mean = float(found.static[data.mesh]) ** 2
+    order = (data.mesh, *(j for j in range(len(train.names)) if j != data.mesh))
+    top = float(found.frequencies[:, -1, 0].max())
+    ends = (-0.02 * top, 1.02 * top)  # the mean stands on the ordinate
+    for j in order:
+        shown = found.present[j] & (power[j] > _NO_FORCE**2)
+        lines = Stems(found.frequencies[j, shown, 0], power[j, shown], f"from mesh {train.names[j]}", f"series:{j}",
+                      tuple(f"harmonic {n:.6g}" for n in found.orders[shown]))  # fmt: skip
+        steady = Points([0.0], [mean], "mean force", "ink", "x", notes=("mean force squared",))
+        items = (lines, steady) if j == data.mesh else (lines,)
+        hertz = Axis("frequency", "Hz", limits=ends)
+        panels.append(
+            Panel(hertz, Axis("power of the line", "N^2", log=True), items, title=f"From mesh {train.names[j]}")
+        )
+    return Figure(
+        f"mesh_force_power_{name}",
+        f"Power of the lines of the force in mesh {name}",
+        f"Mesh {name}: one-sided power of every line, by the mesh whose transmission error excites it; the cross at "
+        "zero frequency is the square of the mean force.",
+        tuple(panels),
+        under=f"{rpm:.6g} rpm",
+    )
 
 
 def _highest_shown(found: MeshForceSpectrum, amplitudes: Array) -> tuple[float, float]:

@@ -10,14 +10,21 @@ from fegear.case.design import DesignPart
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
-from fegear.errors import InputError
+from fegear.errors import InputError, RangeError
 from fegear.geometry.pair import MEMBERS
 from fegear.models.neglected_effects import design_remarks, neglected_in_design
 from fegear.models.pair_inputs import gear_name, pair_inputs
 from fegear.results import forecasts
 from fegear.results.drawn_relief import relief_figures
 from fegear.results.loaded_pair import needs_pair
-from fegear.results.relief_tables import grindable_table, harris_table, least_stress_table, relief_tables, relief_values
+from fegear.results.relief_tables import (
+    grindable_table,
+    harris_table,
+    least_stress_table,
+    points_table,
+    relief_tables,
+    relief_values,
+)
 from fegear.results.root_stress_history import table_names
 from fegear.results.transmission_error import HARMONICS, POSITIONS
 
@@ -27,6 +34,7 @@ if TYPE_CHECKING:
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.design import LoadingFunction
+    from fegear.design.minimum_excitation import ReliefTable
     from fegear.design.relief_design import ReliefDesign
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry import GearPair
@@ -48,11 +56,14 @@ class ReliefData:
     design : ReliefDesign
     neglected : mapping of str to tuple of str
         What effects that are off would change, in words.
+    points : mapping of member to ReliefTable
+        At the roll angles that the case asks for; empty where it names none.
     """
 
     pair: LoadedPair
     design: ReliefDesign
     neglected: Mapping[str, tuple[str, ...]]
+    points: Mapping[Member, ReliefTable]
 
 
 @dataclass(frozen=True)
@@ -110,6 +121,16 @@ def _check(scene: Scene, name: str) -> None:
         raise InputError(
             "design.peak", '"least-root-stress"', "needs root stresses", f'set pair.{name}.compliance.source = "fe"'
         )
+    pair = scene.pairs[name]
+    for member in MEMBERS:
+        ends = [float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end)]
+        for roll in design_part(scene).roll_angles or ():
+            if not min(ends) - 1e-9 <= roll <= max(ends) + 1e-9:
+                raise RangeError(
+                    "design.roll_angles", f"{math.degrees(roll):.6g} deg",
+                    f"is off the active profile of the {member}, {math.degrees(min(ends)):.6g} to "
+                    f"{math.degrees(max(ends)):.6g} deg",
+                )  # fmt: skip
 
 
 def _inputs(scene: Scene, name: str) -> ReliefInputs:
@@ -122,7 +143,7 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
 
 
 def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData:
-    from fegear.design.relief_design import DesignTask, design_relief
+    from fegear.design.relief_design import DesignTask, design_relief, relief_at
 
     (found,) = upstream.values()
     pair: LoadedPair = found.pair
@@ -133,7 +154,10 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
         tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS,
     )  # fmt: skip
     design = design_relief(pair.engagement, pair.shifted, task, work.progress)
-    return ReliefData(pair, design, neglected_in_design(inputs.asked, design.designed, load, inputs.tolerance))
+    neglected = neglected_in_design(inputs.asked, design.designed, load, inputs.tolerance)
+    wanted = part.roll_angles or ()
+    points = {member: relief_at(design.designed, member, wanted) for member in MEMBERS if wanted}
+    return ReliefData(pair, design, neglected, points)
 
 
 def _present(data: ReliefData, inputs: ReliefInputs) -> Outcome:
@@ -145,6 +169,7 @@ def _present(data: ReliefData, inputs: ReliefInputs) -> Outcome:
         values.append(value)
     reliefs = relief_tables(name, design, inputs)
     tables += reliefs
+    tables += [points_table(name, inputs.labels[m], inputs.gears[m], table) for m, table in data.points.items()]
     if design.ground:
         tables.append(grindable_table(name, design.ground, design.te, data.pair.engagement.pair))
     tables.append(harris_table(name, design.curves))

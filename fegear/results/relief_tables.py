@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from fegear.contact import Loaded, TransmissionError
     from fegear.design import TipReliefPair
+    from fegear.design.minimum_excitation import ReliefTable
     from fegear.design.relief_design import ReliefDesign
     from fegear.design.root_stress_loading import StressOptimum
     from fegear.geometry import GearPair
@@ -50,6 +51,9 @@ def relief_tables(name: str, design: ReliefDesign, inputs: ReliefInputs) -> list
             Column("roll_angle", t.roll_angle, "deg", "roll angle of the flank point"),
             Column("load", t.load, "N", "design load on the pair there"),
             Column("relief", t.relief, "um", "material to remove, along the normal"),
+            Column(
+                "deflection", t.deflection, "um", "of this flank under the design loads, which the relief makes up for"
+            ),
         ]
         if found.diagonal is not None:
             columns.append(Column("relief_diagonal", found.diagonal, "um", "without the neighbours' loads (Mark 5.4)"))
@@ -58,6 +62,20 @@ def relief_tables(name: str, design: ReliefDesign, inputs: ReliefInputs) -> list
         title = f"Relief of gear {inputs.gears[member]} in pair {name}"
         tables.append(Table(f"relief_{label}", tuple(columns), title))
     return tables
+
+
+def points_table(name: str, label: str, gear: str, t: ReliefTable) -> Table:
+    """Relief at the roll angles that a case asks for, also counted from the least of them."""
+    columns = (
+        Column("roll_angle", t.roll_angle, "deg", "roll angle of the flank point"),
+        Column("radius", t.radius, "mm", "radius of the flank point"),
+        Column("x", t.x, "mm", "position on the line of action, positive toward the driver's tip"),
+        Column("load", t.load, "N", "design load on the pair there"),
+        Column("deflection", t.deflection, "um", "of this flank under the design loads"),
+        Column("relief", t.relief, "um", "material to remove, along the normal"),
+        Column("relief_over_least", t.relief - t.relief.min(), "um", "less the least of these rows"),
+    )
+    return Table(f"relief_points_{label}", columns, f"Relief of gear {gear} in pair {name} at the angles asked for")
 
 
 def grindable_table(

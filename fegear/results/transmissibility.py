@@ -8,67 +8,52 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.case.csv_columns import read_columns
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure import Axis, Bars, Curve, Figure, Panel
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
+from fegear.models.helical_pair import mesh_of
+from fegear.results.drawn_mode_shapes import mode_shape_figures
+from fegear.results.drawn_transmissibility import LENGTHS, indices_figure, mesh_forces, response_figures
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
-    from fegear.case.transmissibility import MeshStiffnessPart
     from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel
     from fegear.dynamics.mesh_parameters import MeshParameters
     from fegear.dynamics.modal_indices import ModeTable, RankedMode
     from fegear.dynamics.transmissibility import ReducedTransmissibility, Transmissibility
     from fegear.engine.stage import Upstream, Work
 
-#: Components of the mesh force in figures; smaller ones than this are none.
-_COMPONENTS = ("y", "z", "θ_{x}", "θ_{y}", "θ_{z}")
-_ROUND_OFF, _TINY = 1e-9, 1e-12
-#: Columns of a load distribution file.
-_DISTRIBUTION = {"z": "length", "load": "line_load", "deflection": "length"}
-_HEADS = ("z [mm]", "load [N/mm]", "deflection [um]")
+#: Even points from which a drawn response starts; it is refined wherever it bends.
+_DRAWN = 241
 
 
 @dataclass(frozen=True, slots=True)
 class TransmissibilityData:
-    """Modes, ranking and frequency response."""
+    """Modes, ranking and frequency response.
+
+    Parameters
+    ----------
+    mesh : MeshParameters
+    modes : ModeTable
+    ranking : list of RankedMode
+    response : Transmissibility or ReducedTransmissibility
+        At the frequencies of the case.
+    drawn : Transmissibility or ReducedTransmissibility
+        At frequencies that show every peak and every zero.
+    undamped : ndarray
+        Lambda of the poles among them.
+    """
 
     mesh: MeshParameters
     modes: ModeTable
     ranking: list[RankedMode]
     response: Transmissibility | ReducedTransmissibility
-
-
-def _read_distribution(path: Path, key: str) -> list[NDArray[np.float64]]:
-    columns = read_columns(path, key, _DISTRIBUTION)
-    for name, head in zip(_DISTRIBUTION, _HEADS, strict=True):
-        if name not in columns:
-            raise InputError(key, f'"{path.name}"', f"has no column {head}", f"heads are {', '.join(_HEADS)}")
-    return [columns[name] for name in _DISTRIBUTION]
-
-
-def _mesh(scene: Scene, name: str, part: MeshStiffnessPart) -> MeshParameters:
-    from fegear.dynamics.mesh_parameters import mesh_parameters
-
-    prefix = f"transmissibility.{name}.mesh"
-    try:
-        if part.distribution is None:
-            return part.build()
-        key = f"{prefix}.distribution"
-        z, load, deflection = _read_distribution(scene.file(part.distribution, key), key)
-        return mesh_parameters(
-            z, load, deflection, face_width=part.face_width or math.nan, base_helix_angle=part.base_helix_angle
-        )
-    except InputError as error:
-        raise at("", error) if error.key.startswith(prefix) else at(prefix, error) from None
+    drawn: Transmissibility | ReducedTransmissibility
+    undamped: NDArray[np.float64]
 
 
 def _mode_table(name: str, modes: ModeTable, ranking: list[RankedMode]) -> Table:
@@ -95,6 +80,25 @@ def _mode_table(name: str, modes: ModeTable, ranking: list[RankedMode]) -> Table
     )
 
 
+def _shapes_table(name: str, modes: ModeTable) -> Table:
+    """Mode shape vectors over q, of unit Euclidean norm."""
+    from fegear.dynamics.helical_pair import COORDINATES
+
+    both = modes.shapes.shape[0] > len(COORDINATES)
+    what = "motion over q, unit norm" if both else "q_i + P q_j, unit norm: each gear moves half, the driven mirrored"
+    names = [f"{LENGTHS[c]}{gear}" for gear in (("_driver", "_driven") if both else ("",)) for c in COORDINATES]
+    count = modes.ratio.size
+    return Table(
+        f"mode_shapes_{name}",
+        (
+            Column("mode", np.arange(1, count + 1), "", "by falling frequency"),
+            Column("Lambda", modes.ratio, "", "frequency over sqrt(K_M/m_eq); 0 for rigid-body motion"),
+            *(Column(head, row, "", what) for head, row in zip(names, modes.shapes, strict=True)),
+        ),
+        f"Mode shapes of pair {name}",
+    )
+
+
 def _response_table(name: str, response: Transmissibility | ReducedTransmissibility) -> Table:
     from fegear.dynamics.helical_pair import COORDINATES
     from fegear.dynamics.transmissibility import Transmissibility
@@ -113,6 +117,11 @@ def _response_table(name: str, response: Transmissibility | ReducedTransmissibil
             for j, column in enumerate(COORDINATES):
                 for part, values in (("re", matrix[:, i, j].real), ("im", matrix[:, i, j].imag)):
                     columns.append(Column(f"{label}_{row}_{column}_{part}", values, unit, meaning))
+    columns += [
+        Column(f"G_minus_a_{row}_{column}_abs", np.abs(response.G_minus_a[:, i, j]), "N/um", "amplitude of G - a_M")
+        for i, row in enumerate(COORDINATES)
+        for j, column in enumerate(COORDINATES)
+    ]
     return Table(f"transmissibility_{name}", tuple(columns), f"Force transmissibility of pair {name}")
 
 
@@ -140,28 +149,54 @@ class TransmissibilityInputs:
 
 def _inputs(scene: Scene, name: str) -> TransmissibilityInputs:
     part = scene.case.transmissibility[name]
-    mesh = _mesh(scene, name, part.mesh)
+    mesh = mesh_of(scene, name)
     model = part.build(mesh, f"transmissibility.{name}")
     ratios = np.linspace(part.lambda_from, part.lambda_to, part.frequencies)
     return TransmissibilityInputs(model, mesh, ratios, part.damping_ratio, name)
 
 
 def _compute(asked: TransmissibilityInputs, _upstream: Upstream, _work: Work) -> TransmissibilityData:
-    from fegear.dynamics.helical_pair import HelicalPairModel
     from fegear.dynamics.modal_indices import mode_table, rank_modes
-    from fegear.dynamics.transmissibility import reduced_transmissibility, transmissibility
 
     model = asked.model
-    frequency = model.natural_frequency * asked.ratios
-    response: Transmissibility | ReducedTransmissibility
     try:
-        if isinstance(model, HelicalPairModel):
-            response = transmissibility(model, frequency)
-        else:
-            response = reduced_transmissibility(model, frequency)
+        response = frequency_response(model, model.natural_frequency * asked.ratios)
+        drawn, undamped = resolved_response(model, float(asked.ratios[0]), float(asked.ratios[-1]))
     except InputError as error:
         raise at(f"transmissibility.{asked.name}", error) from None
-    return TransmissibilityData(asked.mesh, mode_table(model), rank_modes(model), response)
+    return TransmissibilityData(asked.mesh, mode_table(model), rank_modes(model), response, drawn, undamped)
+
+
+def frequency_response(
+    model: HelicalPairModel | ReducedPairModel, frequency: NDArray[np.float64]
+) -> Transmissibility | ReducedTransmissibility:
+    """Response of either model at circular frequencies [rad/s]."""
+    from fegear.dynamics.helical_pair import HelicalPairModel
+    from fegear.dynamics.transmissibility import reduced_transmissibility, transmissibility
+
+    if isinstance(model, HelicalPairModel):
+        return transmissibility(model, frequency)
+    return reduced_transmissibility(model, frequency)
+
+
+def resolved_response(
+    model: HelicalPairModel | ReducedPairModel, low: float, high: float
+) -> tuple[Transmissibility | ReducedTransmissibility, NDArray[np.float64]]:
+    """Response between two values of Lambda, at points that show every peak and zero, and Lambda of undamped poles."""
+    from fegear.dynamics.resolved_response import resolved_grid
+    from fegear.dynamics.transmissibility import natural_frequencies
+
+    scale = model.natural_frequency
+    poles, undamped = (found / scale for found in natural_frequencies(model))
+
+    def sizes(ratios: NDArray[np.float64]) -> NDArray[np.float64]:
+        found = frequency_response(model, scale * ratios)
+        parts = [found.G / model.mesh.stiffness, found.G_minus_a / model.mesh.stiffness, *mesh_forces(found).values()]
+        return np.abs(np.stack(parts, axis=1))
+
+    even, damped = np.linspace(low, high, _DRAWN), np.setdiff1d(poles, undamped)
+    ratios = resolved_grid(sizes, even, damped, undamped)
+    return frequency_response(model, scale * ratios), undamped[(undamped > low) & (undamped < high)]
 
 
 def _present(data: TransmissibilityData, asked: TransmissibilityInputs) -> Outcome:
@@ -173,65 +208,23 @@ def _present(data: TransmissibilityData, asked: TransmissibilityInputs) -> Outco
         Value(f"{name}.kappa", mesh.kappa, "", 0.0, "axial centre of the mesh stiffness over half the face"),
         Value(f"{name}.mu", mesh.mu, "", 0.0, "rotary mesh stiffness"),
     )
-    tables = (_mode_table(name, data.modes, data.ranking), _response_table(name, data.response))
+    tables = (
+        _mode_table(name, data.modes, data.ranking), _shapes_table(name, data.modes),
+        _response_table(name, data.response),
+    )  # fmt: skip
+    figures = (
+        indices_figure(name, data.modes), *mode_shape_figures(name, asked.model, data.modes),
+        *response_figures(name, data.mesh.stiffness, data.drawn, data.undamped),
+    )  # fmt: skip
     settings = {"damping_ratio": asked.damping_ratio, "frequencies": asked.ratios.size}
     remarks = tuple(f"Pair {name}: {remark}." for remark in data.modes.remarks)
-    return Outcome(data, tables, values, settings, remarks, _figures(name, data))
-
-
-def _figures(name: str, data: TransmissibilityData) -> tuple[Figure, ...]:
-    modes = data.modes
-    shown = np.flatnonzero(modes.ratio > 0.0)
-    place = np.arange(shown.size)
-    named = tuple(f"{r + 1}\n{modes.ratio[r]:.4g}" for r in shown)
-    indices = (
-        ("normal, Δ_{η}", modes.normal),
-        ("bending, Δ_{θx}", modes.bending),
-        ("coupling energy ratio", modes.coupling),
-    )
-    bars = tuple(Bars(place, values[shown], label, f"series:{k}") for k, (label, values) in enumerate(indices))
-    return (
-        Figure(
-            f"helical_modes_{name}",
-            f"Modal indices of pair {name}",
-            f"Pair {name}: which modes a transmission error along the tooth normal or a bending one excites.",
-            (Panel(Axis("mode and its Λ_{r}", categories=named), Axis("modal index"), bars),),
-        ),
-        _response_figure(name, data),
-    )
-
-
-def _response_figure(name: str, data: TransmissibilityData) -> Figure:
-    """Size of G over K_M and of R for transmission errors and forces along y, by component."""
-    response = data.response
-    external = np.asarray(getattr(response, "R", None) if hasattr(response, "R") else response.R_ii)
-    panels = []
-    for values, label in (
-        (response.G / data.mesh.stiffness, "|G_{iy}| / K_{M}, per transmission error"),
-        (external, "|R_{iy}|, per external force"),
-    ):
-        curves = []
-        for i, component in enumerate(_COMPONENTS):
-            size = np.abs(values[:, i, 0])
-            if size.max() > _ROUND_OFF:
-                curve = np.where(size > _TINY, size, np.nan)
-                curves.append(
-                    Curve(response.ratio, curve, component, f"series:{i}", width=3.4 - 0.5 * i, markers=False)
-                )
-        panels.append(Panel(Axis("Λ = ω / √(K_{M}/m_{eq})"), Axis(label, log=True), tuple(curves)))
-    return Figure(
-        f"transmissibility_{name}",
-        f"Force transmissibility of pair {name}",
-        f"Pair {name}: spectral mesh stiffness and mesh force transmissibility for a transmission error and an "
-        "external force along the plane of action; components over q = (y, z, b theta_x, a theta_y, a theta_z).",
-        tuple(panels),
-    )
+    return Outcome(data, tables, values, settings, remarks, figures)
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     """One response for each frequency."""
     count = scene.case.transmissibility[name].frequencies
-    return Forecast({"frequencies": count}, 0.005 + 1e-5 * count)
+    return Forecast({"frequencies": count}, 0.1 + 1e-5 * count)
 
 
 TRANSMISSIBILITY = Stage(

@@ -97,6 +97,45 @@ def test_contact_lines_of_spur_gears_have_no_u():
     assert "u1 and u2 do not exist" in results.remarks[0]
 
 
+def test_generation_of_flanks():
+    """TM-107451, Appendices 1, 2 and 5: what is tabled obeys the printed equations."""
+    tables, values, results = run("sources/litvin_fig10")
+    assert values["I.generated_apart"] < 1e-9
+    design, pinion = tables["flank_design_I"], tables["generated_flank_I_pinion"]
+    assert list(design["gear"]) == ["pinion", "gear"], "a shaft angle does not change the pinion as cut"
+    assert np.tan(np.radians(design["lambda_b"])) * design["r_b"] == pytest.approx(design["p"], rel=1e-12)
+    assert design["mu"] + design["eta"] == pytest.approx(180.0 / design["teeth"], rel=1e-12)
+    assert 2.0 * design["s_t"] * design["teeth"] == pytest.approx(2.0 * math.pi * design["r_p"], rel=1e-12)
+    assert pinion["r"].min() >= 83.0
+    assert pinion["r"].max() == pytest.approx(design["r_p"][0] + 5.08, rel=1e-9)
+    assert sorted(set(np.round(pinion["z"], 9))) == pytest.approx([-20.32, 0.0, 20.32], abs=1e-9)
+    assert np.hypot(np.hypot(pinion["nx"], pinion["ny"]), pinion["nz"]) == pytest.approx(1.0, rel=1e-12)
+    u, a_c = pinion["u"], 0.08 / 25.4
+    sin, cos = math.sin(math.radians(20.0)), math.cos(math.radians(20.0))  # A.5.14
+    lead = u * (1.0 + 2.0 * (a_c * u) ** 2) * math.cos(math.radians(30.0)) / (sin - 2.0 * a_c * u * cos)
+    way = 0.5 * pinion["l"] + values["I.rack_half_width"] * math.cos(math.radians(30.0)) - lead
+    assert design["r_p"][0] * np.radians(pinion["psi"]) == pytest.approx(way, abs=1e-9)
+    assert not results.remarks
+    figures = {figure.key for outcome in results.outcomes.values() for figure in outcome.figures}
+    assert figures == {
+        f"{key}_I" for key in ("rack_cutters", "cutter_surfaces", "cutter_frames", "generation", "sections", "frames")
+    }
+
+
+def test_generation_of_wrong_crowned_and_spur_flanks():
+    wrong = ("pair.I.misalignment={ lead_angle = '3 arcmin' }", "pair.I.modification.crown='10 um'")
+    tables, values, results = run("sources/litvin_fig10", *wrong)
+    assert list(tables["flank_design_I"]["gear"]) == ["pinion", "gear", "pinion as cut"]
+    assert values["I.generated_apart"] < 1e-9
+    assert "crown is not part of the rack cutter" in results.remarks[0]
+    spur = [f"gear.{g}.{key}" for g in ("pinion", "gear") for key in ("helix_angle='0 deg'", "hand='spur'")]
+    tables, values, results = run("sources/litvin_fig10", *spur, "pair.I.modification.parabola='0 / inch'")
+    assert not {"p", "H"} & set(tables["flank_design_I"])
+    assert values["I.generated_apart"] < 1e-9
+    assert values["I.largest_departure"] == 0.0
+    assert "infinite and left out" in results.remarks[0]
+
+
 def test_kinds_of_contact_add_up():
     tables, values, _ = run("litvin_localised", "tooth_contact.positions=100")
     kinds, cycle = tables["tooth_contact_kinds_I"], tables["tooth_contact_I"]
@@ -183,7 +222,7 @@ def test_blankenship_singh():
     assert modes["Lambda"] == pytest.approx([1.65451, 0.78400, 0.44871, 0.39390, 0.26800], abs=0.51e-5)
     assert modes["Delta_normal"] == pytest.approx([1.0, 0.1956, 0.2628, 0.0282, 0.0442], abs=0.51e-4)
     assert len(response["Lambda"]) == 2000
-    assert len(response) == 2 + 2 * 2 * 25
+    assert len(response) == 2 + 2 * 2 * 25 + 25
     assert values["I.omega"] == pytest.approx(math.sqrt(2.0 * 3e8 / 2.882) / (2.0 * math.pi), rel=1e-12)
     spur, _, _ = run("blankenship_singh", "transmissibility.I.mesh={ stiffness = '3e8 N/m' }")
     assert spur["helical_modes_I"]["Lambda"][0] == pytest.approx(1.61803, abs=0.51e-5)

@@ -56,7 +56,7 @@ def test_marks_gears_designed_for_least_excitation():
     # Equal gears, centred design: the driven gear's relief is the mirror image.
     twin = tables["relief_I_test_driven"]
     np.testing.assert_allclose(relief["relief"], twin["relief"][::-1], atol=1e-9)
-    assert set(relief) == {"x", "radius", "roll_angle", "load", "relief"}
+    assert set(relief) == {"x", "radius", "roll_angle", "load", "relief", "deflection"}
     assert not any("neighbours' loads" in remark for remark in results.remarks)
 
 
@@ -218,6 +218,7 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("mark_minimum_excitation", ("design.contact_ratio=1.3",), "contradicts length"),
         ("mark_minimum_excitation", ("design.pair=II",), "is no pair of this case"),
         ("mark_minimum_excitation", ("design.slope=2.5",), "must lie between 0 and 2"),
+        ("mark_minimum_excitation", ("design.roll_angles=['11 deg']",), "off the active profile of the driver"),
         ("mark_minimum_excitation", ("design.exponent=7",), "only with family"),
         ("mark_minimum_excitation", ('design.peak="least-root-stress"',), "needs root stresses"),
     ],
@@ -276,6 +277,22 @@ def test_marks_series_says_where_pairs_part():
     assert found["truncation"].max() < 1e-9
     assert np.abs(found["series"] - found["exact"]).max() > 0.1
     assert any("every pair on the path as loaded" in remark for remark in results.remarks)
+
+
+def test_loads_deflections_and_relief_at_the_reports_roll_angles():
+    """Mark, Tables 1 and 2, every row: loads to .5 N, relief to 1.3e-4 mm, which the report's own cubic leaves."""
+    tables, values, _ = run("sources/mark_tables")
+    found = tables["relief_points_I_test"]
+    one, two = data("mark_table1_loads_deflections.csv"), data("mark_table2_relief.csv")
+    np.testing.assert_allclose(np.radians(found["roll_angle"]), one["roll_angle"], rtol=1e-12)
+    np.testing.assert_allclose(found["load"], one["load"], atol=0.5)
+    np.testing.assert_allclose(found["deflection"], one["deflection"] * 1e3, atol=0.14)
+    np.testing.assert_allclose(found["relief_over_least"], two["relief"] * 1e3, atol=0.14)
+    np.testing.assert_allclose(found["relief"] + found["deflection"], found["relief"][0] + found["deflection"][0])
+    assert values["I.te_peak_to_peak.designed"].value < 1e-9
+    table = tables["relief_I_test"]
+    inside = table["load"] > 0.0
+    np.testing.assert_allclose(np.ptp((table["relief"] + table["deflection"])[inside]), 0.0, atol=1e-9)
 
 
 def fed_back(tables, folder):

@@ -1,7 +1,6 @@
 """Cases that choose where their root stress comes from: a formula's chain by hand, beside finite elements, refusals."""
 
-import math
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import get_args
 
@@ -44,8 +43,12 @@ def test_every_formula_can_be_chosen_and_is_cited():
     assert names == {"fe", *ROOT_STRESS_SOURCES} == set(ROOT_STRESS_CITATIONS)
 
 
-@pytest.mark.parametrize("name", [n for n in ROOT_STRESS_SOURCES if n != "cornell-trochoid"])
-def test_table_over_the_flank_is_the_formula(name, rng=np.random.default_rng(7)):
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=[pytest.mark.long] if n == "cornell-trochoid" else []) for n in ROOT_STRESS_SOURCES],
+)
+def test_table_over_the_flank_is_the_formula(name):
+    rng = np.random.default_rng(7)
     gear = read_scene(CASES / "cornell_test_gear.toml").gears["test"]
     ends = gear.form_radius, gear.involute_tip_radius
     table = formula_root_stress(gear, name, *ends)
@@ -138,6 +141,8 @@ def test_dynamic_root_stress_is_tooth_force_times_formula():
     ],
 )  # fmt: skip
 def test_refusals_say_what_to_do(case, overrides, words):
+    def plan():
+        make_plan(read_scene(CASES / f"{case}.toml", overrides), STAGES)
+
     with pytest.raises(InputError, match=words):
-        scene = read_scene(CASES / f"{case}.toml", overrides)
-        make_plan(scene, STAGES)
+        plan()

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from fegear.dynamics.helical_pair import HelicalPairModel, P, ReducedPairModel, RigidGear
 from fegear.dynamics.mesh_parameters import MeshParameters, mesh_parameters, partial_face_mu
-from fegear.dynamics.modal_indices import mode_table, rank_modes, track_modes
+from fegear.dynamics.modal_indices import mode_table, rank_modes
+from fegear.dynamics.mode_following import follow_modes
 from fegear.dynamics.natural_modes import undamped_modes
 from fegear.dynamics.transmissibility import complex_modes, compliance, reduced_transmissibility, transmissibility
 from fegear.errors import ConvergenceError, GeometryError, InputError, RangeError
@@ -234,13 +235,13 @@ def test_modes_are_followed_through_crossings():
         )  # fmt: skip
 
     # The axial mode, sqrt(alpha_z)/2, crosses the rocking and bending modes between alpha_z = 0.5 and 2.
-    tracked = track_modes(build, [0.5, 2.0])
-    assert tracked.ratio.shape == (2, 5)
-    assert sorted(tracked.ratio[1]) == pytest.approx(sorted(mode_table(build(2.0)).ratio), rel=1e-12)
+    followed = follow_modes(build, [0.5, 2.0])
+    assert followed.ratio.shape == (2, 5)
+    assert sorted(followed.ratio[1]) == pytest.approx(sorted(mode_table(build(2.0)).ratio), rel=1e-12)
     exact = build(2.0)
-    residual = exact.stiffness @ tracked.shapes[1] - (exact.mass[:, None] * tracked.shapes[1]) * (
-        (tracked.ratio[1] * exact.natural_frequency) ** 2
+    residual = exact.stiffness @ followed.shapes[1] - (exact.mass[:, None] * followed.shapes[1]) * (
+        (followed.ratio[1] * exact.natural_frequency) ** 2
     )
-    assert np.abs(residual).max() < 1e-6 * np.abs(exact.stiffness @ tracked.shapes[1]).max()
-    fine = track_modes(build, np.linspace(0.5, 2.0, 302))
-    assert fine.ratio[-1] == pytest.approx(tracked.ratio[1], rel=1e-10), "the way there does not matter"
+    assert np.abs(residual).max() < 1e-6 * np.abs(exact.stiffness @ followed.shapes[1]).max()
+    fine = follow_modes(build, np.linspace(0.5, 2.0, 302))
+    assert fine.ratio[-1] == pytest.approx(followed.ratio[1], rel=1e-10), "the way there does not matter"

@@ -1,0 +1,137 @@
+"""Figures of a helical pair's transverse sections and of its frames (NASA TM-107451, Figs. A.1.1 to A.1.3)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.engine.figure import Axis, Figure, Item, Panel, Points, outline, polylines
+from fegear.geometry.helicoid import InvoluteHelicoid
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array
+    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.helical.pair import HelicalPair
+
+#: Angle at which crossed axes are drawn at least, and turn of the pinion in the picture of the frames [rad].
+_CROSSED, _TURNED = math.radians(12.0), math.radians(25.0)
+
+
+def section_figures(name: str, gears: tuple[str, str], pair: HelicalPair) -> tuple[Figure, ...]:
+    """Describe the sections of both gears and the frames."""
+    sections = Figure(
+        f"sections_{name}",
+        f"Transverse sections of pair {name} and the parameters of their surfaces",
+        f"Pair {name}: sections z = 0, seen along z. A point M of the flank lies u cos λ_{{b}} along the tangent to "
+        "the base circle, which touches it by θ beyond the start of the involute.",
+        (
+            _section(pair.cut_pinion, gears[0], "space", "μ", 1),
+            _section(pair.gear, gears[1], "tooth", "η", 2),
+        ),
+    )
+    return sections, _frames(name, gears, pair)
+
+
+def _arc(radius: float, start: float, end: float) -> Array:
+    around = np.linspace(start, end, 61)
+    return np.stack([radius * np.sin(around), radius * np.cos(around)]) * 1e3
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.4g}°"
+
+
+def _section(gear: HelicalGear, name: str, x_axis: Literal["space", "tooth"], letter: str, index: int) -> Panel:
+    """z = 0, x upwards: a space or a tooth about the x axis, with the parameters of its surface."""
+    flank = InvoluteHelicoid.of(gear, x_axis)
+    base, tip, pitch = gear.base_radius, gear.tip_radius, gear.angular_pitch
+    involute = flank.points(flank.tangent_length(np.linspace(base, tip, 61)), 0.0)[[1, 0]] * 1e3
+    turn = np.array([[math.cos(pitch), math.sin(pitch)], [-math.sin(pitch), math.cos(pitch)]])
+    whole = max(base, gear.form_radius)
+    cut = flank.points(flank.tangent_length(np.linspace(whole, tip, 61)), 0.0)[[1, 0]] * 1e3
+    back = cut * np.array([[-1.0], [1.0]])
+    spot = float(flank.tangent_length(0.5 * (gear.pitch_radius + tip)))
+    start, end = flank.offset, float(flank.roll_direction(spot, 0.0))
+    point = flank.points(spot, 0.0)[[1, 0]] * 1e3
+    tangent = np.stack([_arc(base, end, end)[:, 0], point], axis=1)
+    reach = -1.15 * abs(end), max(1.6 * pitch, 0.25 * abs(end))
+    foot = base * math.cos(end) - 0.15 * (tip - base * math.cos(end))
+    role = "blue" if index == 1 else "orange"
+    circles = (
+        (tip, "outside circle", "solid"),
+        (gear.pitch_radius, "pitch circle", "dashdot"),
+        (base, "base circle", "dot"),
+    )
+    items: tuple[Item, ...] = (
+        outline(polylines([back, turn.T @ cut, turn @ back]), "", role, 1.0),
+        outline(involute, f"flank Σ_{{{index}}}", role, 2.4),
+        *(outline(_arc(r, *reach), label, "grey", 1.0, dash) for r, label, dash in circles),
+        outline(_arc(base, 0.0, start), f"{letter}_{{{index}}} = {_degrees(abs(start))}", "red", 3.0),
+        outline(_arc(0.985 * base, start, end), f"θ_{{{index}}} = {_degrees(spot / base)} at M", "green", 2.0),
+        outline(tangent, f"u_{{{index}}} cos λ_{{b{index}}} = {spot * 1e3:.4g} mm", "purple", 2.0),
+        Points(point[:1], point[1:], "M", "ink", size=6.0),
+        outline(np.array([[0.0, 0.0], [foot, 1.02 * tip]]) * 1e3, "x axis", "ink", 1.0),
+    )
+    up = Axis(f"x_{{{index}}}", "mm", limits=(foot * 1e3, 1.02 * tip * 1e3))
+    across = Axis(f"y_{{{index}}}", "mm", limits=(tip * math.sin(reach[0]) * 1e3, tip * math.sin(reach[1]) * 1e3))
+    return Panel(across, up, items, title=f"{name}: the x axis halves a {x_axis}", equal=True)
+
+
+def _frames(name: str, gears: tuple[str, str], pair: HelicalPair) -> Figure:
+    """Frames fixed to housing, pinion and gear: along the pinion's axis, and along the line of centres."""
+    return Figure(
+        f"frames_{name}",
+        f"Frames of pair {name}",
+        f"Pair {name}: along the pinion's axis the frames fixed to housing, pinion and gear; along the line of centres "
+        "the axes with the error of the shaft angle. The pinion turns counter-clockwise, the gear clockwise.",
+        (_along_axis(gears, pair), _along_centres(gears, pair)),
+        columns=2,
+    )
+
+
+def _along_axis(gears: tuple[str, str], pair: HelicalPair) -> Panel:
+    r1, r2, distance = pair.cut_pinion.pitch_radius, pair.gear.pitch_radius, pair.centre_distance
+    around = np.linspace(0.0, 2.0 * math.pi, 181)
+    circle, turn_2 = np.stack([np.cos(around), np.sin(around)]), pair.ratio * _TURNED
+
+    def frame(angle: float, size: float, centre: float = 0.0, side: float = 1.0) -> Array:
+        """The x and y axis of a frame; that of the gear looks at the pinion."""
+        c, s = side * size * math.cos(angle), side * size * math.sin(angle)
+        return polylines([np.array([[centre, centre + c], [0.0, s]]), np.array([[centre, centre - s], [0.0, c]])]) * 1e3
+
+    items: tuple[Item, ...] = (
+        outline(circle * r1 * 1e3, f"pitch circle of {gears[0]}", "blue", 1.2),
+        outline((circle * r2 + np.array([[distance], [0.0]])) * 1e3, f"pitch circle of {gears[1]}", "orange", 1.2),
+        outline(frame(0.0, 1.35 * r1), "S_{f}, fixed to the housing", "ink", 1.6),
+        outline(frame(_TURNED, 1.1 * r1), f"S_{{1}}, turned by φ_{{1}} = {_degrees(_TURNED)}", "blue", 2.0),
+        outline(frame(0.0, 0.9 * r1, distance, -1.0), "S_{q}, turned by Δγ alone", "grey", 1.4, "dash"),
+        outline(
+            frame(-turn_2, 1.1 * r1, distance, -1.0), f"S_{{2}}, by φ_{{2}} = {_degrees(turn_2)} too", "orange", 2.0
+        ),
+        outline(np.array([[0.0, distance], [0.0, 0.0]]) * 1e3, f"E = {distance * 1e3:.6g} mm", "green", 1.0, "dot"),
+        Points([r1 * 1e3], [0.0], "pitch point", "red", size=5.0),
+    )
+    return Panel(Axis("x_{f}", "mm"), Axis("y_{f}", "mm"), items, title="along the pinion's axis", equal=True)
+
+
+def _along_centres(gears: tuple[str, str], pair: HelicalPair) -> Panel:
+    gamma, face = pair.errors.shaft_angle, pair.pinion.face_width
+    shown = math.copysign(max(abs(gamma), _CROSSED), gamma) if gamma else 0.0
+    told = f"Δγ = {math.degrees(gamma) * 60.0:.4g}'" + (f", drawn as {_degrees(shown)}" if shown != gamma else "")
+    axis = np.array([-math.sin(shown), math.cos(shown)])  # of the gear: (0, -sin, cos) in the fixed frame
+    turn = np.array([[axis[1], axis[0]], [-axis[0], axis[1]]])
+    square = np.array([[-0.35, 0.35, 0.35, -0.35, -0.35], [-0.5, -0.5, 0.5, 0.5, -0.5]])
+    scale = np.array([[face], [pair.gear.face_width]])
+    moved = turn @ (square * scale + np.array([[0.0], [pair.axial_offset]]))
+    arc = np.linspace(0.0, -shown, 21)
+    items: tuple[Item, ...] = (
+        outline(square * face * 1e3, gears[0], "blue", 1.2),
+        outline(moved * 1e3, gears[1], "orange", 1.2),
+        outline(np.array([[0.0, 0.0], [-0.2, 0.9]]) * face * 1e3, "z_{f}, axis of the pinion", "ink", 1.6),
+        outline(np.array([[0.0, 0.6], [0.0, 0.0]]) * face * 1e3, "y_{f}", "ink", 1.0),
+        outline(np.outer(axis, [-0.2, 0.9]) * face * 1e3, "z_{2}, axis of the gear", "orange", 1.6, "dash"),
+        outline(np.stack([np.sin(arc), np.cos(arc)]) * 0.75 * face * 1e3, told, "red", 2.0),
+    )
+    return Panel(Axis("y_{f}", "mm"), Axis("z_{f}", "mm"), items, title="along the line of centres", equal=True)

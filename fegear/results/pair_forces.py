@@ -1,0 +1,313 @@
+"""Stage ``pair-forces``: mesh and bearing forces of a helical pair under transmission error and external forces."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.case.csv_columns import read_columns
+from fegear.case.part import at
+from fegear.dynamics.pair_forces import rms
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.errors import InputError
+from fegear.models.helical_pair import mesh_of
+from fegear.results.drawn_pair_forces import COMPONENTS, forces_figure, spectrum_figure
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array, Complex
+    from fegear.case.pair_excitation import ExcitationPart
+    from fegear.case.reading import Scene
+    from fegear.dynamics.helical_pair import HelicalPairModel
+    from fegear.dynamics.pair_forces import Line, PairForces
+    from fegear.engine.stage import Upstream, Work
+
+#: Harmonics of a pair or a table that are taken by default.
+_HARMONICS = 8
+#: Base helix angles of case and pair may differ by this [rad].
+_SAME_ANGLE = 1e-3
+#: Even speeds from which a drawn curve starts at least.
+_DRAWN = 121
+
+
+@dataclass(frozen=True, slots=True)
+class PairForcesInputs:
+    """What the forces depend on.
+
+    Parameters
+    ----------
+    model : HelicalPairModel
+    excitation : ExcitationPart
+    harmonics : ndarray of complex, shape (N,)
+        Of the transmission error, 1 to N, where the case or a table gives them [m]; empty where a pair does.
+    teeth : int
+        Of the driver; zero without transmission error.
+    arm : float
+        Base radius of the helical pair's gear, which turns its transmission error into a length; zero for a spur pair.
+    ratio : float
+        Speed of the driven gear over that of the driver.
+    name : str
+        Of the pair.
+    """
+
+    model: HelicalPairModel
+    excitation: ExcitationPart
+    harmonics: Complex
+    teeth: int
+    arm: float
+    ratio: float
+    name: str = field(compare=False)
+
+
+@dataclass(frozen=True, eq=False)
+class PairForcesData:
+    """Forces at the speeds of the case, at speeds that show every peak, and at the speed of the spectrum.
+
+    Parameters
+    ----------
+    asked, drawn, spectrum : PairForces
+    undamped : ndarray
+        Speeds at which a line meets a resonance that nothing damps [rad/s].
+    """
+
+    asked: PairForces
+    drawn: PairForces
+    spectrum: PairForces
+    undamped: Array
+
+
+def _inputs(scene: Scene, name: str) -> PairForcesInputs:
+    part, prefix = scene.case.transmissibility[name], f"transmissibility.{name}"
+    excitation = _excitation(scene, name)
+    model = part.build_both(mesh_of(scene, name), prefix)
+    error, teeth, arm = excitation.transmission_error, excitation.teeth or 0, 0.0
+    harmonics = np.zeros(0, dtype=complex)
+    if error is not None and error.pair is not None:
+        pair = scene.case.pair[error.pair]
+        teeth = scene.case.gear[pair.driver].teeth
+        if error.pair in scene.helical_pairs:
+            arm = scene.helical_pairs[error.pair].gear.base_radius
+    elif error is not None and error.amplitude is not None:
+        harmonics = np.zeros(error.harmonic or 1, dtype=complex)
+        harmonics[-1] = error.amplitude
+    elif error is not None and error.file is not None:
+        harmonics = _read_harmonics(scene, error.file, f"{prefix}.excitation.transmission_error.file")
+        harmonics = harmonics[: error.harmonics or _HARMONICS]
+    ratio = model.driver.base_radius / model.driven.base_radius
+    return PairForcesInputs(model, excitation, harmonics, teeth if error else 0, arm, ratio, name)
+
+
+def _read_harmonics(scene: Scene, file: str, key: str) -> Complex:
+    """Complex amplitudes from columns n with cosine and sine, as ``transmission_error_harmonics`` has them."""
+    path = scene.file(file, key)
+    columns = read_columns(path, key, {"n": "", "cosine": "length", "sine": "length", "amplitude": "length"})
+    if "n" not in columns or not ({"cosine", "amplitude"} & columns.keys()):
+        raise InputError(
+            key, f'"{path.name}"', "has no columns n and cosine (with sine), or n and amplitude",
+            "heads are n, cosine [um], sine [um]",
+        )  # fmt: skip
+    n = columns["n"]
+    if np.any(n % 1.0 != 0.0) or n.min() < 1.0 or n.max() > 20_000.0 or np.unique(n).size != n.size:
+        raise InputError(
+            key, f'"{path.name}"', "has numbers n that are no harmonics", "count 1, 2, 3 and on, each once"
+        )
+    cosine = columns["cosine"] if "cosine" in columns else columns["amplitude"]
+    sine = columns["sine"] if "cosine" in columns and "sine" in columns else np.zeros(n.size)
+    found = np.zeros(int(n.max()), dtype=complex)
+    found[n.astype(int) - 1] = cosine - 1j * sine
+    return found
+
+
+def _excitation(scene: Scene, name: str) -> ExcitationPart:
+    found = scene.case.transmissibility[name].excitation
+    if found is None:
+        raise InputError(
+            f"transmissibility.{name}.excitation", "(not given)", "is missing, but pair-forces needs it",
+            'write excitation = { teeth = 50, speeds = ["1000 rpm"], transmission_error = { amplitude = "1 um" } }',
+        )  # fmt: skip
+    return found
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    error = _excitation(scene, name).transmission_error
+    if error is None or error.pair is None:
+        return ()
+    return (Task("tooth-contact" if error.pair in scene.helical_pairs else "transmission-error", error.pair),)
+
+
+def _check(scene: Scene, name: str) -> None:
+    """Refuse a pair whose helix is not that of the mesh that it shakes."""
+    error = _excitation(scene, name).transmission_error
+    if error is None or error.pair is None:
+        return
+    own = scene.case.transmissibility[name].mesh.base_helix_angle
+    helical = scene.helical_pairs.get(error.pair)
+    angle = helical.gear.base_helix_angle if helical else 0.0
+    if abs(abs(own) - abs(angle)) > _SAME_ANGLE:
+        raise InputError(
+            f"transmissibility.{name}.mesh.base_helix_angle", f"{math.degrees(own):.6g} deg",
+            f"is not that of pair {error.pair}, {math.degrees(abs(angle)):.6g} deg",
+            "give the pair's own, or the harmonics of the transmission error as a file",
+        )  # fmt: skip
+
+
+def _pair_harmonics(asked: PairForcesInputs, upstream: Upstream) -> Complex:
+    """Harmonics of the transmission error of the case's own pair [m], positive for removed material."""
+    error = asked.excitation.transmission_error
+    count = (error.harmonics if error else None) or _HARMONICS
+    (found,) = upstream.values()
+    if asked.arm == 0.0:
+        series = found.exact[found.pair.loads.index(found.pair.nominal)].series
+        return np.asarray(2.0 * series.coefficients[1 : count + 1])
+    # Where the gear runs ahead of its mate, the flanks have too much: the sign of removal is the other one.
+    ahead = asked.arm * found.contact.error
+    return np.asarray(-2.0 * np.fft.rfft(ahead)[1 : count + 1] / ahead.size)
+
+
+def _lines(asked: PairForcesInputs, harmonics: Complex) -> list[Line]:
+    from fegear.dynamics.helical_pair import COORDINATES
+    from fegear.dynamics.pair_forces import Line
+
+    part, lines = asked.excitation, []
+    if part.transmission_error is not None:
+        along = np.eye(5)[COORDINATES.index(part.transmission_error.along)]
+        lines += [
+            Line((n + 1) * asked.teeth, error=tuple(size * along), source="transmission error")
+            for n, size in enumerate(harmonics)
+            if size != 0.0
+        ]
+    for number, force in enumerate(part.external, start=1):
+        sizes = tuple(size * cmath.exp(1j * force.phase) for size in force.components)
+        turns = 1.0 if force.on == "driver" else asked.ratio
+        order, frequency = (force.order or 0.0) * turns, 2.0 * math.pi * (force.frequency or 0.0)
+        source = f"external {number}"
+        if force.on == "driver":
+            lines.append(Line(order, frequency, on_driver=sizes, source=source))
+        else:
+            lines.append(Line(order, frequency, on_driven=sizes, source=source))
+    return lines
+
+
+def _compute(asked: PairForcesInputs, upstream: Upstream, _work: Work) -> PairForcesData:
+    from fegear.dynamics.pair_forces import pair_forces, resonant_speeds
+    from fegear.dynamics.resolved_response import resolved_grid
+
+    model, part = asked.model, asked.excitation
+    lines = _lines(asked, _pair_harmonics(asked, upstream) if upstream else asked.harmonics)
+    if not lines:
+        raise InputError(
+            f"transmissibility.{asked.name}.excitation.transmission_error", "without harmonics", "excites nothing",
+            "give an amplitude that is not zero",
+        )  # fmt: skip
+    speeds, resonant = part.speeds.array, resonant_speeds(model, lines)
+    undamped = np.empty(0) if model.damping.any() else resonant
+    try:
+        found = pair_forces(model, lines, speeds)
+        grid = speeds
+        if speeds.size > 1:
+            start = np.linspace(speeds[0], speeds[-1], _DRAWN)
+            grid = resolved_grid(
+                lambda omega: _drawn_sizes(pair_forces(model, lines, omega)), start,
+                np.setdiff1d(resonant, undamped), undamped,
+            )  # fmt: skip
+        spectrum = part.speed or float(speeds[np.argmax(rms(found.normal))])
+        return PairForcesData(
+            found, pair_forces(model, lines, grid), pair_forces(model, lines, [spectrum]),
+            undamped[(undamped > speeds[0]) & (undamped < speeds[-1])],
+        )  # fmt: skip
+    except InputError as error:
+        raise at(f"transmissibility.{asked.name}", error) from None
+
+
+def _drawn_sizes(forces: PairForces) -> Array:
+    """Sizes of all that is drawn over speed, shape (S, k): the normal force of each line, the sums over lines."""
+    bearings = (rms(forces.bearing_driver), rms(forces.bearing_driven))
+    return np.column_stack([*np.abs(forces.normal), rms(forces.normal), *bearings])
+
+
+def _present(data: PairForcesData, asked: PairForcesInputs) -> Outcome:
+    name, found = asked.name, data.asked
+    normal = rms(found.normal)
+    top = int(np.argmax(normal))
+    values = [
+        Value(f"{name}.largest_mesh_force", float(normal[top]), "N", None, "root mean square along the tooth normal"),
+        Value(f"{name}.largest_mesh_force_speed", float(found.speed[top]), "rpm", None, "driver's speed of that"),
+    ]
+    for key in ("driver", "driven"):
+        radial = rms(getattr(found, f"bearing_{key}")[:, :, 0])
+        values.append(Value(f"{name}.largest_bearing_force_{key}", float(radial.max()), "N", None,
+                            "root mean square along the line of action"))  # fmt: skip
+    figures = [spectrum_figure(name, data.spectrum)]
+    if found.speed.size > 1:
+        figures.insert(0, forces_figure(name, data.drawn, data.undamped, asked.teeth))
+    settings: dict[str, object] = {"lines": len(found.lines), "speeds": int(found.speed.size)}
+    tables = (_sums_table(name, found, asked.teeth), _spectrum_table(name, found))
+    return Outcome(data, tables, tuple(values), settings, (), tuple(figures))
+
+
+def _sums_table(name: str, found: PairForces, teeth: int) -> Table:
+    columns = [Column("speed", found.speed, "rpm", "of the driver")]
+    if teeth:
+        columns.append(Column("mesh_frequency", teeth * found.speed / (2.0 * math.pi), "Hz", "teeth times speed"))
+    columns.append(Column("mesh_normal", rms(found.normal), "N", "root mean square along the tooth normal"))
+    for where in ("mesh", "bearing_driver", "bearing_driven"):
+        columns += [
+            Column(f"{where}_{key}", rms(getattr(found, where)[:, :, k]), unit, "root mean square over time")
+            for k, (key, _, unit) in enumerate(COMPONENTS)
+        ]
+    return Table(f"pair_forces_{name}", tuple(columns), f"Mesh and bearing forces of pair {name} over speed")
+
+
+def _spectrum_table(name: str, found: PairForces) -> Table:
+    count = found.speed.size
+    order = np.array([line.order for line in found.lines])
+    source = np.array([line.source for line in found.lines], dtype=str)
+    columns = [
+        Column("speed", np.tile(found.speed, order.size), "rpm", "of the driver"),
+        Column("order", np.repeat(order, count), "", "frequency over the driver's speed; 0 where it does not follow"),
+        Column("source", np.repeat(source, count), "", "what excites the line"),
+        Column("frequency", found.frequency.ravel() / (2.0 * math.pi), "Hz", "of the line"),
+        Column("mesh_normal", np.abs(found.normal).ravel(), "N", "along the tooth normal, 0-peak"),
+    ]
+    for where in ("mesh", "bearing_driver", "bearing_driven"):
+        columns += [
+            Column(f"{where}_{key}", np.abs(getattr(found, where)[:, :, k]).ravel(), unit, "0-peak")
+            for k, (key, _, unit) in enumerate(COMPONENTS)
+        ]
+    return Table(f"pair_force_spectrum_{name}", tuple(columns), f"Lines of the mesh and bearing forces of pair {name}")
+
+
+def _pairs(scene: Scene) -> tuple[str, ...]:
+    names = tuple(scene.case.transmissibility)
+    found = tuple(name for name in names if scene.case.transmissibility[name].excitation is not None)
+    return found or names[:1]  # which is refused with the remedy
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """One response for each line and speed, drawn speeds included."""
+    excitation = scene.case.transmissibility[name].excitation
+    count = int(excitation.speeds.array.size) if excitation else 0
+    return Forecast({"speeds": count}, 0.15 + 1e-4 * count)
+
+
+PAIR_FORCES = Stage(
+    name="pair-forces",
+    title="Mesh and bearing forces",
+    results=("pair-forces",),
+    about="mesh and bearing forces of a helical pair over speed, by transmission error and external forces",
+    subjects=_pairs,
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    cites=citing(
+        Citation("blankenship-singh", "forces of transmission error and external forces", "Eqs. 9 to 11, 17, 18 and 22")
+    ),
+    forecast=_forecast,
+)
