@@ -162,6 +162,11 @@ class Gear:
         return self.tooth.helix_angle
 
     @property
+    def lead_angle(self) -> float:
+        """Lead angle on the pitch cylinder, pi/2 - beta [rad]."""
+        return 0.5 * math.pi - self.helix_angle
+
+    @property
     def base_helix_angle(self) -> float:
         """Helix angle beta_b on the base cylinder [rad], without the sign of the hand."""
         return self.tooth.base_helix_angle

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fegear.errors import GeometryError
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.gear import Gear
 
 
 @dataclass(frozen=True)
@@ -25,17 +27,31 @@ class RackCutter:
 
     Parameters
     ----------
-    gear : HelicalGear
+    gear : Gear
         What is cut.
     cuts : {"pinion", "gear"}
         The pinion's x axis runs through the middle of a space, the gear's through that of a tooth.
     parabola : float
         a_c [1/m] by which the normal profile leaves its straight line, a_c u^2; 0 for a plane.
+
+    Raises
+    ------
+    GeometryError
+        For a profile shift or a thickness allowance: the paper's cutters touch each other along their pitch lines.
     """
 
-    gear: HelicalGear
+    gear: Gear
     cuts: Literal["pinion", "gear"]
     parabola: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse cutters that stand off the pitch line."""
+        shift = self.gear.tooth.generating_shift
+        if shift != 0.0:
+            raise GeometryError(
+                "profile_shift", f"{shift:.6g}", "is not known to the rack cutters of TM-107451, which roll on their "
+                "reference lines", "leave out profile_shift and thickness_allowance",
+            )  # fmt: skip
 
     @property
     def _side(self) -> float:
@@ -50,7 +66,7 @@ class RackCutter:
     @property
     def half_width(self) -> float:
         """a_m = pi / (4 P_n) [m]: from the middle of the x axis to the profile, on the pitch line (A.5.2)."""
-        return 0.25 * math.pi * self.gear.normal_module
+        return 0.25 * math.pi * self.gear.module
 
     def normal_profile(self, u: ArrayLike) -> Array:
         """Points (2, ...) [m] of the normal section at u [m] from the pitch line (A.5.1, A.5.6)."""

@@ -44,7 +44,7 @@ def rack_cutter_figures(
 def _drawn(cutter: RackCutter, u: Array, share: float) -> tuple[RackCutter, str]:
     """The cutter with a departure that can be seen, a round number of times as large, and words that say so."""
     largest = abs(cutter.parabola) * float(np.max(u**2))
-    ratio = share * cutter.gear.normal_module / largest if largest else 1.0
+    ratio = share * cutter.gear.module / largest if largest else 1.0
     if ratio < 2.0:
         return cutter, ""
     power = 10.0 ** math.floor(math.log10(ratio))
@@ -63,7 +63,7 @@ def _tooth(profile: Array) -> Array:
 def _sections(name: str, cutters: tuple[RackCutter, RackCutter], u: Array) -> Figure:
     """Normal sections: both cutters in contact, each in its own frame, and the departure of the pinion's."""
     (pinion, told), gear = _drawn(cutters[0], u, _IN_SECTION), cutters[1]
-    module, a_m = gear.gear.normal_module * 1e3, gear.half_width * 1e3
+    module, a_m = gear.gear.module * 1e3, gear.half_width * 1e3
     pitch = math.pi * module
     parabolic, line = (
         _tooth(cutter.normal_profile(u)) for cutter in (pinion, dataclasses.replace(pinion, parabola=0.0))
@@ -116,7 +116,7 @@ def _axes(length: float) -> Curve:
 
 def _surfaces(name: str, title: str, pair: HelicalPair, cutters: tuple[RackCutter, RackCutter], u: Array) -> Figure:
     """Both cutter surfaces in the pinion cutter's frame, and the line along which they touch."""
-    (drawn, told), module, face = _drawn(cutters[0], u, _IN_SPACE), pair.pinion.normal_module, pair.pinion.face_width
+    (drawn, told), module, face = _drawn(cutters[0], u, _IN_SPACE), pair.pinion.module, pair.pinion.face_width
     z = np.linspace(-0.5, 0.5, 2)[:, None] * face
     pinion, gear = (cutter.points(u, cutter.along(u, z)) for cutter in (drawn, cutters[1]))
     gear = np.stack([-gear[0], -gear[1], gear[2]])  # the tool is one body: the gear's frame is turned by half a turn
@@ -146,7 +146,7 @@ def _frames(name: str, cutters: tuple[RackCutter, RackCutter]) -> Figure:
     panels = []
     for cutter, role, which, letter in ((cutters[0], "blue", "pinion", "c"), (cutters[1], "orange", "gear", "t")):
         beta, face = cutter.gear.helix_angle, 0.5 * cutter.gear.face_width
-        step = math.pi * cutter.gear.normal_module / math.cos(beta)
+        step = math.pi * cutter.gear.module / math.cos(beta)
         _, y, z = cutter.points(0.0, cutter.along(0.0, np.array([-face, face])))
         flanks = polylines(np.stack([y + k * step, z]) for k in (-1, 0, 1))
         backs = polylines(np.stack([y + (k + 0.5) * step, z]) for k in (-2, -1, 0, 1))

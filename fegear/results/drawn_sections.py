@@ -12,7 +12,7 @@ from fegear.geometry.helicoid import InvoluteHelicoid
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.gear import Gear
     from fegear.helical.pair import HelicalPair
 
 #: Angle at which crossed axes are drawn at least, and turn of the pinion in the picture of the frames [rad].
@@ -43,7 +43,7 @@ def _degrees(angle: float) -> str:
     return f"{math.degrees(angle):.4g}°"
 
 
-def _section(gear: HelicalGear, name: str, x_axis: Literal["space", "tooth"], letter: str, index: int) -> Panel:
+def _section(gear: Gear, name: str, x_axis: Literal["space", "tooth"], letter: str, index: int) -> Panel:
     """z = 0, x upwards: a space or a tooth about the x axis, with the parameters of its surface."""
     flank = InvoluteHelicoid.of(gear, x_axis)
     base, tip, pitch = gear.base_radius, gear.tip_radius, gear.angular_pitch

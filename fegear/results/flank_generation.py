@@ -12,7 +12,6 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.frozen import ReadOnlyArrays
-from fegear.helical.lead_error import lead
 from fegear.results.drawn_rack_cutters import rack_cutter_figures
 from fegear.results.drawn_sections import section_figures
 from fegear.results.tooth_contact import check_misalignment
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.engine.stage import Upstream, Work
-    from fegear.geometry.helical_gear import HelicalGear
+    from fegear.geometry.gear import Gear
     from fegear.geometry.rack_cutter import RackCutter
     from fegear.helical.pair import HelicalPair
 
@@ -99,7 +98,7 @@ def _compute(asked: FlankGenerationInputs, _upstream: Upstream, _work: Work) -> 
     return FlankGenerationData(pair, (pinion, gear), float(max(off.max(), beside.max())))
 
 
-def _design_table(name: str, rows: list[tuple[str, HelicalGear]]) -> Table:
+def _design_table(name: str, rows: list[tuple[str, Gear]]) -> Table:
     """Appendix 2 for each gear; for a spur gear without what is infinite."""
     gears = [gear for _, gear in rows]
 
@@ -125,7 +124,7 @@ def _design_table(name: str, rows: list[tuple[str, HelicalGear]]) -> Table:
     if all(gear.twist for gear in gears):
         columns += [
             column("p", [1.0 / abs(g.twist) for g in gears], "mm", "screw parameter (A.2.8)"),
-            column("H", [lead(g) for g in gears], "mm", "lead (A.2.9)"),
+            column("H", [g.lead for g in gears], "mm", "lead (A.2.9)"),
         ]
     return Table(f"flank_design_{name}", tuple(columns), f"Design parameters of the flanks of pair {name}")
 

@@ -297,7 +297,7 @@ def test_the_case_s_own_pair_excites(tmp_path):
         assert lines["mesh_normal"][lines["order"] == 28.0 * n] == pytest.approx(one, rel=1e-9)
     with pytest.raises(InputError, match="not that of pair teeth, 0 deg"):
         run(case, "transmissibility.I.mesh.base_helix_angle='20 deg'")
-    with pytest.raises(InputError, match="is no gear pair of this case"):
+    with pytest.raises(InputError, match="is no pair of this case"):
         run(case, "transmissibility.I.excitation.transmission_error={pair='tooth'}")
 
 

@@ -4,19 +4,19 @@ import math
 
 import numpy as np
 import pytest
+from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.geometry.helicoid import InvoluteHelicoid
 from fegear.geometry.rack_cutter import RackCutter
 from fegear.geometry.rack_flank import RackFlank
-from fegear.helical import HelicalGear
 
 DEG, MODULE = math.pi / 180.0, 5.08e-3
 
 
 def gear(beta=30.0, hand="left", teeth=30):
-    return HelicalGear(teeth, MODULE, 20.0 * DEG, beta * DEG, 0.04, hand if beta else "spur")
+    return helical_gear(teeth, MODULE, 20.0 * DEG, beta * DEG, 0.04, hand if beta else "spur")
 
 
 cutters = st.builds(
