@@ -9,7 +9,7 @@ import numpy as np
 
 from fegear.dynamics.resolved_response import broken
 from fegear.engine.figure import Axis, Curve, Figure, Panel
-from fegear.results.drawn_transmissibility import LAMBDA
+from fegear.results.drawn_transmissibility import LAMBDA, ends
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
@@ -80,7 +80,9 @@ def response_figure(name: str, one: FollowedData) -> Figure:
             x, y = broken(row.ratio, getattr(row, key), row.undamped)
             value = f"{symbol} = {row.value * UNITS[unit]:.6g} {unit}".rstrip()
             curves.append(Curve(x, np.where(y > 0.0, y, np.nan), value, f"series:{k}", markers=False))
-        panels.append(Panel(LAMBDA, Axis(title, log=True), tuple(curves)))
+        poles = any(row.undamped.size for row in one.responses)
+        limits = ends([getattr(row, key) for row in one.responses]) if poles else None
+        panels.append(Panel(LAMBDA, Axis(title, log=True, limits=limits), tuple(curves)))
     return Figure(
         f"response_over_{one.parameter}_{name}",
         f"Conventional frequency response of pair {name} by {label}",

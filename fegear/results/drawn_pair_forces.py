@@ -10,6 +10,7 @@ import numpy as np
 from fegear.dynamics.pair_forces import rms
 from fegear.dynamics.resolved_response import broken
 from fegear.engine.figure import Axis, Curve, Figure, Panel, Stems, ramp
+from fegear.results.drawn_transmissibility import ends
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
@@ -23,8 +24,6 @@ COMPONENTS = (
 _RPM = 30.0 / math.pi
 #: Lines that are drawn over speed, the strongest ones; what is weaker than this share of the strongest is none.
 _MOST_LINES, _NONE = 5, 1e-9
-#: Where poles are: an axis ends so far above and below the middle of its curves.
-_ABOVE, _BELOW = 1e3, 1e-4
 
 
 def forces_figure(name: str, forces: PairForces, undamped: Array, teeth: int) -> Figure:
@@ -82,14 +81,14 @@ def _over_speed(
     axis: Axis, force: Axis, speed: Array, rows: list[tuple[str, Array, str]], poles: Array, title: str = ""
 ) -> Panel:
     largest = max((float(row.max()) for _, row, _ in rows), default=0.0)
-    curves, middles = [], []
+    curves, shown = [], []
     for label, row, role in rows:
         if row.max() > _NONE * largest:
             x, y = broken(speed, row, poles)
             width = 3.4 if role == "grey" else 1.8
             curves.append(Curve(x, np.where(y > 0.0, y, np.nan), label, role, markers=False, width=width))
-            middles.append(float(np.median(row)))
-    limits = (_BELOW * min(middles), _ABOVE * max(middles)) if poles.size and middles else None
+            shown.append(row)
+    limits = ends(shown) if poles.size else None
     return Panel(axis, Axis(force.label, force.unit, log=True, limits=limits), tuple(curves), title=title)
 
 

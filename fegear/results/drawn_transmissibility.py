@@ -154,16 +154,22 @@ def _panel(ratio: Array, label: str, entries: tuple[Entry, ...], undamped: Array
             same.append(name)
         else:
             shown.append(([name], values))
-    curves, sizes = [], []
+    curves = []
     for k, (names, values) in enumerate(shown):
         x, y = broken(ratio, values, undamped)
-        sizes.append(float(np.median(values)))
         curves.append(Curve(x, np.where(y > 0.0, y, np.nan), " = ".join(names), f"series:{k}", markers=False,
                             width=3.0 - min(0.3 * k, 1.8)))  # fmt: skip
-    limits = None
-    if sizes and undamped.size:
-        limits = _BELOW * min(sizes), _ABOVE * max(sizes)
+    limits = ends([values for _, values in shown]) if undamped.size else None
     return Panel(LAMBDA, Axis(label, log=True, limits=limits), tuple(curves), title=title)
+
+
+def ends(rows: Sequence[Array]) -> tuple[float, float] | None:
+    """Ends of a logarithmic axis for curves with poles and zeros that nothing limits."""
+    if not rows:
+        return None
+    middles = [float(np.median(row)) for row in rows]
+    least = min(float(row[row > 0.0].min()) for row in rows)
+    return max(_BELOW * min(middles), 0.5 * least), _ABOVE * max(middles)
 
 
 def _equal(a: Array, b: Array) -> bool:
