@@ -90,7 +90,7 @@ def _inputs(scene: Scene, name: str) -> PairForcesInputs:
     if error is not None and error.pair is not None:
         pair = scene.case.pair[error.pair]
         teeth = scene.case.gear[pair.driver].teeth
-        if error.pair in scene.helical_pairs:
+        if error.pair not in scene.spur_pairs:
             arm = scene.helical_pairs[error.pair].gear.base_radius
     elif error is not None and error.amplitude is not None:
         harmonics = np.zeros(error.harmonic or 1, dtype=complex)
@@ -137,7 +137,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     error = _excitation(scene, name).transmission_error
     if error is None or error.pair is None:
         return ()
-    return (Task("tooth-contact" if error.pair in scene.helical_pairs else "transmission-error", error.pair),)
+    return (Task("transmission-error" if error.pair in scene.spur_pairs else "tooth-contact", error.pair),)
 
 
 def _check(scene: Scene, name: str) -> None:
@@ -146,8 +146,7 @@ def _check(scene: Scene, name: str) -> None:
     if error is None or error.pair is None:
         return
     own = scene.case.transmissibility[name].mesh.base_helix_angle
-    helical = scene.helical_pairs.get(error.pair)
-    angle = helical.gear.base_helix_angle if helical else 0.0
+    angle = scene.pairs[error.pair].driver.base_helix_angle
     if abs(abs(own) - abs(angle)) > _SAME_ANGLE:
         raise InputError(
             f"transmissibility.{name}.mesh.base_helix_angle", f"{math.degrees(own):.6g} deg",
