@@ -11,15 +11,23 @@ from fegear.results.drawn_pair import roll_marks
 from fegear.results.loaded_pair import BASE_PITCH, drawn_loads, pitch_marks
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
+    from fegear.arrays import Array
+    from fegear.design.minimum_excitation import ReliefTable
     from fegear.engine.outcome import Table
     from fegear.results.relief import ReliefData
 
 
 def relief_figures(name: str, data: ReliefData, tables: Sequence[Table], gears: Sequence[str]) -> tuple[Figure, ...]:
     """Every figure of a design; `tables` and `gears` are of driver and driven."""
-    return _relief_figure(name, data, tables, gears), _candidates_figure(name, data), _harris_figure(name, data)
+    points = (_points_figure(name, data, gears),) if data.points else ()
+    return (
+        _relief_figure(name, data, tables, gears),
+        *points,
+        _candidates_figure(name, data),
+        _harris_figure(name, data),
+    )
 
 
 def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: Sequence[str]) -> Figure:
@@ -53,6 +61,30 @@ def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: 
         columns=2,
         under=f"{data.design.task.load:.5g} N",
     )
+
+
+def _points_figure(name: str, data: ReliefData, gears: Sequence[str]) -> Figure:
+    """Load, deflection and relief at the roll angles that the case asks for."""
+    roll = Axis("roll angle of the gear", "deg")
+    rows: list[tuple[Axis, Callable[[ReliefTable], Array]]] = [
+        (Axis("load", "N", zero=True), lambda t: t.load),
+        (Axis("deflection of the flank", "um", zero=True), lambda t: t.deflection * 1e6),
+        (Axis("relief from the least", "um", zero=True), lambda t: (t.relief - t.relief.min()) * 1e6),
+    ]
+    both = list(zip(data.points.items(), gears, strict=True))
+    panels = tuple(
+        Panel(roll, y, tuple(
+            Curve(np.degrees(t.roll_angle), of(t), f"{member}: gear {gear}", member, markers=True)
+            for (member, t), gear in both
+        ))
+        for y, of in rows
+    )  # fmt: skip
+    return Figure(
+        f"relief_points_{name}", f"Loads, deflections and relief of pair {name}",
+        f"Pair {name}: at the roll angles asked for, the load of the design, the deflection of the flank under it, and "
+        "the relief that makes up for it, counted from the least of these points.",
+        panels, under=f"{data.design.task.load:.5g} N",
+    )  # fmt: skip
 
 
 def _candidates_figure(name: str, data: ReliefData) -> Figure:
