@@ -35,6 +35,8 @@ class MarkData:
     cycles : int
     parted : bool
         Whether a pair on the path carries nothing somewhere, which the series does not know.
+    corners : bool
+        Whether tips touch off the path, which it does not know either.
     """
 
     series: StaticErrorSeries
@@ -42,6 +44,7 @@ class MarkData:
     spacing: FourierSeries | None
     cycles: int
     parted: bool
+    corners: bool
 
 
 def mark_data(engagement: Engagement, exact: TransmissionError, terms: int) -> MarkData:
@@ -58,9 +61,10 @@ def mark_data(engagement: Engagement, exact: TransmissionError, terms: int) -> M
     same = transmission_error(even, exact.load, harmonics) if uneven else exact
     contacts = same.loaded.grid.contacts
     parted = bool(np.any((same.loaded.loads[:, :, 0] <= 0.0) & contacts.present & (contacts.gap == 0.0)))
+    corners = bool(np.any((same.loaded.loads[:, :, 0] > 0.0) & (contacts.gap > 0.0)))
     spacing = spacing_series(engagement, 3 * engagement.cycles) if uneven else None
     series = static_error_series(engagement, exact.load, harmonics, terms)
-    return MarkData(series, same.series, spacing, engagement.cycles, parted)
+    return MarkData(series, same.series, spacing, engagement.cycles, parted, corners)
 
 
 def present_mark(name: str, data: MarkData, rotational: FourierSeries | None) -> Outcome:
@@ -117,6 +121,11 @@ def present_mark(name: str, data: MarkData, rotational: FourierSeries | None) ->
         remarks.append(
             f"Pair {name}: a tooth pair on the path of contact carries nothing somewhere. Mark's series takes every "
             "pair on the path as loaded, so it keeps a difference from the exact method whatever its terms."
+        )
+    if data.corners:
+        remarks.append(
+            f"Pair {name}: tips touch before or after the path of contact (corner_contact). Mark's series knows the "
+            "path alone, so it keeps a difference from the exact method whatever its terms."
         )
     settings = {"method": "mark-series", "terms": s.terms}
     return Outcome(data, tuple(tables), tuple(values), settings, tuple(remarks), _figures(name, data, rotational))

@@ -279,6 +279,12 @@ def test_marks_series_says_where_pairs_part():
     assert any("every pair on the path as loaded" in remark for remark in results.remarks)
 
 
+def test_marks_series_says_where_tips_touch_off_the_path():
+    _, _, results = run("sources/mark_series", "effects.corner_contact=true")
+    assert any("knows the path alone" in remark for remark in results.remarks)
+    assert not any("knows the path alone" in remark for remark in run("sources/mark_series")[2].remarks)
+
+
 def test_loads_deflections_and_relief_at_the_reports_roll_angles():
     """Mark, Tables 1 and 2, every row: loads to .5 N, relief to 1.3e-4 mm, which the report's own cubic leaves."""
     tables, values, _ = run("sources/mark_tables")

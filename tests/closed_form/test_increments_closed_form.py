@@ -264,7 +264,15 @@ def test_random_trains(seed):
     dampers = tuple(Damper(str(i), None, float(10 ** rng.uniform(-4, 2))) for i in range(n) if rng.random() < 0.3)
     if n > 3 and rng.random() < 0.5:
         dampers += (Damper("1", "3", float(10 ** rng.uniform(-3, 2))),)
-    assert largest_error(Train(bodies, tuple(shafts), tuple(meshes), dampers), np.logspace(-6, 6, 25)) < 1e-10
+    train = Train(bodies, tuple(shafts), tuple(meshes), dampers)
+    assert largest_error(train, np.logspace(-6, 6, 25)) < 1e-10
+    slow, fast = 1e-10, 1e13  # far below the slowest decay, far above the stiffest mesh
+    exact = exact_increments(train, slow, digits=120)
+    np.testing.assert_allclose(low_frequency_increments(train, slow), exact, rtol=3e-6)
+    exact, own = exact_increments(train, fast, digits=120), np.eye(len(meshes))
+    size = np.abs(exact + own)
+    found = np.abs(high_frequency_increments(train, fast) + own)
+    np.testing.assert_allclose(found[found > 0.0], size[found > 0.0], rtol=1e-3)
 
 
 def test_reciprocity():
