@@ -216,7 +216,7 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("mark_minimum_excitation", ('design.length="5 mm"',), "below 1 no pair"),
         ("mark_minimum_excitation", ('design.length="9.3731 mm"',), "what its tooth can take.*choose at least 1.0"),
         ("mark_minimum_excitation", ("design.contact_ratio=1.3",), "contradicts length"),
-        ("mark_minimum_excitation", ("design.pair=II",), "is no pair of this case"),
+        ("mark_minimum_excitation", ("design.pair=II",), "is no spur pair of this case"),
         ("mark_minimum_excitation", ("design.slope=2.5",), "must lie between 0 and 2"),
         ("mark_minimum_excitation", ("design.roll_angles=['11 deg']",), "off the active profile of the driver"),
         ("mark_minimum_excitation", ("design.exponent=7",), "only with family"),
