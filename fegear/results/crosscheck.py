@@ -15,6 +15,7 @@ from fegear.results import forecasts
 from fegear.results.crosscheck_data import CrosscheckData, CrosscheckInputs, GearAnswers, PairAnswers, PairCheck
 from fegear.results.crosscheck_iso import iso_inputs, iso_table
 from fegear.results.crosscheck_tables import gear_compliance_table, pair_table, root_stress_table, sources_table
+from fegear.results.drawn_cornell import section_figure, section_table
 from fegear.results.drawn_crosscheck import crosscheck_figure
 from fegear.results.gear_contacts import chosen_gears
 from fegear.results.gear_solution import needs_solution, solution_of
@@ -99,6 +100,7 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         tooth_compliance_answers,
     )
     from fegear.contact.iso_check import rated_helical_pair, rated_spur_pair
+    from fegear.formulas.cornell_section import radial_section_lengths
     from fegear.formulas.iso6336_stiffness import pair_stiffness
     from fegear.formulas.outcome import attempt
 
@@ -109,6 +111,7 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
         gears[name] = GearAnswers(
             fe, root_stress_answers(gear.tooth, fe.radius / gear.module), tooth_compliance_answers(gear, fe.radius),
             contact_zone(gear, fe.radius, fe.half_width),
+            attempt(partial(radial_section_lengths, gear.tooth, fe.radius / gear.module)),
         )  # fmt: skip
         work.progress(len(gears) / count)
     for name, check in asked.pairs.items():
@@ -156,8 +159,15 @@ def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
         head = table.columns[0].name
         silent = {str(f): str(r) for f, r in zip(table[head], table["reason"], strict=True) if r}
         remarks += [f"{table.title}: {f} is out of its range at some positions: {r}" for f, r in silent.items()]
-    figures = tuple(crosscheck_figure(table) for table in tables[1:] if "formula" in table.columns[0].name)
-    return Outcome(data, tuple(tables), tuple(values), {}, tuple(remarks), figures)
+    figures = [crosscheck_figure(table) for table in tables[1:] if "formula" in table.columns[0].name]
+    for name, gear in asked.gears.items():
+        answers = data.gears[name]
+        if answers.cornell.value is not None:
+            table, some = section_table(name, gear, answers.table.radius, answers.cornell.value)
+            tables.append(table)
+            values += some
+            figures.append(section_figure(name, gear, answers.table, answers.cornell.value))
+    return Outcome(data, tuple(tables), tuple(values), {}, tuple(remarks), tuple(figures))
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from fegear.contact.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
     from fegear.contact.iso_check import RatedPair
     from fegear.fem import StiffnessTable
+    from fegear.formulas.cornell_section import SectionLengths
     from fegear.formulas.iso6336_stiffness import Stiffness
     from fegear.formulas.outcome import Outcome as Answer
     from fegear.geometry import Gear, GearPair
@@ -53,12 +54,13 @@ class CrosscheckInputs:
 
 @dataclass(frozen=True, slots=True)
 class GearAnswers:
-    """Closed forms of a gear beside its finite elements."""
+    """Closed forms of a gear beside its finite elements, and Cornell's root section or why it has none."""
 
     table: StiffnessTable
     root_stress: Mapping[str, RootStressAnswers]
     compliance: Mapping[str, ComplianceAnswers]
     contact_zone: Array
+    cornell: Answer[SectionLengths]
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 
 from fegear.errors import RangeError
 from fegear.formulas import cornell_heywood as cornell
+from fegear.formulas.cornell_section import section_lengths
 from fegear.formulas.fillet_section import fillet_point
 from fegear.formulas.load_line import load_line
 from fegear.geometry import BasicRack, Tooth
@@ -64,6 +65,29 @@ def test_lever_arms_satisfy_the_papers_own_geometry():
         arm, r_w * (np.cos(gamma) - np.sin(gamma) * np.tan(eps - BETA)) - PAPER.fillet_height, rtol=1e-11
     )
     np.testing.assert_allclose(angle, eps - BETA)
+
+
+def test_section_lengths_are_those_that_the_paper_prints():
+    """B.3 to B.10 as printed; B.2 with A and B of the table gives the place again, B.1 the stress."""
+    found = section_lengths(PAPER, ROLLS)
+    r, gamma = PAPER.fillet_radius, BETA - ROLLS + np.arctan(ROLLS)
+    r_w, phi = R_B * np.hypot(1.0, ROLLS), ROLLS - BETA
+    np.testing.assert_allclose(found.load_angle, phi, atol=1e-15)
+    np.testing.assert_allclose(found.load_half_angle, gamma, rtol=1e-12)
+    np.testing.assert_allclose(found.load_thickness, 2 * r_w * np.sin(gamma), rtol=1e-12)
+    h_0, r_m = PAPER.root_thickness, PAPER.fillet_height
+    np.testing.assert_allclose(found.thickness, h_0 + 2 * r * (1 - np.cos(found.place)), rtol=1e-13)
+    l_b = R_B * math.cos(BETA) - r_m  # from R_m up to the base circle's point of the flank (B.17)
+    l_s = l_b + r * np.sin(found.place) + R_B * (np.hypot(1.0, ROLLS) * np.cos(gamma) - math.cos(BETA))
+    np.testing.assert_allclose(found.to_load, l_s, rtol=1e-11)
+    np.testing.assert_allclose(found.to_line, l_s - r_w * np.sin(gamma) * np.tan(phi), rtol=1e-11)
+    np.testing.assert_allclose(found.a, h_0 / r + 2 * (1 - np.cos(found.place)), rtol=1e-13)
+    np.testing.assert_allclose(found.b, found.arm / r + np.sin(found.place), rtol=1e-13)
+    np.testing.assert_allclose(cornell.next_angle(found.a, found.b, np.tan(phi)), found.place, atol=1e-11)
+    stress = cornell.modified_heywood(
+        found.thickness, found.to_line, found.to_load, found.load_thickness, r, found.load_angle, 0.25
+    )
+    np.testing.assert_allclose(stress, cornell.root_stress(PAPER, ROLLS).stress, rtol=1e-12)
 
 
 def test_stress_grows_with_the_load_radius_beyond_the_pitch_point():
