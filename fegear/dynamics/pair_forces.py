@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.dynamics.natural_modes import undamped_modes
-from fegear.dynamics.transmissibility import transmissibility
+from fegear.dynamics.transmissibility import natural_frequencies, transmissibility
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
@@ -154,12 +153,16 @@ def _of_line(model: HelicalPairModel, line: Line, w: Array) -> tuple[Complex, Co
     return a, b, c
 
 
-def resonant_speeds(model: HelicalPairModel, lines: Sequence[Line]) -> Array:
-    """Speeds of the driver [rad/s] at which a line meets a natural frequency, rising."""
-    natural, _ = undamped_modes(model.mass, model.stiffness)
-    found = [(natural[natural > 0.0] - line.frequency) / line.order for line in joined_lines(lines) if line.order > 0.0]
-    speeds = np.unique(np.concatenate([np.empty(0), *found]))
-    return np.asarray(speeds[speeds > 0.0])
+def resonant_speeds(model: HelicalPairModel, lines: Sequence[Line]) -> tuple[Array, Array]:
+    """Driver's speeds [rad/s] at which a line meets a natural frequency, and those where nothing damps it, rising."""
+
+    def speeds(natural: Array) -> Array:
+        found = [(natural - line.frequency) / line.order for line in joined_lines(lines) if line.order > 0.0]
+        met = np.unique(np.concatenate([np.empty(0), *found]))
+        return np.asarray(met[met > 0.0])
+
+    every, undamped = natural_frequencies(model)
+    return speeds(every), speeds(undamped)
 
 
 def rms(lines: Complex) -> Array:

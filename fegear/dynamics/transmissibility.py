@@ -16,7 +16,7 @@ from fegear.dynamics.natural_modes import undamped_modes
 from fegear.errors import ConvergenceError, InputError, RangeError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from fegear.arrays import Array, Complex
 
@@ -133,8 +133,9 @@ def compliance(model: Model, frequency: ArrayLike, method: Method = "direct") ->
     matrix = 1j * w[:, None, None] * damping
     n = natural.size
     matrix[:, range(n), range(n)] += natural**2 - w[:, None] ** 2
-    if not damping.any():
-        _refuse_resonance(np.abs(matrix[:, range(n), range(n)]).min(axis=1), natural, w)
+    bare = np.flatnonzero(_undamped(natural, damping))
+    if bare.size:
+        _refuse_resonance(np.abs(matrix[:, bare, bare]).min(axis=1), natural, w)
     return np.asarray(shapes @ np.linalg.solve(matrix, np.broadcast_to(shapes.T, (w.size, *shapes.T.shape))))
 
 
@@ -271,6 +272,9 @@ def natural_frequencies(model: Model) -> tuple[Array, Array]:
     model : HelicalPairModel or ReducedPairModel
     """
     natural, _, damping = _flexible(model)
-    share = np.diag(damping) / max(float(natural.max(initial=0.0)), 1e-300)
-    flexible = natural > 0.0
-    return np.unique(natural[flexible]), np.unique(natural[flexible & (share <= _UNDAMPED)])
+    return np.unique(natural[natural > 0.0]), np.unique(natural[_undamped(natural, damping)])
+
+
+def _undamped(natural: Array, damping: Array) -> NDArray[np.bool_]:
+    """Which flexible modes nothing damps: damping feeds in no energy, so a zero on the diagonal is a row of zeros."""
+    return (natural > 0.0) & (np.diag(damping) <= _UNDAMPED * float(natural.max(initial=0.0)))

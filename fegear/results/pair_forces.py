@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -73,12 +73,18 @@ class PairForcesData:
     asked, drawn, spectrum : PairForces
     undamped : ndarray
         Speeds at which a line meets a resonance that nothing damps [rad/s].
+    errors : PairForces or None
+        What the estimated errors of the transmission error's harmonics make; None where they are unknown or nothing.
+    known : bool
+        Whether the excitation is given, or its errors are estimated.
     """
 
     asked: PairForces
     drawn: PairForces
     spectrum: PairForces
     undamped: Array
+    errors: PairForces | None
+    known: bool
 
 
 def _inputs(scene: Scene, name: str) -> PairForcesInputs:
@@ -155,17 +161,28 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
-def _pair_harmonics(asked: PairForcesInputs, upstream: Upstream) -> Complex:
-    """Harmonics of the transmission error of the case's own pair [m], positive for removed material."""
+def _pair_harmonics(asked: PairForcesInputs, upstream: Upstream) -> tuple[Complex, Array | None]:
+    """Harmonics of the transmission error of the case's own pair [m], positive for removed material; their errors.
+
+    Those of a spur pair are estimated with its compliances. Of a helical pair the harmonics come from positions over
+    the cycle: the error is what every second one alone would change, aliasing at the kinks of rigid flanks.
+    """
     error = asked.excitation.transmission_error
     count = (error.harmonics if error else None) or _HARMONICS
     (found,) = upstream.values()
     if asked.arm == 0.0:
         series = found.exact[found.pair.loads.index(found.pair.nominal)].series
-        return np.asarray(2.0 * series.coefficients[1 : count + 1])
+        errors = None if found.shift is None else np.asarray(found.shift.amplitude[:count])
+        return np.asarray(2.0 * series.coefficients[1 : count + 1]), errors
     # Where the gear runs ahead of its mate, the flanks have too much: the sign of removal is the other one.
-    ahead = asked.arm * found.contact.error
-    return np.asarray(-2.0 * np.fft.rfft(ahead)[1 : count + 1] / ahead.size)
+    ahead = -asked.arm * found.contact.error
+    if ahead.size < 4 * count:
+        raise InputError(
+            "tooth_contact.positions", ahead.size, f"is too few for {count} harmonics",
+            f"give at least {4 * count} positions",
+        )  # fmt: skip
+    all_of_them, half = (2.0 * np.fft.rfft(part)[1 : count + 1] / part.size for part in (ahead, ahead[::2]))
+    return np.asarray(all_of_them), np.abs(all_of_them - half)
 
 
 def _lines(asked: PairForcesInputs, harmonics: Complex) -> list[Line]:
@@ -197,14 +214,14 @@ def _compute(asked: PairForcesInputs, upstream: Upstream, _work: Work) -> PairFo
     from fegear.dynamics.resolved_response import resolved_grid
 
     model, part = asked.model, asked.excitation
-    lines = _lines(asked, _pair_harmonics(asked, upstream) if upstream else asked.harmonics)
+    harmonics, doubts = _pair_harmonics(asked, upstream) if upstream else (asked.harmonics, np.zeros(0))
+    lines = _lines(asked, harmonics)
     if not lines:
         raise InputError(
             f"transmissibility.{asked.name}.excitation.transmission_error", "without harmonics", "excites nothing",
             "give an amplitude that is not zero",
         )  # fmt: skip
-    speeds, resonant = part.speeds.array, resonant_speeds(model, lines)
-    undamped = np.empty(0) if model.damping.any() else resonant
+    speeds, (resonant, undamped) = part.speeds.array, resonant_speeds(model, lines)
     try:
         found = pair_forces(model, lines, speeds)
         grid = speeds
@@ -214,13 +231,20 @@ def _compute(asked: PairForcesInputs, upstream: Upstream, _work: Work) -> PairFo
                 lambda omega: _drawn_sizes(pair_forces(model, lines, omega)), start,
                 np.setdiff1d(resonant, undamped), undamped,
             )  # fmt: skip
+        off = [] if doubts is None else _lines(replace(asked, excitation=_alone(part)), doubts.astype(complex))
         spectrum = part.speed or float(speeds[np.argmax(rms(found.normal))])
         return PairForcesData(
             found, pair_forces(model, lines, grid), pair_forces(model, lines, [spectrum]),
             undamped[(undamped > speeds[0]) & (undamped < speeds[-1])],
+            pair_forces(model, off, speeds) if off else None, doubts is not None,
         )  # fmt: skip
     except InputError as error:
         raise at(f"transmissibility.{asked.name}", error) from None
+
+
+def _alone(part: ExcitationPart) -> ExcitationPart:
+    """The excitation without its external forces."""
+    return part.model_copy(update={"external": []})
 
 
 def _drawn_sizes(forces: PairForces) -> Array:
@@ -233,23 +257,32 @@ def _present(data: PairForcesData, asked: PairForcesInputs) -> Outcome:
     name, found = asked.name, data.asked
     normal = rms(found.normal)
     top = int(np.argmax(normal))
+    off = None if data.errors is None else rms(data.errors.normal)
+
+    def error(of: Array | None, place: int) -> float | None:
+        return None if not data.known else 0.0 if of is None else float(of[place])
+
     values = [
-        Value(f"{name}.largest_mesh_force", float(normal[top]), "N", None, "root mean square along the tooth normal"),
+        Value(f"{name}.largest_mesh_force", float(normal[top]), "N", error(off, top),
+              "root mean square along the tooth normal"),
         Value(f"{name}.largest_mesh_force_speed", float(found.speed[top]), "rpm", None, "driver's speed of that"),
-    ]
+    ]  # fmt: skip
     for key in ("driver", "driven"):
-        radial = rms(getattr(found, f"bearing_{key}")[:, :, 0])
-        values.append(Value(f"{name}.largest_bearing_force_{key}", float(radial.max()), "N", None,
+        radial, at_top = rms(getattr(found, f"bearing_{key}")[:, :, 0]), None
+        if data.errors is not None:
+            at_top = rms(getattr(data.errors, f"bearing_{key}")[:, :, 0])
+        place = int(np.argmax(radial))
+        values.append(Value(f"{name}.largest_bearing_force_{key}", float(radial[place]), "N", error(at_top, place),
                             "root mean square along the line of action"))  # fmt: skip
     figures = [spectrum_figure(name, data.spectrum)]
     if found.speed.size > 1:
         figures.insert(0, forces_figure(name, data.drawn, data.undamped, asked.teeth))
     settings: dict[str, object] = {"lines": len(found.lines), "speeds": int(found.speed.size)}
-    tables = (_sums_table(name, found, asked.teeth), _spectrum_table(name, found))
+    tables = (_sums_table(name, found, asked.teeth, off), _spectrum_table(name, found))
     return Outcome(data, tables, tuple(values), settings, (), tuple(figures))
 
 
-def _sums_table(name: str, found: PairForces, teeth: int) -> Table:
+def _sums_table(name: str, found: PairForces, teeth: int, off: Array | None) -> Table:
     columns = [Column("speed", found.speed, "rpm", "of the driver")]
     if teeth:
         columns.append(Column("mesh_frequency", teeth * found.speed / (2.0 * math.pi), "Hz", "teeth times speed"))
@@ -259,6 +292,8 @@ def _sums_table(name: str, found: PairForces, teeth: int) -> Table:
             Column(f"{where}_{key}", rms(getattr(found, where)[:, :, k]), unit, "root mean square over time")
             for k, (key, _, unit) in enumerate(COMPONENTS)
         ]
+    if off is not None:
+        columns.append(Column("mesh_normal_error", off, "N", "by the estimated errors of the transmission error"))
     return Table(f"pair_forces_{name}", tuple(columns), f"Mesh and bearing forces of pair {name} over speed")
 
 

@@ -310,7 +310,7 @@ def test_a_helical_pair_excites_with_its_tooth_contact(tmp_path):
         '[transmissibility.I.excitation]\nspeeds = ["600 rpm"]\ntransmission_error = { pair = "I", harmonics = 4 }\n'
     ), f"{psi!r} deg")  # fmt: skip
     case.write_text(case.read_text() + "\n".join(text.split("\n")[text.split("\n").index("[gear.pinion]") :]))
-    tables, _, _, _ = run(case, "tooth_contact.positions=200")
+    tables, values, _, _ = run(case, "tooth_contact.positions=60")
     lines, contact = tables["pair_force_spectrum_I"], tables["tooth_contact_I"]
     teeth = helical.pinion.teeth
     assert sorted(set(lines["order"])) == [teeth, 2 * teeth, 3 * teeth, 4 * teeth]
@@ -321,6 +321,13 @@ def test_a_helical_pair_excites_with_its_tooth_contact(tmp_path):
     given = f"transmissibility.I.excitation.transmission_error={{amplitude='{size!r} um'}}"
     one = run(case, 'results=["pair-forces"]', given, f"transmissibility.I.excitation.teeth={teeth}")
     assert lines["mesh_normal"][0] == pytest.approx(one[0]["pair_force_spectrum_I"]["mesh_normal"][0], rel=1e-6)
+    # What more positions change is within the estimated error.
+    _, fine, _, _ = run(case, "tooth_contact.positions=240", 'results=["pair-forces"]')
+    error = tables["pair_forces_I"]["mesh_normal_error"][0]
+    assert 0.0 < error < 0.05 * values["I.largest_mesh_force"]
+    assert abs(values["I.largest_mesh_force"] - fine["I.largest_mesh_force"]) < error
+    with pytest.raises(InputError, match="too few for 4 harmonics"):
+        run(case, "tooth_contact.positions=12")
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from fegear.dynamics.helical_pair import HelicalPairModel, P, ReducedPairModel, RigidGear
 from fegear.dynamics.mesh_parameters import MeshParameters, partial_face_mu
 from fegear.dynamics.pair_forces import Line, joined_lines, pair_forces, resonant_speeds
-from fegear.dynamics.transmissibility import reduced_transmissibility
+from fegear.dynamics.transmissibility import compliance, reduced_transmissibility
 from fegear.errors import InputError, RangeError
 
 
@@ -134,13 +134,29 @@ def test_resonances_without_damping_are_refused_and_told():
     bare = HelicalPairModel(
         *(RigidGear(g.mass, g.inertia, g.base_radius, g.half_face_width, g.bearing_stiffness) for g in
           (model.driver, model.driven)), model.mesh)  # fmt: skip
-    at = resonant_speeds(bare, LINES)
-    assert at.size == 3 * 10
+    at, undamped = resonant_speeds(bare, LINES)
+    assert at.size == undamped.size == 3 * 10
     for speed in at[[0, 7, -1]]:
         with pytest.raises(RangeError, match="resonance without damping"):
             pair_forces(bare, LINES, [10.0, speed])
     assert np.isfinite(pair_forces(bare, LINES, at * (1.0 + 1e-6)).mesh).all()
-    assert resonant_speeds(bare, [Line(0.0, 100.0)]).size == 0
+    assert resonant_speeds(bare, [Line(0.0, 100.0)])[0].size == 0
+    assert resonant_speeds(model, LINES)[1].size == 0
+
+
+def test_one_mode_without_damping_among_damped_ones_is_refused_at_its_resonance():
+    """A spur pair whose driven gear alone moves along its axis, undamped: the other modes are damped."""
+    C = np.diag([1e3, 1e3, 5.0, 5.0, 5.0])
+    held = RigidGear(2.0, (0.002, 0.0025, 0.003), 0.05, 0.02, np.diag([6e8, 1e8, 2e5, 4e5, 1e5]), C)
+    free = RigidGear(5.0, (0.02, 0.025, 0.03), 0.09, 0.02, np.diag([6e8, 1.5e8, 2e5, 4e5, 1e5]), C * [1, 0, 1, 1, 1])
+    model = HelicalPairModel(held, free, MeshParameters(3e8), 1e-6)
+    every, undamped = resonant_speeds(model, [Line(1.0)])
+    assert every.size == 10
+    assert undamped == pytest.approx([math.sqrt(1.5e8 / 5.0)], rel=1e-12)
+    for method in ("direct", "modal", "state-space"):
+        with pytest.raises(RangeError, match="resonance without damping"):
+            compliance(model, undamped, method)
+    assert np.isfinite(compliance(model, every[every != undamped[0]])).all()
 
 
 @pytest.mark.parametrize(
