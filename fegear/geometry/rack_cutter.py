@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.errors import GeometryError
-
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
@@ -22,8 +20,9 @@ class RackCutter:
     """Cutter surface of one flank, in the cutter's frame: x out of the gear, y along the pitch line, z along the axis.
 
     Both cutters of a pair are one rigid tool: they touch along the line u = 0, and a u of one is the same place on the
-    other. Everything here is the paper's way step by step; `RackFlank` and `InvoluteHelicoid` are the same flanks in
-    closed form.
+    other. The paper's gears have no profile shift; with one the cutter stands that much further out, and the lines
+    u = 0 of a pair meet only where both shifts add to zero. Everything here is the paper's way step by step;
+    `RackFlank` and `InvoluteHelicoid` are the same flanks in closed form.
 
     Parameters
     ----------
@@ -33,25 +32,11 @@ class RackCutter:
         The pinion's x axis runs through the middle of a space, the gear's through that of a tooth.
     parabola : float
         a_c [1/m] by which the normal profile leaves its straight line, a_c u^2; 0 for a plane.
-
-    Raises
-    ------
-    GeometryError
-        For a profile shift or a thickness allowance: the paper's cutters touch each other along their pitch lines.
     """
 
     gear: Gear
     cuts: Literal["pinion", "gear"]
     parabola: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Refuse cutters that stand off the pitch line."""
-        shift = self.gear.tooth.generating_shift
-        if shift != 0.0:
-            raise GeometryError(
-                "profile_shift", f"{shift:.6g}", "is not known to the rack cutters of TM-107451, which roll on their "
-                "reference lines", "leave out profile_shift and thickness_allowance",
-            )  # fmt: skip
 
     @property
     def _side(self) -> float:
@@ -64,12 +49,17 @@ class RackCutter:
         return -size if self.gear.hand == "left" else size
 
     @property
+    def shift(self) -> float:
+        """Distance of the cutter's reference line from the pitch line, outwards [m]: x m_n less the allowance."""
+        return self.gear.tooth.generating_shift * self.gear.module
+
+    @property
     def half_width(self) -> float:
-        """a_m = pi / (4 P_n) [m]: from the middle of the x axis to the profile, on the pitch line (A.5.2)."""
+        """a_m = pi / (4 P_n) [m]: from the x axis to the profile, on the reference line (A.5.2)."""
         return 0.25 * math.pi * self.gear.module
 
     def normal_profile(self, u: ArrayLike) -> Array:
-        """Points (2, ...) [m] of the normal section at u [m] from the pitch line (A.5.1, A.5.6)."""
+        """Points (2, ...) [m] of the normal section about the reference line, at u [m] from it (A.5.1, A.5.6)."""
         u, a, alpha = np.asarray(u, dtype=float), self.parabola, self.gear.normal_pressure_angle
         x = u * math.cos(alpha) + a * u**2 * math.sin(alpha)
         y = self.half_width - u * math.sin(alpha) + a * u**2 * math.cos(alpha)
@@ -79,7 +69,7 @@ class RackCutter:
         """Points (3, ...) [m] at l [m] along the tooth (A.5.3, A.5.8; the sign of element (3, 2) of A.5.9 is plus)."""
         x, y = self.normal_profile(u)
         cosine, l = math.cos(self.gear.helix_angle), np.asarray(l, dtype=float)  # noqa: E741
-        return np.stack(np.broadcast_arrays(x, y * cosine + l * self._slant, l * cosine - y * self._slant))
+        return np.stack(np.broadcast_arrays(x + self.shift, y * cosine + l * self._slant, l * cosine - y * self._slant))
 
     def along(self, u: ArrayLike, z: ArrayLike) -> Array:
         """The l [m] at which the surface has the height z [m]."""
@@ -98,8 +88,11 @@ class RackCutter:
         """Psi [rad] at which the cutter generates at (u, l): the equation of meshing (A.5.14, A.5.15)."""
         u, alpha, beta = np.asarray(u, dtype=float), self.gear.normal_pressure_angle, self.gear.helix_angle
         bend = 2.0 * self.parabola * u
-        lead = u * (1.0 + 0.5 * bend**2) / (math.sin(alpha) - bend * math.cos(alpha))
-        way = self._side * self._slant * np.asarray(l, dtype=float) + (self.half_width - lead) * math.cos(beta)
+        rise = math.sin(alpha) - bend * math.cos(alpha)
+        lead = u * (1.0 + 0.5 * bend**2) / rise
+        off = self.shift * (math.cos(alpha) + bend * math.sin(alpha)) / rise  # the normal starts that much further out
+        way = self._side * self._slant * np.asarray(l, dtype=float)
+        way = way + (self.half_width - lead - self._side * off) * math.cos(beta)
         return np.asarray(way / self.gear.pitch_radius)
 
     def rolled(self, points: ArrayLike, psi: ArrayLike) -> Array:

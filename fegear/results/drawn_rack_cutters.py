@@ -76,7 +76,7 @@ def _sections(name: str, cutters: tuple[RackCutter, RackCutter], u: Array) -> Fi
         outline(-mate, "gear cutter Σ_{t}", "orange"),
         outline(polylines(np.stack([parabolic[0] + k * pitch, parabolic[1]]) for k in (-1, 0, 1)),
                 f"pinion cutter Σ_{{c}}{told}", "blue"),
-        outline(np.array([[-1.2 * pitch, 1.2 * pitch], [0.0, 0.0]]), "pitch line", "grey", 1.0, "dashdot"),
+        outline(np.array([[-1.2 * pitch, 1.2 * pitch], [0.0, 0.0]]), "reference line", "grey", 1.0, "dashdot"),
     )  # fmt: skip
     spot = partial(Points, name="o_{b}, where the line of contact passes", role="red", size=6.0)
     axes = _axes(1.5 * module)
@@ -114,21 +114,27 @@ def _axes(length: float) -> Curve:
     return outline(polylines([np.stack([arm, 0.0 * arm]), np.stack([0.0 * arm, arm])]), "axes", "ink", 1.0)
 
 
+def _about_reference(cutter: RackCutter, u: Array, z: Array) -> Array:
+    """Points of a cutter surface, x from its reference line: without what a profile shift moves the cutter by."""
+    points = cutter.points(u, cutter.along(u, z))
+    return np.stack([points[0] - cutter.shift, points[1], points[2]])
+
+
 def _surfaces(name: str, title: str, pair: HelicalPair, cutters: tuple[RackCutter, RackCutter], u: Array) -> Figure:
     """Both cutter surfaces in the pinion cutter's frame, and the line along which they touch."""
     (drawn, told), module, face = _drawn(cutters[0], u, _IN_SPACE), pair.pinion.module, pair.pinion.face_width
     z = np.linspace(-0.5, 0.5, 2)[:, None] * face
-    pinion, gear = (cutter.points(u, cutter.along(u, z)) for cutter in (drawn, cutters[1]))
+    pinion, gear = (_about_reference(cutter, u, z) for cutter in (drawn, cutters[1]))
     gear = np.stack([-gear[0], -gear[1], gear[2]])  # the tool is one body: the gear's frame is turned by half a turn
     side = drawn.normals(0.0)  # where the pinion cutter stands off the plane
     middle = np.array([-_RIBBON, _RIBBON]) * module
-    line = drawn.points(middle, drawn.along(middle, z)) + 0.5 * _RIBBON * module * side[:, None, None]
+    line = _about_reference(drawn, middle, z) + 0.5 * _RIBBON * module * side[:, None, None]
     items = (
         Surface(gear * 1e3, "orange", name="gear cutter: plane Σ_{t}"),
         Surface(pinion * 1e3, "blue", 0.75, f"pinion cutter: cylinder Σ_{{c}}{told}"),
         Surface(line * 1e3, "red", name="line of contact o_{b} z_{b}"),
     )
-    centre = drawn.points(0.0, 0.0) * 1e3
+    centre = _about_reference(drawn, np.zeros(()), np.zeros(())) * 1e3
     tooth = drawn.points(0.0, 1.0) - drawn.points(0.0, 0.0)
     eye = centre + face * 1e3 * (0.9 * side + 1.4 * tooth + np.array([-0.7, 0.0, 0.0]))
     camera = (tuple(eye.tolist()), tuple(centre.tolist()), (0.0, 0.0, 1.0))

@@ -98,6 +98,11 @@ def _compute(asked: FlankGenerationInputs, _upstream: Upstream, _work: Work) -> 
     return FlankGenerationData(pair, (pinion, gear), float(max(off.max(), beside.max())))
 
 
+def _thickness(gear: Gear) -> float:
+    """On the pitch circle, in the transverse section [m]."""
+    return 2.0 * gear.pitch_radius * float(gear.tooth.half_thickness_angle(gear.tooth.pitch_radius))
+
+
 def _design_table(name: str, rows: list[tuple[str, Gear]]) -> Table:
     """Appendix 2 for each gear; for a spur gear without what is infinite."""
     gears = [gear for _, gear in rows]
@@ -114,8 +119,9 @@ def _design_table(name: str, rows: list[tuple[str, Gear]]) -> Table:
         column("lambda_b", [0.5 * math.pi - g.base_helix_angle for g in gears], "deg",
                "lead angle on the base cylinder (A.2.7)"),
         column("p_t", [g.pitch_radius * g.angular_pitch for g in gears], "mm", "transverse pitch (A.2.2)"),
-        column("s_t", [0.5 * g.pitch_radius * g.angular_pitch for g in gears], "mm",
-               "tooth thickness, and width of space (A.2.3, A.2.4)"),
+        column("s_t", [_thickness(g) for g in gears], "mm", "tooth thickness (A.2.4)"),
+        column("w_t", [g.pitch_radius * g.angular_pitch - _thickness(g) for g in gears], "mm",
+               "width of space (A.2.3)"),
         column("r_p", [g.pitch_radius for g in gears], "mm", "pitch radius (A.2.5)"),
         column("r_b", [g.base_radius for g in gears], "mm", "base radius (A.2.6)"),
         column("mu", [g.half_base_space_angle for g in gears], "deg", "half the space on the base cylinder (A.1.1)"),
@@ -137,7 +143,7 @@ def _cutters_table(name: str, data: FlankGenerationData) -> Table:
     return Table(
         f"rack_cutters_{name}",
         (
-            Column("u", u, "mm", "along the straight profile from the pitch line toward the pinion's root"),
+            Column("u", u, "mm", "along the straight profile from the reference line toward the pinion's root"),
             Column("x_pinion", x1, "mm", "pinion cutter in its own frame (A.5.6)"),
             Column("y_pinion", y1, "mm", "the same"),
             Column("x_gear", x2, "mm", "gear cutter in its own frame (A.5.1)"),
@@ -168,7 +174,7 @@ def _present(data: FlankGenerationData, asked: FlankGenerationInputs) -> Outcome
         rows.append((f"{gears[0]} as cut", pair.cut_pinion))
     pinion = data.flanks[0]
     values = (
-        Value(f"{name}.rack_half_width", pinion.cutter.half_width, "mm", 0.0, "a_m, half the cutter on its pitch line"),
+        Value(f"{name}.rack_half_width", pinion.cutter.half_width, "mm", 0.0, "a_m, half the cutter on the line u = 0"),
         Value(f"{name}.largest_departure", pair.parabola * float(np.max(pinion.u**2)), "um", 0.0,
               "of the pinion cutter from the straight profile, over the flank"),
         Value(f"{name}.generated_apart", data.apart, "um", 0.0,

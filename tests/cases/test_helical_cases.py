@@ -106,6 +106,7 @@ def test_generation_of_flanks():
     assert np.tan(np.radians(design["lambda_b"])) * design["r_b"] == pytest.approx(design["p"], rel=1e-12)
     assert design["mu"] + design["eta"] == pytest.approx(180.0 / design["teeth"], rel=1e-12)
     assert 2.0 * design["s_t"] * design["teeth"] == pytest.approx(2.0 * math.pi * design["r_p"], rel=1e-12)
+    assert design["s_t"] == pytest.approx(design["w_t"], rel=1e-12)
     assert pinion["r"].min() >= 83.0
     assert pinion["r"].max() == pytest.approx(design["r_p"][0] + 5.08, rel=1e-9)
     assert sorted(set(np.round(pinion["z"], 9))) == pytest.approx([-20.32, 0.0, 20.32], abs=1e-9)
@@ -128,6 +129,10 @@ def test_generation_of_wrong_crowned_and_spur_flanks():
     assert list(tables["flank_design_I"]["gear"]) == ["pinion", "gear", "pinion as cut"]
     assert values["I.generated_apart"] < 1e-9
     assert "crown is not part of the rack cutter" in results.remarks[0]
+    shifted = ("gear.pinion.profile_shift=0.2", "gear.gear.profile_shift=0.1", "gear.gear.thickness_allowance='40 um'")
+    tables, values, _ = run("sources/litvin_fig10", *shifted)
+    assert values["I.generated_apart"] < 1e-9
+    assert tables["flank_design_I"]["s_t"][0] > tables["flank_design_I"]["w_t"][0]
     spur = [f"gear.{g}.{key}" for g in ("pinion", "gear") for key in ("helix_angle='0 deg'", "hand='spur'")]
     tables, values, results = run("sources/litvin_fig10", *spur, "pair.I.modification.parabola='0 / inch'")
     assert not {"p", "H"} & set(tables["flank_design_I"])

@@ -17,9 +17,9 @@ from fegear.helical.contact_lines import aligned, contact_lines, line_contact, l
 DEG = math.pi / 180.0
 
 
-def make(n1=30, n2=100, beta=30.0, hand="left", width=0.04064, width_2=0.04064, offset=0.0, apart=0.0):
+def make(n1=30, n2=100, beta=30.0, hand="left", width=0.04064, width_2=0.04064, offset=0.0, apart=0.0, shift=0.0):
     other = {"left": "right", "right": "left", "spur": "spur"}[hand]
-    a = helical_gear(n1, 5.08e-3, 20.0 * DEG, beta * DEG, width, hand)
+    a = helical_gear(n1, 5.08e-3, 20.0 * DEG, beta * DEG, width, hand, profile_shift=shift)
     b = helical_gear(n2, 5.08e-3, 20.0 * DEG, beta * DEG, width_2, other)
     return HelicalPair(a, b, Misalignment(centre_distance=apart), axial_offset=offset)
 
@@ -27,7 +27,7 @@ def make(n1=30, n2=100, beta=30.0, hand="left", width=0.04064, width_2=0.04064, 
 pairs = st.builds(
     make, st.integers(19, 60), st.integers(19, 120), st.sampled_from([0.5, 12.0, 30.0, 45.0]),
     st.sampled_from(["left", "right"]), st.floats(0.005, 0.1), st.floats(0.005, 0.1), st.sampled_from([0.0, 1e-3]),
-    st.sampled_from([0.0, 2e-4]),
+    st.sampled_from([0.0, 2e-4]), st.sampled_from([0.0, 0.4]),
 )  # fmt: skip
 
 
@@ -111,8 +111,8 @@ def test_a_spur_gear_has_lines_along_its_face_that_come_and_go():
 
 def test_lines_are_where_the_contact_search_finds_no_gap():
     """The search knows nothing of Appendix 3: its gear angle is that of the line, for a drive with play too."""
-    for apart in (0.0, 3e-4):
-        pair = make(apart=apart)
+    for apart, shift in ((0.0, 0.0), (3e-4, 0.0), (0.0, 0.5)):
+        pair = make(apart=apart, shift=shift)
         found = contact_lines(pair, 9, 2)
         searched = pair_contact(pair, found.phi_1[:, 0])
         assert searched.error + pair.ratio * searched.phi_1 == pytest.approx(found.phi_2[:, 0], abs=1e-13)

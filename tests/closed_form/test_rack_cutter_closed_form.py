@@ -15,14 +15,15 @@ from fegear.geometry.rack_flank import RackFlank
 DEG, MODULE = math.pi / 180.0, 5.08e-3
 
 
-def gear(beta=30.0, hand="left", teeth=30):
-    return helical_gear(teeth, MODULE, 20.0 * DEG, beta * DEG, 0.04, hand if beta else "spur")
+def gear(beta=30.0, hand="left", teeth=30, **more):
+    return helical_gear(teeth, MODULE, 20.0 * DEG, beta * DEG, 0.04, hand if beta else "spur", **more)
 
 
 cutters = st.builds(
-    lambda beta, hand, teeth, cuts, a: RackCutter(gear(beta, hand, teeth), cuts, a),
+    lambda beta, hand, teeth, cuts, a, x: RackCutter(gear(beta, hand, teeth, **x), cuts, a),
     st.sampled_from([0.0, 5.0, 30.0, 45.0]), st.sampled_from(["left", "right"]), st.integers(20, 120),
     st.sampled_from(["pinion", "gear"]), st.sampled_from([0.0, 1.0, 3.15]),
+    st.sampled_from([{}, {"profile_shift": 0.4}, {"profile_shift": -0.2, "thickness_allowance": 0.02}]),
 )  # fmt: skip
 places = st.floats(-1.0, 1.0).map(lambda x: x * MODULE)
 lengths = st.floats(-0.02, 0.02)
@@ -88,8 +89,10 @@ def test_what_is_generated_lies_on_the_flank_in_closed_form(cutter, u, l):  # no
     assert cutter.along(u, point[2]) == pytest.approx(l, abs=1e-15)
 
 
-def test_both_cutters_are_one_tool_and_touch_along_the_pitch_line():
-    pinion, mate = RackCutter(gear(), "pinion", 3.15), RackCutter(gear(hand="right"), "gear")
+@pytest.mark.parametrize("x", [0.0, 0.3])
+def test_both_cutters_are_one_tool_and_touch_along_the_reference_line(x):
+    pinion = RackCutter(gear(profile_shift=x), "pinion", 3.15)
+    mate = RackCutter(gear(hand="right", profile_shift=-x), "gear")
     u = np.linspace(-MODULE, MODULE, 11)
     turned = -mate.normal_profile(u)  # the mate's cutter in the pinion's frame: turned by half a turn about z
     apart = np.hypot(*(pinion.normal_profile(u) - turned))
