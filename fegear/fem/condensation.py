@@ -195,8 +195,11 @@ def joined(one: tuple[Index, Array], other: tuple[Index, Array]) -> tuple[Index,
         if starts.size * _SHORTEST_RUN > at.size:
             entries.reshape(-1)[(at[:, None] * n + at).reshape(-1)] += block.reshape(-1)  # quicker than two indices
             continue
-        runs = [(first, slice(at[first], at[first] + end - first), end) for first, end in
-                zip(starts.tolist(), [*starts[1:].tolist(), at.size], strict=True)]  # fmt: skip
+        ends = np.flatnonzero(np.diff(at, append=-2) != 1) + 1
+        runs = [
+            (first, slice(int(at[first]), int(at[first]) + end - first), end)
+            for first, end in zip(starts.tolist(), ends.tolist(), strict=True)
+        ]
         for first, rows, end in runs:
             for begin, columns, stop in runs:
                 entries[rows, columns] += block[first:end, begin:stop]
@@ -213,7 +216,11 @@ def reduced(ids: Index, stiffness: Array, end: int, old: Index, steps: list[Elim
     factor, failed = lapack.dpotrf(stiffness[:n, :n], lower=1)
     if failed:
         raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
-    border = cast("Array", lapack.dtrtrs(factor, stiffness[:n, n:], lower=1)[0]) if n < ids.size else stiffness[:n, n:]
+    # The block below the diagonal turned round: LAPACK's columns are its rows, copied as they lie.
+    border = (
+        cast("Array", lapack.dtrtrs(factor, stiffness[n:, :n].T, lower=1)[0]) if n < ids.size else stiffness[:n, n:]
+    )
     if steps is not None:
         steps.append(Eliminated(old[ids[:n]], old[ids[n:]], factor, border))
-    return ids[n:], stiffness[n:, n:] - border.T @ border
+    gone = border.T @ border
+    return ids[n:], np.subtract(stiffness[n:, n:], gone, out=gone)

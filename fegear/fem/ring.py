@@ -215,9 +215,7 @@ def closed_ring(
     condensed = time.perf_counter()
     m, n = side, 2 * side
     S = sector.stiffness
-    factor, failed = lapack.dpotrf(S[n:, n:], lower=1)
-    if failed:
-        raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
+    factor = _factor(S[n:, n:]) if n < S.shape[0] else S[n:, n:]
     own = np.zeros_like(S)
     triangle = np.tril(cast("Array", lapack.dpotri(factor, lower=1)[0])) if n < S.shape[0] else S[n:, n:]
     own[n:, n:] = triangle + np.tril(triangle, -1).T
@@ -289,6 +287,8 @@ def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Arra
     Two chains of sectors joined, the side between them eliminated, are one longer chain; so all sectors but those
     between sides -reach and reach become one, whose ends close the ring.
     """
+    from scipy.linalg import lapack
+
     m = condensed.shape[0] // 2
 
     def joined(one: Array, other: Array) -> Array:
@@ -296,8 +296,9 @@ def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Arra
         border = np.hstack([one[m:, :m], other[:m, m:]])
         chain = np.zeros_like(one)
         chain[:m, :m], chain[m:, m:] = one[:m, :m], other[m:, m:]
-        chain -= border.T @ np.linalg.solve(between, border)
-        return 0.5 * (chain + chain.T)
+        half = lapack.dtrtrs(_factor(between), border, lower=1)[0]
+        chain -= half.T @ half
+        return chain
 
     rest: Array | None = None
     power, left = condensed, z - 2 * reach
@@ -315,8 +316,24 @@ def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Arra
             whole[ends[:, None], :, ends] += block.transpose(0, 2, 1, 3)
     right = np.zeros((sides, m, m))
     right[reach] = np.eye(m)
-    found = np.linalg.solve(whole.reshape(sides * m, -1), right.reshape(-1, m)).reshape(sides, m, m)
+    found = lapack.dpotrs(_factor(whole.reshape(sides * m, -1)), right.reshape(-1, m), lower=1)[0].reshape(sides, m, m)
     return {k: (found[reach + k] if k >= 0 else found[reach - k].T) for k in range(-reach, reach + 1)}
+
+
+def _factor(stiffness: Array) -> Array:
+    """Lower Cholesky factor.
+
+    Raises
+    ------
+    FegearError
+        If the stiffness is not positive definite.
+    """
+    from scipy.linalg import lapack
+
+    factor, failed = lapack.dpotrf(stiffness, lower=1)
+    if failed:
+        raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
+    return np.asarray(factor)
 
 
 def _polar(angle: Array) -> Array:

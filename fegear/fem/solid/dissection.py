@@ -8,12 +8,13 @@ its elements, and the block between two functions along the face is a multiple o
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.condensation import Condensed, Eliminated, halved, joined, numbered, reduced
+from fegear.fem.condensation import Condensed, Eliminated, joined, numbered, reduced
 
 if TYPE_CHECKING:
     from fegear.arrays import Array, Index, Mask
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
     from fegear.fem.solid.section import Section
 
 #: Unknowns of the section that a smallest part has about, those inside its elements among them.
-_SMALLEST_PART = 60
+_SMALLEST_PART = 30
+#: Directions in which cuts are tried, the least share of the elements on one side, and how much an uneven cut counts.
+_DIRECTIONS, _LEAST_SHARE, _UNEVEN = 12, 0.3, 2.0
 
 
 @dataclass(frozen=True)
@@ -84,8 +87,11 @@ def condense_solid(
         If the stiffness is not positive definite.
     """
     dofs = section.element_dofs
-    leaf, depth = halved(section.centres, dofs.size, _SMALLEST_PART)
     counts = (known.number >= 0).sum(axis=1)
+    weight = counts.copy()
+    weight[kept] = 0
+    depth = max(0, round(np.log2(0.5 * dofs.size / _SMALLEST_PART)))
+    leaf = narrow_halves(section.centres, dofs[:, ::3], weight.reshape(-1, 3).sum(axis=1)[dofs // 3][:, ::3], depth)
     held = np.flatnonzero(counts == 0)
     order, level_start, old = numbered(dofs, leaf, depth, section.size, np.setdiff1d(kept, held), held)
     # Each unknown of the section brings its functions along the face to its place in the order of elimination.
@@ -113,6 +119,68 @@ def condense_solid(
     return Condensed(wanted, stiffness[np.ix_(at, at)], known.size, tuple(steps or ()))
 
 
+def narrow_halves(centres: Array, nodes: Index, weight: Array, depth: int) -> Index:
+    """Smallest part of each element: halved where the cut is narrowest among many directions.
+
+    Parameters
+    ----------
+    centres : ndarray, shape (2, M)
+    nodes : ndarray of int, shape (M, n)
+    weight : ndarray, shape (M, n)
+        Unknowns that a cut through each of the elements' nodes would leave.
+    depth : int
+        How often is halved.
+
+    Returns
+    -------
+    ndarray of int, shape (M,)
+        Parts 2 i and 2 i + 1 join.
+    """
+    count = np.bincount(nodes.ravel())
+    angles = np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    groups = [np.arange(centres.shape[1])]
+    for _ in range(depth):
+        halves = []
+        for group in groups:
+            own, inverse, times = np.unique(nodes[group], return_inverse=True, return_counts=True)
+            heavy = np.zeros(own.size)
+            heavy[inverse.ravel()] = weight[group].ravel()
+            heavy[times < count[own]] = 0.0  # belongs to a cut of before
+            ordered, at = _narrowest(directions @ centres[:, group], inverse.reshape(nodes[group].shape), heavy)
+            halves += [group[ordered[:at]], group[ordered[at:]]]
+        groups = halves
+    leaf = np.empty(centres.shape[1], dtype=np.int64)
+    for i, group in enumerate(groups):
+        leaf[group] = i
+    return leaf
+
+
+def _narrowest(along: Array, nodes: Index, heavy: Array) -> tuple[Index, int]:
+    """Order of a group's elements and how many of them lie on the near side of the best cut."""
+    n = along.shape[1]
+    low, high = max(1, math.floor(_LEAST_SHARE * n)), min(n - 1, math.ceil((1.0 - _LEAST_SHARE) * n))
+    if n < 2:
+        return np.arange(n), n
+    best, found = math.inf, (np.arange(n), n // 2)
+    for positions in along:
+        ordered = np.argsort(positions, kind="stable")
+        rank = np.empty(n, dtype=np.int64)
+        rank[ordered] = np.arange(n)
+        first, last = np.full(heavy.size, n), np.full(heavy.size, -1)
+        np.minimum.at(first, nodes.ravel(), np.repeat(rank, nodes.shape[1]))
+        np.maximum.at(last, nodes.ravel(), np.repeat(rank, nodes.shape[1]))
+        # Cutting before element i leaves the nodes of elements on both sides of it.
+        change = np.bincount(first + 1, heavy, n + 2) - np.bincount(last + 1, heavy, n + 2)
+        cut = np.cumsum(change)[low : high + 1]
+        share = np.arange(low, high + 1) / n
+        cost = cut * (1.0 + _UNEVEN * (2.0 * share - 1.0) ** 2)
+        i = int(np.argmin(cost))
+        if cost[i] < best:
+            best, found = float(cost[i]), (ordered, low + i)
+    return found
+
+
 def _smallest(section: Section, face: FaceFunctions, number: Index, elements: Index) -> tuple[Index, Array]:
     """Unknowns (ascending in the order of elimination) and stiffness of a few elements."""
     dofs = section.element_dofs[elements]
@@ -133,7 +201,8 @@ def _smallest(section: Section, face: FaceFunctions, number: Index, elements: In
     reach = np.array([int((highest > k).sum()) for k in range(number.shape[1])])
     used = int((reach > 0).sum())
     start = np.concatenate([[0], np.cumsum(reach[:used])])
-    ids = np.concatenate([number[every[sequence[: reach[k]]], k] for k in range(used)])
+    none = np.zeros(0, dtype=np.int64)
+    ids = np.concatenate([none, *(number[every[sequence[: reach[k]]], k] for k in range(used))])
     matrix = np.zeros((ids.size, ids.size))
     m0, m1, m2 = (product[:used, :used] for product in face.products)
     for k, m in np.argwhere((m0 != 0.0) | (m1 != 0.0) | (m1.T != 0.0) | (m2 != 0.0)).tolist():
