@@ -7,7 +7,7 @@ package and of the geometry among it, so that a changed program never reads what
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from fegear.fem.influence import Influence
 from fegear.fem.mesh import SectorMesh
@@ -22,14 +22,19 @@ if TYPE_CHECKING:
     from fegear.geometry.tooth import Tooth
     from fegear.solution_cache import SolutionCache
 
-_KINDS: dict[str, Callable[..., object]] = {
-    kind.__name__: kind for kind in (Influence, SectorMesh, LoadedFlank, FilletStrain)
-}
+Shape = TypeVar("Shape")
+
+#: What a solved plane shape consists of.
+_PLANE: tuple[type, ...] = (Influence, SectorMesh, LoadedFlank, FilletStrain)
 
 
 def known_or_solved(
-    cache: SolutionCache, tooth: Tooth, what: tuple[object, ...], solve: Callable[[], Influence]
-) -> Influence:
+    cache: SolutionCache,
+    tooth: Tooth,
+    what: tuple[object, ...],
+    solve: Callable[[], Shape],
+    kinds: tuple[type, ...] = _PLANE,
+) -> Shape:
     """Recall the solution of a shape, or solve and keep it.
 
     Parameters
@@ -39,30 +44,34 @@ def known_or_solved(
     what : tuple
         All else that the solution depends on; anything that `content_key` takes.
     solve : callable
+    kinds : tuple of type
+        Dataclasses that the solution consists of, its own first; it has the tooth as a field.
     """
     key = content_key(code_version("fem", "geometry"), tooth, what)
-    return cache.solve(key, solve, Codec(lambda found: pack(_plain(found)), lambda data: _restored(data, tooth))).value
+    codec: Codec[Shape] = Codec(lambda found: pack(_plain(found, kinds)), lambda data: _restored(data, tooth, kinds))
+    return cache.solve(key, solve, codec).value
 
 
-def _plain(item: object) -> object:
+def _plain(item: object, kinds: tuple[type, ...]) -> object:
     """Dataclasses as dictionaries with their name; without the tooth, which the reader knows."""
-    if dataclasses.is_dataclass(item) and type(item).__name__ in _KINDS:
-        fields = {f.name: _plain(getattr(item, f.name)) for f in dataclasses.fields(item) if f.name != "tooth"}
+    if dataclasses.is_dataclass(item) and isinstance(item, kinds):
+        fields = {f.name: _plain(getattr(item, f.name), kinds) for f in dataclasses.fields(item) if f.name != "tooth"}
         return {"kind": type(item).__name__, "fields": fields}
     if isinstance(item, dict):
-        return {key: _plain(value) for key, value in item.items()}
+        return {key: _plain(value, kinds) for key, value in item.items()}
     return item
 
 
-def _restored(data: bytes, tooth: Tooth) -> Influence | None:
+def _restored(data: bytes, tooth: Tooth, kinds: tuple[type, ...]) -> Any:
     """Rebuild a solution; None if the bytes do not fit."""
+    names = {kind.__name__: kind for kind in kinds}
 
     def build(item: object) -> object:
         if not isinstance(item, dict):
             return item
         if set(item) == {"kind", "fields"}:
-            kind = _KINDS[item["kind"]]
-            given = {"tooth": tooth} if kind is Influence else {}
+            kind = names[item["kind"]]
+            given = {"tooth": tooth} if kind is kinds[0] else {}
             return kind(**given, **{key: build(value) for key, value in item["fields"].items()})
         return {key: build(value) for key, value in item.items()}
 
@@ -70,4 +79,4 @@ def _restored(data: bytes, tooth: Tooth) -> Influence | None:
         known = build(unpack(data))
     except (ValueError, KeyError, TypeError):
         return None
-    return known if isinstance(known, Influence) else None
+    return known if isinstance(known, kinds[0]) else None

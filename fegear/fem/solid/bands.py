@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -112,29 +113,62 @@ def loads_of(pressed: Bands, flank: LoadedFlank, face: FaceFunctions) -> Array:
     """
     _check(pressed, face)
     arc = flank.arc_of_radius(pressed.radius)
+    z, weight = _gauss(pressed, face)
+    shape = face.at(z.ravel())[0].reshape(face.count, *z.shape)
+    if not pressed.slope.any():
+        along = np.einsum("kpq,pq->kp", shape, weight)
+        up = flank.normal_patches(arc, pressed.half_width)
+        return np.asarray(np.einsum("np,kp->nkp", up, along).reshape(-1, pressed.count))
+    a = np.broadcast_to(pressed.half_width[:, None], z.shape)
+    place = np.clip(arc[:, None] + pressed.slope[:, None] * (z - pressed.zeta[:, None]), *_room(flank, a))
+    up = flank.normal_patches(place.ravel(), a.ravel()).reshape(flank.nodes, *z.shape)
+    loads = np.einsum("npq,kpq->nkp", up, shape * weight, optimize=True)
+    return np.asarray(loads.reshape(-1, pressed.count))
+
+
+def profile_moments(pressed: Bands, face: FaceFunctions) -> Array:
+    """Integrals of the bands' profiles times the functions along the face, shape (functions, P)."""
+    z, weight = _gauss(pressed, face)
+    shape = face.at(z.ravel())[0].reshape(face.count, *z.shape)
+    return np.asarray(np.einsum("kpq,pq->kp", shape, weight))
+
+
+def profiles_at(pressed: Bands, zeta: Array) -> Array:
+    """Load of the bands per length along the face, shape (P, Z) [1/module]; at a jump the value inside."""
+    away = zeta - pressed.zeta[:, None]
+    reach = np.where(away < 0.0, pressed.before[:, None], pressed.after[:, None])
+    inside = np.abs(away) <= reach
+    height = 1.0 / (pressed.before + pressed.after)[:, None]
+    if pressed.profile == "even":
+        return np.where(inside, height, 0.0)
+    fall = np.divide(np.abs(away), reach, out=np.ones_like(away), where=reach > 0.0)
+    return np.where(inside, 2.0 * height * (1.0 - fall), 0.0)
+
+
+def overlap(pressed: Bands) -> Array:
+    """Integrals of products of two bands' profiles along the face, shape (P, P) [1/module]."""
+    ends = np.unique(np.concatenate([pressed.zeta - pressed.before, pressed.zeta, pressed.zeta + pressed.after]))
+    half = 0.5 * np.diff(ends)
+    z = (0.5 * (ends[1:] + ends[:-1])[:, None] + half[:, None] * np.array([-1.0, 1.0]) / math.sqrt(3.0)).ravel()
+    values = profiles_at(pressed, z)
+    return np.asarray((values * np.repeat(half, 2)) @ values.T)
+
+
+def _gauss(pressed: Bands, face: FaceFunctions) -> tuple[Array, Array]:
+    """Points along the face and shares of each band's load there, shape (P, q) each."""
     low, high = pressed.zeta - pressed.before, pressed.zeta + pressed.after
     cuts = [low, pressed.zeta, high, *(np.clip(x, low, high) for x in face.breaks[1:-1])]
     ends = np.sort(np.stack(cuts), axis=0)
     # A straight profile and, along a sloping line, a pressure that moves up the flank: some points more than for these.
     x, w = np.polynomial.legendre.leggauss(max(face.degrees) // 2 + 4)
     half = 0.5 * np.diff(ends, axis=0)[:, :, None]
-    z = 0.5 * (ends[1:] + ends[:-1])[:, :, None] + half * x  # (pieces, P, q)
-    weight = half * w
+    z = (0.5 * (ends[1:] + ends[:-1])[:, :, None] + half * x).transpose(1, 0, 2).reshape(pressed.count, -1)
+    weight = (half * w).transpose(1, 0, 2).reshape(pressed.count, -1)
     if pressed.profile == "hat":
         away = z - pressed.zeta[:, None]
         side = np.where(away < 0.0, pressed.before[:, None], pressed.after[:, None])
         weight = weight * (1.0 - np.abs(away) / np.where(side > 0.0, side, 1.0))
-    weight = weight / weight.sum(axis=(0, 2), keepdims=True)
-    shape = face.at(z.ravel())[0].reshape(face.count, *z.shape)
-    if not pressed.slope.any():
-        along = np.einsum("kspq,spq->kp", shape, weight)
-        up = flank.normal_patches(arc, pressed.half_width)
-        return np.asarray(np.einsum("np,kp->nkp", up, along).reshape(-1, pressed.count))
-    a = np.broadcast_to(pressed.half_width[:, None], z.shape)
-    place = np.clip(arc[:, None] + pressed.slope[:, None] * (z - pressed.zeta[:, None]), *_room(flank, a))
-    up = flank.normal_patches(place.ravel(), a.ravel()).reshape(flank.nodes, *z.shape)
-    loads = np.einsum("nspq,kspq->nkp", up, shape * weight, optimize=True)
-    return np.asarray(loads.reshape(-1, pressed.count))
+    return z, weight / weight.sum(axis=1, keepdims=True)
 
 
 def _room(flank: LoadedFlank, half_width: Array) -> tuple[Array, Array]:

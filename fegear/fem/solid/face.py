@@ -66,6 +66,8 @@ class FaceFunctions:
         values, slopes = np.zeros((2, self.count, zeta.size))
         for i, degree in enumerate(self.degrees):
             here = np.flatnonzero(piece == i)
+            if here.size == 0:
+                continue
             length = breaks[i + 1] - breaks[i]
             value, slope = line_functions(degree, (zeta[here] - breaks[i]) / length)
             rows = self._numbers[i][:, None]

@@ -11,10 +11,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.boundary import check_bore
-from fegear.fem.solid.bands import Bands, bands
+from fegear.fem.settings import MeshSettings
+from fegear.fem.shape_cache import known_or_solved
+from fegear.fem.solid.bands import Bands, bands, hats
+from fegear.fem.solid.contact import line_compliance
+from fegear.fem.solid.face import FaceFunctions
+from fegear.fem.solid.fillet import SolidFillet
 from fegear.fem.solid.plausible import check_solid
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.solution import SolidSolution, solve_solid
+from fegear.fem.trace import LoadedFlank
+from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,6 +32,8 @@ if TYPE_CHECKING:
     from fegear.fem.influence import Side
     from fegear.geometry.tooth import Tooth
 
+#: What a solution consists of, for those that keep it.
+_KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings, MeshSettings)
 #: Where errors are looked for: shares of the flank's length and of the width.
 _UP, _ALONG = (0.15, 0.4, 0.65, 0.85), (-1.0, -0.6, 0.0, 0.5, 1.0)
 #: How far the hats reach at which errors are looked for [modules].
@@ -85,6 +94,25 @@ class SolidInfluence:
         """c_k of pressed bands: see `SolidSolution.deflection`."""
         return self.fine.deflection(k, watched, pressed)
 
+    def contact_compliance(self, radius: ArrayLike, stations: ArrayLike, half_width: ArrayLike) -> Array:
+        """c_0 between contacts of Hertzian width along one contact line, shape (P, P) [1/(E module)].
+
+        Parameters
+        ----------
+        radius : array_like, shape (P,)
+            Where the line stands on the flank at its stations [modules].
+        stations : array_like, shape (P,)
+            Along the face, ascending; the load falls linearly from each to its neighbours [modules].
+        half_width : array_like, shape (P,) or ()
+            Of the contacts, across the line [modules].
+
+        Returns
+        -------
+        ndarray
+            Approach along the transverse line of action per unit transverse force: see `contact.line_compliance`.
+        """
+        return line_compliance(self.fine, contact_line(self.fine, radius, stations), half_width)
+
     def fillet_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> Array:
         """Surface stress of a fillet: see `SolidSolution.fillet_stress`."""
         return self.fine.fillet_stress(k, side, pressed, zeta)
@@ -120,6 +148,11 @@ class SolidInfluence:
         return MappingProxyType(found)
 
 
+def contact_line(solution: SolidSolution, radius: ArrayLike, stations: ArrayLike) -> Bands:
+    """Hats on the stations of a contact line, as wide as the section resolves."""
+    return hats(radius, stations, solution.band_half_width(radius), slope=solution.line_slope(radius))
+
+
 def sample_hats(solution: SolidSolution) -> Bands:
     """Hats all over the flank, of half a module to either side at most."""
     flank, half = solution.flank, 0.5 * solution.width
@@ -140,6 +173,7 @@ def solid_influence(
     reach: int = 1,
     held: tuple[float, float] | None = None,
     estimate_error: bool = True,
+    cache: SolutionCache | None = None,
 ) -> SolidInfluence:
     """Solve a gear with a width for its influence functions.
 
@@ -162,6 +196,8 @@ def solid_influence(
         Part of the face, between -width / 2 and width / 2, on which the bore is held [modules]; by default all of it.
     estimate_error : bool
         Whether to spend a part again on a coarser solution.
+    cache : SolutionCache, optional
+        Where solved shapes are recalled from and kept.
 
     Returns
     -------
@@ -178,7 +214,13 @@ def solid_influence(
     check_solid(section, tau, width, poisson_ratio, settings, held)
 
     def solve(chosen: SolidSettings) -> SolidSolution:
-        return solve_solid(section, tau, width, poisson_ratio, bore_radius, chosen, reach=reach, held=held)
+        return known_or_solved(
+            cache or SolutionCache(),
+            section,
+            ("solid", tau, width, poisson_ratio, bore_radius, chosen, reach, held),
+            lambda: solve_solid(section, tau, width, poisson_ratio, bore_radius, chosen, reach=reach, held=held),
+            _KINDS,
+        )
 
     fine = solve(settings)
     coarse = solve(settings.coarser()) if estimate_error else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 
 #: A pressure takes this share of the room to the nearer end of the flank, and at least this share of the flank.
 _ROOM_SHARE, _NARROWEST = 0.7, 0.02
+#: Radius of curvature at least, beside the base circle, where an involute's vanishes [modules].
+_LEAST_RADIUS = 0.25
 _FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
@@ -54,6 +57,8 @@ class SolidSolution:
     held : (float, float) or None
         Part of the width on which the bore is held.
     poisson_ratio : float
+    plane_strain : bool
+        Whether nothing moves along the axis.
     face : FaceFunctions
     flank : LoadedFlank
     compliance : mapping of int to ndarray, shape (n, n)
@@ -73,6 +78,7 @@ class SolidSolution:
     bore_radius: float
     held: tuple[float, float] | None
     poisson_ratio: float
+    plane_strain: bool
     face: FaceFunctions
     flank: LoadedFlank
     compliance: Mapping[int, Array]
@@ -89,6 +95,25 @@ class SolidSolution:
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
         length = self.flank.flank_end - self.flank.flank_start
         return np.clip(_ROOM_SHARE * room, _NARROWEST * length, self.settings.band_half_width)
+
+    @property
+    def normal_length(self) -> float:
+        """1 / cos(beta_b): length of N, and of the contact line per length along the face."""
+        return math.hypot(1.0, self.tau * self.tooth.base_radius)
+
+    def curvature(self, radius: Array) -> Array:
+        """Curvature of the flank in the transverse section, shape (P,) [1/module]."""
+        rb = self.tooth.base_radius
+        return np.asarray(1.0 / np.maximum(np.sqrt(np.maximum(radius**2 - rb**2, 0.0)), _LEAST_RADIUS))
+
+    def line_slope(self, radius: ArrayLike) -> Array:
+        """Arc up the flank per length along the face of the contact line through a radius, shape (P,).
+
+        The line is straight and stands square to the involute: its foot on the base circle turns with the helix.
+        """
+        rb = self.tooth.base_radius
+        r = np.atleast_1d(np.asarray(radius, dtype=float))
+        return np.asarray(-self.tau * np.sqrt(np.maximum(r**2 - rb**2, 0.0)))
 
     def deflection(self, k: int, watched: Bands, pressed: Bands) -> Array:
         """c_k: mean approach of bands on tooth k under a unit force on bands of tooth 0, shape (P, Q) [1/(E module)].
@@ -231,8 +256,8 @@ def _solve(
         "influence": time.perf_counter() - closed,
     }
     return SolidSolution(
-        tooth, tau, width, bore_radius, held, nu, face, flank, compliance, fillets, displacement, reach, known.size,
-        settings, seconds,
+        tooth, tau, width, bore_radius, held, nu, plane_strain, face, flank, compliance, fillets, displacement,
+        reach, known.size, settings, seconds,
     )  # fmt: skip
 
 
