@@ -9,8 +9,6 @@ import math
 import sys
 from dataclasses import replace
 
-import numpy as np
-
 from fegear.fem.solid import SolidSettings, bands, solve_solid
 from fegear.geometry import BasicRack, Tooth
 

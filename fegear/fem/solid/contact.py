@@ -67,14 +67,14 @@ def line_compliance(solution: SolidSolution, line: Bands, half_width: ArrayLike)
         found -= slope * share * _as_the_functions_see_it(solution, line, a)
         if not solution.plane_strain:
             found += solution.normal_length * share * _at_the_faces(solution, line, a, float(np.exp(np.log(b).mean())))
-    return np.asarray(found)
+    return np.asarray(found, dtype=float)
 
 
 def _wave_numbers(solution: SolidSolution, line: Bands) -> Array:
     """Of the cosines along the contact line, which is longer than the face is wide, shape (n,) [1/module]."""
     shortest = float(np.maximum(line.before, line.after).min())
     count = int(np.clip(_WAVES * solution.width / shortest, _FEWEST_WAVES, _MOST_WAVES))
-    return np.pi * np.arange(1, count + 1) / solution.width / solution.normal_length
+    return np.asarray(np.pi * np.arange(1, count + 1) / solution.width / solution.normal_length)
 
 
 def _narrow(solution: SolidSolution, line: Bands) -> Array:
