@@ -26,7 +26,7 @@ class LoadingPart(Part):
     exponents: Annotated[list[int], Field(min_length=1)] | None = None
     peaks: Annotated[list[PositiveNumber], Field(min_length=1)] | None = None
     inner_slope: Annotated[Number, Field(ge=0.0)] = 1.0
-    highest_order: Annotated[Number, Field(gt=1.0, le=1e4)] = 100.0
+    highest_order: Annotated[Number, Field(gt=3.0, le=1e4)] = 30.0
     content_above: Annotated[Number, Field(gt=0.0, le=1e3)] = 20.0
 
     @model_validator(mode="after")

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
 #: Spectra are drawn down to this share of their value at zero.
 _LEAST = 1e-6
-#: Frequencies q that are drawn; the table goes on.
-_SHOWN_Q = 0.1, 30.0
 #: Panels of one figure.
 _MOST_PANELS = 8
 
@@ -95,7 +93,7 @@ def _factors(data: LoadingData, words: list[str], end: str) -> Figure:
             ]
         curves.append(Curve(q, np.abs(data.factor[i]), "spectrum factor", "blue", width=1.4, markers=False))
         panels.append(Panel(
-            Axis("q = (L - A) g", log=True, limits=_SHOWN_Q),
+            Axis("q = (L - A) g", log=True, limits=(float(q[0]), float(q[-1]))),
             Axis("modulus of the factor", log=True, limits=(1e-4, 3.0)), tuple(curves), title=words[i],
         ))  # fmt: skip
     return Figure(

@@ -22,10 +22,12 @@ if TYPE_CHECKING:
     from fegear.design.loading import LoadingFunction, SlopeTradeOff
     from fegear.engine.stage import Upstream, Work
 
-#: Positions on a ramp and over the path, and frequencies of the spectra.
-_RAMP, _PATH, _LINES = 201, 401, 1201
-#: Range of the ramp's own frequency q.
-_LOWEST_Q, _HIGHEST_Q = 0.1, 100.0
+#: Positions on a ramp and over the path.
+_RAMP, _PATH = 201, 401
+#: Lowest frequency of spectra, where their lobes begin, and how many frequencies lie below and above.
+_LOWEST, _LOBES, _BELOW, _ABOVE = 0.1, 2.9, 199, 501
+#: Highest of the ramp's own frequency q.
+_HIGHEST_Q = 30.0
 #: Exponent of the polynomial family where the case names none.
 _EXPONENT = 7
 
@@ -146,8 +148,7 @@ def _compute(asked: LoadingInputs, _upstream: Upstream, _work: Work) -> LoadingD
     reach = 2 + math.ceil(asked.length / pitch)
     pairs = beside[None, :] + pitch * np.arange(-reach, reach + 1)[:, None]
     misfit = max(float(np.abs(f.fraction(pairs).sum(axis=0) - 1.0).max()) for f in functions)
-    order = np.geomspace(0.1, asked.part.highest_order, _LINES)
-    q = np.geomspace(_LOWEST_Q, _HIGHEST_Q, _LINES)
+    order, q = _frequencies(asked.part.highest_order), _frequencies(_HIGHEST_Q)
 
     def moduli(what: str) -> Array:
         return np.stack([np.abs(getattr(f, what)(order / pitch)) / pitch for f in functions])
@@ -158,6 +159,11 @@ def _compute(asked: LoadingInputs, _upstream: Upstream, _work: Work) -> LoadingD
         np.stack([f.ramp.asymptotic_factor(q) for f in functions]),
         slope_trade_off(functions, asked.part.content_above), misfit,
     )  # fmt: skip
+
+
+def _frequencies(top: float) -> Array:
+    """In even steps where a spectrum has many lobes of one width, in even ratios below."""
+    return np.concatenate([np.geomspace(_LOWEST, _LOBES, _BELOW, endpoint=False), np.linspace(_LOBES, top, _ABOVE)])
 
 
 def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:

@@ -34,7 +34,7 @@ def test_a_family_with_its_spectra():
         straight = family["slope"] == 1.0
         np.testing.assert_allclose(family["load"][straight], family["x"][straight], atol=1e-15)
         spectra, off = results.tables["loading_spectra"], results.tables["loading_spectrum_factors"]
-        high = (spectra["order"] > 30.0) & (spectra["slope"] > 0.0)
+        high = (spectra["order"] > 20.0) & (spectra["slope"] > 0.0)
         assert (spectra["spectrum"][high] <= 1.05 * spectra["envelope"][high]).all()
         assert (spectra["envelope"][spectra["slope"] == 0.0] == 0.0).all()
         assert any("slope zero" in remark for remark in results.remarks)
@@ -42,10 +42,10 @@ def test_a_family_with_its_spectra():
         assert one == len(results.tables["loading_trade_off"]["slope"])
         tables.append(off)
     # (4.20): curves of one s end on one asymptote, whatever the family.
-    last = [t["factor"][(t["slope"] == 1.5) & (t["q"] > 50.0)] for t in tables]
+    last = [t["factor"][(t["slope"] == 1.5) & (t["q"] > 20.0)] for t in tables]
     size = np.abs(last[0]).max()
     for part in np.split(last[1], 2):
-        assert np.abs(part - last[0]).max() < 0.02 * size
+        assert np.abs(part - last[0]).max() < 0.1 * size
 
 
 def test_the_report_s_own_loading_of_the_test_gears():
