@@ -96,6 +96,10 @@ def formula_root_stress(
     for radius in np.clip(np.hypot(rb, lengths), lowest, highest):
         try:
             found = source.formula(gear.tooth, float(radius) / gear.module)
+            if not found.stress > 0.0:
+                raise RangeError(
+                    "root tension", f"{found.stress:.3g}", "is none: its compression outweighs its bending"
+                )
         except (InputError, ConvergenceError) as error:
             why = f"{error.key} {error.value} {error.rule}" if isinstance(error, InputError) else str(error)
             others = ", ".join(f'"{other}"' for other in ROOT_STRESS_SOURCES if other != name)

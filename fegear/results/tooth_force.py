@@ -142,7 +142,7 @@ def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
         top.append(Curve(x, force.total + force.cross.sum(axis=0), "with the other meshes", "with other meshes"))
     parts = {j: force.own if j == data.mesh else force.cross[j] for j in range(len(names))}
     below = [Curve(x, part, f"from mesh {names[j]}", f"series:{j}") for j, part in parts.items()]
-    mean = Mark("y", float(data.train.forces[data.mesh]), "mean mesh force")
+    mean = Mark("y", float(data.train.forces[data.mesh]))
     return Figure(
         f"tooth_force_{name}",
         f"Force on one tooth pair of mesh {name}",

@@ -12,8 +12,9 @@ from fegear.case.reading import read_scene
 from fegear.contact.formula_root_stress import formula_root_stress
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError
+from fegear.errors import InputError, RangeError
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
+from fegear.geometry import Gear, Tooth
 from fegear.results.catalogue import STAGES
 from fegear.results.sources import ROOT_STRESS_CITATIONS
 from fegear.solution_cache import SolutionCache
@@ -58,6 +59,16 @@ def test_table_over_the_flank_is_the_formula(name):
     assert not table.root_stress(1, radius, "tension").any()
     assert table.root_stress(0, radius, "compression") is None
     assert np.isnan(table.root_stress_error(radius)).all()
+
+
+def test_formula_without_tension_is_refused():
+    """Wide roots of many shifted teeth under a low load: the Lewis section sees more compression than bending."""
+    tooth = Tooth(100, profile_shift=0.5)
+    gear = Gear(tooth, 1e-3, 0.5e-3 * tooth.root_radius)
+    low, middle = ((tooth.form_radius + t * (tooth.tip_radius - tooth.form_radius)) * 1e-3 for t in (0.1, 0.6))
+    with pytest.raises(RangeError, match="compression outweighs its bending"):
+        formula_root_stress(gear, "agma-908", low, gear.tip_radius)
+    assert formula_root_stress(gear, "agma-908", middle, gear.tip_radius).root_stress(0, middle, "tension") > 0.0
 
 
 @pytest.mark.parametrize("name", ["cornell", "iso-6336-3"])
