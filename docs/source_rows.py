@@ -239,13 +239,14 @@ def sources() -> dict[str, Source]:
 
 
 def _is_there(name: str) -> bool:
-    for cut in range(name.count("."), 0, -1):
-        module, rest = ".".join(name.split(".")[:cut]), name.split(".")[cut:]
-        if importlib.util.find_spec(module):
-            target = importlib.import_module(module)
-            for part in rest:
-                target = getattr(target, part, None)
-            return target is not None
+    """Whether a module, or something in one (a method of a class, too), goes by this name."""
+    path = name.split(".")
+    for cut in range(len(path), 0, -1):
+        try:
+            target = importlib.import_module(".".join(path[:cut]))
+        except ModuleNotFoundError:
+            continue
+        return all((target := getattr(target, part, None)) is not None for part in path[cut:])
     return False
 
 

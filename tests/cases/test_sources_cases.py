@@ -60,6 +60,11 @@ def test_a_row_that_answers_for_nothing_is_found(changes, said):
     assert said in " ".join(rows.Row(**(ROW | changes)).faults())
 
 
+def test_a_method_of_a_class_is_there():
+    row = ROW | {"case": None, "judgement": "sketch", "function": "fegear.geometry.rack.BasicRack.named"}
+    assert rows.Row(**row).faults() == []
+
+
 def test_a_lost_item_and_a_made_up_one_are_found():
     row = rows.Row(**(ROW | {"judgement": "text lost"}))
     source = rows.Source(title="x", citation="mark", items=("Fig. 2",), row=(row,))
