@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 _NAMES = ("y", "z", "bθ_{x}", "aθ_{y}", "aθ_{z}")
 #: Largest motion as drawn, in base radii of the smaller gear; distance of the base circles along the line of action.
 _DRAWN, _APART = 0.35, 0.8
+#: Motion along y and about z, over the largest, that can be seen.
+_SEEN = 0.02
 #: Points of a drawn circle.
 _CHORDS = 181
 
@@ -40,6 +42,9 @@ def mode_shape_figures(
     radii = (1.0, 1.0) if isinstance(model, ReducedPairModel) else (
         model.driver.base_radius, model.driven.base_radius
     )  # fmt: skip
+    across = [
+        (shape, title) for shape, title in zip(shapes, titles, strict=True) if np.abs(shape[:, [0, 4]]).max() > _SEEN
+    ]
     bars = Figure(
         f"mode_shapes_{name}",
         f"Mode shapes of pair {name}",
@@ -52,8 +57,8 @@ def mode_shape_figures(
         f"mesh_mode_shapes_{name}",
         f"Mesh mode shapes of pair {name}",
         f"Pair {name}, seen along the axes: base circles and their radii to the line of action (dotted), at rest "
-        "(grey) and at one end of the swing. Motion along the axes and tilting do not show here.",
-        tuple(_drawing(shape, title, radii) for shape, title in zip(shapes, titles, strict=True)),
+        "(grey) and at one end of the swing. Motion along the axes and tilting do not show; modes of these alone are left out.",
+        tuple(_drawing(shape, title, radii) for shape, title in across or list(zip(shapes, titles, strict=True))),
         columns=2,
     )
     return bars, drawing

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: Harmonics of a pair or a table that are taken by default.
 _HARMONICS = 8
+#: Positions over the cycle for each harmonic of a helical pair at least: half of them still tell it from the others.
+_EACH = 4
 #: Base helix angles of case and pair may differ by this [rad].
 _SAME_ANGLE = 1e-3
 #: Even speeds from which a drawn curve starts at least.
@@ -159,6 +161,12 @@ def _check(scene: Scene, name: str) -> None:
             f"is not that of pair {error.pair}, {math.degrees(abs(angle)):.6g} deg",
             "give the pair's own, or the harmonics of the transmission error as a file",
         )  # fmt: skip
+    positions, count = scene.case.tooth_contact.positions, error.harmonics or _HARMONICS
+    if error.pair not in scene.spur_pairs and positions < _EACH * count:
+        raise InputError(
+            "tooth_contact.positions", positions, f"is too few for {count} harmonics",
+            f"give at least {_EACH * count} positions",
+        )  # fmt: skip
 
 
 def _pair_harmonics(asked: PairForcesInputs, upstream: Upstream) -> tuple[Complex, Array | None]:
@@ -176,13 +184,17 @@ def _pair_harmonics(asked: PairForcesInputs, upstream: Upstream) -> tuple[Comple
         return np.asarray(2.0 * series.coefficients[1 : count + 1]), errors
     # Where the gear runs ahead of its mate, the flanks have too much: the sign of removal is the other one.
     ahead = -asked.arm * found.contact.error
-    if ahead.size < 4 * count:
-        raise InputError(
-            "tooth_contact.positions", ahead.size, f"is too few for {count} harmonics",
-            f"give at least {4 * count} positions",
-        )  # fmt: skip
-    all_of_them, half = (2.0 * np.fft.rfft(part)[1 : count + 1] / part.size for part in (ahead, ahead[::2]))
-    return np.asarray(all_of_them), np.abs(all_of_them - half)
+    all_of_them, half = (_harmonics(ahead, step, count) for step in (1, 2))
+    return all_of_them, np.abs(all_of_them - half)
+
+
+def _harmonics(values: Array, step: int, count: int) -> Complex:
+    """Complex amplitudes of harmonics 1 to `count` of even values over a cycle, from every `step`-th of them."""
+    at = np.arange(0, values.size, step)
+    gaps = np.diff(at, append=values.size)
+    weights = 0.5 * (gaps + np.roll(gaps, 1))
+    turns = np.outer(np.arange(1, count + 1), at) / values.size
+    return np.asarray(2.0 / values.size * np.exp(-2j * np.pi * turns) @ (weights * values[at]))
 
 
 def _lines(asked: PairForcesInputs, harmonics: Complex) -> list[Line]:
