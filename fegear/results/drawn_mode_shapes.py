@@ -57,7 +57,8 @@ def mode_shape_figures(
         f"mesh_mode_shapes_{name}",
         f"Mesh mode shapes of pair {name}",
         f"Pair {name}, seen along the axes: base circles and their radii to the line of action (dotted), at rest "
-        "(grey) and at one end of the swing. Motion along the axes and tilting do not show; modes of these alone are left out.",
+        "(grey) and at one end of the swing. Motion along the axes and tilting do not show; modes of these alone are "
+        "left out.",
         tuple(_drawing(shape, title, radii) for shape, title in across or list(zip(shapes, titles, strict=True))),
         columns=2,
     )
