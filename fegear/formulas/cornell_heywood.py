@@ -255,21 +255,22 @@ def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:
     load = load_line(tooth, radius)
     tangent = math.tan(float(load.angle[0]))
 
-    def excess(gamma: float) -> float:
-        p = fillet_point(tooth, fillet_parameter(tooth, gamma))
+    def excess(parameter: float) -> float:
+        p = fillet_point(tooth, parameter)
         lever_primed = float(load.apex[0]) - p.height
-        return float(next_angle(p.thickness / p.fillet_radius, lever_primed / p.fillet_radius, tangent)) - gamma
+        wanted = next_angle(p.thickness / p.fillet_radius, lever_primed / p.fillet_radius, tangent)
+        return float(wanted) - p.tangent_angle
 
-    low, high = tangent_range(tooth)
-    low = max(low, 0.0)
+    # the tangent turns monotonically along the fillet, so the place is sought in the fillet's own parameter
+    involute, root = fillet_parameter(tooth, max(tangent_range(tooth)[0], 0.0)), tooth.trochoid.start
     remark = ""
-    if excess(low) <= 0.0:
-        gamma, remark = low, "B.2 points above the fillet: taken where the fillet meets the involute"
-    elif excess(high) >= 0.0:
-        gamma, remark = high, "B.2 points below the fillet: taken where the fillet meets the root circle"
+    if excess(involute) <= 0.0:
+        place, remark = involute, "B.2 points above the fillet: taken where the fillet meets the involute"
+    elif excess(root) >= 0.0:
+        place, remark = root, "B.2 points below the fillet: taken where the fillet meets the root circle"
     else:
-        gamma = brentq(excess, low, high, xtol=1e-12)
-    p = fillet_point(tooth, fillet_parameter(tooth, gamma))
+        place = brentq(excess, root, involute, xtol=1e-13)
+    p = fillet_point(tooth, place)
     stress = modified_heywood(
         p.thickness,
         load.apex - p.height,
@@ -279,7 +280,7 @@ def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:
         load.angle,
         0.25,
     )
-    return RootStress(float(stress[0]), p.half_thickness, p.height, p.fillet_radius, gamma, remark)
+    return RootStress(float(stress[0]), p.half_thickness, p.height, p.fillet_radius, p.tangent_angle, remark)
 
 
 def radial_root_stress(tooth: Tooth, radius: float) -> RootStress:

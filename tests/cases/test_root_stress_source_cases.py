@@ -44,10 +44,7 @@ def test_every_formula_can_be_chosen_and_is_cited():
     assert names == {"fe", *ROOT_STRESS_SOURCES} == set(ROOT_STRESS_CITATIONS)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(n, marks=[pytest.mark.long] if n == "cornell-trochoid" else []) for n in ROOT_STRESS_SOURCES],
-)
+@pytest.mark.parametrize("name", ROOT_STRESS_SOURCES)
 def test_table_over_the_flank_is_the_formula(name):
     rng = np.random.default_rng(7)
     gear = read_scene(CASES / "cornell_test_gear.toml").gears["test"]
