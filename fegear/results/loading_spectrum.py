@@ -274,6 +274,14 @@ def _trade_off_table(name: str, data: LoadingData, asked: LoadingInputs, unit: s
     )  # fmt: skip
 
 
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """Each function with its spectra."""
+    part = scene.case.loading
+    lists = (part.slopes, part.exponents, part.peaks) if part else ()
+    count = math.prod(len(values) for values in lists if values)
+    return Forecast({"functions": count}, 0.02 + 0.02 * count)
+
+
 LOADING_SPECTRUM = Stage(
     name="loading-spectrum",
     title="Tooth loading functions and their spectra",
@@ -285,5 +293,5 @@ LOADING_SPECTRUM = Stage(
     present=_present,
     check=_check,
     cites=citing(Citation("mark", "families of tooth loading functions and their spectra", "Eqs. 4.8 to 4.22")),
-    forecast=lambda _scene, _subject: Forecast({}, 0.05),
+    forecast=_forecast,
 )
