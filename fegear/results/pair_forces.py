@@ -335,10 +335,14 @@ def _pairs(scene: Scene) -> tuple[str, ...]:
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    """One response for each line and speed, drawn speeds included."""
+    """One response for each line and speed, and those that are drawn, which grow with the lines."""
     excitation = scene.case.transmissibility[name].excitation
-    count = int(excitation.speeds.array.size) if excitation else 0
-    return Forecast({"speeds": count}, 0.15 + 1e-4 * count)
+    if excitation is None:
+        return Forecast()
+    error, count = excitation.transmission_error, int(excitation.speeds.array.size)
+    harmonics = 0 if error is None else 1 if error.amplitude is not None else error.harmonics or _HARMONICS
+    lines = harmonics + len(excitation.external)
+    return Forecast({"speeds": count, "lines": lines}, 0.1 + 0.02 * lines + 2e-5 * count * lines)
 
 
 PAIR_FORCES = Stage(

@@ -1,13 +1,14 @@
 """Modes followed by their shapes: crossings go straight through, veerings turn, however coarse the values."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.dynamics.helical_pair import ReducedPairModel
+from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel, RigidGear
 from fegear.dynamics.mesh_parameters import MeshParameters
 from fegear.dynamics.modal_indices import mode_table
 from fegear.dynamics.mode_following import SAME, follow_modes
@@ -130,6 +131,34 @@ def test_a_value_upon_the_crossing_keeps_both_shapes():
         crossed = [meeting.value for meeting in found.crossings]
         # theta_y and theta_x have frequencies of their own.
         assert crossed == pytest.approx([0.8, (2.0 * mode_table(build(0.6)).ratio[2]) ** 2], rel=1e-6)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(60))
+def test_branches_of_random_pairs_of_two_gears_do_not_depend_on_the_values_either(seed):
+    """Ten coordinates with a rigid-body motion; equal gears have many exact crossings, small kappa narrow veerings."""
+    rng = np.random.default_rng(seed)
+
+    def gear(mass, a):
+        bearing = np.diag(np.array([6e8, 1.5e8, 2e5, 4e5, 0.0]) * rng.uniform(0.05, 5.0, 5))
+        return RigidGear(mass, (0.4 * mass * a**2, 0.5 * mass * a**2, 0.6 * mass * a**2), a, 0.02, bearing)
+
+    one = gear(rng.uniform(1.0, 5.0), 0.07)
+    two = one if seed % 2 else gear(rng.uniform(1.0, 5.0), rng.uniform(0.04, 0.12))
+    kappa, helix = rng.choice([0.0, 1e-6, 0.2, 0.5]), rng.choice([0.0, 0.3])
+
+    def over_bearings(x):
+        i, j = (replace(g, bearing_stiffness=x * g.bearing_stiffness) for g in (one, two))
+        return HelicalPairModel(i, j, MeshParameters(3e8, kappa, 0.6, helix))
+
+    build, ends = (
+        (lambda x: HelicalPairModel(one, two, MeshParameters(3e8, kappa, 0.6, x)), (0.0, 1.0)),
+        (over_bearings, (0.05, 20.0)),
+        (lambda x: HelicalPairModel(one, two, MeshParameters(3e8, x, 1.3, helix)), (-1.0, 1.0)),
+    )[seed % 3]
+    coarse, fine = follow_modes(build, ends), follow_modes(build, np.linspace(*ends, int(rng.integers(3, 40))))
+    assert fine.ratio[[0, -1]] == pytest.approx(coarse.ratio, abs=1e-8)
+    assert coarse.likeness >= 0.8
 
 
 def test_values_that_do_not_rise_are_refused():
