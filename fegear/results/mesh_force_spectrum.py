@@ -183,16 +183,17 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
 
 
 def _power_figure(data: SpectrumData, rpm: float) -> Figure:
-    """Every line as one-sided power, a panel for each exciting mesh: how the paper draws them."""
+    """Every mesh harmonic as one-sided power, a panel for each exciting mesh: how the paper draws them."""
     train, found = data.train, data.spectrum
     name, panels = train.names[data.mesh], []
     power = found.power_lines[data.mesh, :, :, 0]
     mean = float(found.static[data.mesh]) ** 2
     order = (data.mesh, *(j for j in range(len(train.names)) if j != data.mesh))
-    top = float(found.frequencies[:, -1, 0].max())
+    whole, top = found.orders % 1.0 == 0.0, float(found.frequencies[:, -1, 0].max())
+    between = "" if whole.all() else " Rotational harmonics between them, which spacing errors cause, are in the table."
     ends = (-0.02 * top, 1.02 * top)  # the mean stands on the ordinate
     for j in order:
-        shown = found.present[j] & (power[j] > _NO_FORCE**2)
+        shown = found.present[j] & (power[j] > _NO_FORCE**2) & whole
         lines = Stems(found.frequencies[j, shown, 0], power[j, shown], f"from mesh {train.names[j]}", f"series:{j}",
                       tuple(f"harmonic {n:.6g}" for n in found.orders[shown]))  # fmt: skip
         steady = Points([0.0], [mean], "mean force", "ink", "x", notes=("mean force squared",))
@@ -204,8 +205,8 @@ def _power_figure(data: SpectrumData, rpm: float) -> Figure:
     return Figure(
         f"mesh_force_power_{name}",
         f"Power of the lines of the force in mesh {name}",
-        f"Mesh {name}: one-sided power of every line, by the mesh whose transmission error excites it; the cross at "
-        "zero frequency is the square of the mean force.",
+        f"Mesh {name}: one-sided power of every mesh harmonic, by the mesh whose transmission error excites it; the "
+        f"cross at zero frequency is the square of the mean force.{between}",
         tuple(panels),
         under=f"{rpm:.6g} rpm",
     )

@@ -371,3 +371,25 @@ def test_two_stage_gearbox():
         assert factor["speed [rpm]"] == pytest.approx([5000.0])
         assert 1.0 < factor["dynamic_factor"][0] < 2.0
         assert factor["periods"][0] == 1
+
+
+ONE_SPECTRUM = ("results=['mesh-force-spectrum']", "dynamics.speeds=['10000 rpm']", "dynamics.harmonics=8")
+
+
+def test_power_of_the_lines_is_drawn_by_mesh_and_rotational_harmonics_stay_in_the_table():
+    """Figs. 18 and 20: own lines with the mean force above, cross lines below; a table of both."""
+    errors = ", ".join(f"'{(5 * k) % 7 / 2} um'" for k in range(28))
+    uneven = (f"gear.test.spacing_errors=[{errors}]", "effects.spacing_errors=true")
+    for overrides, rotational in (((), False), (uneven, True)):
+        tables, values, results = run("four_square_dynamics", *ONE_SPECTRUM, *overrides)
+        figure = next(one for one in results.figures if one.key == "mesh_force_power_I")
+        own, cross = figure.panels
+        assert [np.size(panel.items[0].x) for panel in (own, cross)] == [8, 8]
+        assert float(own.items[1].y[0]) == pytest.approx(1615.0**2, rel=1e-3)
+        assert len(cross.items) == 1
+        table = tables["mesh_force_spectrum_I"]
+        mine = table["from_pair"] == "I"
+        assert (mine.sum() > 8) == rotational == ("otational" in figure.caption)
+        assert values["I.rms_from_I"] == pytest.approx(math.sqrt(table["power [N^2]"][mine].sum()))
+        whole = mine & (np.asarray(table["n"], dtype=float) % 1.0 == 0.0)
+        np.testing.assert_allclose(own.items[0].y, table["power [N^2]"][whole], rtol=1e-12)
