@@ -227,6 +227,7 @@ PER_SI: dict[str, float] = {
     "um/N": 1e6,
     "um.mm/N": 1e9,
     "MPa.mm/N": 1e-3,
+    "MPa/N": 1e-6,
     "Hz": 1.0,
     "rpm": 9.549296585513721,
     "arcsec": 206264.80624709636,

@@ -4,13 +4,30 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
-from fegear.case.part import Part, PositiveLength, PositiveLineLoad, at_most, refuse
+from fegear.case.part import Length, Part, PositiveLength, PositiveLineLoad, at_most, refuse, refuse_more
+
+#: Bands of a solid gear's table that are computed, and places along its face.
+_MOST_BANDS, _MOST_PLACES = 4000, 200
+#: Radii of such a table where the case gives none.
+_USUAL_BAND_RADII = 12
+
+
+def _kind(value: object) -> str:
+    return "places" if isinstance(value, (list, tuple)) else "count"
+
+
+#: So many, equally spaced from one end of the face to the other, or the places themselves.
+FacePositions = Annotated[
+    Annotated[int, Field(ge=1, le=_MOST_PLACES), Tag("count")]
+    | Annotated[list[Length], Field(min_length=1), at_most(_MOST_PLACES, "face positions"), Tag("places")],
+    Discriminator(_kind),
+]
 
 
 class StiffnessPart(Part):
-    """Which gear, at which radii, under how wide a contact."""
+    """Which gear, at which radii, under how wide a contact; with face positions as a solid, band by band."""
 
     gear: str | None = None
     radii: Annotated[list[PositiveLength], Field(min_length=1), at_most(100_000, "load positions")] | None = None
@@ -18,6 +35,7 @@ class StiffnessPart(Part):
     contact_half_width: PositiveLength | None = None
     load: PositiveLineLoad | None = None
     pair: str | None = None
+    face_positions: FacePositions | None = None
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:
@@ -25,4 +43,23 @@ class StiffnessPart(Part):
             raise refuse("contradicts radii", "give either radii or positions", key="positions")
         if self.contact_half_width is not None and self.load is not None:
             raise refuse("contradicts contact_half_width", "give either of them", key="load")
+        if self.face_positions is not None:
+            self._check_bands()
         return self
+
+    def _check_bands(self) -> None:
+        """Refuse what a solid table does not know, and too many bands."""
+        for key in ("contact_half_width", "load"):
+            if getattr(self, key) is not None:
+                remedy = f"leave {key} out, or leave face_positions out for the table of plane strain or stress"
+                raise refuse("has no meaning for the bands that press on a solid gear", remedy, key=key)
+        found = self.face_positions
+        count = found if isinstance(found, int) else len(found or ())
+        refuse_more(_MOST_BANDS, "bands", self.band_radii, count, key="face_positions")
+
+    @property
+    def band_radii(self) -> int:
+        """How many radii a solid table has: twelve where the case does not say."""
+        if self.radii is not None:
+            return len(self.radii)
+        return self.positions if "positions" in self.model_fields_set else _USUAL_BAND_RADII

@@ -83,17 +83,16 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
     for result in scene.case.results:
         if result not in by_result:
             raise InputError("results", f'"{result}"', "is no result that fegear knows", nearest(result, by_result))
-        for stage in by_result[result]:
-            subjects = stage.subjects(scene)
-            if not subjects:
-                raise InputError(
-                    "results",
-                    f'"{result}"',
-                    "asks for something that this case does not describe",
-                    "add the gear, pair or train that it is about",
-                )
-            for subject in subjects:
-                require(Task(stage.name, subject), f'requested by results = ["{result}"]')
+        wanted = [(stage, subject) for stage in by_result[result] for subject in stage.subjects(scene)]
+        if not wanted:
+            raise InputError(
+                "results",
+                f'"{result}"',
+                "asks for something that this case does not describe",
+                "add the gear, pair or train that it is about",
+            )
+        for stage, subject in wanted:
+            require(Task(stage.name, subject), f'requested by results = ["{result}"]')
 
     on = scene.case.effects.on()
     steps = tuple(

@@ -135,6 +135,15 @@ def extruded(section: Section, stations: Sequence[float] | Array, twist: float) 
     )
 
 
+def planes_of(mesh: SolidMesh) -> list[tuple[float, Index]]:
+    """Plane after plane its place along the face and the section's nodes in it, in the order of the solid's nodes."""
+    every, corners = np.arange(mesh.section.points.shape[1]), _corners(mesh.section)
+    found: list[tuple[float, Index]] = []
+    for low, high in pairwise(mesh.stations.tolist()):
+        found += [(low, every), (0.5 * (low + high), corners)]
+    return [*found, (float(mesh.stations[-1]), every)]
+
+
 def _turned_up(points: Array, place: float, twist: float) -> Array:
     s, c = np.sin(twist * place), np.cos(twist * place)
     return np.stack([c * points[0] - s * points[1], s * points[0] + c * points[1], np.full(points.shape[1], place)])

@@ -120,7 +120,7 @@ def gear_section(sectors: Mapping[int, SectorMesh]) -> Section:
     return Section(every[:, used], number[triangles_], number[quadrilaterals_], kept, teeth, closed)
 
 
-def uneven_section(tooth: Tooth, bore_radius: float, coarseness: float = 1.0) -> Section:
+def uneven_section(tooth: Tooth, bore_radius: float, coarseness: float = 1.0, others: float | None = None) -> Section:
     """All teeth of a gear for one load: tooth 0 fine, its neighbours less so, the others coarse.
 
     Parameters
@@ -130,12 +130,17 @@ def uneven_section(tooth: Tooth, bore_radius: float, coarseness: float = 1.0) ->
         [modules].
     coarseness : float
         Edge lengths as a multiple of the usual ones, .055 modules along fillet and flank of tooth 0.
+    others : float, optional
+        The same for all other teeth, whose usual edges are two and four times as long.
 
     Returns
     -------
     Section
     """
-    boundaries = [sector_boundary(tooth, bore_radius, _settings(coarseness, *edges)) for edges in _EDGES]
+    multiples = (coarseness, *(others or coarseness,) * (len(_EDGES) - 1))
+    boundaries = [
+        sector_boundary(tooth, bore_radius, _settings(f, *edges)) for f, edges in zip(multiples, _EDGES, strict=True)
+    ]
     # Neighbours fit: all have the sides and the bore of tooth 0.
     shared = {chain.name: chain for chain in boundaries[0] if chain.name in _SHARED}
     kinds = [mesh_inside([shared.get(c.name, c) for c in chains], tooth.teeth) for chains in boundaries]

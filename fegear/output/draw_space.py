@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.engine.figure import Spot, Surface
+from fegear.engine.figure import Skin, Spot, Surface
 from fegear.errors import MissingLibraryError
-from fegear.output.shades import shade
+from fegear.output.shades import SEQUENTIAL, shade
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _SIZE = (1400, 900)
-#: How much closer the camera stands than where a sphere around everything would fit.
-_ZOOM = 1.0
+#: How much closer the camera stands than where a sphere around everything would fit: with axes, without.
+_ZOOM, _ZOOM_BARE = 1.0, 1.35
 
 
 def offscreen_pyvista() -> Any:
@@ -43,12 +43,35 @@ def offscreen_pyvista() -> Any:
     return pv
 
 
-def draw_space(items: Sequence[Surface | Spot], camera: tuple[tuple[float, float, float], ...]) -> NDArray[np.uint8]:
+def _add_skin(pv: Any, plotter: Any, item: Skin) -> None:
+    """A body's surface with its values, its edges and a scale of colours."""
+    triangles = np.asarray(item.triangles).T
+    faces = np.column_stack([np.full(len(triangles), 3), triangles])
+    body = pv.PolyData(np.asarray(item.points).T, faces.ravel())
+    title = f"{item.label} [{item.unit}]" if item.unit else item.label
+    body[title] = np.asarray(item.values)
+    if np.isfinite(item.floor):
+        body = body.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, item.floor, 0.0))
+    bar = {"vertical": True, "title_font_size": 26, "label_font_size": 24, "fmt": "%.4g", "color": "black",
+           "height": 0.6, "width": 0.05, "position_x": 0.83, "position_y": 0.2}  # fmt: skip
+    plotter.add_mesh(
+        body, scalars=title, clim=(0.0, item.top), cmap=SEQUENTIAL, ambient=0.45, diffuse=0.55, smooth_shading=False,
+        scalar_bar_args=bar,
+    )  # fmt: skip
+    sharp = body.extract_feature_edges(
+        feature_angle=40.0, boundary_edges=True, feature_edges=True, manifold_edges=False, non_manifold_edges=False
+    )
+    plotter.add_mesh(sharp, color="black", line_width=2)
+
+
+def draw_space(
+    items: Sequence[Surface | Skin | Spot], camera: tuple[tuple[float, float, float], ...]
+) -> NDArray[np.uint8]:
     """Draw surfaces with their boundaries, and spots, as seen by a camera.
 
     Parameters
     ----------
-    items : sequence of Surface or Spot
+    items : sequence of Surface, Skin or Spot
     camera : tuple
         Position, focal point and upward direction.
 
@@ -60,6 +83,9 @@ def draw_space(items: Sequence[Surface | Spot], camera: tuple[tuple[float, float
     plotter = pv.Plotter(off_screen=True, window_size=_SIZE)
     plotter.set_background("white")
     for item in items:
+        if isinstance(item, Skin):
+            _add_skin(pv, plotter, item)
+            continue
         points, colour = np.asarray(item.points), shade(item.role).light
         if isinstance(item, Spot):
             plotter.add_mesh(pv.PolyData(points), color=colour, point_size=16.0, render_points_as_spheres=True)
@@ -70,13 +96,15 @@ def draw_space(items: Sequence[Surface | Spot], camera: tuple[tuple[float, float
             boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
         )
         plotter.add_mesh(outline, color="black", line_width=2)
-    plotter.show_bounds(
-        grid="back", location="outer", xtitle="x [mm]", ytitle="y [mm]", ztitle="z [mm]", n_xlabels=4, n_ylabels=4,
-        n_zlabels=3, font_size=22, fmt="%.3g", use_3d_text=False,
-    )  # fmt: skip
+    bare = any(isinstance(item, Skin) for item in items)
+    if not bare:
+        plotter.show_bounds(
+            grid="back", location="outer", xtitle="x [mm]", ytitle="y [mm]", ztitle="z [mm]", n_xlabels=4, n_ylabels=4,
+            n_zlabels=3, font_size=22, fmt="%.3g", use_3d_text=False,
+        )  # fmt: skip
     plotter.camera.position, plotter.camera.focal_point, plotter.camera.up = camera
     plotter.reset_camera()  # keeps the direction, and everything in the picture
-    plotter.camera.zoom(_ZOOM)
+    plotter.camera.zoom(_ZOOM_BARE if bare else _ZOOM)
     plotter.reset_camera_clipping_range()
     image = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()

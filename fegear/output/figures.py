@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fegear.engine.figure import Figure
+from fegear.engine.figure import Figure, SolidMeshField
 from fegear.errors import MissingLibraryError
 from fegear.output.file_names import file_name
 
@@ -110,13 +110,18 @@ class Drawing:
             self._missing.append(f"{error}".rstrip(".") + ".")
 
 
-def _write_field(field: MeshField, folder: Path) -> None:
+def _write_field(field: MeshField | SolidMeshField, folder: Path) -> None:
     """Write ``<name>.vtu`` for ParaView."""
-    from fegear.fem.mesh_files import write_mesh_file
+    from fegear.fem.mesh_files import write_mesh_file, write_solid_file
 
     folder.mkdir(exist_ok=True)
+    path = folder / f"{file_name(field.name)}.vtu"
+    if isinstance(field, SolidMeshField):
+        none = np.empty((20, 0), dtype=np.int64)
+        write_solid_file(path, np.asarray(field.points), field.wedges, none, field.values)
+        return
     write_mesh_file(
-        folder / f"{file_name(field.name)}.vtu",
+        path,
         np.asarray(field.points),
         field.triangles,
         {},

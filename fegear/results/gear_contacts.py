@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 #: Half-width of the contact in modules when the case gives neither a width nor a load.
 USUAL_HALF_WIDTH = 0.02
+#: Share of the flank's length at either end where bands on a solid gear want a finer section than the usual one.
+END_SHARE = 0.07
 
 
 def chosen_gears(scene: Scene) -> tuple[str, ...]:
@@ -65,7 +67,10 @@ def check_contacts_of(scene: Scene, name: str) -> None:
 
 
 def load_radii(scene: Scene, name: str) -> Array:
-    """Radii of the table [m]: those of the case, or positions equally spaced in roll angle over the active profile."""
+    """Radii of the table [m]: those of the case, or positions equally spaced in roll angle over the active profile.
+
+    Those of a solid's bands keep off the very ends of the flank.
+    """
     part, gear = scene.case.stiffness, scene.gears[name]
     if part.radii is not None:
         return np.array(part.radii)
@@ -77,7 +82,12 @@ def load_radii(scene: Scene, name: str) -> Array:
         ends = np.array([gear.form_radius, gear.involute_tip_radius])
     low, high = np.clip(ends, gear.form_radius, gear.involute_tip_radius)
     first, last = (float(np.sqrt((r - gear.base_radius) * (r + gear.base_radius))) for r in (low, high))
-    return np.clip(np.hypot(gear.base_radius, np.linspace(first, last, part.positions)), low, high)
+    if part.face_positions is None:
+        return np.clip(np.hypot(gear.base_radius, np.linspace(first, last, part.positions)), low, high)
+    # Arc lengths go with the squares; within this share of the flank's ends a solid's bands are poorly resolved.
+    low_2, high_2 = (r**2 - gear.base_radius**2 for r in (gear.form_radius, gear.involute_tip_radius))
+    inner = [np.sqrt(low_2 + share * (high_2 - low_2)) for share in (END_SHARE, 1.0 - END_SHARE)]
+    return np.hypot(gear.base_radius, np.linspace(max(first, inner[0]), min(last, inner[1]), part.band_radii))
 
 
 def contact_half_width(scene: Scene, name: str, radii: Array) -> Array:

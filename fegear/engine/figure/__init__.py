@@ -5,7 +5,7 @@ cannot disagree. Names, labels and titles are plain text, in which ``_{...}`` se
 """
 
 from fegear.engine.figure.axes import FEW_DECADES, Axis, Scale
-from fegear.engine.figure.figure import NOTEBOOK, DeferredFigure, Figure, MeshField, View
+from fegear.engine.figure.figure import NOTEBOOK, DeferredFigure, Figure, MeshField, SolidMeshField, View
 from fegear.engine.figure.items import (
     Bars,
     Curve,
@@ -13,6 +13,7 @@ from fegear.engine.figure.items import (
     Item,
     Mark,
     Points,
+    Skin,
     Spot,
     Stems,
     Surface,
@@ -25,6 +26,6 @@ from fegear.engine.figure.panel import Panel
 
 __all__ = [
     "FEW_DECADES", "NOTEBOOK", "Axis", "Bars", "Curve", "DeferredFigure", "Figure", "HeatMap", "Item", "Mark",
-    "MeshField", "Panel", "Points", "Scale", "Spot", "Stems", "Surface", "TriangleField", "View", "Which", "Zone",
-    "edges", "few", "outline", "polylines", "ramp",
+    "MeshField", "Panel", "Points", "Scale", "Skin", "SolidMeshField", "Spot", "Stems", "Surface", "TriangleField",
+    "View", "Which", "Zone", "edges", "few", "outline", "polylines", "ramp",
 ]  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from fegear.engine.figure.items import Surface, TriangleField
+from fegear.engine.figure.items import Skin, Surface, TriangleField
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -54,6 +54,25 @@ class MeshField:
     values: Mapping[str, Array]
 
 
+@dataclass(frozen=True, slots=True)
+class SolidMeshField:
+    """Values at the nodes of fifteen-node wedges, for other programs: written to ``fields/<name>.vtu``.
+
+    Parameters
+    ----------
+    name : str
+    points : array_like, shape (3, N)
+        [mm].
+    wedges : ndarray of int, shape (15, M)
+    values : mapping of str to ndarray
+    """
+
+    name: str
+    points: ArrayLike
+    wedges: NDArray[np.int64]
+    values: Mapping[str, Array]
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Figure:
     """What one figure shows.
@@ -71,7 +90,7 @@ class Figure:
         How many panels paper has side by side.
     most_views : int
         How many views paper has at most, evenly chosen.
-    field : MeshField, optional
+    field : MeshField or SolidMeshField, optional
         What it shows a part of.
     under : str
         Load or speed that all of it holds for; empty where its legend says so, or nothing of the kind matters.
@@ -86,7 +105,7 @@ class Figure:
     views: tuple[View, ...] = ()
     columns: int = 1
     most_views: int = 4
-    field: MeshField | None = None
+    field: MeshField | SolidMeshField | None = None
     under: str = ""
     case: str = ""
 
@@ -121,7 +140,7 @@ class Figure:
     @property
     def drawable_in_page(self) -> bool:
         """Whether a page can draw it itself; fields and surfaces stand there as pictures."""
-        still = (TriangleField, Surface)
+        still = (TriangleField, Surface, Skin)
         return not any(isinstance(item, still) for panel in self.all_panels for item in panel.items)
 
     def _repr_mimebundle_(self, **_wishes: object) -> dict[str, Any]:

@@ -232,6 +232,32 @@ class Surface(_Item):
 
 
 @dataclass(frozen=True, slots=True)
+class Skin(_Item):
+    """Values on the surface of a body in space, beside surfaces; the panel is seen in perspective.
+
+    Parameters
+    ----------
+    points : array_like, shape (3, N)
+    triangles : ndarray of int, shape (3, M)
+    values : array_like, shape (N,)
+    top : float
+        Where the scale of colours ends; it starts at zero.
+    label, unit : str
+    floor : float
+        Nothing is drawn below this y.
+    """
+
+    points: ArrayLike
+    triangles: NDArray[np.int64]
+    values: ArrayLike
+    top: float
+    label: str
+    unit: str = ""
+    floor: float = -np.inf
+    ARRAYS: ClassVar[tuple[str, ...]] = ("points", "values")
+
+
+@dataclass(frozen=True, slots=True)
 class Spot(_Item):
     """A point in space beside surfaces, shape (3,)."""
 
@@ -260,4 +286,4 @@ class Zone:
 
 
 Which: TypeAlias = Literal["x", "y"]
-Item: TypeAlias = Curve | Points | Bars | Stems | HeatMap | TriangleField | Surface | Spot
+Item: TypeAlias = Curve | Points | Bars | Stems | HeatMap | TriangleField | Surface | Skin | Spot

@@ -222,7 +222,7 @@ def _solve(
     section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius)
     face = face_functions(width, settings.degree(width), held)
     known = solid_unknowns(section, face, settings, held, plane_strain=plane_strain)
-    flank = loaded_flank(mesh, _Plane(section), tooth, margin=0.0)
+    flank = section_flank(mesh, section, tooth)
     fillets = {side: solid_fillet(section, name) for side, name in _FILLETS.items()}
     integrated = time.perf_counter()
     every = np.arange(3)
@@ -265,6 +265,11 @@ def flank_nodes(section: Section) -> Index:
     """Nodes of the loaded flank from its lower end to the tip, shape (n,)."""
     line, _ = upward(section, "flank")
     return np.concatenate([line[0, :1], line[1:].T.ravel()])
+
+
+def section_flank(mesh: SectorMesh, section: Section, tooth: Tooth) -> LoadedFlank:
+    """The loaded flank of a section; nothing presses on fillet or tip rounding."""
+    return loaded_flank(mesh, _Plane(section), tooth, margin=0.0)
 
 
 @dataclass(frozen=True)

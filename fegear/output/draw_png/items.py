@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.engine.colours import look
-from fegear.engine.figure import Curve, HeatMap, Panel, Points, Spot, Stems, Surface, TriangleField
+from fegear.engine.figure import Curve, HeatMap, Panel, Points, Skin, Spot, Stems, Surface, TriangleField
 from fegear.output.draw_png.words import words
 from fegear.output.shades import DIVERGING, SEQUENTIAL, shade
 
@@ -30,7 +30,7 @@ SYMBOLS = {
 def draw_items(axes: Any, panel: Panel) -> Any:
     """Draw the items; return what a scale of colours needs, if anything does."""
     image = None
-    solid = [item for item in panel.items if isinstance(item, (Surface, Spot))]
+    solid = [item for item in panel.items if isinstance(item, (Surface, Skin, Spot))]
     if solid:
         from fegear.output.draw_space import draw_space
 

@@ -1,0 +1,157 @@
+"""Displacement and stress of a whole solid tooth under one band, for pictures and other programs; dimensionless."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.fem.elements import sector_elements
+from fegear.fem.extruded import SolidMesh, extruded, planes_of
+from fegear.fem.gear_section import Section as PlaneSection
+from fegear.fem.ring import closed_ring
+from fegear.fem.sector import mesh_sector
+from fegear.fem.solid.bands import loads_of
+from fegear.fem.solid.dissection import condense_solid
+from fegear.fem.solid.face import face_functions
+from fegear.fem.solid.section import make_section
+from fegear.fem.solid.solution import flank_nodes, section_flank
+from fegear.fem.solid.strains import hooke, strain_functions
+from fegear.fem.solid.waves import solid_unknowns
+from fegear.one_thread import one_thread
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.arrays import Array, Index
+    from fegear.fem.elements import SectorElements
+    from fegear.fem.mesh import SectorMesh
+    from fegear.fem.solid.bands import Bands
+    from fegear.fem.solid.settings import SolidSettings
+    from fegear.geometry.tooth import Tooth
+
+#: Six-node triangles want edges so much shorter than those of third order.
+_SIX_NODE_EDGES = 0.7
+
+
+@dataclass(frozen=True)
+class _NodalStrains:
+    """Strains at the elements' own nodes from their displacement and its slope along the face."""
+
+    nodes: Index
+    along_section: Array
+    along_face: Array
+    times: Index
+
+
+@dataclass(frozen=True)
+class SolidField:
+    """What a unit force on a band of tooth 0 does to that tooth and its neighbours; module 1, E = 1.
+
+    Parameters
+    ----------
+    sector : SectorMesh
+        The section's mesh, of six-node triangles.
+    mesh : SolidMesh
+        The tooth as wedges over its nodes.
+    displacement : mapping of int to ndarray, shape (3, P)
+        Of the nodes of tooth k, in the axes of its own section at z = 0.
+    von_mises : mapping of int to ndarray, shape (P,)
+        Equivalent stress there, averaged over the elements around a node.
+    """
+
+    sector: SectorMesh
+    mesh: SolidMesh
+    displacement: dict[int, Array]
+    von_mises: dict[int, Array]
+
+
+def solid_field(
+    tooth: Tooth,
+    tau: float,
+    width: float,
+    poisson_ratio: float,
+    bore_radius: float,
+    settings: SolidSettings,
+    band: Bands,
+    stations: ArrayLike,
+    *,
+    reach: int = 1,
+) -> SolidField:
+    """Solve the ring under one band, and everything inside the tooth.
+
+    Parameters
+    ----------
+    tooth, tau, width, poisson_ratio, bore_radius
+        As for `solid_influence`.
+    settings : SolidSettings
+        Its section is meshed with six-node triangles, which other programs read; edges meant for a higher order are
+        shortened.
+    band : Bands
+        One.
+    stations : array_like, shape (L + 1,)
+        Places along the face between the layers [modules].
+    reach : int
+        Teeth -reach .. reach.
+
+    Returns
+    -------
+    SolidField
+    """
+    with one_thread():
+        chosen = replace(settings.section.scaled(_SIX_NODE_EDGES), order=2)
+        sector = mesh_sector(tooth, bore_radius, chosen)
+        section = make_section(sector, 2, tau, poisson_ratio, tooth.base_radius)
+        face = face_functions(width, settings.degree(width))
+        known = solid_unknowns(section, face, settings)
+        ports = 3 * flank_nodes(section)
+        sides = [(3 * nodes[:, None] + np.arange(3)).ravel() for nodes in (section.side_a, section.side_b)]
+        inner = np.setdiff1d(ports, np.concatenate(sides))
+        condensed = condense_solid(section, face, known, np.concatenate([*sides, inner]), expandable=True)
+        ring = closed_ring(condensed, known.of(sides[0]).size, None, tooth.teeth, reach)
+        loads = loads_of(band, section_flank(sector, section, tooth), face)
+        numbers = sorted({k % tooth.teeth if 2 * k > tooth.teeth else k for k in range(-reach, reach + 1)})
+        response = ring.field(known.of(ports), loads, numbers)
+        plane = PlaneSection(
+            sector.points, sector.triangles, np.empty((8, 0), dtype=np.int64),
+            {(name, 0): edges for name, edges in sector.edges.items()}, tooth.teeth, closed=False,
+        )  # fmt: skip
+        mesh = extruded(plane, np.asarray(stations, dtype=float), tau)
+        elements = sector_elements(sector, order=2)
+        node = elements.point_nodes
+        planes = planes_of(mesh)
+        strains = _nodal_strains(elements, section.places, tau)
+        displacement, stress = {}, {}
+        for k, u in response.items():
+            waves = np.where(known.number >= 0, u[known.number, 0], 0.0).reshape(-1, 3, face.count)
+            waves = np.einsum("ncd,ndk->nck", section.axes, waves)
+            moved, von_mises = [], []
+            for z, points in planes:
+                value, slope = (x[:, 0] for x in face.at(np.array([z])))
+                v, dv = waves @ value, waves @ slope
+                c, s = np.cos(tau * z), np.sin(tau * z)
+                x, y, axial = v[node[points]].T
+                moved.append(np.stack([c * x - s * y, s * x + c * y, axial]))
+                von_mises.append(_von_mises(strains, v, dv, poisson_ratio)[node[points]])
+            displacement[k] = np.hstack(moved)
+            stress[k] = np.concatenate(von_mises)
+    return SolidField(sector, mesh, displacement, stress)
+
+
+def _nodal_strains(elements: SectorElements, places: Array, tau: float) -> _NodalStrains:
+    nodes = elements.element_nodes
+    here = places[:, nodes]  # (2, M, n)
+    b0, b1 = strain_functions(np.eye(nodes.shape[1]), elements.gradients_at_nodes(), here, tau)
+    return _NodalStrains(nodes, b0, b1, np.bincount(nodes.ravel()))
+
+
+def _von_mises(strains: _NodalStrains, v: Array, slope: Array, poisson_ratio: float) -> Array:
+    """Equivalent stress at the nodes of a section, averaged over the elements around each, shape (N,)."""
+    nodes = strains.nodes
+    found = np.einsum("mqsnc,mnc->mqs", strains.along_section, v[nodes], optimize=True)
+    found += np.einsum("mqsnc,mnc->mqs", strains.along_face, slope[nodes], optimize=True)
+    mean = np.stack([np.bincount(nodes.ravel(), found[:, :, s].ravel()) for s in range(found.shape[2])], axis=1)
+    xx, yy, zz, xy, xz, yz = ((mean / strains.times[:, None]) @ hooke(poisson_ratio)).T
+    squares = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + xz**2 + yz**2)
+    return np.asarray(np.sqrt(squares))

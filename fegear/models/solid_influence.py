@@ -1,0 +1,127 @@
+"""The solid solution of a gear with a width, once for every stage that needs it."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from fegear.case.part import at
+from fegear.errors import InputError, RangeError
+from fegear.models.settings import given_settings
+
+if TYPE_CHECKING:
+    from fegear.case.accuracy import AccuracyPart
+    from fegear.case.reading import Scene
+    from fegear.fem.solid import SolidInfluence, SolidSettings
+    from fegear.geometry import Gear
+
+#: Tolerance that the usual settings are for, how edges and wavelengths follow another, and the finest and coarsest.
+_USUAL_TOLERANCE, _FOLLOWS, _FINEST, _COARSEST = 1e-2, 0.25, 0.7, 1.25
+#: Processor seconds of a solid gear with the usual settings and its error estimate: those of a narrow gear, what the
+#: third power of the width [modules] adds, and the power of one over the edge length with which both grow.
+_SECONDS, _BY_WIDTH, _GROWTH = 2.5, 6e-3, 4.0
+
+
+@dataclass(frozen=True)
+class SolidGearToSolve:
+    """All that the solid influence functions of a gear depend on.
+
+    Parameters
+    ----------
+    gear : Gear
+    settings : SolidSettings
+    tolerance : float
+        What estimated errors are held against.
+    reach : int
+        K: neighbours -K..K.
+    name : str
+        Of the gear, for messages.
+    """
+
+    gear: Gear
+    settings: SolidSettings
+    tolerance: float
+    reach: int
+    name: str = field(default="", compare=False)
+
+
+def solid_settings(accuracy: AccuracyPart) -> SolidSettings:
+    """Settings of a solid gear for a tolerance; edge lengths and order that the case gives hold for its section."""
+    from fegear.fem.solid import SolidSettings
+
+    usual = SolidSettings()
+    factor = min(max((accuracy.tolerance / _USUAL_TOLERANCE) ** _FOLLOWS, _FINEST), _COARSEST)
+    chosen = usual.scaled(factor)
+    # The half-width of the bands is the solid's own.
+    given = {key: value for key, value in given_settings(accuracy).items() if key != "patch_half_width"}
+    return replace(chosen, section=replace(chosen.section, **given)) if given else chosen
+
+
+def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
+    """What the case asks of the solid influence functions of a gear."""
+    accuracy = scene.case.accuracy
+    return SolidGearToSolve(scene.gears[name], solid_settings(accuracy), accuracy.tolerance, 1, name)
+
+
+def check_solid_gear(scene: Scene, name: str) -> None:
+    """Refuse gears whose width is not given, or whose teeth are a mesh of the user's own.
+
+    Raises
+    ------
+    InputError
+    """
+    part = scene.case.gear[name]
+    if part.face_width is None:
+        raise InputError(
+            f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",
+            'write face_width = "20 mm", or leave face_positions out',
+        )  # fmt: skip
+    if part.tooth_mesh is not None:
+        raise InputError(
+            f"gear.{name}.tooth_mesh", f'"{part.tooth_mesh}"', "is a plane mesh, and solid teeth are meshed by fegear",
+            "leave tooth_mesh out, or leave face_positions out",
+        )  # fmt: skip
+
+
+def solve_solid_influence(asked: SolidGearToSolve) -> SolidInfluence:
+    """Solve a gear with its width.
+
+    Raises
+    ------
+    RangeError
+        If it cannot be meshed, under the key of the case.
+    """
+    from fegear.fem.solid import solid_influence
+
+    gear = asked.gear
+    try:
+        return solid_influence(
+            gear.tooth,
+            gear.twist * gear.module,
+            gear.face_width / gear.module,
+            gear.material.poisson_ratio,
+            gear.bore_radius / gear.module,
+            asked.settings,
+            reach=asked.reach,
+        )
+    except RangeError as error:
+        raise at(f"gear.{asked.name}", error, {"poisson_ratio": "material.poisson_ratio"}) from None
+
+
+def seconds_of_solid_gear(settings: SolidSettings, width: float) -> float:
+    """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
+    from fegear.fem.solid import SolidSettings
+
+    finer = SolidSettings().section.root_edge_length / settings.section.root_edge_length
+    return (_SECONDS + _BY_WIDTH * width**3) * finer**_GROWTH
+
+
+def solid_solution_settings(influence: SolidInfluence) -> dict[str, object]:
+    """Settings of a solid solution and what they cost, for the summary."""
+    return {
+        **asdict(influence.settings),
+        "degree_along_the_face": influence.settings.degree(influence.width),
+        "unknowns": influence.fine.unknowns,
+        "estimated_error": {key: float(f"{error:.3g}") for key, error in influence.error.items()},
+        "seconds": {key: round(seconds, 6) for key, seconds in influence.seconds.items()},
+    }

@@ -1,0 +1,170 @@
+"""``[stiffness] face_positions``: a gear with its width, band by band, from case file to table, pictures and field."""
+
+import json
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.errors import FegearError
+from fegear.fem.solid import bands
+from fegear.fem.solid.table import solid_table
+from fegear.geometry import Gear
+from fegear.output.draw_png import draw_pictures
+from fegear.output.figures import _write_field
+from fegear.results.catalogue import STAGES
+from fegear.solution_cache import SolutionCache
+
+CASE = Path(__file__).parents[2] / "cases" / "spur_over_the_face.toml"
+COARSE = ("accuracy.tolerance=5e-2",)
+
+
+@pytest.fixture(scope="module")
+def cache():
+    return SolutionCache()
+
+
+def ran(cache, *overrides):
+    scene = read_scene(CASE, [*COARSE, *overrides])
+    return run_plan(scene, make_plan(scene, STAGES), cache=cache)
+
+
+@pytest.fixture(scope="module")
+def results(cache):
+    return ran(cache)
+
+
+def outcome(results):
+    return results.outcomes[Task("stiffness-over-face", "a")]
+
+
+def columns(results):
+    (table,) = outcome(results).tables
+    return {column.head: np.asarray(column.values) for column in table.columns}
+
+
+def test_the_table_has_a_row_for_every_band(results):
+    (table,) = outcome(results).tables
+    assert table.name == "stiffness_over_face_a"
+    heads = list(columns(results))
+    assert heads[:6] == [
+        "radius [mm]", "roll_angle [deg]", "face_position [mm]", "c_self [um/N]", "c_prev [um/N]", "c_next [um/N]",
+    ]  # fmt: skip
+    found = columns(results)
+    assert found["radius [mm]"].size == 30
+    assert sorted(set(found["face_position [mm]"])) == [-4.0, -2.0, 0.0, 2.0, 4.0]
+    # Half hats at the ends of the face, whole ones inside.
+    assert found["band_before [mm]"][:5].tolist() == [0.0, 1.0, 1.0, 1.0, 1.0]
+    assert found["band_after [mm]"][:5].tolist() == [1.0, 1.0, 1.0, 1.0, 0.0]
+
+
+def test_its_numbers_are_those_of_the_influence_functions(results):
+    data = outcome(results).data
+    known, gear = data.influence, read_scene(CASE).gears["a"]
+    m, i, j = gear.module, 3, 1
+    band = bands(data.radius[i] / m, data.position[j] / m, 0.5, data.half_width[i] / m)
+    scale = 1.0 / (gear.material.young_modulus * m)
+    for k, values in ((0, data.c_self), (-1, data.c_prev), (1, data.c_next)):
+        assert values[i, j] == pytest.approx(known.deflection(k, band, band)[0, 0] * scale, rel=1e-12)
+    root = data.root["tension"]
+    value, _ = known.largest_root_stress(0, "tension", band, root.places / m)
+    assert root.along[i, j] == pytest.approx(value[:, 0] / m**2, rel=1e-9)
+    assert root.value[i, j] == root.along[i, j].max()
+    assert root.places[np.argmax(root.along[i, j])] == root.position[i, j]
+
+
+def test_a_spur_gear_is_the_same_at_both_ends_and_to_both_neighbours(results):
+    """Mirrored at the middle of the face; reciprocity makes the tooth before and the tooth after alike."""
+    data = outcome(results).data
+    assert data.c_self == pytest.approx(data.c_self[:, ::-1], rel=1e-8)
+    assert data.c_prev == pytest.approx(data.c_next, rel=1e-8)
+    for side, sign in (("tension", 1.0), ("compression", -1.0)):
+        root = data.root[side]
+        assert (sign * root.value > 0.0).all()
+        assert root.value == pytest.approx(root.value[:, ::-1], rel=1e-6)
+        assert root.shear == pytest.approx(-root.shear[:, ::-1], abs=1e-6 * np.abs(root.value).max())
+    # An end gives way about twice as much as the middle, and a band there strains the root more.
+    assert (data.c_self[:, 0] > 1.6 * data.c_self[:, 2]).all()
+    assert (data.root["tension"].value[:, 0] > 1.2 * data.root["tension"].value[:, 2]).all()
+
+
+def test_twice_the_size_gives_half_the_deflection_and_a_quarter_of_the_stress(results):
+    one = outcome(results).data
+    gear = read_scene(CASE).gears["a"]
+    double = Gear(gear.tooth, 2.0 * gear.module, 2.0 * gear.bore_radius, 2.0 * gear.face_width, gear.material)
+    two = solid_table(double, one.influence, 2.0 * one.radius, 2.0 * one.position)
+    assert two.c_self == pytest.approx(0.5 * one.c_self, rel=1e-9)
+    assert two.errors["c_self"] == pytest.approx(0.5 * one.errors["c_self"], rel=1e-9)
+    assert two.root["tension"].value == pytest.approx(0.25 * one.root["tension"].value, rel=1e-9)
+    assert two.root["tension"].position == pytest.approx(2.0 * one.root["tension"].position)
+    with pytest.raises(FegearError, match="lies off the face, which runs from -8 to 8 mm"):
+        solid_table(double, one.influence, two.radius, [8.1e-3])
+
+
+def test_estimates_and_remarks(results):
+    values = {value.name: value for value in outcome(results).values}
+    assert values["a.largest_band_c_self"].error > 0.0
+    assert values["a.largest_band_c_self"].value > values["a.smallest_band_c_self"].value
+    assert any("presses on a band" in remark for remark in outcome(results).remarks)
+    solved = results.outcomes[Task("solid-solution", "a")]
+    assert solved.settings["unknowns"] > 1000
+    json.dumps(solved.settings)
+
+
+def test_pictures_and_field(results, tmp_path):
+    made = {figure.key: figure.made() for figure in outcome(results).figures}
+    assert set(made) == {"flank_a", "root_stress_over_face_a", "deformed_tooth_a"}
+    tooth = made["deformed_tooth_a"]
+    assert not tooth.drawable_in_page
+    _write_field(tooth.field, tmp_path)
+    mesh = meshio.read(tmp_path / "a_tooth.vtu")
+    assert mesh.cells[0].type == "wedge15"
+    assert np.ptp(mesh.points[:, 2]) == pytest.approx(8.0)
+    # The band's mean deflection under 2 kN lies between nothing and the largest displacement.
+    largest = np.linalg.norm(mesh.point_data["displacement"], axis=1).max()
+    data = outcome(results).data
+    assert 0.5 * largest < 2e3 * data.c_self.max() * 1e3 < 20.0 * largest
+    pictures = draw_pictures(tooth, tmp_path)
+    assert all(path.stat().st_size > 1e4 for path in tmp_path.glob("deformed_tooth_a*.png"))
+    assert pictures
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ('stiffness.face_positions=["5 mm"]', "lies off the face of gear a; it runs from -4 mm to 4 mm"),
+        ("stiffness.face_positions=0", "must be greater than or equal to 1"),
+        ("stiffness.face_positions=[3.0]", "is a bare number, but a length needs a unit"),
+        ("stiffness.positions=3000", "3,000 x 5 = 15,000 bands; ask for 4,000 at most"),
+        ('stiffness.contact_half_width="0.1 mm"', "has no meaning for the bands that press on a solid gear"),
+        ('stiffness.load="100 N/mm"', "has no meaning for the bands that press on a solid gear"),
+        ('stiffness={ radii = ["5 mm"], face_positions = 1 }', "lies off the involute flank"),
+        ('gear.a.tooth_mesh="x.msh"', "is a plane mesh, and solid teeth are meshed by fegear"),
+        ('gear.a.face_width="160 mm"', "face_width = 80 modules: must lie between"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_a_sentence(override, words, cache):
+    with pytest.raises(FegearError, match=words.replace("(", r"\(")):
+        ran(cache, override)
+
+
+def test_a_width_must_be_given(tmp_path, cache):
+    text = "\n".join(line for line in CASE.read_text().splitlines() if not line.startswith("face_width"))
+    (tmp_path / "g.toml").write_text(text)
+    scene = read_scene(tmp_path / "g.toml", ["stiffness.face_positions=1"])
+    with pytest.raises(FegearError, match="is needed for a gear that is solved with its width"):
+        run_plan(scene, make_plan(scene, STAGES), cache=cache)
+
+
+def test_without_face_positions_the_table_is_the_plane_one_and_the_other_way_round():
+    plane = read_scene(CASE, ["stiffness.face_positions=1", 'results=["stiffness", "root-stress"]'])
+    tasks = [step.task.stage for step in make_plan(plane, STAGES).steps]
+    # Root stress along the fillets is of the plane gear still.
+    assert tasks == ["solid-solution", "stiffness-over-face", "gear-solution", "stiffness", "root-stress"]
+    text = CASE.read_text().replace("face_positions = 5", "")
+    assert "face_positions" not in text
