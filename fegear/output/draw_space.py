@@ -19,8 +19,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _SIZE = (1400, 900)
+#: How far a body moves to the left for the scale of colours, of half the picture's width.
+_ROOM_FOR_SCALE = 0.17
 #: How much closer the camera stands than where a sphere around everything would fit: with axes, without.
-_ZOOM, _ZOOM_BARE = 1.0, 1.35
+_ZOOM, _ZOOM_BARE = 1.0, 1.15
 
 
 def offscreen_pyvista() -> Any:
@@ -52,8 +54,8 @@ def _add_skin(pv: Any, plotter: Any, item: Skin) -> None:
     body[title] = np.asarray(item.values)
     if np.isfinite(item.floor):
         body = body.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, item.floor, 0.0))
-    bar = {"vertical": True, "title_font_size": 26, "label_font_size": 24, "fmt": "%.4g", "color": "black",
-           "height": 0.6, "width": 0.05, "position_x": 0.83, "position_y": 0.2}  # fmt: skip
+    bar = {"vertical": True, "title_font_size": 24, "label_font_size": 24, "fmt": "%.4g", "color": "black",
+           "height": 0.6, "width": 0.05, "position_x": 0.86, "position_y": 0.2}  # fmt: skip
     plotter.add_mesh(
         body, scalars=title, clim=(0.0, item.top), cmap=SEQUENTIAL, ambient=0.45, diffuse=0.55, smooth_shading=False,
         scalar_bar_args=bar,
@@ -105,6 +107,8 @@ def draw_space(
     plotter.camera.position, plotter.camera.focal_point, plotter.camera.up = camera
     plotter.reset_camera()  # keeps the direction, and everything in the picture
     plotter.camera.zoom(_ZOOM_BARE if bare else _ZOOM)
+    if bare:
+        plotter.camera.SetWindowCenter(_ROOM_FOR_SCALE, 0.0)
     plotter.reset_camera_clipping_range()
     image = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()

@@ -13,7 +13,7 @@ from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
 from fegear.models.assumed import bore_remarks
 from fegear.results.drawn_solid import solid_figures
-from fegear.results.gear_contacts import check_contacts_of, chosen_gears, load_radii
+from fegear.results.gear_contacts import check_contacts_of, load_radii
 from fegear.results.solid_solution import needs_solid_solution
 from fegear.results.sources import RING
 
@@ -161,6 +161,14 @@ def _check(scene: Scene, name: str) -> None:
             )  # fmt: skip
 
 
+def _subjects(scene: Scene) -> tuple[str, ...]:
+    """The gear that ``[stiffness]`` names, spur or helical; every gear of the case if it names none."""
+    part = scene.case.stiffness
+    if part.face_positions is None:
+        return ()
+    return (part.gear,) if part.gear else tuple(scene.gears)
+
+
 def _forecast(scene: Scene, _name: str) -> Forecast:
     part = scene.case.stiffness
     wanted = part.face_positions or 0
@@ -174,7 +182,7 @@ SOLID_STIFFNESS = Stage(
     title="Compliance and root stress over the face",
     results=("stiffness",),
     about="compliance of a loaded tooth and its neighbours, and its root stress, over load positions",
-    subjects=lambda scene: () if scene.case.stiffness.face_positions is None else chosen_gears(scene),
+    subjects=_subjects,
     needs=lambda _scene, name: needs_solid_solution(name),
     inputs=_inputs,
     compute=_compute,

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.tooth import Tooth
 
+#: How far below a contact's edge root tension begins [modules], or half of what of the fillet it leaves free.
+_FROM_CONTACT = 0.25
 #: A pressure takes this share of the room to the nearer end of the flank, and at least this share of the flank.
 _ROOM_SHARE, _NARROWEST = 0.7, 0.02
 #: Radius of curvature at least, beside the base circle, where an involute's vanishes [modules].
@@ -131,13 +133,28 @@ class SolidSolution:
         Returns
         -------
         value, arc : ndarray
-            Tangential stress in the transverse section [1/module^2] and where it sits [modules].
+            Tangential stress in the transverse section [1/module^2] and where it sits [modules], as far up as
+            `root_end` says.
         """
         stress = self.fillet_stress(k, side, pressed, zeta)[0]
         arc, sign = self.fillets[side].arc, 1.0 if side == "tension" else -1.0
         flat = stress.reshape(stress.shape[0], -1)
-        value, place = extreme(flat, arc, sign, self.fillets[side].length)
+        end = np.tile(self.root_end(k, side, pressed), stress.shape[1])
+        value, place = extreme(flat, arc, sign, end)
         return value.reshape(stress.shape[1:]), place.reshape(stress.shape[1:])
+
+    def root_end(self, k: int, side: Side, pressed: Bands) -> Array:
+        """Arc length up to which root stress is looked for, shape (P,) [modules]: beside a contact near the fillet.
+
+        Nearer to it the stress is that of the contact, which is no root stress.
+        """
+        length = self.fillets[side].length
+        end = np.full(pressed.count, length)
+        if k != 0 or side != "tension":
+            return end
+        above = self.flank.arc_of_radius(pressed.radius) - self.flank.flank_start
+        free = np.maximum(length + above - pressed.half_width, 0.0)
+        return np.minimum(end, np.maximum(free - _FROM_CONTACT, 0.5 * free))
 
     def fillet_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> Array:
         """Surface stress of a fillet of tooth k per unit force on bands of tooth 0 [1/module^2].

@@ -26,9 +26,6 @@ if TYPE_CHECKING:
 
 #: How far a band reaches to either side along the face, where the face goes on so far [modules].
 BAND_REACH = 0.5
-#: Where a band presses so near to the fillet, root tension is looked for so far from its edge [modules], but over half
-#: at least of what of the fillet it leaves free: nearer the stress is that of the contact.
-_FROM_CONTACT = 0.25
 #: Places along the face per module at which root stress is looked at, and how many at least.
 _PLACES_PER_MODULE, _FEWEST_PLACES = 5.0, 33
 
@@ -161,11 +158,7 @@ def _root(
     places = np.linspace(-0.5, 0.5, count) * influence.width
     stress = influence.fillet_stress(0, side, pressed, places)  # (3, points, S, P)
     flat = stress[0].reshape(stress.shape[1], -1)
-    end = np.full(pressed.count, fillet.length)
-    if side == "tension":
-        flank = influence.fine.flank
-        free = fillet.length + flank.arc_of_radius(pressed.radius) - flank.flank_start - pressed.half_width
-        end = np.minimum(end, np.maximum(free - _FROM_CONTACT, 0.5 * np.maximum(free, 0.0)))
+    end = influence.fine.root_end(0, side, pressed)
     value, arc = (x.reshape(count, -1) for x in extreme(flat, fillet.arc, sign, np.tile(end, count)))
     best, load = np.argmax(sign * value, axis=0), np.arange(value.shape[1])
     at = arc[best, load]
