@@ -49,10 +49,9 @@ class StiffnessPart(Part):
 
     def _check_bands(self) -> None:
         """Refuse what a solid table does not know, and too many bands."""
-        for key in ("contact_half_width", "load"):
-            if getattr(self, key) is not None:
-                remedy = f"leave {key} out, or leave face_positions out for the table of plane strain or stress"
-                raise refuse("has no meaning for the bands that press on a solid gear", remedy, key=key)
+        if self.load is not None:
+            remedy = "give contact_half_width, or leave face_positions out for the table of plane strain or stress"
+            raise refuse("is a load per width, which the bands of a solid gear do not have", remedy, key="load")
         found = self.face_positions
         count = found if isinstance(found, int) else len(found or ())
         refuse_more(_MOST_BANDS, "bands", self.band_radii, count, key="face_positions")

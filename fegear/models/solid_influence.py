@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.fem.solid import SolidInfluence, SolidSettings
     from fegear.geometry import Gear
+    from fegear.solution_cache import SolutionCache
 
 #: Tolerance that the usual settings are for, how edges and wavelengths follow another, and the finest and coarsest.
 _USUAL_TOLERANCE, _FOLLOWS, _FINEST, _COARSEST = 1e-2, 0.25, 0.7, 1.25
@@ -83,8 +84,8 @@ def check_solid_gear(scene: Scene, name: str) -> None:
         )  # fmt: skip
 
 
-def solve_solid_influence(asked: SolidGearToSolve) -> SolidInfluence:
-    """Solve a gear with its width.
+def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None = None) -> SolidInfluence:
+    """Solve a gear with its width, or recall its shape from a cache.
 
     Raises
     ------
@@ -103,6 +104,7 @@ def solve_solid_influence(asked: SolidGearToSolve) -> SolidInfluence:
             gear.bore_radius / gear.module,
             asked.settings,
             reach=asked.reach,
+            cache=cache,
         )
     except RangeError as error:
         raise at(f"gear.{asked.name}", error, {"poisson_ratio": "material.poisson_ratio"}) from None

@@ -37,7 +37,7 @@ def worst_band(t: SolidTable) -> tuple[int, int]:
 
     Nearer to the flank's ends bands are narrower and the stress is that of the contact.
     """
-    full = t.half_width >= 0.999 * t.half_width.max()
+    full = t.pressed_half_width >= 0.999 * t.pressed_half_width.max()
     tension = np.where(full[:, None], t.root["tension"].value, -np.inf)
     i, j = np.unravel_index(int(np.argmax(tension)), tension.shape)
     return int(i), int(j)
@@ -56,10 +56,10 @@ def _map(name: str, t: SolidTable) -> Figure:
     return Figure(
         f"flank_{name}",
         f"Flank of gear {name}",
-        f"Gear {name}, per force on a band: mean deflection of the band, and the largest tension that it causes in the "
+        f"Gear {name}, per force on a band: approach of the contact, and the largest tension that it causes in the "
         f"fillet. Estimated error of c_0 at most {worst:.1e} of it.",
         (
-            over(t.c_self * 1e6, "c_{0} of the band", "um/N"),
+            over(t.c_self * 1e6, "c_{0} of the contact", "um/N"),
             over(t.root["tension"].value * 1e-6, "largest root tension", "MPa/N"),
         ),
         columns=2,
@@ -102,9 +102,10 @@ def deformed_tooth(name: str, gear: Gear, t: SolidTable, force: float) -> Figure
     influence, m = t.influence, gear.module * 1e3
     i, j = worst_band(t)
     radius, place, before, after, width = (
-        x / gear.module for x in (t.radius[i], t.position[j], t.before[j], t.after[j], t.half_width[i])
+        x / gear.module for x in (t.radius[i], t.position[j], t.before[j], t.after[j], t.pressed_half_width[i])
     )
-    band = bands(radius, place, before, width, after=after)
+    slope = influence.fine.line_slope(radius)[0]
+    band = bands(radius, place, before, width, after=after, slope=slope)
     layers = min(max(8, round(_LAYERS * influence.width)), _MOST_LAYERS)
     fine = influence.fine
     field = solid_field(

@@ -35,19 +35,12 @@ def solid_solution_of(upstream: Upstream, gear: str) -> SolidInfluence:
     return cast("SolidInfluence", upstream[Task("solid-solution", gear)])
 
 
-def _compute(asked: SolidGearToSolve, _upstream: Upstream, _work: Work) -> SolidInfluence:
-    return solve_solid_influence(asked)
+def _compute(asked: SolidGearToSolve, _upstream: Upstream, work: Work) -> SolidInfluence:
+    return solve_solid_influence(asked, work.cache)
 
 
-def _present(influence: SolidInfluence, asked: SolidGearToSolve) -> Outcome:
-    worst = max(influence.error, key=lambda key: influence.error[key], default="")
-    error = influence.error.get(worst, 0.0)
-    told = (
-        f"Gear {asked.name} with its width: the estimated error of {worst} reaches {error:.1e} "
-        f"(tolerance {asked.tolerance:.0e})."
-    )
-    remarks = (told,) if error > asked.tolerance else ()
-    return Outcome(influence, settings=solid_solution_settings(influence), remarks=remarks)
+def _present(influence: SolidInfluence, _asked: SolidGearToSolve) -> Outcome:
+    return Outcome(influence, settings=solid_solution_settings(influence))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:

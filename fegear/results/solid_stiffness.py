@@ -13,7 +13,7 @@ from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
 from fegear.models.assumed import bore_remarks
 from fegear.results.drawn_solid import solid_figures
-from fegear.results.gear_contacts import check_contacts_of, load_radii
+from fegear.results.gear_contacts import USUAL_HALF_WIDTH, check_contacts_of, contact_half_width, load_radii
 from fegear.results.solid_solution import needs_solid_solution
 from fegear.results.sources import RING
 
@@ -49,10 +49,11 @@ def _table(name: str, t: SolidTable) -> Table:
         Column("radius", up(t.radius), "mm", "radius of the band's middle"),
         Column("roll_angle", up(t.roll_angle), "deg", "roll angle of the band's middle"),
         Column("face_position", along(t.position), "mm", "place of the band's top along the face, from its middle"),
-        Column("c_self", t.c_self.ravel(), compliance, "mean deflection of the band per force"),
-        Column("c_prev", t.c_prev.ravel(), compliance, "of the same band on the tooth before"),
+        Column("c_self", t.c_self.ravel(), compliance, "approach of the contact per force"),
+        Column("c_prev", t.c_prev.ravel(), compliance, "deflection of the same band on the tooth before"),
         Column("c_next", t.c_next.ravel(), compliance, "of the same band on the tooth after (which the flank faces)"),
-        Column("contact_half_width", up(t.half_width), "mm", "half-width of the pressure up the flank"),
+        Column("contact_half_width", up(t.half_width), "mm", "half-width of the contact that c_self is for"),
+        Column("pressed_half_width", up(t.pressed_half_width), "mm", "of the pressure that all else is for"),
         Column("band_before", along(t.before), "mm", "how far the band reaches toward the face end at minus"),
         Column("band_after", along(t.after), "mm", "how far it reaches toward the other end"),
     ]
@@ -97,8 +98,10 @@ class SolidTableInputs:
     Parameters
     ----------
     gear : Gear
-    radii, positions : ndarray
-        Of the bands [m].
+    radii, positions, half_widths : ndarray, shape (R,), (Z,), (R,)
+        Of the bands and their contacts [m].
+    tolerance : float
+        That estimated errors are held against.
     assumed : tuple of str
         Sentences about values that the case does not give.
     name : str
@@ -108,6 +111,8 @@ class SolidTableInputs:
     gear: Gear
     radii: Array
     positions: Array
+    half_widths: Array
+    tolerance: float
     assumed: tuple[str, ...] = field(default=(), compare=False)
     name: str = field(default="", compare=False)
 
@@ -121,33 +126,57 @@ def face_positions(scene: Scene, name: str) -> Array:
 
 
 def _inputs(scene: Scene, name: str) -> SolidTableInputs:
-    assumed = bore_remarks(scene, name)
-    return SolidTableInputs(scene.gears[name], load_radii(scene, name), face_positions(scene, name), assumed, name)
+    assumed, radii = bore_remarks(scene, name), load_radii(scene, name)
+    if scene.case.stiffness.contact_half_width is None:
+        usual = f"so c_self is for a half-width of {USUAL_HALF_WIDTH} modules."
+        assumed = (f"Gear {name}: no contact_half_width was given, {usual}", *assumed)
+    widths, tolerance = contact_half_width(scene, name, radii), scene.case.accuracy.tolerance
+    return SolidTableInputs(scene.gears[name], radii, face_positions(scene, name), widths, tolerance, assumed, name)
 
 
 def _compute(asked: SolidTableInputs, upstream: Upstream, _work: Work) -> SolidTable:
     from fegear.fem.solid.table import solid_table
 
     (influence,) = upstream.values()
-    return solid_table(asked.gear, influence, asked.radii, asked.positions)
+    return solid_table(asked.gear, influence, asked.radii, asked.positions, asked.half_widths)
 
 
 def _present(table: SolidTable, asked: SolidTableInputs) -> Outcome:
     name, m = asked.name, asked.gear.module
     reach = float(max(table.before.max(), table.after.max())) * 1e3
-    width = f"{table.half_width.min() * 1e3:.4g} to {table.half_width.max() * 1e3:.4g}"
+    width = f"{table.pressed_half_width.min() * 1e3:.4g} to {table.pressed_half_width.max() * 1e3:.4g}"
     bands = (
-        f"Gear {name} over its face: each force presses on a band, semi-elliptic up the flank (half-width {width} mm) "
-        f"and falling linearly along the face over {reach:.4g} mm to either side, where the face goes on so far; "
-        "deflections are the bands' own means, for contacts as wide as these."
+        f"Gear {name} over its face: each force presses on a band of the contact line, falling linearly along the face "
+        f"over {reach:.4g} mm to either side, where the face goes on so far. c_self is for the contact's own "
+        f"half-width; neighbours and root stress are for a pressure of {width} mm half-width up the flank."
     )
     return Outcome(
         table,
         (_table(name, table),),
         _values(name, table),
-        remarks=(bands, *asked.assumed),
+        remarks=(bands, *_missed(table, asked), *asked.assumed),
         figures=solid_figures(name, asked.gear, table, _USUAL_FORCE * m / 1e-3),
     )
+
+
+def _missed(t: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
+    """Say where the tolerance is missed."""
+    told = []
+    for label, value in (
+        ("c_self", t.c_self),
+        ("root_tension", t.root["tension"].value),
+        ("root_compression", t.root["compression"].value),
+    ):
+        relative = np.abs(t.errors[label] / value).max(axis=1)
+        i = int(np.argmax(relative))
+        if relative[i] > asked.tolerance:
+            within = float(np.mean(relative <= asked.tolerance))
+            told.append(
+                f"Gear {asked.name} over its face: the estimated error of {label} reaches {relative[i]:.1e} (tolerance "
+                f"{asked.tolerance:.0e}), at radius {t.radius[i] * 1e3:.6g} mm; at {within:.0%} of the radii it is "
+                "within the tolerance."
+            )
+    return tuple(told)
 
 
 def _check(scene: Scene, name: str) -> None:

@@ -67,9 +67,12 @@ def test_its_numbers_are_those_of_the_influence_functions(results):
     data = outcome(results).data
     known, gear = data.influence, read_scene(CASE).gears["a"]
     m, i, j = gear.module, 3, 1
-    band = bands(data.radius[i] / m, data.position[j] / m, 0.5, data.half_width[i] / m)
+    band = bands(data.radius[i] / m, data.position[j] / m, 0.5, data.pressed_half_width[i] / m)
     scale = 1.0 / (gear.material.young_modulus * m)
-    for k, values in ((0, data.c_self), (-1, data.c_prev), (1, data.c_next)):
+    assert data.half_width == pytest.approx(0.02 * m)
+    line = known.contact_compliance(np.full(3, data.radius[i] / m), data.position[j] / m + 0.5 * np.arange(-1, 2), 0.02)
+    assert data.c_self[i, j] == pytest.approx(line[1, 1] * scale, rel=1e-12)
+    for k, values in ((-1, data.c_prev), (1, data.c_next)):
         assert values[i, j] == pytest.approx(known.deflection(k, band, band)[0, 0] * scale, rel=1e-12)
     root = data.root["tension"]
     value, _ = known.largest_root_stress(0, "tension", band, root.places / m)
@@ -97,13 +100,13 @@ def test_twice_the_size_gives_half_the_deflection_and_a_quarter_of_the_stress(re
     one = outcome(results).data
     gear = read_scene(CASE).gears["a"]
     double = Gear(gear.tooth, 2.0 * gear.module, 2.0 * gear.bore_radius, 2.0 * gear.face_width, gear.material)
-    two = solid_table(double, one.influence, 2.0 * one.radius, 2.0 * one.position)
+    two = solid_table(double, one.influence, 2.0 * one.radius, 2.0 * one.position, 2.0 * one.half_width)
     assert two.c_self == pytest.approx(0.5 * one.c_self, rel=1e-9)
     assert two.errors["c_self"] == pytest.approx(0.5 * one.errors["c_self"], rel=1e-9)
     assert two.root["tension"].value == pytest.approx(0.25 * one.root["tension"].value, rel=1e-9)
     assert two.root["tension"].position == pytest.approx(2.0 * one.root["tension"].position)
     with pytest.raises(FegearError, match="lies off the face, which runs from -8 to 8 mm"):
-        solid_table(double, one.influence, two.radius, [8.1e-3])
+        solid_table(double, one.influence, two.radius, [8.1e-3], 4e-5)
 
 
 def test_estimates_and_remarks(results):
@@ -111,9 +114,24 @@ def test_estimates_and_remarks(results):
     assert values["a.largest_band_c_self"].error > 0.0
     assert values["a.largest_band_c_self"].value > values["a.smallest_band_c_self"].value
     assert any("presses on a band" in remark for remark in outcome(results).remarks)
+    # A wider contact gives way less, by the logarithm that Hertz has: within the pressed width.
+    data = outcome(results).data
+    assert (data.errors["c_self"] < 0.1 * data.c_self).all()
     solved = results.outcomes[Task("solid-solution", "a")]
     assert solved.settings["unknowns"] > 1000
     json.dumps(solved.settings)
+
+
+def test_a_wider_contact_gives_way_less_by_its_logarithm(results):
+    """Inside the face, per unit force with the pressure of a hat one module wide: 2 (1 - nu^2) / (pi E) ln 2 (2/3) / m.
+
+    A hat's line load weighted with itself has the mean 2 / 3 of its top, one over its half-length.
+    """
+    one, gear = outcome(results).data, read_scene(CASE).gears["a"]
+    two = solid_table(gear, one.influence, one.radius, one.position, 2.0 * one.half_width)
+    line_load = (2.0 / 3.0) / (0.5 * gear.module)
+    expected = 2.0 * (1.0 - 0.3**2) / (np.pi * gear.material.young_modulus) * np.log(2.0) * line_load
+    assert (one.c_self - two.c_self)[:, 2] == pytest.approx(expected, rel=0.01)
 
 
 def test_pictures_and_field(results, tmp_path):
@@ -141,8 +159,7 @@ def test_pictures_and_field(results, tmp_path):
         ("stiffness.face_positions=0", "must be greater than or equal to 1"),
         ("stiffness.face_positions=[3.0]", "is a bare number, but a length needs a unit"),
         ("stiffness.positions=3000", "3,000 x 5 = 15,000 bands; ask for 4,000 at most"),
-        ('stiffness.contact_half_width="0.1 mm"', "has no meaning for the bands that press on a solid gear"),
-        ('stiffness.load="100 N/mm"', "has no meaning for the bands that press on a solid gear"),
+        ('stiffness.load="100 N/mm"', "is a load per width, which the bands of a solid gear do not have"),
         ('stiffness={ radii = ["5 mm"], face_positions = 1 }', "lies off the involute flank"),
         ('gear.a.tooth_mesh="x.msh"', "is a plane mesh, and solid teeth are meshed by fegear"),
         ('gear.a.face_width="160 mm"', "face_width = 80 modules: must lie between"),

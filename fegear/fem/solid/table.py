@@ -10,7 +10,8 @@ import numpy as np
 
 from fegear.errors import RangeError
 from fegear.fem.root_stress import extreme
-from fegear.fem.solid.bands import bands
+from fegear.fem.solid.bands import bands, hats
+from fegear.fem.solid.contact import line_compliance
 from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from fegear.fem.influence import Side
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.influence import SolidInfluence
+    from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.gear import Gear
 
 #: How far a band reaches to either side along the face, where the face goes on so far [modules].
@@ -61,20 +63,24 @@ class RootStressOfBands(ReadOnlyArrays):
 class SolidTable(ReadOnlyArrays):
     """Compliance and root stress of a solid gear's tooth, SI; arrays of shape (R, Z) where nothing else is said.
 
-    Every number is per unit force along the transverse line of action. The force presses on a band about its place:
-    semi-elliptic up the flank, a hat along the face, half a hat at an end of the face.
+    Every number is per unit force along the transverse line of action. The force presses on a band about its place, on
+    the contact line there: a hat along the face, half a hat at an end of it.
 
     Parameters
     ----------
-    radius, roll_angle, half_width : ndarray, shape (R,)
-        Of the bands' middles [m], [rad]; half-width of the pressure up the flank [m].
+    radius, roll_angle : ndarray, shape (R,)
+        Of the bands' middles [m], [rad].
+    half_width, pressed_half_width : ndarray, shape (R,)
+        Of the contact that `c_self` is for, and of the pressure for all else, which the section resolves [m].
     position, before, after : ndarray, shape (Z,)
         Place along the face from its middle, and how far the band reaches to either side [m].
     c_self, c_prev, c_next : ndarray
-        Mean deflection per force [m/N] of the band itself, and of the same band on the teeth before and after.
+        Approach per force [m/N] of the contact itself, and mean deflection of the same band on the teeth before and
+        after.
     root : mapping of {"tension", "compression"} to RootStressOfBands
     errors : mapping of str to ndarray
-        Estimated absolute error of c_self, c_neighbour, root_tension, root_compression.
+        Estimated absolute error of c_self, c_neighbour, root_tension, root_compression: what a coarser solution
+        differs by, the worst along the face for each radius; NaN without one.
     influence : SolidInfluence
         What the table was made from.
     seconds : float
@@ -83,6 +89,7 @@ class SolidTable(ReadOnlyArrays):
     radius: Array
     roll_angle: Array
     half_width: Array
+    pressed_half_width: Array
     position: Array
     before: Array
     after: Array
@@ -95,7 +102,9 @@ class SolidTable(ReadOnlyArrays):
     seconds: float
 
 
-def solid_table(gear: Gear, influence: SolidInfluence, radii: ArrayLike, positions: ArrayLike) -> SolidTable:
+def solid_table(
+    gear: Gear, influence: SolidInfluence, radii: ArrayLike, positions: ArrayLike, half_width: ArrayLike
+) -> SolidTable:
     """Tabulate a solid gear's compliance and root stress.
 
     Parameters
@@ -107,6 +116,8 @@ def solid_table(gear: Gear, influence: SolidInfluence, radii: ArrayLike, positio
         [m], on the flank.
     positions : array_like, shape (Z,)
         Along the face, from its middle [m].
+    half_width : array_like, shape (R,) or ()
+        Of the contact [m].
 
     Returns
     -------
@@ -125,41 +136,85 @@ def solid_table(gear: Gear, influence: SolidInfluence, radii: ArrayLike, positio
         raise RangeError(
             "face_positions", f"{off[0] * 1e3:.6g} mm", f"lies off the face, which runs from {-end:.6g} to {end:.6g} mm"
         )
+    b = np.broadcast_to(np.asarray(half_width, dtype=float), r.shape).copy()
     place = np.clip(z / m, -half, half)
     before, after = np.minimum(BAND_REACH, half + place), np.minimum(BAND_REACH, half - place)
-    width = influence.band_half_width(r / m)
-    pressed = bands((r / m)[:, None], place, before, width[:, None], after=after)
-    shape = (r.size, z.size)
-
-    def own(k: int) -> Array:
-        return np.diagonal(influence.deflection(k, pressed, pressed)).reshape(shape) / (gear.material.young_modulus * m)
-
-    c = {k: own(k) for k in (-1, 0, 1)}
-    root = {side: _root(influence, side, pressed, shape, m) for side in influence.fine.fillets}
-    relative = influence.error
+    asked = _Asked(r / m, place, before, after, influence.band_half_width(r / m), b / m)
+    fine = _numbers(influence.fine, asked)
+    relative = {key: np.full((r.size, 1), np.nan) for key in fine}
+    if influence.coarse is not None:
+        coarse = _numbers(influence.coarse, asked)
+        relative = {key: np.abs(coarse[key] / fine[key] - 1.0).max(axis=1, keepdims=True) for key in fine}
+    c = {key: fine[key] / (gear.material.young_modulus * m) for key in ("c_self", "c_prev", "c_next")}
+    root = {side: _root(influence.fine, side, asked, m) for side in influence.fine.fillets}
     errors = {
-        "c_self": relative.get("deflection", np.nan) * c[0],
-        "c_neighbour": relative.get("neighbour", np.nan) * c[0],
-        **{f"root_{side}": relative.get(f"root_{side}", np.nan) * np.abs(found.value) for side, found in root.items()},
+        "c_self": relative["c_self"] * c["c_self"],
+        "c_neighbour": np.maximum(relative["c_prev"] * c["c_prev"], relative["c_next"] * c["c_next"]),
+        **{f"root_{side}": relative[f"root_{side}"] * np.abs(found.value) for side, found in root.items()},
     }
     roll = np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
     return SolidTable(
-        r, roll, width * m, z, before * m, after * m, c[0], c[-1], c[1], root, errors, influence,
-        time.perf_counter() - started,
+        r, roll, b, asked.pressed_half_width * m, z, before * m, after * m, c["c_self"], c["c_prev"], c["c_next"],
+        root, errors, influence, time.perf_counter() - started,
     )  # fmt: skip
 
 
-def _root(
-    influence: SolidInfluence, side: Side, pressed: Bands, shape: tuple[int, int], module: float
-) -> RootStressOfBands:
+@dataclass(frozen=True)
+class _Asked:
+    """Places of the bands, lengths in modules: radius, widths (R,), place and reach along the face (Z,)."""
+
+    radius: Array
+    place: Array
+    before: Array
+    after: Array
+    pressed_half_width: Array
+    half_width: Array
+
+    def bands(self, solution: SolidSolution) -> Bands:
+        """All of them, radius by radius, along the contact lines through their places."""
+        up = (x[:, None] for x in (self.radius, self.pressed_half_width, solution.line_slope(self.radius)))
+        radius, width, slope = up
+        return bands(radius, self.place, self.before, width, after=self.after, slope=slope)
+
+
+def _numbers(solution: SolidSolution, asked: _Asked) -> dict[str, Array]:
+    """Compliances and largest root stresses, shape (R, Z) each."""
+    pressed = asked.bands(solution)
+    shape = asked.radius.size, asked.place.size
+    found = {"c_self": np.empty(shape)}
+    for i, (r, b) in enumerate(zip(asked.radius, asked.half_width, strict=True)):
+        for j in range(shape[1]):
+            found["c_self"][i, j] = _own(solution, float(r), asked, j, float(b))
+    for k, name in ((-1, "c_prev"), (1, "c_next")):
+        found[name] = np.diagonal(solution.deflection(k, pressed, pressed)).reshape(shape)
+    for side in solution.fillets:
+        found[f"root_{side}"] = _root(solution, side, asked, 1.0).value
+    return found
+
+
+def _own(solution: SolidSolution, radius: float, asked: _Asked, j: int, half_width: float) -> float:
+    """Approach of one contact under its own force, on the contact line through its middle."""
+    z, before, after = asked.place[j], asked.before[j], asked.after[j]
+    stations = np.array([z - before, z, z + after])[[before > 0.0, True, after > 0.0]]
+    flank = solution.flank
+    slope = solution.line_slope(np.array([radius]))[0]
+    arc = flank.arc_of_radius(np.array([radius]))[0] + slope * (stations - z)
+    places = flank.radius_of_arc(np.clip(arc, flank.flank_start, flank.flank_end))
+    line = hats(places, stations, solution.band_half_width(np.array([radius]))[0], slope=slope)
+    own = int(before > 0.0)
+    return float(line_compliance(solution, line, half_width)[own, own])
+
+
+def _root(solution: SolidSolution, side: Side, asked: _Asked, module: float) -> RootStressOfBands:
     """Look for the largest stress over a fillet and the face, load by load."""
-    fillet, sign = influence.fine.fillets[side], 1.0 if side == "tension" else -1.0
-    count = max(_FEWEST_PLACES, 2 * round(0.5 * _PLACES_PER_MODULE * influence.width) + 1)
-    places = np.linspace(-0.5, 0.5, count) * influence.width
-    stress = influence.fillet_stress(0, side, pressed, places)  # (3, points, S, P)
+    fillet, sign = solution.fillets[side], 1.0 if side == "tension" else -1.0
+    pressed, shape = asked.bands(solution), (asked.radius.size, asked.place.size)
+    count = max(_FEWEST_PLACES, 2 * round(0.5 * _PLACES_PER_MODULE * solution.width) + 1)
+    places = np.linspace(-0.5, 0.5, count) * solution.width
+    stress = solution.fillet_stress(0, side, pressed, places)  # (3, points, S, P)
     flat = stress[0].reshape(stress.shape[1], -1)
-    end = influence.fine.root_end(0, side, pressed)
-    value, arc = (x.reshape(count, -1) for x in extreme(flat, fillet.arc, sign, np.tile(end, count)))
+    end = np.tile(solution.root_end(0, side, pressed), count)
+    value, arc = (x.reshape(count, -1) for x in extreme(flat, fillet.arc, sign, end))
     best, load = np.argmax(sign * value, axis=0), np.arange(value.shape[1])
     at = arc[best, load]
     beside = [
