@@ -208,6 +208,32 @@ def test_what_cannot_be_solved_is_refused(width, twist, held, said):
         solid_influence(TOOTH, 0.0, 4.0, NU, TOOTH.root_radius)
 
 
+def test_a_wide_spur_gear_under_an_even_load_tends_to_plane_strain_in_the_middle():
+    base = replace(SolidSettings().scaled(2.0), section=replace(SolidSettings().section.scaled(2.5), order=2))
+    off = []
+    for width, degree in ((4.0, 5), (16.0, 10)):
+        settings = replace(base, least_degree=degree, waves_per_module=1e-3, wave_reach=1.0)
+        even = bands(14.0, 0.0, 0.5 * width, 0.25, profile="even")
+        middle = bands(14.0, 0.0, 0.125 * width, 0.25, profile="even")
+        free, plane = (
+            solve_solid(TOOTH, 0.0, width, NU, BORE, how, reach=0, plane_strain=plane)
+            for how, plane in ((settings, False), (replace(settings, least_degree=3), True))
+        )
+        moved = [known.deflection(0, middle, even)[0, 0] for known in (free, plane)]
+        stress = [known.largest_root_stress(0, "tension", even, [0.0])[0][0, 0] for known in (free, plane)]
+        off.append((moved[0] / moved[1] - 1.0, stress[0] / stress[1] - 1.0))
+    assert np.all(np.diff(off, axis=0) < 0.0)
+    assert np.max(off[-1]) < 0.02
+
+
+def test_a_hub_that_holds_less_lets_the_tooth_sink_more():
+    at, widths = bands(14.0, [-0.6, 0.0, 0.6], 0.4, 0.25), [None, (-1.0, 1.0), (-0.5, 0.5), (-0.2, 0.2)]
+    coarse = replace(SolidSettings().scaled(2.0), section=replace(SolidSettings().section.scaled(2.5), order=2))
+    moved = [np.diagonal(solved(0.02, 2.0, coarse, held=held, reach=0).deflection(0, at, at)) for held in widths]
+    np.testing.assert_allclose(moved[0], moved[1], rtol=1e-12)  # all of the bore
+    assert np.all(np.diff(moved[1:], axis=0) > 0.0)
+
+
 def test_an_even_load_converges_along_the_face_faster_than_any_order():
     pressed = bands([13.6, 14.2], 0.0, 1.0, 0.25, profile="even")
     section = replace(SolidSettings().section.scaled(2.0), order=2)

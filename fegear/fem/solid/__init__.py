@@ -5,8 +5,11 @@
     known = solid_influence(section, tau, width, poisson_ratio, bore_radius)   # lengths in modules of the section
     contact = hats(radius, stations, known.band_half_width(radius), slope=slope)
     known.deflection(k, contact, contact)               # (P, P), 1 / (E module) per unit force
+    known.contact_compliance(radius, stations, b)       # c_0 of contacts of Hertzian half-width b along a contact line
     known.fillet_stress(k, "tension", contact, zeta)    # (3, points, Z, P), 1 / module^2 per unit force
-    known.error, known.seconds, known.settings
+    known.error, known.contact_error(radius, stations, b), known.seconds, known.settings
+
+    solid_influence(..., settings=solid_settings(3e-3), held=(-1.0, 2.0), cache=SolutionCache(...))
 
 - `section` is the transverse section (`fegear.geometry.Tooth`), its lengths in its own modules, tooth 0 on the y axis,
   loaded flank at x > 0, tooth k = +1 clockwise. z runs along the axis out of that drawing, 0 in the middle of the face;
@@ -16,14 +19,20 @@
   transverse force. `hats` puts them on the stations of a contact line; `slope` is d(arc up the flank)/dz of that line.
   Deflections are -N . u with N = (n, tau t . x), the approach along the transverse line of action, weighted with the
   watched band's own pressure: c_k(p, q) = c_-k(q, p).
-- Deflections are those of the pressed bands as wide as they are given (`band_half_width` is what the section resolves).
+- `deflection` is that of the pressed bands as wide as they are given (`band_half_width` is what the section resolves)
+  and as polynomials along the face see them: right for other teeth and other places. For a contact line's own
+  compliance take `contact_compliance`: Hertz's width, what the polynomials leave out, free end faces. On one line of
+  contact a width b enters as -(1 - nu^2) / (pi E cos(beta_b)) * overlap * (ln b_i + ln b_j), so that a load-dependent
+  width needs no second call (`contact.line_compliance`, `bands.overlap`).
+- Contact lines on the flank: `line_slope(radius)` is d(arc)/dz, and on the base tangent their length from the base
+  circle is sqrt(r^2 - r_b^2) = rho_0 - tau r_b z.
 - Fillet stresses are of the free surface: up the fillet in the transverse section, across it, shear between both;
   `known.fine.fillets[side]` says where the points lie (`place` in the section at z = 0, `arc`, `tangent_angle`).
 """
 
 from fegear.fem.solid.bands import Bands, bands, hats
 from fegear.fem.solid.influence import SolidInfluence, solid_influence
-from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.settings import SolidSettings, solid_settings
 from fegear.fem.solid.solution import SolidSolution, solve_solid
 
 __all__ = [
@@ -34,5 +43,6 @@ __all__ = [
     "bands",
     "hats",
     "solid_influence",
+    "solid_settings",
     "solve_solid",
 ]

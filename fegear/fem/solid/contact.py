@@ -16,7 +16,7 @@ import numpy as np
 from fegear.fem.influence import curvature_slope
 from fegear.fem.solid.bands import overlap, profile_moments, profiles_at
 from fegear.fem.solid.end_slope import end_slope
-from fegear.fem.solid.half_space import band_cosines, band_spectrum, function_cosines
+from fegear.fem.solid.half_space import band_cosines, function_cosines, galerkin_compliance
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -86,15 +86,12 @@ def _narrow(solution: SolidSolution, line: Bands) -> Array:
 
 
 def _as_the_functions_see_it(solution: SolidSolution, line: Bands, a: float) -> Array:
-    """The same for wide bands, as far as the functions along the face resolve them.
-
-    Galerkin's method on the half-space: the stiffness of cosines, 1 / M, between those functions.
-    """
-    k, width = _wave_numbers(solution, line), solution.width
-    cosines, plain = function_cosines(solution.face, k.size)
-    stiffness = 2.0 / width * (cosines / band_spectrum(k * a)) @ cosines.T + np.multiply.outer(plain, plain)
-    moments = profile_moments(line, solution.face) - plain[:, None] / width
-    return np.asarray(moments.T @ np.linalg.solve(stiffness, moments) - 2.0 / width * math.log(a))
+    """The same for wide bands, as far as the functions along the face resolve them."""
+    face, width, count = solution.face, solution.width, _wave_numbers(solution, line).size
+    _, plain = function_cosines(face, count)
+    moments = profile_moments(line, face) - plain[:, None] / width
+    answer = galerkin_compliance(face, solution.normal_length, count, a)
+    return np.asarray(moments.T @ answer @ moments - 2.0 / width * math.log(a))
 
 
 def _at_the_faces(solution: SolidSolution, line: Bands, a: float, b: float) -> Array:

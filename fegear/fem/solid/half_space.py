@@ -10,7 +10,7 @@ cosines along the face by themselves.
 from __future__ import annotations
 
 import itertools
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -72,6 +72,7 @@ def band_cosines(pressed: Bands, width: float, count: int) -> Array:
     return waves
 
 
+@lru_cache(maxsize=16)
 def function_cosines(face: FaceFunctions, count: int) -> tuple[Array, Array]:
     """Integrals of the functions along the face times those cosines, and times 1, shape (functions, count) and (.,)."""
     nodes, weights = np.polynomial.legendre.leggauss(count + max(face.degrees) + 8)
@@ -84,3 +85,17 @@ def function_cosines(face: FaceFunctions, count: int) -> tuple[Array, Array]:
         total += values @ np.cos(np.multiply.outer(z - face.breaks[0], k))
         mean += values.sum(axis=1)
     return total, mean
+
+
+@lru_cache(maxsize=256)
+def galerkin_compliance(face: FaceFunctions, normal_length: float, count: int, half_width: float) -> Array:
+    """Answer of a half-space to bands whose profiles and deflections are functions along the face, (functions, ...).
+
+    Galerkin's method: the inverse of the stiffness of cosines, 1 / M, between those functions. Of profiles without
+    their mean, which has no answer of its own.
+    """
+    cosines, plain = function_cosines(face, count)
+    k = np.asarray(np.pi * np.arange(1, count + 1) / face.width / normal_length, dtype=float)
+    stiffness = 2.0 / face.width * (cosines / band_spectrum(k * half_width)) @ cosines.T
+    found = np.linalg.inv(stiffness + np.multiply.outer(plain, plain))
+    return np.asarray(0.5 * (found + found.T))

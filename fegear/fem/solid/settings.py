@@ -8,15 +8,17 @@ from dataclasses import dataclass, field, fields, replace
 from fegear.errors import InputError
 from fegear.fem.settings import MeshSettings
 
-#: A section as coarse as its order allows: some 170 triangles.
+#: A section as coarse as its order allows: some 200 triangles.
 _SECTION = MeshSettings(
-    root_edge_length=0.3, root_fraction=1.0, flank_edge_length=0.3, tip_edge_length=0.2, junction_edge_length=0.2,
+    root_edge_length=0.16, root_fraction=0.6, flank_edge_length=0.3, tip_edge_length=0.1, junction_edge_length=0.1,
     back_edge_length=0.8, growth=0.6, tip_growth=0.5, side_growth=0.8, body_fraction=1.8, rim_fraction=0.45,
     order=3,
 )  # fmt: skip
 
 #: By how much the solution that shows the error is coarser.
-COARSER = 1.35
+_COARSER = 1.35
+#: What the usual settings and the finer ones meet, and the power of the tolerance that edges go with.
+_USUAL, _FINE, _ORDER = 1e-2, 3e-3, 0.33
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +61,7 @@ class SolidSettings:
         return max(int(self.least_degree), math.ceil(self.waves_per_module * width))
 
     def scaled(self, factor: float) -> SolidSettings:
-        """Return a coarser (factor > 1) or finer set: everything that leaves an error changes, the band apart."""
+        """Return a coarser (factor > 1) or finer set: everything that leaves an error changes."""
         return replace(
             self,
             section=self.section.scaled(factor),
@@ -67,8 +69,34 @@ class SolidSettings:
             least_degree=max(3, round(self.least_degree / factor)),
             wave_reach=self.wave_reach / factor,
             fewest_waves=self.fewest_waves / factor,
+            band_half_width=min(self.band_half_width * math.sqrt(factor), 0.5),
         )
 
     def coarser(self) -> SolidSettings:
-        """The set whose solution shows the error of this one's."""
-        return self.scaled(COARSER)
+        """The set whose solution shows the error of this one's: nothing that leaves an error is the same."""
+        if self == _THIRD:
+            return SolidSettings()
+        return self.scaled(_COARSER)
+
+
+#: Elements of order 4, more functions along the face, narrower bands.
+_THIRD = SolidSettings(
+    section=replace(_SECTION, order=4), waves_per_module=2.0, least_degree=11, wave_reach=3.0, band_half_width=0.2
+)
+
+
+def solid_settings(tolerance: float) -> SolidSettings:
+    """Settings that usually meet a relative tolerance for contacts in reach of the usual part of the flank.
+
+    Parameters
+    ----------
+    tolerance : float
+        1e-2 takes elements of order 3, 3e-3 those of order 4; others make these finer or coarser, .1 to 1e-3 at most.
+    """
+    if not 1e-3 <= tolerance <= 0.1:
+        raise InputError("accuracy.tolerance", tolerance, "must lie between 1e-3 and 0.1 for teeth with a width")
+    if tolerance >= _USUAL:
+        return SolidSettings() if tolerance == _USUAL else SolidSettings().scaled((tolerance / _USUAL) ** _ORDER)
+    if tolerance >= _FINE:
+        return _THIRD
+    return _THIRD.scaled((tolerance / _FINE) ** _ORDER)

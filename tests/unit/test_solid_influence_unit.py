@@ -1,0 +1,68 @@
+"""Solid influence functions as their users meet them: errors, seconds, settings by tolerance, recalled from disk."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.errors import InputError
+from fegear.fem.solid import SolidSettings, hats, solid_influence, solid_settings
+from fegear.geometry import BasicRack, Tooth
+from fegear.solution_cache import SolutionCache, cache_on_disk
+
+TOOTH = Tooth(19, BasicRack(1.0, 1.25, 0.25), profile_shift=0.1)
+TAU = math.tan(math.radians(15.0)) / 9.5
+COARSE = SolidSettings().scaled(1.6)
+
+
+def solve(cache=None, estimate_error=True):
+    return solid_influence(
+        TOOTH, TAU, 3.0, 0.3, 0.6 * TOOTH.root_radius, COARSE, estimate_error=estimate_error, cache=cache
+    )
+
+
+def test_a_solved_solid_is_recalled_from_disk_bit_for_bit(tmp_path):
+    first = solve(cache_on_disk(tmp_path))
+    again = cache_on_disk(tmp_path)
+    second = solve(again)
+    assert again.shapes.from_disk == 2
+    line = hats(9.6, np.linspace(-1.5, 1.5, 5), first.band_half_width(9.6), slope=first.fine.line_slope(9.6))
+    for k in (-1, 0, 1):
+        assert np.array_equal(first.deflection(k, line, line), second.deflection(k, line, line))
+        stresses = [known.fillet_stress(k, "tension", line, [0.3]) for known in (first, second)]
+        assert np.array_equal(*stresses)
+    assert dict(first.error) == dict(second.error)
+    assert second.settings == COARSE
+
+
+def test_it_tells_its_errors_and_seconds():
+    known = solve(SolutionCache())
+    assert set(known.error) == {"contact", "neighbour", "root_tension", "root_compression"}
+    assert all(0.0 < value < 0.3 for value in known.error.values())
+    assert known.seconds["total"] >= known.seconds["condensation"] > 0.0
+    radius, stations = np.full(5, 9.6), np.linspace(-1.5, 1.5, 5)
+    error = known.contact_error(radius, stations, 0.02)
+    assert error.shape == (5, 5)
+    assert 0.0 < error.max() < 0.3 * known.contact_compliance(radius, stations, 0.02).max()
+
+
+def test_settings_follow_the_tolerance():
+    unknowns = [
+        solid_settings(tolerance).section.expected_triangles * solid_settings(tolerance).degree(8.0)
+        * solid_settings(tolerance).section.order ** 2
+        for tolerance in (0.1, 0.03, 0.01, 0.003, 0.001)
+    ]  # fmt: skip
+    assert np.all(np.diff(unknowns) > 0.0)
+    for wrong in (0.5, 1e-4, math.nan):
+        with pytest.raises(InputError, match="tolerance"):
+            solid_settings(wrong)
+
+
+def test_nothing_that_leaves_an_error_is_the_same_in_the_solution_that_shows_it():
+    for settings in (solid_settings(1e-2), solid_settings(3e-3), solid_settings(0.05)):
+        other = settings.coarser()
+        longer = other.section.root_edge_length > settings.section.root_edge_length
+        assert longer or other.section.order < settings.section.order
+        assert other.waves_per_module < settings.waves_per_module
+        assert other.wave_reach < settings.wave_reach
+        assert other.band_half_width > settings.band_half_width
