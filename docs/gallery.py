@@ -47,7 +47,7 @@ def cases() -> list[Path]:
     return [path for path in found if wanted is None or path.stem in wanted.split(",")]
 
 
-def _name(path: Path) -> str:
+def case_name(path: Path) -> str:
     """``thin_rim``, ``sources/mark_fig22``."""
     return path.relative_to(CASES).with_suffix("").as_posix()
 
@@ -58,13 +58,13 @@ def _title(path: Path) -> str:
 
 def _run(path: Path) -> None:
     """Run a case unless its results are there, made by the same program from the same files."""
-    out, stamp = MADE / _name(path), MADE / f"{_name(path)}.key"
+    out, stamp = MADE / case_name(path), MADE / f"{case_name(path)}.key"
     beside = {p.name: p.read_text("utf-8", "replace") for p in sorted(CASES.rglob("*")) if p.is_file() and p != path}
     named = {name: text for name, text in beside.items() if name in path.read_text("utf-8")}
     key = content_key(code_version(), path.read_text("utf-8"), named)
     if stamp.is_file() and stamp.read_text() == key and (out / "summary.json").is_file():
         return
-    log.info("Running cases/%s.toml", _name(path))
+    log.info("Running cases/%s.toml", case_name(path))
     shutil.rmtree(out, ignore_errors=True)
     command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(path), "--out", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -115,13 +115,13 @@ def _card(path: Path) -> str:
 
 def page(path: Path) -> str:
     """Text of a case's page."""
-    out, text = MADE / _name(path), path.read_text("utf-8")
+    out, text = MADE / case_name(path), path.read_text("utf-8")
     summary = json.loads((out / "summary.json").read_text("utf-8"))
     pictures = [name for name in summary["files"] if name.endswith(".png")]
     parts = [
         f"# {_title(path)}",
         _comment(path),
-        f"```sh\nfegear run cases/{_name(path)}.toml\n```",
+        f"```sh\nfegear run cases/{case_name(path)}.toml\n```",
         (
             f"Computed in {summary['timings']['total']:.2f} s. [The whole report]({path.stem}/report.html), "
             f"[all numbers as a dataset]({path.stem}/results.nc)."
@@ -165,7 +165,7 @@ def _with_unlisted(nav: list[dict[str, object]]) -> list[dict[str, object]]:
 def on_config(config):
     """Put pages without a place and the gallery into the navigation."""
     config.nav = _with_unlisted(config.nav)
-    pages = [{_title(path): f"gallery/{_name(path)}.md"} for path in cases()]
+    pages = [{_title(path): f"gallery/{case_name(path)}.md"} for path in cases()]
     config.nav.append({"Gallery": [{"All cases": "gallery/index.md"}, *pages]})
     return config
 
@@ -186,13 +186,13 @@ def on_files(files, config):
     for path in cases():
         if path not in of_papers:
             index.append(_card(path))
-        files.append(File.generated(config, f"gallery/{_name(path)}.md", content=page(path)))
-        for made in sorted((MADE / _name(path)).rglob("*")):
+        files.append(File.generated(config, f"gallery/{case_name(path)}.md", content=page(path)))
+        for made in sorted((MADE / case_name(path)).rglob("*")):
             relative = made.relative_to(MADE).as_posix()
             if made.is_file() and made.suffix in (".png", ".csv", ".html", ".nc"):
                 files.append(File.generated(config, f"gallery/{relative}", abs_src_path=str(made)))
     if of_papers:
-        listed = [f"- [{_title(path)}]({_name(path)}.md)" for path in of_papers]
+        listed = [f"- [{_title(path)}]({case_name(path)}.md)" for path in of_papers]
         index += ["## Figures of the papers", "\n".join(listed)]
     files.append(File.generated(config, "gallery/index.md", content="\n\n".join(index) + "\n"))
     return files

@@ -9,20 +9,27 @@ from __future__ import annotations
 
 import csv
 import importlib
+import io
 import json
 import math
 import shlex
 import tomllib
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from fegear.cli import COMMANDS
 from fegear.engine.citation import bibliography
+from fegear.output.tables import table_text
 from fegear.unit_text import canonical
 from fegear.units import registry
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Set
+
+    from fegear.workbench.results import Results
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "sources"
@@ -63,31 +70,51 @@ class Found(_Part):
 
 
 class Run:
-    """What a run left in its folder: single values and tables."""
+    """What a run found: single values, and tables as the text of their files.
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._values = json.loads((folder / "summary.json").read_text("utf-8"))["results"]
+    Parameters
+    ----------
+    values : mapping of str to Found
+    tables : mapping of str to callable
+        Gives the text of the table's CSV file.
+    pictures : set of str
+        Names of the files in ``plots/``.
+    """
+
+    def __init__(
+        self, values: Mapping[str, Found], tables: Mapping[str, Callable[[], str]], pictures: Set[str] = frozenset()
+    ) -> None:
+        self._values, self._tables, self.pictures = values, tables, pictures
+
+    @classmethod
+    def in_folder(cls, folder: Path) -> Run:
+        """What ``fegear run`` left in its folder."""
+        summary = json.loads((folder / "summary.json").read_text("utf-8"))["results"]
+        values = {
+            name: Found(value=found["value"], unit=found["unit"])
+            for name, found in summary.items()
+            if found["value"] is not None
+        }
+        tables = {path.stem: partial(path.read_text, "utf-8") for path in sorted((folder / "tables").glob("*.csv"))}
+        return cls(values, tables, {path.name for path in (folder / "plots").glob("*.png")})
+
+    @classmethod
+    def of(cls, results: Results) -> Run:
+        """What `fegear.run` found, as its files would have it."""
+        values = {one.name: Found(value=one.value, unit=one.unit) for one in results.values if one.value is not None}
+        return cls(values, {table.name: partial(table_text, table) for table in results.tables})
 
     def value(self, name: str) -> Found:
         """A single value of ``summary.json``."""
         if name not in self._values:
             raise LookupError(f"no value {name!r}; there are {', '.join(self._values)}")
-        return Found(value=self._values[name]["value"], unit=self._values[name]["unit"])
+        return self._values[name]
 
     def rows(self, table: str) -> list[dict[str, str]]:
         """The lines of a table, each by its heads."""
-        path = self._folder / "tables" / f"{table}.csv"
-        if not path.is_file():
-            raise LookupError(
-                f"no table {table!r}; there are {', '.join(sorted(p.stem for p in path.parent.glob('*')))}"
-            )
-        with path.open(encoding="utf-8", newline="") as file:
-            return list(csv.DictReader(file))
-
-    def has_picture(self, name: str) -> bool:
-        """Whether ``plots/`` holds it."""
-        return (self._folder / "plots" / name).is_file()
+        if table not in self._tables:
+            raise LookupError(f"no table {table!r}; there are {', '.join(self._tables)}")
+        return list(csv.DictReader(io.StringIO(self._tables[table]())))
 
 
 class Number(_Part):

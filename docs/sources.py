@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gallery import MADE
+from gallery import MADE, case_name
+from gallery import cases as run_cases
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from source_rows import JUDGEMENTS, Row, Run, Source, cases, faults_of_runs, sources
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 _HEAD = "| printed as | what it is | made by | in print | fegear | difference | |\n|---|---|---|---|---|---|---|"
 
+#: Numbers of a row that the first page shows.
+_SHOWN = 3
 _WORDS = """\
 What the papers that fegear implements print, figure by figure, and what fegear gives. Each number is made by the case
 beside it when these pages are built, and a test holds it. A paper's own page shows the pictures, drawn with the paper's
@@ -24,14 +27,15 @@ against another method; nothing is tuned to hit a print."""
 
 
 def _made(case: str) -> bool:
-    return (MADE / case / "summary.json").is_file()
+    """Whether the gallery has run the case for this site; a shortened one leaves cases out."""
+    return case in map(case_name, run_cases())
 
 
 def _number(number: Number, case: str) -> tuple[str, str, str]:
     """In print, fegear's and the difference: a cell each."""
     if not _made(case):
         return number.printed or number.statement or "", "not run", ""
-    got = number.read(Run(MADE / case))
+    got = number.read(Run.in_folder(MADE / case))
     printed = number.in_print()
     if printed is None:
         return f"{number.what}: {number.statement}", f"{got.value:.5g} {got.unit}", ""
@@ -48,6 +52,11 @@ def _maker(row: Row, top: str) -> str:
 def _lines(row: Row, paper: str) -> list[str]:
     """A line of the table for each number; the first says what it is all about."""
     numbers = [_number(n, case) for n, case in zip(row.number, row.cases_of_numbers(), strict=True)] or [("", "", "")]
+    if len(numbers) > _SHOWN:
+        numbers = [
+            *numbers[: _SHOWN - 1],
+            (f"and {len(numbers) - _SHOWN + 1} more numbers on the paper's page", "", ""),
+        ]
     name = f"[{', '.join(row.covers)}]({paper}.md#{_anchor(row)})"
     first = [(name, row.shows, _maker(row, "../"), *numbers[0], row.judgement)]
     return [_cells(line) for line in first + [("", "", "", *number, "") for number in numbers[1:]]]
@@ -97,7 +106,7 @@ def page(source: Source) -> str:
             lines.append(f"| in print | fegear | difference |\n|---|---|---|\n{table}")
         lines.append(f"Made by {_maker(row, '../')}.")
         if row.picture and _made(row.case or ""):
-            if not Run(MADE / (row.case or "")).has_picture(row.picture):
+            if row.picture not in Run.in_folder(MADE / (row.case or "")).pictures:
                 raise PluginError(f"{source.title}, {row.covers}: cases/{row.case}.toml draws no {row.picture}")
             lines.append(f"![{', '.join(row.covers)}](../gallery/{row.case}/plots/{row.picture})")
         parts += lines
@@ -107,7 +116,7 @@ def page(source: Source) -> str:
 # ---- what mkdocs calls -------------------------------------------------------------------------------------------
 def on_config(config):
     """Put the pages into the navigation, after the theory."""
-    pages = [{source.title.partition(",")[0]: f"sources/{name}.md"} for name, source in sources().items()]
+    pages = [{source.title.partition(":")[0]: f"sources/{name}.md"} for name, source in sources().items()]
     place = next(k for k, part in enumerate(config.nav) if "Theory" in part) + 1
     config.nav.insert(place, {"Sources": [{"All figures and tables": "sources/index.md"}, *pages]})
     return config
@@ -115,7 +124,7 @@ def on_config(config):
 
 def on_files(files, config):
     """Make the pages; the gallery has run the cases."""
-    wrong = [fault for case in cases() if _made(case) for fault in faults_of_runs(case, Run(MADE / case))]
+    wrong = [fault for case in cases() if _made(case) for fault in faults_of_runs(case, Run.in_folder(MADE / case))]
     wrong += [f"{name}: {fault}" for name, source in sources().items() for fault in source.faults()]
     if wrong:
         raise PluginError("the list of sources does not hold:\n" + "\n".join(wrong))

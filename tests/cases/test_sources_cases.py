@@ -5,7 +5,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from in_process import fegear
+
+import fegear
 
 ROOT = Path(__file__).parents[2]
 
@@ -27,10 +28,9 @@ def test_every_item_of_a_paper_has_its_row(paper):
 
 
 @pytest.mark.parametrize("case", rows.cases())
-def test_the_numbers_of_a_case_hold(case, tmp_path):
-    done = fegear("run", ROOT / "cases" / f"{case}.toml", "--no-plots", "--out", tmp_path / "out", cwd=ROOT)
-    assert done.returncode == 0, done.stderr
-    assert rows.faults_of_runs(case, rows.Run(tmp_path / "out")) == []
+def test_the_numbers_of_a_case_hold(case):
+    run = rows.Run.of(fegear.run(ROOT / "cases" / f"{case}.toml"))
+    assert rows.faults_of_runs(case, run) == []
 
 
 def test_every_case_of_the_folder_answers_for_something():
@@ -92,5 +92,5 @@ def test_a_number_is_held_against_its_run(number, said, tmp_path):
     (tmp_path / "summary.json").write_text('{"results": {"a": {"value": 0.1, "unit": "inch", "error": null}}}')
     (tmp_path / "tables").mkdir()
     (tmp_path / "tables" / "t.csv").write_text("n,force [N]\n1,10\n2,20\n3,30\n")
-    fault = rows.Number(what="x", **number).fault(rows.Run(tmp_path))
+    fault = rows.Number(what="x", **number).fault(rows.Run.in_folder(tmp_path))
     assert (fault == "") if said == "" else (said in fault)
