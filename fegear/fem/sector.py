@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import signal
 import time
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +16,8 @@ from fegear.fem.elements import check_cubic_edges
 from fegear.fem.mesh import GENERATED, SectorMesh, with_middle_nodes
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from fegear.fem.settings import MeshSettings
@@ -44,6 +47,26 @@ def load_gmsh() -> Any:
             f"gmsh cannot be loaded ({problem}); on Debian or Ubuntu run: apt-get install {SYSTEM_PACKAGES}"
         ) from problem
     return gmsh
+
+
+@contextmanager
+def gmsh_session(name: str) -> Iterator[Any]:
+    """Gmsh with an empty model of this name, which is gone afterwards; started and ended unless it runs already."""
+    gmsh = load_gmsh()
+    own = not gmsh.isInitialized()
+    if own:
+        _initialize(gmsh)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)
+        gmsh.model.add(name)
+        try:
+            yield gmsh
+        finally:
+            gmsh.model.remove()
+    finally:
+        if own:
+            gmsh.finalize()
 
 
 def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> SectorMesh:
@@ -161,38 +184,25 @@ def _initialize(gmsh: Any) -> None:
 
 def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Triangulate the inside of a closed polygon whose corners stay the only boundary nodes."""
-    gmsh = load_gmsh()
     n = polygon.shape[1]
-    own = not gmsh.isInitialized()
-    if own:
-        _initialize(gmsh)
-    try:
-        for option, value in {
-            "General.Terminal": 0,
-            "General.NumThreads": 1,
-            "Mesh.Algorithm": 6,
-            "Mesh.MeshSizeExtendFromBoundary": 1,
-        }.items():
-            gmsh.option.setNumber(option, value)
-        gmsh.model.add("fegear sector")
-        geo = gmsh.model.geo
-        for tag, (x, y) in enumerate(polygon.T, start=1):
-            geo.addPoint(x, y, 0.0, tag=tag)
-        for tag in range(1, n + 1):
-            geo.addLine(tag, tag % n + 1, tag)
-            geo.mesh.setTransfiniteCurve(tag, 2)
-        geo.addCurveLoop(list(range(1, n + 1)), 1)
-        geo.addPlaneSurface([1], 1)
-        geo.synchronize()
-        gmsh.model.mesh.generate(2)
-        tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        _, _, connectivity = gmsh.model.mesh.getElements(2)
-    except Exception as problem:
-        raise FegearError(f"gmsh could not mesh the sector: {problem}") from problem
-    finally:
-        gmsh.model.remove()
-        if own:
-            gmsh.finalize()
+    with gmsh_session("fegear sector") as gmsh:
+        try:
+            gmsh.option.setNumber("Mesh.Algorithm", 6)
+            gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
+            geo = gmsh.model.geo
+            for tag, (x, y) in enumerate(polygon.T, start=1):
+                geo.addPoint(x, y, 0.0, tag=tag)
+            for tag in range(1, n + 1):
+                geo.addLine(tag, tag % n + 1, tag)
+                geo.mesh.setTransfiniteCurve(tag, 2)
+            geo.addCurveLoop(list(range(1, n + 1)), 1)
+            geo.addPlaneSurface([1], 1)
+            geo.synchronize()
+            gmsh.model.mesh.generate(2)
+            tags, coordinates, _ = gmsh.model.mesh.getNodes()
+            _, _, connectivity = gmsh.model.mesh.getElements(2)
+        except Exception as problem:
+            raise FegearError(f"gmsh could not mesh the sector: {problem}") from problem
     position = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     order = np.argsort(tags)  # boundary corners carry the lowest tags, in the polygon's order
     position[tags[order].astype(np.int64)] = np.arange(tags.size)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.geometry.curves import Arc, Line
-from fegear.geometry.fillet import ProtuberanceFillet
 from fegear.geometry.outline import gear_outline, tooth_outline, turned
 from fegear.geometry.relieved_outline import relieved_outline
+from fegear.geometry.spline import DEGREE, Spline, smooth_pieces, spline_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,7 +29,7 @@ SPLINE_TOLERANCE = 1e-8
 _MM = 1e3
 AS_GENERATED = "as generated, without relief"
 #: Splines of pieces by the piece's id: one tooth's serve all.
-Splines = dict[int, tuple["Array", "Array"]]
+Splines = dict[int, Spline]
 
 
 def _drawing(flanks: str) -> tuple[Any, Any]:
@@ -41,24 +41,6 @@ def _drawing(flanks: str) -> tuple[Any, Any]:
     for layer, colour in (("OUTLINE", 7), ("BORE", 5)):
         document.layers.add(layer, color=colour)
     return document, document.modelspace()
-
-
-def spline_of(curve: Drawn, tolerance: float = SPLINE_TOLERANCE) -> tuple[Array, Array]:
-    """Knots and control points [modules] of the quintic B-spline through a curve, (M + 6,) and (M, 2).
-
-    Control points are doubled until the spline stays within `tolerance` of the curve between its nodes.
-    """
-    from scipy.interpolate import make_interp_spline
-
-    count = 9
-    while True:
-        u = np.linspace(curve.start, curve.end, count)
-        sign = 1.0 if curve.end > curve.start else -1.0
-        spline = make_interp_spline(sign * u, curve.points(u).T, k=5)
-        between = 0.5 * (u[1:] + u[:-1])
-        if np.abs(spline(sign * between).T - curve.points(between)).max() <= tolerance or count > 4096:
-            return np.asarray(spline.t), np.asarray(spline.c)
-        count = 2 * count - 1
 
 
 def _add_polyline(space: Any, points: Array, layer: str) -> None:
@@ -73,10 +55,7 @@ def _add_curve(space: Any, curve: Drawn, scale: float, turn: float, *, mirrored:
         return turned(points * side, turn) * scale
 
     layer = {"layer": "OUTLINE"}
-    if isinstance(curve, ProtuberanceFillet):  # its curvature jumps, which one spline would round off
-        for piece in (curve.trochoid, curve.involute):
-            _add_curve(space, piece, scale, turn, mirrored=mirrored, known=known)
-    elif isinstance(curve, Line):
+    if isinstance(curve, Line):
         a, b = place(curve.points(np.array([curve.start, curve.end]))).T
         space.add_line(tuple(a), tuple(b), dxfattribs=layer)
     elif isinstance(curve, Arc):
@@ -88,9 +67,9 @@ def _add_curve(space: Any, curve: Drawn, scale: float, turn: float, *, mirrored:
         space.add_arc(tuple(centre), curve.radius * scale, start, end, dxfattribs=layer)
     else:
         if id(curve) not in known:
-            known[id(curve)] = spline_of(curve)
+            known[id(curve)] = spline_of(curve, SPLINE_TOLERANCE)
         knots, control = known[id(curve)]
-        spline = space.add_spline(degree=5, dxfattribs=layer)
+        spline = space.add_spline(degree=DEGREE, dxfattribs=layer)
         spline.control_points = [(x, y, 0.0) for x, y in place(control.T).T]
         spline.knots = knots.tolist()
 
@@ -137,8 +116,9 @@ def write_dxf(
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})
     save(document, "gear_polyline")
 
+    smooth = smooth_pieces(pieces)
     document, space = _drawing(flanks)
-    for curve in pieces:
+    for curve in smooth:
         for mirrored in (False, True):
             _add_curve(space, curve, scale, 0.0, mirrored=mirrored, known=known)
     for end, corner in zip(ends, (sector[:, -1], sector[:, 0]), strict=True):
@@ -149,7 +129,7 @@ def write_dxf(
 
     document, space = _drawing(flanks)
     for k in range(gear.teeth):
-        for curve in pieces:
+        for curve in smooth:
             for mirrored in (False, True):
                 _add_curve(space, curve, scale, k * pitch, mirrored=mirrored, known=known)
     space.add_circle((0.0, 0.0), bore, dxfattribs={"layer": "BORE"})

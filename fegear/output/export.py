@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fegear.case.names import nearest
 from fegear.errors import InputError
+from fegear.geometry.relieved_outline import relieved_outline
 from fegear.models.described_relief import described_relief
 from fegear.models.settings import mesh_settings
 from fegear.models.tooth_mesh import own_sector_mesh
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
 
-FORMATS = ("dxf", "msh", "vtu", "inp", "solid-inp", "solid-vtu")
+FORMATS = ("dxf", "step", "msh", "vtu", "inp", "solid-inp", "solid-vtu")
+#: Those that hold the outline with its relief, not a mesh.
+_EXACT = frozenset({"dxf", "step"})
 #: Those that hold a mesh of the solid gear.
 _SOLID = frozenset({"solid-inp", "solid-vtu"})
 #: Those that hold the plane mesh of a spur gear.
@@ -45,9 +48,9 @@ class Exported:
 def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str) -> Exported:
     """Write every format of every named gear.
 
-    Drawings hold the flanks with the relief that the case gives them; meshes hold the generated flanks, because relief
-    enters fegear's own contact as a distance, not as a change of the mesh. A helical gear is drawn in its section
-    across the axis; its plane mesh would be no gear and is left out.
+    Drawings and solid models hold the flanks with the relief that the case gives them; meshes hold the generated
+    flanks, because relief enters fegear's own contact as a distance, not as a change of the mesh. A helical gear is
+    drawn in its section across the axis; its plane mesh would be no gear and is left out.
 
     Parameters
     ----------
@@ -77,7 +80,9 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
     plane = ", ".join(sorted(wanted.intersection(_PLANE)))
     if len(helical) == len(chosen) and wanted <= _PLANE:
         which = "is helical" if len(helical) == 1 else "are helical"
-        raise InputError("--gear", ", ".join(helical), which, f"{plane} hold plane meshes of spur gears; write dxf")
+        raise InputError(
+            "--gear", ", ".join(helical), which, f"{plane} hold plane meshes of spur gears; write dxf or step"
+        )
     written: list[Path] = []
     remarks = [f"Gear {name} is helical: no {plane} is written for it." for name in helical if plane]
     for name in chosen:
@@ -93,27 +98,36 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
     relieved = scene.case.gear[name].relief is not None
     written: list[Path] = []
     remarks = []
+    gear = scene.gears[name]
+    exact = f"Gear {name}, {', '.join(sorted(wanted & _EXACT)).upper()}"
+    if wanted & _EXACT and found.pair:
+        remarks.append(f"{exact}: relief as in pair {found.pair}; in other pairs it would end elsewhere.")
+    if wanted & _EXACT and found.left_out:
+        remarks.append(f"{exact}: flanks without relief, because {found.left_out}.")
     if "dxf" in wanted:
         flanks = AS_GENERATED if found.relief is None else "with the relief of the case, both flanks"
-        if found.pair:
-            flanks += f", as in pair {found.pair}"
-            remarks.append(f"Gear {name}, DXF: relief as in pair {found.pair}; in other pairs it would end elsewhere.")
-        if found.left_out:
-            remarks.append(f"Gear {name}, DXF: flanks without relief, because {found.left_out}.")
+        flanks += f", as in pair {found.pair}" if found.pair else ""
         if name not in scene.spur_gears:
             remarks.append(f"Gear {name}, DXF: the section across the axis.")
-        written += write_dxf(scene.gears[name], folder, file_name(name), found.relief, flanks)
+        written += write_dxf(gear, folder, file_name(name), found.relief, flanks)
+    if "step" in wanted:
+        from fegear.fem.solid_model import write_step
+
+        written.append(folder / f"{file_name(name)}.step")
+        write_step(written[-1], gear, None if found.relief is None else relieved_outline(gear, found.relief))
+        if scene.case.gear[name].face_width is None:
+            remarks.append(f"Gear {name}, STEP: {gear.face_width * 1e3:.6g} mm wide, for the case has no face_width.")
     meshes = wanted.intersection(_PLANE if name in scene.spur_gears else ()) | (wanted & _SOLID)
     if meshes:
         settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
         if plane := meshes & _PLANE:
             from fegear.output.mesh_export import write_meshes
 
-            written += write_meshes(scene.gears[name], folder, file_name(name), plane, settings, mesh)
+            written += write_meshes(gear, folder, file_name(name), plane, settings, mesh)
         if solid := meshes & _SOLID:
             from fegear.output.solid_export import write_solid
 
-            written += write_solid(scene.gears[name], folder, file_name(name), solid, mesh=mesh)
+            written += write_solid(gear, folder, file_name(name), solid, mesh=mesh)
         if relieved:
             told = ", ".join(sorted(meshes))
             remarks.append(f"Gear {name}, {told}: flanks as generated, without the relief of the case.")

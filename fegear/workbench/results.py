@@ -197,7 +197,7 @@ class Results(Found):
         ----------
         folder : path
         formats : str
-            Any of dxf, msh, vtu, inp, solid-inp, solid-vtu, separated by commas.
+            Any of dxf, step, msh, vtu, inp, solid-inp, solid-vtu, separated by commas.
         gears : tuple of str
             Names of gears; all of them by default.
 
