@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.contact.virtual_gears import virtual_root_stress
 from fegear.formulas import iso6336_rating as rating
+from fegear.formulas.iso6336_stiffness import Stiffness, pair_stiffness
 from fegear.formulas.outcome import Outcome, attempt
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
     from fegear.fem import GearInfluence
     from fegear.fem.settings import MeshSettings
-    from fegear.formulas.iso6336_stiffness import Stiffness
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
     from fegear.solution_cache import SolutionCache
@@ -30,16 +30,14 @@ class HelicalCheck:
 
     Parameters
     ----------
-    gears : tuple of Gear
-        Driver and driven.
-    contact_ratio, overlap_ratio : float
-        epsilon_alpha, epsilon_beta.
+    pair : GearPair
+    overlap_ratio : float
+        epsilon_beta of the faces as they stand.
     line_load : float
         F_t / b [N/m].
     """
 
-    gears: tuple[Gear, Gear]
-    contact_ratio: float
+    pair: GearPair
     overlap_ratio: float
     line_load: float
 
@@ -132,11 +130,11 @@ def rated_helical_pair(
     cache : SolutionCache, optional
     """
     found = []
-    for gear, rim in zip(check.gears, rims, strict=True):
+    for gear, rim in zip((check.pair.driver, check.pair.driven), rims, strict=True):
 
         def rate(gear: Gear = gear, rim: float | None = rim) -> tuple[rating.RootRating, float]:
             load = rating.ToothLoad(
-                check.line_load, rating.virtual_contact_ratio(gear, check.contact_ratio), check.overlap_ratio,
+                check.line_load, rating.virtual_contact_ratio(gear, check.pair.contact_ratio), check.overlap_ratio,
                 gear.helix_angle,
             )  # fmt: skip
             one = rating.rate_helical(gear, load, choice, rim)
@@ -151,5 +149,5 @@ def rated_helical_pair(
         one, fe = both.value
         form = check.line_load / gear.module * one.form.Y_F * one.form.Y_S
         found.append(RatedGear(Outcome(one), form, fe, ""))
-    stiffness = attempt(partial(rating.helical_stiffness, check.gears, check.contact_ratio, check.line_load))
+    stiffness = attempt(partial(pair_stiffness, check.pair, check.line_load))
     return RatedPair((found[0], found[1]), stiffness)

@@ -95,7 +95,10 @@ class PairCompliance:
     nominal_load: float = math.nan
 
     def __post_init__(self) -> None:
-        """Refuse a linear contact without a load to be linear about."""
+        """Refuse helical pairs, and a linear contact without a load to be linear about."""
+        if self.pair.driver.helix_angle != 0.0:
+            angle = f"helix angle {math.degrees(self.pair.driver.helix_angle):.6g} deg"
+            raise InputError("pair", angle, "is no plane problem: its contact runs along the face", "take spur gears")
         if self.hertz not in ("load-dependent", "linear", "none"):
             raise InputError("effects.hertz", f'"{self.hertz}"', 'must be "load-dependent", "linear" or "none"')
         if self.hertz == "linear" and not self.nominal_load > 0.0:

@@ -97,6 +97,8 @@ def solve_gear(
 ) -> GearInfluence:
     """Solve a gear for its influence functions.
 
+    Of a helical gear this is its section across the axis as a plane problem: a thin slice, not the gear.
+
     Parameters
     ----------
     gear : Gear

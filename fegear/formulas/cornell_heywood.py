@@ -19,7 +19,7 @@ import numpy as np
 
 from fegear.errors import ConvergenceError, RangeError
 from fegear.formulas.fillet_section import fillet_parameter, fillet_point, sharpest_fillet_radius, tangent_range
-from fegear.formulas.load_line import load_line
+from fegear.formulas.load_line import load_line, refuse_helix
 from fegear.formulas.root_stress import RootStress, RootStressSource
 
 if TYPE_CHECKING:
@@ -84,8 +84,9 @@ class RootSection:
         Raises
         ------
         RangeError
-            If the root circle lies outside the base circle, where no radial flank exists.
+            If the root circle lies outside the base circle, where no radial flank exists, or the tooth is helical.
         """
+        refuse_helix(tooth)
         if tooth.root_radius >= tooth.base_radius:
             raise RangeError(
                 "root radius",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
 from fegear.formulas import iso6336_root_stress as root
-from fegear.formulas.iso6336_stiffness import Stiffness, stiffness
+from fegear.formulas.load_line import refuse_helix
 
 if TYPE_CHECKING:
     from fegear.geometry import Gear, GearPair
@@ -129,6 +129,7 @@ def rate_spur(
 ) -> RootRating:
     """Rate one gear of a spur pair under a line load [N/m] normal to the flank; rim thickness in m, None for solid."""
     gear = pair.gear(member)
+    refuse_helix(gear.tooth)
     load = ToothLoad(line_load * math.cos(gear.tooth.rack.pressure_angle), pair.contact_ratio)
     at = pair.x_hpstc if member == "driver" else pair.x_lpstc
     height = gear.tip_radius - gear.root_radius
@@ -164,23 +165,3 @@ def rate_helical(gear: Gear, load: ToothLoad, choice: RatingChoice, rim_thicknes
     d_en = root.outer_single_contact_diameter(tooth, tooth.teeth + 2.0 * addendum, load.contact_ratio)
     backup = math.inf if rim_thickness is None else rim_thickness / (gear.tip_radius - gear.root_radius)
     return rate(tooth, d_en, gear.module, load, choice, backup)
-
-
-def helical_stiffness(gears: tuple[Gear, Gear], contact_ratio: float, line_load: float) -> Stiffness:
-    """c' and c_gamma of a helical pair of steel gears; the one with fewer teeth is the pinion.
-
-    Parameters
-    ----------
-    gears : (Gear, Gear)
-    contact_ratio : float
-        Transverse contact ratio epsilon_alpha.
-    line_load : float
-        F_t / b [N/m].
-    """
-    a, b = sorted(gears, key=lambda g: (g.teeth, -g.tooth.profile_shift))
-    return stiffness(
-        (a.teeth, b.teeth), contact_ratio, helix_angle=a.helix_angle,
-        profile_shift=(a.tooth.profile_shift, b.tooth.profile_shift),
-        dedendum=(a.tooth.rack.dedendum, b.tooth.rack.dedendum),
-        pressure_angle=a.normal_pressure_angle, specific_load=line_load,
-    )  # fmt: skip

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from fegear.errors import ConvergenceError, RangeError
+from fegear.formulas.load_line import refuse_helix
 from fegear.formulas.root_stress import RootStress, RootStressSource
 
 if TYPE_CHECKING:
@@ -314,6 +315,7 @@ def pair_root_form(pair: GearPair, member: Member) -> RootForm:
 
 def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:
     """ISO 6336-3 root stress of a generated spur tooth under a load at `radius` [modules], Y_F and Y_S only."""
+    refuse_helix(tooth)
     rack = tooth.rack
     if not tooth.form_radius * (1.0 - 1e-9) <= radius <= tooth.involute_tip_radius * (1.0 + 1e-9):
         raise RangeError("load radius", f"{radius:.6g} modules", "is not on the involute")

@@ -172,7 +172,7 @@ def stiffness(
 
 
 def pair_stiffness(pair: GearPair, line_load: float = math.inf, blank: float = 1.0) -> Stiffness:
-    """Stiffnesses of a spur gear pair; the pinion is the gear with fewer teeth, or the larger profile shift.
+    """Stiffnesses of a gear pair, spur or helical; the pinion is the one with fewer teeth, or more profile shift.
 
     Parameters
     ----------
@@ -186,6 +186,7 @@ def pair_stiffness(pair: GearPair, line_load: float = math.inf, blank: float = 1
     return stiffness(
         (pinion.teeth, wheel.teeth),
         pair.contact_ratio,
+        helix_angle=pair.driver.helix_angle,
         profile_shift=(pinion.tooth.profile_shift, wheel.tooth.profile_shift),
         dedendum=(pinion.tooth.rack.dedendum, wheel.tooth.rack.dedendum),
         pressure_angle=pinion.tooth.rack.pressure_angle,

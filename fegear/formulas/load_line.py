@@ -8,6 +8,7 @@ toward the gear's centre.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -53,14 +54,27 @@ class LoadLine:
         return self.x / np.cos(self.angle)
 
 
-def load_line(tooth: Tooth, radius: ArrayLike) -> LoadLine:
-    """Geometry of loads at `radius` [modules] on the involute of `tooth`.
+def refuse_helix(tooth: Tooth) -> None:
+    """Refuse a helical tooth, which no formula for plane teeth knows.
 
     Raises
     ------
     RangeError
-        If a radius lies off the involute (below the form circle or above its end at the tip).
     """
+    if tooth.helix_angle != 0.0:
+        angle = f"{math.degrees(tooth.helix_angle):.6g} deg"
+        raise RangeError("helix angle", angle, "must be zero: this formula is for spur teeth; ISO 6336's rating is not")
+
+
+def load_line(tooth: Tooth, radius: ArrayLike) -> LoadLine:
+    """Geometry of loads at `radius` [modules] on the involute of a spur tooth.
+
+    Raises
+    ------
+    RangeError
+        If a radius lies off the involute (below the form circle or above its end at the tip), or the tooth is helical.
+    """
+    refuse_helix(tooth)
     r = np.atleast_1d(np.asarray(radius, dtype=float))
     low, high = tooth.form_radius, tooth.involute_tip_radius
     slack = 1e-9 * high  # radii often come from a path of contact, computed with other round-off

@@ -50,7 +50,7 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
     if part.torque is not None:
         force = part.torque / driver.pitch_radius
     load = USUAL_LINE_LOAD if force is None else force / width
-    check = HelicalCheck((pair.pinion, pair.gear), pair.transverse_contact_ratio, pair.overlap_ratio, load)
+    check = HelicalCheck(pair.design, pair.overlap_ratio, load)
     return IsoInputs(names, choice, rims, check, settings, force is None)
 
 

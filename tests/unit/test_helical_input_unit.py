@@ -5,7 +5,14 @@ import math
 import pytest
 from helical_gears import helical_gear
 
+from fegear.contact.closed_form_compliance import closed_form_compliance
+from fegear.contact.pair_compliance import PairCompliance
 from fegear.errors import GeometryError, InputError, RangeError
+from fegear.formulas.iso6336_rating import RatingChoice, rate_spur
+from fegear.formulas.iso6336_root_stress import virtual_teeth
+from fegear.formulas.iso6336_stiffness import pair_stiffness, theoretical_stiffness
+from fegear.formulas.root_stress_sources import root_stress_table
+from fegear.geometry import GearPair
 from fegear.helical import HelicalPair, Misalignment, pair_contact, tooth_contact
 
 DEG = math.pi / 180.0
@@ -60,10 +67,11 @@ def test_results_are_read_only():
         result.mesh.r1[0] = 1.0
 
 
-def test_interference_below_the_form_circle_is_reported():
-    def spur(teeth):
-        return helical_gear(teeth, 5e-3, 20.0 * DEG, 0.0, 0.04, "spur")
+def spur(teeth):
+    return helical_gear(teeth, 5e-3, 20.0 * DEG, 0.0, 0.04, "spur")
 
+
+def test_interference_below_the_form_circle_is_reported():
     assert HelicalPair(spur(30), spur(40)).interferes == (False, False)
     assert HelicalPair(spur(12), spur(80)).interferes == (True, False)
     assert HelicalPair(spur(80), spur(12)).interferes == (False, True)
@@ -74,3 +82,26 @@ def test_flanks_out_of_reach_are_named_none():
     far = pair_contact(pair, [1.5])
     assert far.kind[0] == "none"
     assert far.error[0] == -math.inf
+
+
+def test_what_knows_plane_teeth_alone_refuses_helical_ones():
+    """Gears are of one kind now: a formula for spur teeth would have taken the section for the tooth."""
+    pair = GearPair(gear(30), gear(40, "right"))
+    tooth, radius = pair.driver.tooth, pair.driver.tooth.involute_tip_radius
+    for answers in root_stress_table(tooth, [radius]).values():
+        assert "spur teeth" in answers[0].reason
+    with pytest.raises(RangeError, match="spur teeth"):
+        rate_spur(pair, "driver", 1e5, RatingChoice())
+    source = closed_form_compliance(GearPair(spur(30), spur(40)).driver, "weber-banaschek")
+    with pytest.raises(InputError, match="no plane problem"):
+        PairCompliance(pair, source, source)
+
+
+def test_iso_stiffness_of_a_helical_pair_is_that_of_its_virtual_teeth():
+    # ISO 6336-1, 9.3: c' falls with cos(beta), z_n takes the place of z
+    pair = GearPair(gear(30), gear(40, "right"))
+    straight = GearPair(spur(30), spur(40))
+    found, known = pair_stiffness(pair), pair_stiffness(straight)
+    z_n = [virtual_teeth(z, 30.0 * DEG, 20.0 * DEG) for z in (30, 40)]
+    ratio = theoretical_stiffness(*z_n, 0.0, 0.0) / theoretical_stiffness(30, 40, 0.0, 0.0) * math.cos(30.0 * DEG)
+    assert found.single / known.single == pytest.approx(ratio, rel=1e-12)
