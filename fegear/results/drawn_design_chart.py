@@ -37,11 +37,8 @@ def _chart(chart: DesignChartData) -> Figure:
     told = ""
     if chart.amounts.size > 1 and np.isfinite(chart.dynamic_factor).all():
         best = np.argmin(chart.dynamic_factor, axis=1)
-        order = np.argsort(chart.lengths[best], kind="stable")
         least = chart.dynamic_factor[np.arange(best.size), best]
-        factor.append(
-            Curve(chart.lengths[best][order], least[order], "least of each amount", "ink", dash="dash", markers=False)
-        )
+        factor.append(Curve(chart.lengths[best], least, "least of each amount", "ink", dash="dash", markers=False))
         length, worst = chart.best_for_all()
         factor.append(Points([length], [worst], "least for all amounts", "ink", symbol="star", size=10.0))
         told = f" The star is the length that is best for all amounts together, L_n = {length:.3g}."
