@@ -315,6 +315,11 @@ def _present(chart: DesignChartData, asked: ChartInputs) -> Outcome:
         for (a, n), reason in zip(product(chart.amounts, chart.lengths), chart.reasons, strict=True)
         if reason
     )
+    failures += tuple(
+        f"amounts {one.driver:.4g} and {one.driven:.4g} Delta, length {one.length:.4g}: {one.reason}"
+        for one in chart.unequal
+        if one.reason
+    )
     settings: dict[str, object] = {
         "points": 1 + chart.dynamic_factor.size + 3 * len(chart.unequal), "speeds": int(asked.motion.speeds.size)
     }  # fmt: skip
