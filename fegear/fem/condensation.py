@@ -101,7 +101,7 @@ def condense(elasticity: SectorElasticity, kept: Index, held: Index, *, expandab
         parts = [reduced(*part, level_start[level + 1], old, steps if expandable else None) for part in parts]
     ((left, stiffness),) = parts
     order = np.searchsorted(left, number[kept])
-    return Condensed(kept, stiffness[np.ix_(order, order)], elasticity.size, tuple(steps))
+    return Condensed(kept, symmetric(stiffness)[np.ix_(order, order)], elasticity.size, tuple(steps))
 
 
 def _without_inner(elasticity: SectorElasticity, steps: list[Eliminated] | None) -> tuple[Array, Index]:
@@ -185,7 +185,7 @@ def _smallest_parts(matrices: Array, number: Index, leaf: Index, depth: int, fre
 
 
 def joined(one: tuple[Index, Array], other: tuple[Index, Array]) -> tuple[Index, Array]:
-    """Unknowns of two parts and the sum of their stiffness."""
+    """Unknowns of two parts and the sum of their stiffness, of which only the lower triangle is sure to be there."""
     every = np.union1d(one[0], other[0])
     n = every.size
     entries = np.zeros((n, n))
@@ -200,14 +200,19 @@ def joined(one: tuple[Index, Array], other: tuple[Index, Array]) -> tuple[Index,
             (first, slice(int(at[first]), int(at[first]) + end - first), end)
             for first, end in zip(starts.tolist(), ends.tolist(), strict=True)
         ]
-        for first, rows, end in runs:
-            for begin, columns, stop in runs:
+        for i, (first, rows, end) in enumerate(runs):
+            for begin, columns, stop in runs[: i + 1]:
                 entries[rows, columns] += block[first:end, begin:stop]
     return every, entries
 
 
+def symmetric(lower: Array) -> Array:
+    """The whole of a matrix whose lower triangle is known."""
+    return np.asarray(np.tril(lower) + np.tril(lower, -1).T)
+
+
 def reduced(ids: Index, stiffness: Array, end: int, old: Index, steps: list[Eliminated] | None) -> tuple[Index, Array]:
-    """Eliminate the unknowns numbered below `end`, which come first."""
+    """Eliminate the unknowns numbered below `end`, which come first; reads and makes the lower triangle."""
     from scipy.linalg import lapack
 
     n = int(np.searchsorted(ids, end))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.condensation import Condensed, Eliminated, joined, numbered, reduced
+from fegear.fem.condensation import Condensed, Eliminated, joined, numbered, reduced, symmetric
 
 if TYPE_CHECKING:
     from fegear.arrays import Array, Index, Mask
@@ -116,7 +116,7 @@ def condense_solid(
     place = np.empty(known.size, dtype=np.int64)
     place[natural[left]] = np.arange(left.size)
     at = place[wanted]
-    return Condensed(wanted, stiffness[np.ix_(at, at)], known.size, tuple(steps or ()))
+    return Condensed(wanted, symmetric(stiffness)[np.ix_(at, at)], known.size, tuple(steps or ()))
 
 
 def narrow_halves(centres: Array, nodes: Index, weight: Array, depth: int) -> Index:

@@ -38,6 +38,8 @@ _KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings,
 #: Where errors are looked for: contact lines through these shares of the flank's length in the middle of the face,
 #: where they stay off its ends by a share of it; root tension of what stands above another share.
 _UP, _FOOT, _ABOVE_FOOT = (0.12, 0.3, 0.5, 0.7, 0.88), 0.07, 0.35
+#: Parts of the difference from the coarser solution that are taken for the error of the finer one.
+_SHARES = {"contact": 1.0, "neighbour": 1.5, "root_tension": 1.0, "root_compression": 1.0}
 #: Stations along them: so far apart [modules], so many steps at most.
 _STATION, _MOST_STATIONS = 0.5, 24
 
@@ -166,7 +168,7 @@ class SolidInfluence:
                     apart = np.abs(first.max(axis=0) / second.max(axis=0) - 1.0)
                     worst[f"root_{side}"] = float(apart.max())
             found = {key: max(value, worst.get(key, 0.0)) for key, value in found.items()}
-        return MappingProxyType(found)
+        return MappingProxyType({key: _SHARES[key] * value for key, value in found.items()})
 
 
 def contact_line(solution: SolidSolution, radius: ArrayLike, stations: ArrayLike) -> Bands:

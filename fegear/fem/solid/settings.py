@@ -10,7 +10,7 @@ from fegear.fem.settings import MeshSettings
 
 #: A section as coarse as its order allows: some 200 triangles.
 _SECTION = MeshSettings(
-    root_edge_length=0.16, root_fraction=0.6, flank_edge_length=0.3, tip_edge_length=0.1, junction_edge_length=0.1,
+    root_edge_length=0.2, root_fraction=0.7, flank_edge_length=0.3, tip_edge_length=0.1, junction_edge_length=0.1,
     back_edge_length=0.8, growth=0.6, tip_growth=0.5, side_growth=0.8, body_fraction=1.8, rim_fraction=0.45,
     order=3,
 )  # fmt: skip
