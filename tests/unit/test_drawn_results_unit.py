@@ -76,7 +76,7 @@ def spectrum():
         np.array([1000.0]), orders, np.ones((2, 64), dtype=bool), frequencies,
         0.5 * np.stack([lines, lines])[..., None].astype(complex), np.array([1e3, 1e3]),
     )  # fmt: skip
-    (figure,) = _spectrum_figures(SpectrumData(TRAIN, 0, found, None, None))
+    figure, *_ = _spectrum_figures(SpectrumData(TRAIN, 0, found, None, None))
     return figure
 
 
