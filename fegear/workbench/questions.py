@@ -105,6 +105,7 @@ def stiffness_table(
     *,
     positions: int | None = None,
     contact_half_width: Length | None = None,
+    face_positions: int | Iterable[Length] | None = None,
     tolerance: float | None = None,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
@@ -120,6 +121,8 @@ def stiffness_table(
         That many over the flank instead; 100 if neither is given.
     contact_half_width : length, optional
         Half the width that the load presses on; .02 modules by default.
+    face_positions : int or iterable of lengths, optional
+        Solve the gear, spur or helical, with its width: so many places along the face, or the places from its middle.
     tolerance : float, optional
         Relative error that the mesh is chosen for.
     progress, cache
@@ -128,11 +131,12 @@ def stiffness_table(
     Returns
     -------
     Results
-        Table ``stiffness_<gear>``.
+        Table ``stiffness_<gear>``; with face positions ``stiffness_over_face_<gear>``.
     """
     part: dict[str, Any] = {"gear": gear.name}
     given = {"radii": None if radii is None else listed(radii) or [radii], "positions": positions,
-             "contact_half_width": contact_half_width}  # fmt: skip
+             "contact_half_width": contact_half_width,
+             "face_positions": listed(face_positions) or face_positions}  # fmt: skip
     part |= {key: value for key, value in given.items() if value is not None}
     scene = _scene("stiffness", {"gear": {gear.name: gear.keys}, "stiffness": part}, tolerance)
     return run_scene(scene, progress=progress, cache=gear.known if cache is None else cache)

@@ -7,6 +7,7 @@ import meshio
 import numpy as np
 import pytest
 
+import fegear
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -15,10 +16,13 @@ from fegear.errors import FegearError
 from fegear.fem.solid import bands
 from fegear.fem.solid.table import solid_table
 from fegear.geometry import Gear
+from fegear.one_thread import one_thread
 from fegear.output.draw_png import draw_pictures
 from fegear.output.figures import _write_field
 from fegear.results.catalogue import STAGES
 from fegear.solution_cache import SolutionCache
+from fegear.studies.cost.asked import asked
+from fegear.studies.cost.solid_knobs import solid_knobs
 
 CASE = Path(__file__).parents[2] / "cases" / "spur_over_the_face.toml"
 COARSE = ("accuracy.tolerance=5e-2",)
@@ -185,3 +189,36 @@ def test_without_face_positions_the_table_is_the_plane_one_and_the_other_way_rou
     assert tasks == ["solid-solution", "stiffness-over-face", "gear-solution", "stiffness", "root-stress"]
     text = CASE.read_text().replace("face_positions = 5", "")
     assert "face_positions" not in text
+
+
+@pytest.mark.long
+def test_the_cost_study_varies_what_the_solid_depends_on():
+    """Errors fall as edges shorten and functions are added, and neither is free."""
+    with one_thread():
+        knobs = solid_knobs(asked(read_scene(CASE, ["stiffness.face_positions=3", "stiffness.positions=3"])))
+    assert {(knob.quantity, knob.name) for knob in knobs} == {
+        (quantity, name)
+        for quantity in ("c_0 over the face", "c_1 over the face", "root tension over the face")
+        for name in ("edges of the section", "functions per module of face")
+    }
+    for knob in knobs:
+        assert knob.error[-1] < 0.7 * knob.error[0], (knob.quantity, knob.name)
+        assert knob.seconds[-1] > knob.seconds[0]
+    by_name = {(knob.quantity, knob.name): knob.error for knob in knobs}
+    assert by_name["c_0 over the face", "functions per module of face"][2] < 0.01
+
+
+def test_python_asks_for_it_in_a_line(results):
+    """The same numbers as the case file; a place alone, which is neither a number of places nor a list, is refused."""
+    gear = fegear.Gear(
+        name="a", teeth=20, module="2 mm", rack={"addendum": 1.0, "dedendum": 1.25, "tip_radius": 0.25},
+        bore_radius="10 mm", face_width="8 mm",
+    )  # fmt: skip
+    table = columns(results)
+    radius = float(table["radius [mm]"][5]) * 1e-3
+    found = fegear.stiffness_table(gear, radius, face_positions=[-2e-3, 0.0], tolerance=5e-2, progress=False)
+    told = found.tables["stiffness_over_face_a"]
+    values = {column.head: np.asarray(column.values) for column in told.columns}
+    assert values["c_self [um/N]"] == pytest.approx(table["c_self [um/N]"][[6, 7]], rel=1e-9)
+    with pytest.raises(FegearError, match="must be a whole number"):
+        fegear.stiffness_table(gear, face_positions="2 mm", progress=False)

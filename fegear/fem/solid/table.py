@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -129,21 +130,13 @@ def solid_table(
         If a radius lies off the flank, or a position off the face.
     """
     started = time.perf_counter()
-    m, half = gear.module, 0.5 * influence.width
-    r, z = (np.atleast_1d(np.asarray(x, dtype=float)) for x in (radii, positions))
-    if (off := z[np.abs(z) > half * m * (1.0 + 1e-9)]).size:
-        end = half * m * 1e3
-        raise RangeError(
-            "face_positions", f"{off[0] * 1e3:.6g} mm", f"lies off the face, which runs from {-end:.6g} to {end:.6g} mm"
-        )
-    b = np.broadcast_to(np.asarray(half_width, dtype=float), r.shape).copy()
-    place = np.clip(z / m, -half, half)
-    before, after = np.minimum(BAND_REACH, half + place), np.minimum(BAND_REACH, half - place)
-    asked = _Asked(r / m, place, before, after, influence.band_half_width(r / m), b / m)
-    fine = _numbers(influence.fine, asked)
+    m, r = gear.module, np.atleast_1d(np.asarray(radii, dtype=float))
+    asked = bands_of_table(influence.fine, r / m, np.asarray(positions, dtype=float) / m, np.asarray(half_width) / m, m)
+    z, before, after, b = (x * m for x in (asked.place, asked.before, asked.after, asked.half_width))
+    fine = band_numbers(influence.fine, asked)
     relative = {key: np.full((r.size, 1), np.nan) for key in fine}
     if influence.coarse is not None:
-        coarse = _numbers(influence.coarse, asked)
+        coarse = band_numbers(influence.coarse, asked)
         relative = {key: np.abs(coarse[key] / fine[key] - 1.0).max(axis=1, keepdims=True) for key in fine}
     c = {key: fine[key] / (gear.material.young_modulus * m) for key in ("c_self", "c_prev", "c_next")}
     root = {side: _root(influence.fine, side, asked, m) for side in influence.fine.fillets}
@@ -154,13 +147,13 @@ def solid_table(
     }
     roll = np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
     return SolidTable(
-        r, roll, b, asked.pressed_half_width * m, z, before * m, after * m, c["c_self"], c["c_prev"], c["c_next"],
+        r, roll, b, asked.pressed_half_width * m, z, before, after, c["c_self"], c["c_prev"], c["c_next"],
         root, errors, influence, time.perf_counter() - started,
     )  # fmt: skip
 
 
 @dataclass(frozen=True)
-class _Asked:
+class BandsOfTable:
     """Places of the bands, lengths in modules: radius, widths (R,), place and reach along the face (Z,)."""
 
     radius: Array
@@ -177,7 +170,39 @@ class _Asked:
         return bands(radius, self.place, self.before, width, after=self.after, slope=slope)
 
 
-def _numbers(solution: SolidSolution, asked: _Asked) -> dict[str, Array]:
+def bands_of_table(
+    solution: SolidSolution, radius: ArrayLike, place: ArrayLike, half_width: ArrayLike, module: float = math.nan
+) -> BandsOfTable:
+    """Bands at every radius and every place along the face; all in modules.
+
+    Parameters
+    ----------
+    solution : SolidSolution
+    radius, place : array_like, shape (R,), (Z,)
+    half_width : array_like, shape (R,) or ()
+        Of the contacts.
+    module : float, optional
+        [m]; if given, the refusal is in millimetres.
+
+    Raises
+    ------
+    RangeError
+        If a radius lies off the flank, or a place off the face.
+    """
+    r, z = (np.atleast_1d(np.asarray(x, dtype=float)) for x in (radius, place))
+    half = 0.5 * solution.width
+    if (off := z[np.abs(z) > half * (1.0 + 1e-9)]).size:
+        unit, name = (1.0, "modules") if math.isnan(module) else (1e3 * module, "mm")
+        end = half * unit
+        rule = f"lies off the face, which runs from {-end:.6g} to {end:.6g} {name}"
+        raise RangeError("face_positions", f"{off[0] * unit:.6g} {name}", rule)
+    z = np.clip(z, -half, half)
+    width = np.broadcast_to(np.asarray(half_width, dtype=float), r.shape).copy()
+    before, after = np.minimum(BAND_REACH, half + z), np.minimum(BAND_REACH, half - z)
+    return BandsOfTable(r, z, before, after, solution.band_half_width(r), width)
+
+
+def band_numbers(solution: SolidSolution, asked: BandsOfTable) -> dict[str, Array]:
     """Compliances and largest root stresses, shape (R, Z) each."""
     pressed = asked.bands(solution)
     shape = asked.radius.size, asked.place.size
@@ -192,7 +217,7 @@ def _numbers(solution: SolidSolution, asked: _Asked) -> dict[str, Array]:
     return found
 
 
-def _own(solution: SolidSolution, radius: float, asked: _Asked, j: int, half_width: float) -> float:
+def _own(solution: SolidSolution, radius: float, asked: BandsOfTable, j: int, half_width: float) -> float:
     """Approach of one contact under its own force, on the contact line through its middle."""
     z, before, after = asked.place[j], asked.before[j], asked.after[j]
     stations = np.array([z - before, z, z + after])[[before > 0.0, True, after > 0.0]]
@@ -205,7 +230,7 @@ def _own(solution: SolidSolution, radius: float, asked: _Asked, j: int, half_wid
     return float(line_compliance(solution, line, half_width)[own, own])
 
 
-def _root(solution: SolidSolution, side: Side, asked: _Asked, module: float) -> RootStressOfBands:
+def _root(solution: SolidSolution, side: Side, asked: BandsOfTable, module: float) -> RootStressOfBands:
     """Look for the largest stress over a fillet and the face, load by load."""
     fillet, sign = solution.fillets[side], 1.0 if side == "tension" else -1.0
     pressed, shape = asked.bands(solution), (asked.radius.size, asked.place.size)

@@ -7,7 +7,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from fegear.engine.run import Silence
+from fegear.fem.solid import SolidSettings
 from fegear.models.settings import seconds_of_gear
+from fegear.models.solid_influence import seconds_of_solid_gear
 from fegear.one_thread import one_thread
 from fegear.studies.cost.answers import answer
 from fegear.studies.cost.knobs import ladder_knobs
@@ -24,6 +26,7 @@ from fegear.studies.cost.measure import (
 )
 from fegear.studies.cost.pair_knobs import pair_knobs
 from fegear.studies.cost.result import CostResults
+from fegear.studies.cost.solid_knobs import solid_knobs
 from fegear.studies.cost.sources import CaseTable
 
 if TYPE_CHECKING:
@@ -37,12 +40,17 @@ if TYPE_CHECKING:
 #: What answering takes from a solved gear, about [s].
 _ANSWER_SECONDS = {"te-peak-to-peak": 0.15, "tooth-force": 1.1, "dynamic-factor": 2.0}
 _KNOB_SECONDS = 6.0
+#: How many gears with their width the knobs solve, in seconds of one with the usual settings.
+_SOLIDS = 22.0
 
 
 def forecast(asked: Asked, ladder: Ladder) -> float:
     """About how long a study takes on one core [s]."""
     own = sum(_ANSWER_SECONDS.get(q.name, 0.02) for q in asked.quantities)
     total = _KNOB_SECONDS * bool(asked.pair) + own * (len(ladder.configurations) + 2)
+    if asked.scene.case.stiffness.face_positions is not None and asked.gear:
+        gear = asked.scene.gears[asked.gear]
+        total += _SOLIDS * seconds_of_solid_gear(SolidSettings(), gear.face_width / gear.module)
     for configuration in [ladder.reference, ladder.check, *(group[0] for group in ladder.meshes)]:
         if configuration.settings is not None:
             one = seconds_of_gear(configuration.settings)
@@ -122,6 +130,8 @@ def _steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], None]]]
         steps.append(
             ("Knobs of load sharing and dynamics", lambda: found.knobs.extend(pair_knobs(asked, _of_pair(asked, kept))))
         )
+    if asked.scene.case.stiffness.face_positions is not None and asked.gear:
+        steps.append(("Knobs of the gear with its width", lambda: found.knobs.extend(solid_knobs(asked))))
     return steps
 
 
