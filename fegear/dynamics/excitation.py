@@ -250,25 +250,26 @@ class MeshExcitation:
         pitches = math.lcm(*(part.pitches for part in parts))
         cuts = np.unique(np.concatenate([part.breaks_over(pitches) for part in parts]))
         cuts = cuts[np.append(True, np.diff(cuts) > 1e-12)]
-        found = []
         share = np.linspace(0.0, 1.0, 34)[1:-1]
         share = np.concatenate([[1e-9], share, [1.0 - 1e-9]])
+        brackets: list[tuple[float, float, int, bool]] = []
         for a, b in pairwise(cuts):
             s = a + (b - a) * share
-            for k, m in zip(self.stiffness, self.separation, strict=True):
-                if not np.any(k(s) > 0.0):
-                    continue
-                above = self.approach(load, s) > m(s)
-                for n in np.flatnonzero(above[1:] != above[:-1]):
-                    low, high = s[n], s[n + 1]
-                    for _ in range(60):
-                        middle = 0.5 * (low + high)
-                        if (float(self.approach(load, middle)) > float(m(middle))) == above[n]:
-                            low = middle
-                        else:
-                            high = middle
-                    found.append(0.5 * (low + high))
-        return found
+            approach = self.approach(load, s)
+            for slot, (k, m) in enumerate(zip(self.stiffness, self.separation, strict=True)):
+                if np.any(k(s) > 0.0):
+                    above = approach > m(s)
+                    changes = np.flatnonzero(above[1:] != above[:-1])
+                    brackets += [(s[n], s[n + 1], slot, bool(above[n])) for n in changes]
+        if not brackets:
+            return []
+        low, high, slots, before = (np.array(column) for column in zip(*brackets, strict=True))
+        own = slots.astype(int), np.arange(slots.size)
+        for _ in range(60):  # all of them together: each look costs the same for one as for many
+            middle = 0.5 * (low + high)
+            same = (self.approach(load, middle) > np.array([m(middle) for m in self.separation])[own]) == before
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        return [float(place) for place in 0.5 * (low + high)]
 
     def linearised(self, load: float, *, one_sided: bool = True) -> tuple[float, Periodic]:
         """Mean compliance [m/N] and fluctuating static transmission error [m]: the train of Mark's (2.9b)."""
