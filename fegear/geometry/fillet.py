@@ -165,7 +165,8 @@ def meeting(trochoid: Trochoid, flank: RackFlankLine, tangent_roll: float) -> tu
     low = trochoid.start
     if radius(low) < flank.base_radius:
         low = brentq(lambda b: radius(b) - flank.base_radius, low, trochoid.end, xtol=1e-15, rtol=1e-15)
-    clear = _outside(trochoid, flank, low) >= 0.0
+    ends = [_outside(trochoid, flank, b) for b in (low, trochoid.end)]
+    clear = ends[0] >= 0.0 or ends[1] < 0.0  # nowhere on this flank does the trochoid come out
     beta = (
         trochoid.end
         if clear

@@ -1,5 +1,6 @@
 """The transverse section of a helical tooth against the rack itself, rolled in space, and its laws."""
 
+import itertools
 import math
 
 import numpy as np
@@ -153,6 +154,39 @@ def test_a_protuberance_is_that_of_the_normal_section(protuberance, allowance):
     reach = tooth.base_half_angle - t + np.arctan(t) - np.arctan2(*points[:, on_flank])
     depth = reach * tooth.base_radius * math.cos(tooth.base_helix_angle)  # along the normal in space
     assert 0.5 * (protuberance - allowance) < depth.max() <= (protuberance - allowance) * (1.0 + 1e-9)
+
+
+@settings(max_examples=60)
+@given(
+    st.sampled_from([3, 4, 6, 8, 11, 23, 200, 1000]), st.sampled_from([0.0, 0.01, 15.0, 35.0, 59.9]),
+    st.floats(12.0, 30.0), st.floats(0.8, 1.6), st.floats(0.0, 1.0), st.floats(-0.8, 1.2), st.sampled_from([0.0, 0.12]),
+)  # fmt: skip
+def test_a_section_is_one_line_outward_or_refused(teeth, beta, alpha, dedendum, share, shift, protuberance):
+    try:
+        room = BasicRack(1.0, dedendum, 0.0, alpha * DEG).full_fillet_radius
+        rack = BasicRack(1.0, dedendum, share * room, alpha * DEG, protuberance, 0.3 * protuberance, 5.0 * DEG)
+        tooth = Tooth(teeth, rack, shift, helix_angle=beta * DEG)
+    except GeometryError:
+        assume(False)
+    pieces = [curve.points(np.linspace(curve.start, curve.end, 40)) for curve in tooth.outline.values()]
+    for one, following in itertools.pairwise(pieces):
+        assert one[:, -1] == pytest.approx(following[:, 0], abs=1e-9 * tooth.tip_radius)
+    points = np.hstack(pieces)
+    assert np.diff(np.hypot(*points)).min() > -1e-9 * tooth.tip_radius
+    angle = np.arctan2(*points)
+    assert -1e-12 < angle.min() <= angle.max() < math.pi / teeth * (1.0 + 1e-9)
+
+
+def test_a_fillet_that_cuts_all_of_the_protuberances_own_involute_away_ends_on_the_flank():
+    """Teeth in between failed with a sentence of scipy's: their trochoid meets that involute nowhere."""
+    rack = BasicRack(1.0, 1.4977863, 0.3, 0.24412114, 0.12372455, 0.01327376, 0.07300961)
+    for beta in (0.0, 0.01):
+        teeth = [Tooth(11, rack, x, 0.08609499, helix_angle=beta * DEG) for x in (-0.46, -0.44, -0.42, -0.40)]
+        form = np.diff([tooth.form_radius for tooth in teeth])
+        assert np.abs(np.diff(form)).max() < 0.1 * np.abs(form).max()
+        for tooth in teeth:
+            fillet, flank = tooth.fillet, tooth.involute
+            assert fillet.points(fillet.end) == pytest.approx(flank.points(flank.start), abs=1e-9)
 
 
 @pytest.mark.parametrize(
