@@ -181,7 +181,7 @@ def test_a_fillet_that_cuts_all_of_the_protuberances_own_involute_away_ends_on_t
     """Teeth in between failed with a sentence of scipy's: their trochoid meets that involute nowhere."""
     rack = BasicRack(1.0, 1.4977863, 0.3, 0.24412114, 0.12372455, 0.01327376, 0.07300961)
     for beta in (0.0, 0.01):
-        teeth = [Tooth(11, rack, x, 0.08609499, helix_angle=beta * DEG) for x in (-0.46, -0.44, -0.42, -0.40)]
+        teeth = [Tooth(11, rack, x, 0.08609499, helix_angle=beta * DEG) for x in (-0.46, -0.445, -0.43, -0.415)]
         form = np.diff([tooth.form_radius for tooth in teeth])
         assert np.abs(np.diff(form)).max() < 0.1 * np.abs(form).max()
         for tooth in teeth:
