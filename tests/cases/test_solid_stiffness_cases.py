@@ -208,7 +208,7 @@ def test_the_cost_study_varies_what_the_solid_depends_on():
     assert by_name["c_0 over the face", "functions per module of face"][2] < 0.01
 
 
-def test_python_asks_for_it_in_a_line(results):
+def test_python_asks_for_it_in_a_line(results, cache):
     """The same numbers as the case file; a place alone, which is neither a number of places nor a list, is refused."""
     gear = fegear.Gear(
         name="a", teeth=20, module="2 mm", rack={"addendum": 1.0, "dedendum": 1.25, "tip_radius": 0.25},
@@ -216,7 +216,9 @@ def test_python_asks_for_it_in_a_line(results):
     )  # fmt: skip
     table = columns(results)
     radius = float(table["radius [mm]"][5]) * 1e-3
-    found = fegear.stiffness_table(gear, radius, face_positions=[-2e-3, 0.0], tolerance=5e-2, progress=False)
+    found = fegear.stiffness_table(
+        gear, radius, face_positions=[-2e-3, 0.0], tolerance=5e-2, progress=False, cache=cache
+    )
     told = found.tables["stiffness_over_face_a"]
     values = {column.head: np.asarray(column.values) for column in told.columns}
     assert values["c_self [um/N]"] == pytest.approx(table["c_self [um/N]"][[6, 7]], rel=1e-9)
