@@ -39,8 +39,9 @@ _ANSWERS: dict[str, Answer] = {
     "root-stress-history": "root tension",
     **dict.fromkeys(
         (
-            "transmission-error", "relief-chart", "gear-train", "natural-modes", "campbell", "dynamic-increments",
-            "mesh-force-spectrum", "tooth-force", "dynamic-root-stress", "dynamic-factor", "design-chart",
+            "transmission-error", "relief-curves", "relief-chart", "gear-train", "natural-modes", "campbell",
+            "dynamic-increments", "mesh-force-spectrum", "tooth-force", "dynamic-root-stress", "tooth-friction",
+            "dynamic-factor", "design-chart",
         ),
         "transmission error",
     ),
