@@ -16,10 +16,12 @@ if TYPE_CHECKING:
     from fegear.geometry import Gear
     from fegear.solution_cache import SolutionCache
 
-#: Tolerance that the usual settings are for, how edges and wavelengths follow another, and the finest and coarsest.
-_USUAL_TOLERANCE, _FOLLOWS, _FINEST, _COARSEST = 1e-2, 0.25, 0.7, 1.25
+#: Tolerance that the usual settings are for, how edges and wavelengths follow another and how far; from the last on
+#: elements of order 4 are taken, as fine as a case asks for.
+_USUAL_TOLERANCE, _FOLLOWS, _COARSEST, _FINE_TOLERANCE = 1e-2, 0.25, 1.25, 3e-3
 #: Processor seconds of a solid gear with the usual settings and its error estimate: those of a narrow gear, what the
-#: third power of the width [modules] adds, and the power of one over the edge length with which both grow.
+#: third power of the width [modules] adds, and the power of one over the edge length, or of the elements' order, with
+#: which both grow.
 _SECONDS, _BY_WIDTH, _GROWTH = 2.5, 6e-3, 4.0
 
 
@@ -46,13 +48,15 @@ class SolidGearToSolve:
     name: str = field(default="", compare=False)
 
 
-def solid_settings(accuracy: AccuracyPart) -> SolidSettings:
+def settings_of_case(accuracy: AccuracyPart) -> SolidSettings:
     """Settings of a solid gear for a tolerance; edge lengths and order that the case gives hold for its section."""
-    from fegear.fem.solid import SolidSettings
+    from fegear.fem.solid import SolidSettings, solid_settings
 
-    usual = SolidSettings()
-    factor = min(max((accuracy.tolerance / _USUAL_TOLERANCE) ** _FOLLOWS, _FINEST), _COARSEST)
-    chosen = usual.scaled(factor)
+    if accuracy.tolerance <= _FINE_TOLERANCE:
+        chosen = solid_settings(_FINE_TOLERANCE)
+    else:
+        factor = min((accuracy.tolerance / _USUAL_TOLERANCE) ** _FOLLOWS, _COARSEST)
+        chosen = SolidSettings().scaled(factor)
     # The half-width of the bands is the solid's own.
     given = {key: value for key, value in given_settings(accuracy).items() if key != "patch_half_width"}
     return replace(chosen, section=replace(chosen.section, **given)) if given else chosen
@@ -61,7 +65,7 @@ def solid_settings(accuracy: AccuracyPart) -> SolidSettings:
 def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
     """What the case asks of the solid influence functions of a gear."""
     accuracy = scene.case.accuracy
-    return SolidGearToSolve(scene.gears[name], solid_settings(accuracy), accuracy.tolerance, 1, name)
+    return SolidGearToSolve(scene.gears[name], settings_of_case(accuracy), accuracy.tolerance, 1, name)
 
 
 def check_solid_gear(scene: Scene, name: str) -> None:
@@ -114,7 +118,8 @@ def seconds_of_solid_gear(settings: SolidSettings, width: float) -> float:
     """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
     from fegear.fem.solid import SolidSettings
 
-    finer = SolidSettings().section.root_edge_length / settings.section.root_edge_length
+    usual, section = SolidSettings().section, settings.section
+    finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
     return (_SECONDS + _BY_WIDTH * width**3) * finer**_GROWTH
 
 
