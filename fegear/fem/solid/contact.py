@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 _MEAN = 256.0 / (45.0 * np.pi**2)
 #: Cosines along the face: so many to the shortest reach of a band. Those of a hat fall with the square of their number.
 _WAVES, _FEWEST_WAVES, _MOST_WAVES = 12.0, 64, 1500
+#: The same for the functions along the face, to each of their degrees.
+_WAVES_TO_A_DEGREE = 20
 #: Points on each pressed width beside an end face.
 _END_POINTS = np.polynomial.legendre.leggauss(16)
 #: How far from an acute or square, and from an obtuse end face its own part reaches, in pressed half-widths: found from
@@ -87,7 +89,8 @@ def _narrow(solution: SolidSolution, line: Bands) -> Array:
 
 def _as_the_functions_see_it(solution: SolidSolution, line: Bands, a: float) -> Array:
     """The same for wide bands, as far as the functions along the face resolve them."""
-    face, width, count = solution.face, solution.width, _wave_numbers(solution, line).size
+    face, width = solution.face, solution.width
+    count = max(_WAVES_TO_A_DEGREE * max(face.degrees), 4 * _FEWEST_WAVES)  # the same for every line: found once
     _, plain = function_cosines(face, count)
     moments = profile_moments(line, face) - plain[:, None] / width
     answer = galerkin_compliance(face, solution.normal_length, count, a)

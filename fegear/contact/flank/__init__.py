@@ -1,0 +1,26 @@
+"""Loaded flanks of gears with a width: contact lines, compliance of both solid gears, contact solved over the face.
+
+    from fegear.contact.flank import FlankGaps, FlankPair
+
+    flanks = FlankPair(pair, {"driver": first.fine, "driven": second.fine}, panel=0.5, positions=16)
+    known = flanks.compliance(load)                     # the dear part, the same for all gaps and loads about this one
+    found = flanks.solve([load], FlankGaps(line_gap=..., face_position=...), known)
+    found.transmission_error, found.share, found.line_load, found.pressure, found.face_load_factor
+
+Loads are transverse forces along the transverse line of action; heights z count from the middle of the common face along
+the driver's axis, in whose drawing the driver turns clockwise, its loaded flank at x > 0.
+"""
+
+from fegear.contact.flank.compliance import FlankCompliance, flank_compliance
+from fegear.contact.flank.lines import ContactLines, contact_lines
+from fegear.contact.flank.loaded import FlankGaps, FlankPair, LoadedFlanks
+
+__all__ = [
+    "ContactLines",
+    "FlankCompliance",
+    "FlankGaps",
+    "FlankPair",
+    "LoadedFlanks",
+    "contact_lines",
+    "flank_compliance",
+]

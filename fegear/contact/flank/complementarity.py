@@ -1,0 +1,190 @@
+"""Contact over the flank as a complementarity problem, many roll positions and loads at a time.
+
+The line load f(z) is piecewise linear between the stations of a contact line, W_i the forces of its hats. They obey
+
+    u_i + e_i = zeta   where W_i > 0,      u_i + e_i >= zeta   where W_i = 0,      sum_i W_i = W,
+    u_i = sum_j C_ij W_j - 2 s int phi_i f ln b(f) dz,      b(f) = sqrt(q f),
+
+phi_i the hat of unit force, e_i the gap averaged over it. These are the conditions of a minimum, strictly convex while
+b stays below .6 of the unit it is counted in, so the solution is unique. It is found by active sets with Newton's
+method, as in `fegear.contact.load_sharing`; sets that cycle go on by one station at a time (Murty, Linear
+Complementarity, 1988, 3.2: the least index).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import ConvergenceError
+from fegear.frozen import ReadOnlyArrays
+from fegear.tally import note, tallied
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array, Index, Mask
+    from fegear.contact.flank.compliance import FlankCompliance
+    from fegear.contact.flank.lines import ContactLines
+
+#: Steps in which many stations may change, and steps in all.
+_MANY_AT_ONCE, _MOST_STEPS = 15, 400
+#: Share of the mean line load below which the logarithm is continued by its tangent.
+_SMALLEST = 1e-9
+_GAUSS = np.polynomial.legendre.leggauss(4)
+
+
+@dataclass(frozen=True)
+class Contact(ReadOnlyArrays):
+    """Forces on the stations and the approach that goes with them.
+
+    Parameters
+    ----------
+    force : ndarray, shape (P, M, L)
+        W_i [N], zero where apart.
+    approach : ndarray, shape (P, L)
+        zeta [m].
+    stiffness : ndarray, shape (P, L)
+        dW / dzeta with the stations in contact [N/m].
+    residual : ndarray, shape (P, L)
+        Largest violation of the conditions, over the approach from first touch.
+    steps : int
+        Of the slowest problem.
+    """
+
+    force: Array
+    approach: Array
+    stiffness: Array
+    residual: Array
+    steps: int
+
+
+def hat_averages(lines: ContactLines, values: Array) -> Array:
+    """Averages over each station's hat of what is straight between the stations, shape (P, M)."""
+    h, support = lines.panel, lines.support
+    found = np.zeros(values.shape)
+    found[:, :-1] += h * (values[:, :-1] / 3.0 + values[:, 1:] / 6.0)
+    found[:, 1:] += h * (values[:, 1:] / 3.0 + values[:, :-1] / 6.0)
+    return np.asarray(np.divide(found, support, out=np.zeros_like(found), where=support > 0.0))
+
+
+@tallied("load sharing")
+def solve_contact(known: FlankCompliance, gap: Array, load: Array) -> Contact:
+    """Find forces and approach at all roll positions under all loads.
+
+    Parameters
+    ----------
+    known : FlankCompliance
+    gap : ndarray, shape (P, M)
+        Distance of the unloaded flanks at the stations along the line of action [m], removal positive.
+    load : ndarray, shape (L,)
+        Total loads along the transverse line of action [N], positive.
+
+    Returns
+    -------
+    Contact
+
+    Raises
+    ------
+    ConvergenceError
+        If the compliances are not positive definite.
+    """
+    lines = known.lines
+    positions, most = lines.x.shape
+    cases = load.size
+    place = np.repeat(np.arange(positions), cases)
+    total = np.tile(load, positions)
+    averaged = hat_averages(lines, gap)
+    nearest = np.where(lines.present, averaged, np.inf).min(axis=1)
+    apart = np.where(lines.present, averaged - nearest[:, None], 0.0)
+    force, approach = np.zeros((place.size, most)), np.zeros(place.size)
+    stiffness, residual = np.zeros(place.size), np.zeros(place.size)
+    index = np.arange(place.size)
+    active = lines.present[place]
+    v = lines.support[place] / lines.length[place][:, None] * total[:, None]
+    steps = 0
+    while index.size:
+        steps += 1
+        if steps > _MOST_STEPS:
+            raise ConvergenceError(
+                f"Contact over the flank found no consistent set of loaded stations for {index.size} of {place.size} "
+                "problems. Check the compliances: their matrix must be positive definite."
+            )
+        here, w = place[index], total[index]
+        matrix, constant = _tangent(known, here, v)
+        new, z, rate = _bordered(matrix, apart[here] + constant, active, w)
+        kept = np.where(active, np.maximum(new, 0.0), 0.0)
+        distance = np.einsum("bij,bj->bi", matrix, np.where(active, new, 0.0)) + constant + apart[here] - z[:, None]
+        leaves = active & (new <= 0.0)
+        scale = np.abs(z)[:, None] + apart[here]
+        enters = lines.present[here] & ~active & (distance < -1e-13 * scale)
+        close = (np.abs(kept - v) <= 1e-9 * np.abs(v) + 1e-12 * w[:, None]).all(axis=1)
+        changes = leaves | enters
+        done = ~changes.any(axis=1) & (close | (known.fixed_half_width is not None))
+        at = index[done]
+        force[at], approach[at], stiffness[at] = kept[done], z[done] + nearest[here[done]], rate[done]
+        wrong = np.where(active, np.abs(distance), np.maximum(-distance, 0.0)) * lines.present[here]
+        residual[at] = (wrong.max(axis=1) / np.abs(z))[done]
+        if steps > _MANY_AT_ONCE:
+            least = np.argmax(changes, axis=1)
+            only = np.zeros_like(changes)
+            only[np.arange(least.size), least] = True
+            changes &= only
+        active = (active ^ changes)[~done]
+        v, index = kept[~done], index[~done]
+    shape = (positions, cases)
+    forces = np.ascontiguousarray(np.moveaxis(force.reshape(*shape, most), 2, 1))
+    return Contact(forces, approach.reshape(shape), stiffness.reshape(shape), residual.reshape(shape), steps)
+
+
+def _tangent(known: FlankCompliance, place: Index, force: Array) -> tuple[Array, Array]:
+    """Tangent compliances at forces of shape (B, M), and what the tangent leaves at zero force."""
+    lines, s = known.lines, known.log_slope
+    matrix = known.matrix[place]
+    h, support = lines.panel[place], lines.support[place]
+    density = np.divide(1.0, support, out=np.zeros_like(support), where=support > 0.0)
+    f = force * density
+    least = _SMALLEST * force.sum(axis=1, keepdims=True) / lines.length[place][:, None]
+    constant = np.zeros_like(force)
+    diagonal, beside = np.zeros_like(force), np.zeros_like(h)
+    follows = known.fixed_half_width is None
+    if follows:
+        note("nonlinear steps")
+    for x, weight in zip(*_GAUSS, strict=True):
+        b, a = 0.5 + 0.5 * x, 0.5 - 0.5 * x
+        part = 0.5 * weight * h
+        if known.fixed_half_width is None:
+            load = np.maximum(a * f[:, :-1] + b * f[:, 1:], least)
+            q = known.width_factor[place]
+            slope = -s * (np.log((a * q[:, :-1] + b * q[:, 1:]) * load) + 1.0)
+            free = part * s * load
+            constant[:, :-1] += free * a * density[:, :-1]
+            constant[:, 1:] += free * b * density[:, 1:]
+        else:
+            width = known.fixed_half_width[place]
+            slope = -2.0 * s * np.log(a * width[:, :-1] + b * width[:, 1:])
+        slope = part * slope
+        diagonal[:, :-1] += a * a * slope * density[:, :-1] ** 2
+        diagonal[:, 1:] += b * b * slope * density[:, 1:] ** 2
+        beside += a * b * slope * density[:, :-1] * density[:, 1:]
+    at = np.arange(force.shape[1])
+    matrix[:, at, at] += diagonal
+    matrix[:, at[:-1], at[1:]] += beside
+    matrix[:, at[1:], at[:-1]] += beside
+    return matrix, constant
+
+
+def _bordered(matrix: Array, gap: Array, active: Mask, total: Array) -> tuple[Array, Array, Array]:
+    """Forces on the active stations, approach and dW/dzeta, the tangent compliances given."""
+    on = active.astype(float)
+    system = matrix * on[:, :, None] * on[:, None, :]
+    at = np.arange(on.shape[1])
+    system[:, at, at] += 1.0 - on
+    # In units of each station's own compliance, so that inactive rows weigh no more than others.
+    root = np.sqrt(np.abs(system[:, at, at]))
+    system /= root[:, :, None] * root[:, None, :]
+    right = np.stack([on, on * gap], axis=2) / root[:, :, None]
+    y = np.linalg.solve(system, right) / root[:, :, None]
+    rate = y[:, :, 0].sum(axis=1)
+    z = (total + y[:, :, 1].sum(axis=1)) / rate
+    return z[:, None] * y[:, :, 0] - y[:, :, 1], z, rate

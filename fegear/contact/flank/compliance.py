@@ -1,0 +1,159 @@
+"""Both solid gears' influence functions put together for all stations of all contact lines at a roll position.
+
+Each gear is seen in its own drawing, loaded flank toward +x: turning the driven gear's by half a turn about the axis
+lays both together, so heights z count alike on both, and hands are opposite. Pair j + 1 is ahead of pair j: its teeth
+are k = +1 seen from the driver's loaded tooth and k = -1 seen from the driven gear's.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.fem.solid.bands import hats, loads_of, overlap
+from fegear.fem.solid.contact import line_compliance
+from fegear.frozen import ReadOnlyArrays
+from fegear.geometry.pair import MEMBERS
+from fegear.tally import tallied
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.arrays import Array
+    from fegear.contact.flank.lines import ContactLines
+    from fegear.fem.solid.bands import Bands
+    from fegear.fem.solid.solution import SolidSolution
+    from fegear.geometry.pair import GearPair, Member
+
+Hertz = Literal["load-dependent", "linear", "none"]
+
+#: Half-width of a contact that does not know its load [modules], as in the plane.
+_NOMINAL_HALF_WIDTH = 0.08
+#: Pressed half-widths go in steps of this ratio, so that few of them occur.
+_WIDTH_STEP = 0.8
+
+
+@dataclass(frozen=True)
+class FlankCompliance(ReadOnlyArrays):
+    """What the stations of all contact lines do to each other; all that contact needs besides loads and gaps.
+
+    Parameters
+    ----------
+    lines : ContactLines
+    matrix : ndarray, shape (P, M, M)
+        Approach of station i along the transverse line of action per unit force on station j, both gears, contacts of
+        half-width one metre [m/N]; identity where no station is. What the Hertzian width does is in `log_slope`.
+    log_slope : float
+        A line load f [N/m] approaches by -2 log_slope f ln b more, b its half-width [m] over 1 m [m^2/N].
+    width_factor : ndarray, shape (P, M)
+        b^2 = width_factor f: 4 R / (pi E*) [m^3/N], R across the contact line.
+    fixed_half_width : ndarray, shape (P, M), or None
+        Half-width of contacts that do not follow their load [m]; None where they do.
+    """
+
+    lines: ContactLines
+    matrix: Array
+    log_slope: float
+    width_factor: Array
+    fixed_half_width: Array | None
+
+    def half_width(self, line_load: Array) -> Array:
+        """Hertzian half-width b under line loads of shape (P, M, L) [m]."""
+        return np.asarray(np.sqrt(self.width_factor[:, :, None] * line_load))
+
+    def pressure(self, line_load: Array) -> Array:
+        """Largest Hertzian pressure 2 f / (pi b) of smooth long contacts, shape (P, M, L) [Pa]."""
+        b = self.half_width(line_load)
+        return np.divide(2.0 * line_load, np.pi * b, out=np.zeros_like(b), where=b > 0.0)
+
+
+def flank_compliance(
+    pair: GearPair,
+    gears: Mapping[Member, SolidSolution],
+    lines: ContactLines,
+    load: float,
+    *,
+    coupling: bool = True,
+    hertz: Hertz = "load-dependent",
+) -> FlankCompliance:
+    """Assemble the compliance of all stations at all roll positions.
+
+    Parameters
+    ----------
+    pair : GearPair
+    gears : mapping of {"driver", "driven"} to SolidSolution
+    lines : ContactLines
+    load : float
+        About which the ends of the contacts are taken, and all of a linear contact [N].
+    coupling : bool
+        Whether pairs deflect each other, as far as the solutions reach.
+    hertz : {"load-dependent", "linear", "none"}
+        The half-width follows each station's own line load; is that of the mean line load at `load`; or 0.08 modules.
+
+    Returns
+    -------
+    FlankCompliance
+    """
+    module, lean = pair.driver.module, math.cos(pair.driver.base_helix_angle)
+    rho = {member: pair.flank_curvature_radius(lines.x, member) for member in MEMBERS}
+    across = np.maximum(rho["driver"] * rho["driven"] / (rho["driver"] + rho["driven"]), 1e-6 * module) / lean
+    moduli = [pair.gear(m).material for m in MEMBERS]
+    softness = sum((1.0 - m.poisson_ratio**2) / m.young_modulus for m in moduli)
+    factor = 4.0 * across * softness / math.pi
+    mean = np.sqrt(factor * (load / lines.length)[:, None])
+    b = np.full(lines.x.shape, _NOMINAL_HALF_WIDTH * module) if hertz == "none" else mean
+    positions, most = lines.x.shape
+    matrix = np.zeros((positions, most, most))
+    log_slope = 0.0
+    for member in MEMBERS:
+        gear, solution = pair.gear(member), gears[member]
+        softer = 1.0 / (gear.material.young_modulus * module)
+        slope = (1.0 - solution.poisson_ratio**2) * solution.normal_length / math.pi
+        log_slope += slope / gear.material.young_modulus
+        forward = 1 if member == "driver" else -1
+        radius = np.clip(pair.radius(lines.x, member) / module, *_flank(solution))
+        for p in range(positions):
+            spans = lines.at(p)
+            bands = [_bands(solution, radius[p, s], lines.z[p, s] / module) for s in spans]
+            for s, line in zip(spans, bands, strict=True):
+                width = np.log(b[p, s] / module)
+                block = line_compliance(solution, line, b[p, s] / module)
+                block = block + slope * (width[:, None] + width + 2.0 * math.log(module)) * overlap(line)
+                matrix[p, s, s] += softer * block
+            if coupling and solution.reach and len(spans) > 1:
+                _couple(matrix[p], solution, [int(lines.pair[p, s.start]) * forward for s in spans], spans, bands,
+                        softer)  # fmt: skip
+    index = np.arange(most)
+    matrix[:, index, index] += np.where(lines.present, 0.0, 1.0)
+    return FlankCompliance(lines, matrix, log_slope, factor, None if hertz == "load-dependent" else b)
+
+
+@tallied("neighbours")
+def _couple(
+    matrix: Array, solution: SolidSolution, teeth: list[int], spans: list[slice], lines: list[Bands], softer: float
+) -> None:
+    """Add what the lines of one roll position do to each other, and its transpose (Maxwell)."""
+    loads = [loads_of(line, solution.flank, solution.face) for line in lines]
+    for a, first in enumerate(spans):
+        for b in range(a + 1, len(spans)):
+            k = teeth[a] - teeth[b]
+            if abs(k) > solution.reach:
+                continue
+            block = softer * (loads[a].T @ solution.compliance[k] @ loads[b])
+            matrix[first, spans[b]] += block
+            matrix[spans[b], first] += block.T
+
+
+def _flank(solution: SolidSolution) -> tuple[float, float]:
+    return solution.flank.lowest_radius, solution.flank.highest_radius
+
+
+def _bands(solution: SolidSolution, radius: Array, stations: Array) -> Bands:
+    """Hats on the stations of a contact line, of few different half-widths that the section resolves."""
+    widest = solution.settings.band_half_width
+    room = solution.band_half_width(radius) / widest
+    snapped = widest * _WIDTH_STEP ** np.ceil(np.log(room) / math.log(_WIDTH_STEP) - 1e-9)
+    return hats(radius, stations, snapped, slope=solution.line_slope(radius))

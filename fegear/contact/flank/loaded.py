@@ -1,0 +1,263 @@
+"""Loaded flanks: line load, pressure, shares and transmission error of a pair of gears with a width."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.flank.compliance import flank_compliance
+from fegear.contact.flank.complementarity import solve_contact
+from fegear.contact.flank.lines import base_twist, contact_lines
+from fegear.errors import InputError
+from fegear.frozen import ReadOnlyArrays
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.relief import UNMODIFIED, Relief
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+
+    from fegear.arrays import Array
+    from fegear.contact.flank.compliance import FlankCompliance, Hertz
+    from fegear.contact.flank.complementarity import Contact
+    from fegear.contact.flank.lines import ContactLines
+    from fegear.fem.solid.solution import SolidSolution
+    from fegear.geometry.pair import GearPair, Member
+
+@dataclass(frozen=True)
+class FlankGaps(ReadOnlyArrays):
+    """What keeps unloaded flanks apart along the line of action, removal positive.
+
+    Parameters
+    ----------
+    driver_relief, driven_relief : Relief
+        Over the roll angle, the same all over the face.
+    face_position, line_gap : ndarray, shape (n,)
+        Gap over the face position from the middle of the common face [m], straight between: lead modifications,
+        misalignment in the plane of action, deflected shafts. Empty for none.
+    """
+
+    driver_relief: Relief = UNMODIFIED
+    driven_relief: Relief = UNMODIFIED
+    face_position: Array = field(default_factory=lambda: np.empty(0))
+    line_gap: Array = field(default_factory=lambda: np.empty(0))
+
+    def at(self, pair: GearPair, lines: ContactLines) -> Array:
+        """Gap at the stations, shape (P, M) [m]."""
+        gap = self.driver_relief.removal(pair.roll_angle(lines.x, "driver"))
+        gap = gap + self.driven_relief.removal(pair.roll_angle(lines.x, "driven"))
+        if self.line_gap.size:
+            gap = gap + np.interp(lines.z, self.face_position, self.line_gap)
+        return np.asarray(gap)
+
+
+@dataclass(frozen=True)
+class LoadedFlanks(ReadOnlyArrays):
+    """A pair's flanks at P roll positions of one base pitch, under L loads.
+
+    Parameters
+    ----------
+    pair : GearPair
+    known : FlankCompliance
+    contact : Contact
+    load : ndarray, shape (L,)
+        [N], along the transverse line of action.
+    seconds : mapping of str to float
+    """
+
+    pair: GearPair
+    known: FlankCompliance
+    contact: Contact
+    load: Array
+    seconds: Mapping[str, float]
+
+    @property
+    def lines(self) -> ContactLines:
+        """Stations of all contact lines."""
+        return self.known.lines
+
+    @property
+    def transmission_error(self) -> Array:
+        """zeta [m], shape (P, L)."""
+        return self.contact.approach
+
+    @cached_property
+    def line_load(self) -> Array:
+        """f at the stations [N/m], transverse force per length along the face, shape (P, M, L)."""
+        support = self.lines.support[:, :, None]
+        force = self.contact.force
+        return np.divide(force, support, out=np.zeros_like(force), where=support > 0.0)
+
+    @cached_property
+    def pressure(self) -> Array:
+        """Largest Hertzian pressure at the stations [Pa], shape (P, M, L)."""
+        return self.known.pressure(self.line_load)
+
+    @property
+    def pair_numbers(self) -> Array:
+        """j of all pairs that are ever in reach, ascending."""
+        return np.unique(self.lines.pair[self.lines.present])
+
+    @cached_property
+    def pair_load(self) -> Array:
+        """W_j [N], shape (pairs, P, L)."""
+        on = [(self.lines.pair == j) & self.lines.present for j in self.pair_numbers.tolist()]
+        return np.stack([(self.contact.force * here[:, :, None]).sum(axis=1) for here in on])
+
+    @property
+    def share(self) -> Array:
+        """W_j / W, shape (pairs, P, L)."""
+        return self.pair_load / self.load
+
+    @property
+    def equilibrium(self) -> Array:
+        """|sum of all forces - load| / load, shape (P, L)."""
+        return np.abs(self.contact.force.sum(axis=1) - self.load) / self.load
+
+    @cached_property
+    def cells(self) -> Array:
+        """Ends of equal parts of the face over which load is summed, shape (cells + 1,) [m].
+
+        As long as a panel; up to twice that where the ends of contact lines move on so far from one roll position to
+        the next, for there they bear more than the rest of the line.
+        """
+        lines = self.lines
+        step = self.pair.base_pitch / lines.roll.size / max(abs(base_twist(self.pair)), 1e-12)
+        panel = float(lines.panel.max())
+        count = max(2, math.floor((lines.high - lines.low) / min(max(panel, step), 2.0 * panel) + 1e-6))
+        return np.linspace(lines.low, lines.high, count + 1)
+
+    @cached_property
+    def over_face(self) -> Array:
+        """Load of all lines together per face width, averaged over each of `cells`, shape (P, cells, L) [N/m]."""
+        lines, ends = self.lines, self.cells
+        total = np.zeros((lines.roll.size, ends.size, self.load.size))
+        for p in range(lines.roll.size):
+            for s in lines.at(p):
+                for i in range(self.load.size):
+                    total[p, :, i] += _load_below(lines.z[p, s], self.line_load[p, s, i], ends)
+        return np.asarray(np.diff(total, axis=1) / np.diff(ends)[:, None])
+
+    @property
+    def mean_over_face(self) -> Array:
+        """The same averaged over the roll positions, shape (cells, L) [N/m]."""
+        return np.asarray(self.over_face.mean(axis=0))
+
+    @property
+    def face_load_factor(self) -> Array:
+        """K_Hbeta, shape (L,): largest load per face width over the mean one, averaged over the roll positions.
+
+        ISO 6336-1, 7.2: (F / b)_max / (F_m / b).
+        """
+        return np.asarray(self.mean_over_face.max(axis=0) / (self.load / (self.lines.high - self.lines.low)))
+
+    def over_plane(self, x: Array, z: Array, case: int) -> Array:
+        """Line load of a tooth pair as its contact line moves through the plane of action, shape (z, x) [N/m].
+
+        Straight between the roll positions; NaN before the first and after the last of them.
+
+        Parameters
+        ----------
+        x, z : ndarray
+            Along the line of action and along the face [m].
+        case : int
+            Number of the load.
+        """
+        lines, slope = self.lines, base_twist(self.pair)
+        seen = [(float(lines.roll[p] + lines.pair[p, s.start] * self.pair.base_pitch), p, s)
+                for p in range(lines.roll.size) for s in lines.at(p)]  # fmt: skip
+        seen.sort(key=lambda found: found[0])
+        found = np.full((z.size, x.size), np.nan)
+        for row, height in enumerate(z.tolist()):
+            on = [(at, float(np.interp(height, lines.z[p, s], self.line_load[p, s, case])))
+                  for at, p, s in seen if lines.z[p, s][0] <= height <= lines.z[p, s][-1]]  # fmt: skip
+            if len(on) > 1:
+                at, load = np.array(on).T
+                found[row] = np.interp(x + slope * height, at, load, left=np.nan, right=np.nan)
+        return found
+
+
+def _load_below(z: Array, line_load: Array, ends: Array) -> Array:
+    """Integral of a line load, straight between its stations, up to some heights, shape (n,) [N]."""
+    h = np.diff(z)
+    whole = np.concatenate([[0.0], np.cumsum(0.5 * h * (line_load[1:] + line_load[:-1]))])
+    at = np.clip(ends, z[0], z[-1])
+    i = np.clip(np.searchsorted(z, at, side="right") - 1, 0, h.size - 1)
+    part = (at - z[i]) / h[i]
+    return np.asarray(whole[i] + h[i] * part * (line_load[i] + 0.5 * part * (line_load[i + 1] - line_load[i])))
+
+
+@dataclass(frozen=True)
+class FlankPair:
+    """A pair of gears with a width, ready to be loaded.
+
+    Parameters
+    ----------
+    pair : GearPair
+    gears : mapping of {"driver", "driven"} to SolidSolution
+    coupling : bool
+        Whether tooth pairs deflect each other.
+    hertz : {"load-dependent", "linear", "none"}
+    panel : float
+        Length of a panel along the face, at most [modules].
+    positions : int
+        Roll positions over one base pitch.
+    """
+
+    pair: GearPair
+    gears: Mapping[Member, SolidSolution]
+    coupling: bool = True
+    hertz: Hertz = "load-dependent"
+    panel: float = 0.5
+    positions: int = 16
+
+    @property
+    def roll(self) -> Array:
+        """Roll positions, the middles of equal parts of a base pitch [m]."""
+        return np.asarray(
+            self.pair.x_start + self.pair.base_pitch * (np.arange(self.positions) + 0.5) / self.positions
+        )
+
+    def compliance(self, load: float) -> FlankCompliance:
+        """Lines and compliances at all roll positions; see `flank_compliance` for `load`."""
+        for member in MEMBERS:
+            if self.gears[member].reach == 0 and self.coupling:
+                raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
+        lines = contact_lines(self.pair, self.roll, self.panel * self.pair.driver.module)
+        return flank_compliance(self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz)
+
+    def solve(self, load: ArrayLike, gaps: FlankGaps | None = None, known: FlankCompliance | None = None) -> LoadedFlanks:
+        """Load the flanks.
+
+        Parameters
+        ----------
+        load : array_like, shape (L,)
+            Along the transverse line of action [N].
+        gaps : FlankGaps, optional
+        known : FlankCompliance, optional
+            What `compliance` gave: the same for all gaps, and for all loads about the one it was made for.
+
+        Returns
+        -------
+        LoadedFlanks
+
+        Raises
+        ------
+        InputError
+            If a load is not positive.
+        """
+        started = time.perf_counter()
+        loads = np.atleast_1d(np.asarray(load, dtype=float))
+        if not (np.isfinite(loads) & (loads > 0.0)).all():
+            raise InputError("load", f"{loads.min()} N", "must be positive and finite")
+        known = self.compliance(float(loads.max())) if known is None else known
+        assembled = time.perf_counter()
+        contact = solve_contact(known, (gaps or FlankGaps()).at(self.pair, known.lines), loads)
+        seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
+        return LoadedFlanks(self.pair, known, contact, loads, seconds)
