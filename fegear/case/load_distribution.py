@@ -1,4 +1,4 @@
-"""``[load_distribution]`` and ``line_error`` of a pair: how flanks with a width are loaded, and what keeps them apart."""
+"""``[load_distribution]``, and ``line_error`` of a pair: what keeps flanks apart over the face."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fegear.case.part import Length, LengthOrZero, Part, refuse
 
 
 class LoadDistributionPart(Part):
-    """Roll positions over a base pitch, and panels over the face; without ``panels`` one to half a module."""
+    """Roll positions over a base pitch, and panels over the face; without ``panels`` one to a quarter of a module."""
 
     positions: Annotated[int, Field(ge=2, le=256)] = 16
     panels: Annotated[int, Field(ge=2, le=200)] | None = None

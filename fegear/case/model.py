@@ -13,6 +13,7 @@ from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
 from fegear.case.gear import GearPart
 from fegear.case.helical import ToothContactPart
+from fegear.case.load_distribution import LoadDistributionPart
 from fegear.case.loading import LoadingPart
 from fegear.case.pair import PairPart
 from fegear.case.part import Part
@@ -33,6 +34,7 @@ class Case(Part):
     stiffness: StiffnessPart = Field(default_factory=StiffnessPart)
     study: StudyPart | None = None
     tooth_contact: ToothContactPart = Field(default_factory=ToothContactPart)
+    load_distribution: LoadDistributionPart = Field(default_factory=LoadDistributionPart)
     transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
     design: DesignPart | None = None
     loading: LoadingPart | None = None

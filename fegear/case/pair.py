@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from fegear.case.helical import MisalignmentPart, ModificationPart, build_pair
+from fegear.case.load_distribution import LineErrorPart
 from fegear.case.part import (
     Length,
     Part,
@@ -94,6 +95,7 @@ class PairPart(Part):
     compliance: CompliancePart = Field(default_factory=CompliancePart)
     root_stress: RootStressPart = Field(default_factory=RootStressPart)
     misalignment: MisalignmentPart | None = None
+    line_error: LineErrorPart | None = None
     modification: ModificationPart | None = None
     axial_offset: Length = 0.0
     iso_6336: IsoPart = Field(default_factory=IsoPart)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 #: Effects that loaded flanks know.
 FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "misalignment")
 #: Panels per module of face, and points of a crowned line error.
-_PANELS_PER_MODULE, _POINTS = 2.0, 65
+_PANELS_PER_MODULE, _POINTS = 4.0, 65
 
 
 @dataclass(frozen=True)
@@ -78,14 +78,16 @@ class FlanksToLoad:
         """What keeps the flanks apart."""
         from fegear.contact.flank import FlankGaps
 
-        found = {
-            f"{member}_relief": build_relief(self.pair, member, flank, math.nan)
-            for member, flank in zip(MEMBERS, self.flanks, strict=True)
-            if relief
-        }
+        apart = FlankGaps()
+        if relief:
+            driver, driven = (
+                build_relief(self.pair, member, flank, math.nan)
+                for member, flank in zip(MEMBERS, self.flanks, strict=True)
+            )
+            apart = replace(apart, driver_relief=driver, driven_relief=driven)
         if misalignment:
-            return FlankGaps(**found, face_position=self.face_position, line_gap=self.line_gap)
-        return FlankGaps(**found)
+            apart = replace(apart, face_position=self.face_position, line_gap=self.line_gap)
+        return apart
 
 
 def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
@@ -144,8 +146,8 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
     if abs(pair.driver.face_width - pair.driven.face_width) > 1e-9 * pair.face_width:
         raise InputError(
             f"gear.{part.driven}.face_width", f"{pair.driven.face_width * 1e3:.6g} mm",
-            f"differs from its mate's, {pair.driver.face_width * 1e3:.6g} mm, and contact that ends inside a face is not "
-            "computed yet", "give both gears one face width",
+            f"differs from its mate's, {pair.driver.face_width * 1e3:.6g} mm, and contact that ends inside a face is "
+            "not computed yet", "give both gears one face width",
         )  # fmt: skip
     if part.axial_offset:
         raise InputError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -64,8 +65,13 @@ def settings_of_case(accuracy: AccuracyPart) -> SolidSettings:
 
 def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
     """What the case asks of the solid influence functions of a gear."""
-    accuracy = scene.case.accuracy
-    return SolidGearToSolve(scene.gears[name], settings_of_case(accuracy), accuracy.tolerance, 1, name)
+    accuracy, reach = scene.case.accuracy, 1
+    if "load-distribution" in scene.case.results:
+        # As far as two pairs of one mesh can stand apart.
+        for key, part in scene.case.pair.items():
+            if name in (part.driver, part.driven):
+                reach = max(reach, math.ceil(scene.pairs[key].total_contact_ratio))
+    return SolidGearToSolve(scene.gears[name], settings_of_case(accuracy), accuracy.tolerance, reach, name)
 
 
 def check_solid_gear(scene: Scene, name: str) -> None:

@@ -17,6 +17,7 @@ from fegear.results import (
     gear_solution,
     gear_train,
     geometry,
+    load_distribution,
     load_sharing,
     loaded_pair,
     loading_spectrum,
@@ -65,6 +66,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             load_sharing.LOAD_SHARING,
             transmission_error.TRANSMISSION_ERROR,
             root_stress_history.ROOT_STRESS_HISTORY,
+            load_distribution.LOAD_DISTRIBUTION,
         ),
         "Profile relief": (
             relief.RELIEF,

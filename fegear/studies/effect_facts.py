@@ -62,8 +62,8 @@ FACTS: dict[str, EffectFact] = {
         "tooth pairs come and go: the stiffness varies in time", "results in time", ("springs in time",)
     ),
     "misalignment": EffectFact(
-        "helical gears run with errors of axes, lead, profile and centre distance",
-        "`misalignment` of a helical pair",
+        "helical gears run with errors of axes, lead, profile and centre distance; a gap over the face counts",
+        "`misalignment` of a helical pair, or `line_error` for `load-distribution`",
         ("misaligned flanks",),
     ),
 }

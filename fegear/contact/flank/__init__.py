@@ -7,8 +7,8 @@
     found = flanks.solve([load], FlankGaps(line_gap=..., face_position=...), known)
     found.transmission_error, found.share, found.line_load, found.pressure, found.face_load_factor
 
-Loads are transverse forces along the transverse line of action; heights z count from the middle of the common face along
-the driver's axis, in whose drawing the driver turns clockwise, its loaded flank at x > 0.
+Loads are transverse forces along the transverse line of action; heights z count from the middle of the common face
+along the driver's axis, in whose drawing the driver turns clockwise, its loaded flank at x > 0.
 """
 
 from fegear.contact.flank.compliance import FlankCompliance, flank_compliance

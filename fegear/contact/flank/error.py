@@ -60,7 +60,9 @@ def flank_error(
             for k, j in zip(at.tolist(), found.pair_numbers.tolist(), strict=True)]  # fmt: skip
     share = np.stack([np.abs(found.share[i] - (other.share[k] if on else 0.0))
                       for i, (k, on) in enumerate(zip(at.tolist(), same, strict=True))])  # fmt: skip
+    over = other.load_between(found.cells).mean(axis=0)
+    factor = over.max(axis=0) / (found.load / (found.lines.high - found.lines.low))
     return FlankError(
         np.abs(again - te), share, np.abs(again.mean(axis=0) - te.mean(axis=0)),
-        np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), np.abs(other.face_load_factor - found.face_load_factor),
+        np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), np.abs(factor - found.face_load_factor),
     )  # fmt: skip

@@ -7,6 +7,7 @@ ends at the tips and form circles in use and at the ends of the common face (ISO
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair
 
 #: A contact line shorter than this is left out [modules]: it is no longer long beside its Hertzian width.
-SHORTEST_LINE = 0.1
+SHORTEST_LINE = 0.15
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class ContactLines(ReadOnlyArrays):
         """Where the lines of a roll position stand, in the order of their pairs."""
         count = int(self.present[position].sum())
         starts = [0, *(1 + np.flatnonzero(np.diff(self.pair[position, :count]))).tolist(), count]
-        return [slice(a, b) for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        return [slice(a, b) for a, b in itertools.pairwise(starts)]
 
 
 def base_twist(pair: GearPair) -> float:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.flank.compliance import flank_compliance
 from fegear.contact.flank.complementarity import solve_contact
+from fegear.contact.flank.compliance import flank_compliance
 from fegear.contact.flank.lines import base_twist, contact_lines
 from fegear.errors import InputError
 from fegear.frozen import ReadOnlyArrays
@@ -24,11 +24,12 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.contact.flank.compliance import FlankCompliance, Hertz
     from fegear.contact.flank.complementarity import Contact
+    from fegear.contact.flank.compliance import FlankCompliance, Hertz
     from fegear.contact.flank.lines import ContactLines
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.pair import GearPair, Member
+
 
 @dataclass(frozen=True)
 class FlankGaps(ReadOnlyArrays):
@@ -136,7 +137,11 @@ class LoadedFlanks(ReadOnlyArrays):
     @cached_property
     def over_face(self) -> Array:
         """Load of all lines together per face width, averaged over each of `cells`, shape (P, cells, L) [N/m]."""
-        lines, ends = self.lines, self.cells
+        return self.load_between(self.cells)
+
+    def load_between(self, ends: Array) -> Array:
+        """The same between any heights, shape (P, n - 1, L) [N/m]."""
+        lines = self.lines
         total = np.zeros((lines.roll.size, ends.size, self.load.size))
         for p in range(lines.roll.size):
             for s in lines.at(p):
@@ -220,9 +225,7 @@ class FlankPair:
     @property
     def roll(self) -> Array:
         """Roll positions, the middles of equal parts of a base pitch [m]."""
-        return np.asarray(
-            self.pair.x_start + self.pair.base_pitch * (np.arange(self.positions) + 0.5) / self.positions
-        )
+        return np.asarray(self.pair.x_start + self.pair.base_pitch * (np.arange(self.positions) + 0.5) / self.positions)
 
     def compliance(self, load: float) -> FlankCompliance:
         """Lines and compliances at all roll positions; see `flank_compliance` for `load`."""
@@ -232,7 +235,9 @@ class FlankPair:
         lines = contact_lines(self.pair, self.roll, self.panel * self.pair.driver.module)
         return flank_compliance(self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz)
 
-    def solve(self, load: ArrayLike, gaps: FlankGaps | None = None, known: FlankCompliance | None = None) -> LoadedFlanks:
+    def solve(
+        self, load: ArrayLike, gaps: FlankGaps | None = None, known: FlankCompliance | None = None
+    ) -> LoadedFlanks:
         """Load the flanks.
 
         Parameters

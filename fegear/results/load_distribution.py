@@ -1,0 +1,265 @@
+"""Stage ``load-distribution``: line load and pressure over the flanks of gears with a width, and what they sum to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.geometry.pair import MEMBERS
+from fegear.models.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
+from fegear.models.pair_inputs import gear_name
+from fegear.results.drawn_load_distribution import load_distribution_figures
+from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
+from fegear.results.sources import HERTZ, INVOLUTE, RING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.contact.flank import LoadedFlanks
+    from fegear.contact.flank.error import FlankError
+    from fegear.engine.stage import Task, Upstream, Work
+    from fegear.models.loaded_flanks import FlanksToLoad
+
+#: Seconds of one contact line on one gear, and of the contact at one roll position.
+_LINE, _CONTACT = 0.03, 0.004
+
+
+@dataclass(frozen=True)
+class LoadDistributionData:
+    """What the stage hands to tables and pictures.
+
+    Parameters
+    ----------
+    found : LoadedFlanks
+    error : FlankError
+    nominal : int
+        Number of the nominal load.
+    neglected : mapping of str to (float, float)
+        By the effects that are off: mean transmission error [m] and K_Hbeta with each of them on.
+    """
+
+    found: LoadedFlanks
+    error: FlankError
+    nominal: int
+    neglected: Mapping[str, tuple[float, float]]
+
+
+def _compute(asked: FlanksToLoad, upstream: Upstream, _work: Work) -> LoadDistributionData:
+    from fegear.contact.flank import FlankPair
+    from fegear.contact.flank.error import flank_error
+
+    effects = asked.effects
+    solved = [solid_solution_of(upstream, gear) for gear in asked.gears]
+    fine = {member: one.fine for member, one in zip(MEMBERS, solved, strict=True)}
+    coupling, hertz = effects.neighbour_coupling, effects.hertz
+    flanks = FlankPair(asked.pair, fine, coupling, hertz, asked.panel, asked.positions)
+    gaps = asked.gaps(relief=effects.relief, misalignment=effects.misalignment)
+    known = flanks.compliance(asked.nominal)
+    found = flanks.solve(asked.loads, gaps, known)
+    coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
+    error = flank_error(flanks, found, coarse, gaps)
+    neglected = {}
+    for effect in FLANK_EFFECTS:
+        if effects.is_on(effect) or not _has_data(asked, effect):
+            continue
+        others, again, apart = flanks, known, gaps
+        if effect == "neighbour_coupling":
+            others = replace(flanks, coupling=True)
+            again = others.compliance(asked.nominal)
+        elif effect == "hertz":
+            again = replace(known, fixed_half_width=None)
+        else:
+            on = {"relief": effects.relief, "misalignment": effects.misalignment, effect: True}
+            apart = asked.gaps(**on)
+        other = others.solve([asked.nominal], apart, again)
+        neglected[effect] = float(other.transmission_error.mean()), float(other.face_load_factor[0])
+    return LoadDistributionData(found, error, asked.loads.index(asked.nominal), neglected)
+
+
+def _has_data(asked: FlanksToLoad, effect: str) -> bool:
+    if effect == "relief":
+        return any(flank.relief is not None and not flank.wants_delta for flank in asked.flanks)
+    return effect != "misalignment" or asked.line_gap.size > 0
+
+
+def _stations(name: str, found: LoadedFlanks, i: int) -> Table:
+    """Every station of every contact line."""
+    lines = found.lines
+    on = lines.present
+    position = np.broadcast_to(np.arange(1, lines.roll.size + 1)[:, None], on.shape)
+    roll = np.broadcast_to(lines.roll[:, None], on.shape)
+    load, pressure = found.line_load[:, :, i], found.pressure[:, :, i]
+    width = found.known.half_width(found.line_load)[:, :, i]
+    columns = (
+        Column("position", position[on], "", "number of the roll position"),
+        Column("roll", roll[on], "mm", "roll position: x of pair 0 in the middle of the face"),
+        Column("pair", lines.pair[on], "", "number of the tooth pair; higher ones are ahead"),
+        Column("x", lines.x[on], "mm", "along the line of action, from the pitch point"),
+        Column("z", lines.z[on], "mm", "along the face, from its middle"),
+        Column("line_load", load[on], "N/mm", "transverse force per face width"),
+        Column("hertz_pressure", pressure[on], "MPa", "largest pressure of smooth flanks, as of a long contact"),
+        Column("half_width", width[on], "um", "of the contact that goes with it"),
+        Column("active", (load > 0.0)[on].astype(float), "", "1 where the flanks touch"),
+        Column("edge", lines.at_edge[on].astype(float), "", "1 where the contact line ends at a tip or form circle"),
+    )
+    return Table(f"load_distribution_{name}", columns, f"Line load and pressure on the flanks of pair {name}")
+
+
+def _over_face(name: str, found: LoadedFlanks, i: int) -> Table:
+    ends, whole = found.cells, found.over_face[:, :, i]
+    mean = float(found.load[i] / (ends[-1] - ends[0]))
+    columns = (
+        Column("z", 0.5 * (ends[1:] + ends[:-1]), "mm", "along the face, from its middle"),
+        Column("mean_line_load", whole.mean(axis=0), "N/mm", "of all pairs, averaged over a base pitch"),
+        Column("least_line_load", whole.min(axis=0), "N/mm", "of all roll positions"),
+        Column("largest_line_load", whole.max(axis=0), "N/mm", "of all roll positions"),
+        Column("factor", whole.mean(axis=0) / mean, "", "mean_line_load over load per face width"),
+    )
+    return Table(f"load_over_face_{name}", columns, f"Load over the face of pair {name}")
+
+
+def _positions(name: str, data: LoadDistributionData) -> Table:
+    found, i = data.found, data.nominal
+    columns = [
+        Column("roll", found.lines.roll, "mm", "roll position: x of pair 0 in the middle of the face"),
+        Column("te", found.transmission_error[:, i], "um", "loaded transmission error along the line of action"),
+        Column("te_error", data.error.transmission_error[:, i], "um", "estimated error of te"),
+        Column("mesh_stiffness", found.contact.stiffness[:, i], "N/um", "of the stations that touch: tangent"),
+    ]
+    for j, share, error in zip(found.pair_numbers.tolist(), found.share[:, :, i], data.error.share[:, :, i],
+                               strict=True):  # fmt: skip
+        columns += [
+            Column(f"share_{j}", share, "", f"of the load on pair {j}"),
+            Column(f"share_{j}_error", error, "", "estimated error"),
+        ]
+    columns.append(Column("equilibrium", found.equilibrium[:, i], "", "sum of all forces less load, over load"))
+    return Table(f"load_distribution_roll_{name}", tuple(columns), f"Shares and transmission error of pair {name}")
+
+
+def _loads(name: str, data: LoadDistributionData) -> Table:
+    found, error = data.found, data.error
+    te = found.transmission_error
+    columns = (
+        Column("load", found.load, "N", "along the line of action"),
+        Column("te_mean", te.mean(axis=0), "um", "mean transmission error over a base pitch"),
+        Column("te_mean_error", error.mean, "um", "estimated error"),
+        Column("te_peak_to_peak", np.ptp(te, axis=0), "um", "over the roll positions"),
+        Column("te_peak_to_peak_error", _ripple_error(data), "um", "estimated error"),
+        Column("K_Hbeta", found.face_load_factor, "", "largest over mean load per face width"),
+        Column("K_Hbeta_error", error.face_load_factor, "", "estimated error"),
+    )
+    return Table(f"load_distribution_loads_{name}", columns, f"Pair {name} under every load")
+
+
+def _ripple_error(data: LoadDistributionData) -> Array:
+    """Of the coarser solution, and of half as many roll positions."""
+    te = data.found.transmission_error
+    return np.asarray(data.error.peak_to_peak + np.abs(np.ptp(te, axis=0) - np.ptp(te[::2], axis=0)))
+
+
+def _present(data: LoadDistributionData, asked: FlanksToLoad) -> Outcome:
+    name, found, i = asked.name, data.found, data.nominal
+    te, lines = found.transmission_error[:, i], found.lines
+    pressure, load = found.pressure[:, :, i], found.line_load[:, :, i]
+    inner = np.where(lines.at_edge, 0.0, pressure)
+    largest = float(np.where(lines.at_edge, 0.0, load).max())
+    p, s = np.unravel_index(int(inner.argmax()), inner.shape)
+    k_error = float(data.error.face_load_factor[i])
+    where = f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
+    values = (
+        Value(f"{name}.te_mean", float(te.mean()), "um", float(data.error.mean[i]), "mean transmission error"),
+        Value(f"{name}.te_peak_to_peak", float(np.ptp(te)), "um", float(_ripple_error(data)[i]),
+              "of the transmission error over the roll positions"),
+        Value(f"{name}.K_Hbeta", float(found.face_load_factor[i]), "", k_error,
+              "largest load per face width over the mean one, averaged over a base pitch"),
+        Value(f"{name}.largest_line_load", largest, "N/mm", None,
+              "on one contact line, tips and form circles left out"),
+        Value(f"{name}.largest_hertz_pressure", float(inner.max()), "MPa", None,
+              f"smooth flanks, tips and form circles left out, {where}"),
+        Value(f"{name}.largest_share", float(found.share[:, :, i].max()), "",
+              float(data.error.share[:, :, i].max()), "of one tooth pair"),
+        Value(f"{name}.equilibrium", float(found.equilibrium.max()), "", 0.0, "sum of all forces less load, over load"),
+    )  # fmt: skip
+    tables = (_stations(name, found, i), _over_face(name, found, i), _positions(name, data), _loads(name, data))
+    settings = {
+        "positions": asked.positions, "panels": asked.panels, "stations": int(lines.present.sum()),
+        "newton_steps": found.contact.steps, "seconds": {k: round(v, 6) for k, v in found.seconds.items()},
+    }  # fmt: skip
+    figures = load_distribution_figures(name, found, i)
+    return Outcome(data, tables, values, settings, tuple(_remarks(data, asked)), figures)
+
+
+def _remarks(data: LoadDistributionData, asked: FlanksToLoad) -> list[str]:
+    name, found, i = asked.name, data.found, data.nominal
+    lines, load = found.lines, found.line_load[:, :, i]
+    remarks = []
+    if (edge := float(np.where(lines.at_edge, load, 0.0).max())) > 0.0:
+        remarks.append(
+            f"Pair {name}: contact lines end at tips or form circles under up to {edge * 1e-3:.4g} N/mm. A sharp edge "
+            "has no largest pressure: the number beside it grows with the number of panels, and largest_hertz_pressure "
+            "leaves it out. Relieve the tips to see what they carry."
+        )
+    ends = np.isclose(np.abs(lines.z), lines.high, rtol=1e-9) & lines.present
+    if (end := float(np.where(ends, load, 0.0).max())) > 0.0:
+        remarks.append(
+            f"Pair {name}: the ends of the face carry up to {end * 1e-3:.4g} N/mm. They are sharp; what is "
+            "stated there is an average over the last half panel."
+        )
+    active = (found.contact.force[:, :, i] > 0.0).sum() / lines.present.sum()
+    if active < 1.0:
+        remarks.append(f"Pair {name}: {1.0 - active:.1%} of the stations on the contact lines do not touch.")
+    told = {
+        "neighbour_coupling": "what pairs do to each other is left out",
+        "hertz": "contacts do not widen with their load",
+        "relief": "gears have a relief that is left out",
+        "misalignment": "the pair has a line_error that is left out",
+    }
+    mean, factor = float(found.transmission_error[:, i].mean()), float(found.face_load_factor[i])
+    for effect, (te, k) in data.neglected.items():
+        remarks.append(
+            f"Pair {name}: {told[effect]} (effects.{effect}). With it the mean transmission error would be "
+            f"{te * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {k:.4g} for {factor:.4g}."
+        )
+    return remarks
+
+
+def _subjects(scene: Scene) -> tuple[str, ...]:
+    """All pairs that carry a load; all pairs where none does, so that the missing load is reported."""
+    pairs = scene.pairs
+    return tuple(name for name in pairs if scene.case.pair[name].normal_load(pairs[name]) is not None) or tuple(pairs)
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    return needs_solid_solution(gear_name(scene, name, "driver"), gear_name(scene, name, "driven"))
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    asked = flanks_to_load(scene, name)
+    lines = asked.positions * (1.0 + asked.pair.total_contact_ratio)
+    seconds = 2.0 * 2.0 * _LINE * lines + _CONTACT * asked.positions * (1 + len(asked.loads))
+    return Forecast({"positions": asked.positions, "panels": asked.panels}, seconds)
+
+
+LOAD_DISTRIBUTION = Stage(
+    name="load-distribution",
+    title="Load over the flanks",
+    results=("load-distribution",),
+    about="line load and pressure over face and flank of a spur or helical pair with its width, K_Hbeta, shares, "
+    "transmission error",
+    subjects=_subjects,
+    inputs=flanks_to_load,
+    compute=_compute,
+    present=_present,
+    needs=_needs,
+    check=check_flanks_to_load,
+    effects=FLANK_EFFECTS,
+    cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
+    forecast=_forecast,
+)

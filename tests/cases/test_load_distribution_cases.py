@@ -1,0 +1,110 @@
+"""``load-distribution``: from a case to line load, K_Hbeta, shares and pictures, and what it refuses."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.errors import InputError
+from fegear.output.draw_png import draw_pictures
+from fegear.results.catalogue import STAGES
+from fegear.solution_cache import SolutionCache
+
+CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
+COARSE = (
+    "accuracy.tolerance=1e-1", "load_distribution.positions=4", "load_distribution.panels=8",
+    'gear.pinion.face_width="8 mm"', 'gear.wheel.face_width="8 mm"',
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def cache():
+    return SolutionCache()
+
+
+def ran(cache, *overrides):
+    scene = read_scene(CASE, [*COARSE, *overrides])
+    return run_plan(scene, make_plan(scene, STAGES), cache=cache).outcomes[Task("load-distribution", "I")]
+
+
+@pytest.fixture(scope="module")
+def outcome(cache):
+    return ran(cache)
+
+
+def columns(outcome, name):
+    (table,) = (table for table in outcome.tables if table.name == name)
+    return {column.head: np.asarray(column.values) for column in table.columns}
+
+
+def value(outcome, name):
+    (found,) = (one for one in outcome.values if one.name == f"I.{name}")
+    return found
+
+
+def test_tables_sum_to_the_load(outcome):
+    face = columns(outcome, "load_over_face_I")
+    width = np.diff(face["z [mm]"])[0]
+    assert face["mean_line_load [N/mm]"].sum() * width == pytest.approx(3600.0, rel=1e-9)
+    assert face["factor"].max() == pytest.approx(value(outcome, "K_Hbeta").si, rel=1e-12)
+    roll = columns(outcome, "load_distribution_roll_I")
+    shares = sum(v for k, v in roll.items() if k.startswith("share_") and not k.endswith("error"))
+    np.testing.assert_allclose(shares, 1.0, rtol=1e-9)
+    places = columns(outcome, "load_distribution_I")
+    loaded = places["line_load [N/mm]"] > 0.0
+    np.testing.assert_array_equal(places["active"] == 1.0, loaded)
+    # Hertz: p = 2 f / (pi b)
+    f, b = places["line_load [N/mm]"][loaded], places["half_width [um]"][loaded] * 1e-3
+    np.testing.assert_allclose(places["hertz_pressure [MPa]"][loaded], 2.0 * f / (np.pi * b), rtol=1e-9)
+
+
+def test_the_load_goes_to_the_end_without_a_gap_and_crowning_takes_it_from_there(cache, outcome):
+    face = columns(outcome, "load_over_face_I")["factor"]
+    assert face[0] > 1.1 > 0.9 > face[-1]
+    other = ran(cache, 'pair.I.line_error.over_face="-10 um"')
+    assert columns(other, "load_over_face_I")["factor"][-1] > 1.1
+    crowned = ran(cache, 'pair.I.line_error={over_face="10 um", crowning="8 um"}')
+    assert columns(crowned, "load_over_face_I")["factor"][0] < face[0]
+    even = ran(cache, "effects.misalignment=false")
+    assert value(even, "K_Hbeta").si < value(outcome, "K_Hbeta").si
+    (told,) = (r for r in even.remarks if "effects.misalignment" in r)
+    assert f"{value(outcome, 'te_mean').si * 1e6:.4g} um for {value(even, 'te_mean').si * 1e6:.4g} um" in told
+
+
+def test_a_table_over_the_face_is_the_same_as_its_key(cache, outcome, tmp_path):
+    table = tmp_path / "gap.csv"
+    table.write_text("z [mm],gap [um]\n-4,0\n4,10\n", "utf-8")
+    found = ran(cache, f'pair.I.line_error={{file="{table.as_posix()}"}}')
+    assert value(found, "K_Hbeta").si == pytest.approx(value(outcome, "K_Hbeta").si, rel=1e-9)
+
+
+def test_left_out_coupling_is_told_with_its_size(cache, outcome):
+    found = ran(cache, "effects.neighbour_coupling=false", 'effects.hertz="none"')
+    assert value(found, "te_mean").si < value(outcome, "te_mean").si
+    assert any("effects.neighbour_coupling" in remark for remark in found.remarks)
+    assert any("effects.hertz" in remark for remark in found.remarks)
+
+
+def test_the_pictures_are_drawn(outcome, tmp_path):
+    for figure in outcome.figures:
+        list(draw_pictures(figure, tmp_path))
+    assert {path.name for path in tmp_path.rglob("*.png")} == {"load_distribution_I.png", "load_over_face_I.png"}
+
+
+@pytest.mark.parametrize(
+    ("override", "word"),
+    [
+        ('gear.wheel.face_width="10 mm"', "face_width"),
+        ('pair.I.axial_offset="1 mm"', "axial_offset"),
+        ("pair.I.line_error={}", "line_error"),
+        ('pair.I.line_error={file="nowhere.csv"}', "nowhere.csv"),
+        ("load_distribution.positions=1", "positions"),
+    ],
+)
+def test_what_cannot_be_computed_is_refused(override, word):
+    with pytest.raises(InputError, match=word):
+        make_plan(read_scene(CASE, [*COARSE, override]), STAGES)

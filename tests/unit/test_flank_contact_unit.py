@@ -1,0 +1,271 @@
+"""Loaded flanks of gears with a width: limits, laws and brute force."""
+
+import math
+from itertools import product
+
+import numpy as np
+import pytest
+
+from fegear.contact import Engagement, PairCompliance, finite_element_compliance
+from fegear.contact.flank import FlankGaps, FlankPair, contact_lines, flank_compliance
+from fegear.contact.flank.complementarity import hat_averages, solve_contact
+from fegear.contact.flank.compliance import FlankCompliance
+from fegear.contact.flank.error import flank_error
+from fegear.contact.flank.lines import ContactLines
+from fegear.errors import InputError
+from fegear.fem import solve_gear
+from fegear.fem.solid import SolidSettings, solve_solid
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.geometry.relief import tip_relief
+
+STEEL = Material(206.8e9, 0.3, 7850.0)
+COARSE = SolidSettings().scaled(1.7)
+MODULE, WIDTH, LOAD = 3e-3, 9e-3, 2000.0
+
+
+def gear(beta=15.0, hand="right", teeth=20):
+    tooth = Tooth(teeth, BasicRack(1.0, 1.25, 0.25), helix_angle=math.radians(beta))
+    return Gear(tooth, MODULE, 0.5 * tooth.root_radius * MODULE, WIDTH, STEEL, "strain", hand if beta else "spur")
+
+
+def solid(one, settings=COARSE, reach=3, plane_strain=False):
+    m = one.module
+    return solve_solid(
+        one.tooth, one.twist * m, one.face_width / m, 0.3, one.bore_radius / m, settings, reach=reach,
+        plane_strain=plane_strain,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def solved():
+    """A right-handed gear and its left-handed mate."""
+    gears = {hand: gear(hand=hand) for hand in ("right", "left")}
+    return gears, {hand: solid(one) for hand, one in gears.items()}
+
+
+def flank_pair(solved, driver="right", **how):
+    gears, solids = solved
+    driven = "left" if driver == "right" else "right"
+    pair = GearPair(gears[driver], gears[driven])
+    return FlankPair(pair, {"driver": solids[driver], "driven": solids[driven]}, **{"positions": 4, **how})
+
+
+@pytest.fixture(scope="module")
+def known(solved):
+    flanks = flank_pair(solved)
+    return flanks, flanks.compliance(LOAD)
+
+
+MISALIGNED = FlankGaps(face_position=np.array([-0.5, 0.5]) * WIDTH, line_gap=np.array([0.0, 12e-6]))
+
+
+def test_a_spur_pair_that_cannot_move_along_the_axis_is_the_plane_pair():
+    one = gear(0.0)
+    plane = finite_element_compliance(solve_gear(one, reach=1))
+    solution = solid(one, SolidSettings(), reach=1, plane_strain=True)
+    pair = GearPair(one, one)
+    flanks = FlankPair(pair, {"driver": solution, "driven": solution}, panel=1.0, positions=4)
+    loads = np.array([200.0, 2000.0])
+    found = flanks.solve(loads)
+    engagement = Engagement(PairCompliance(pair, plane, plane))
+    wanted = engagement.solve(engagement.grid(flanks.roll), loads)
+    np.testing.assert_allclose(found.transmission_error, wanted.transmission_error, rtol=4e-3)
+    share = dict(zip(found.pair_numbers.tolist(), found.share, strict=True))
+    for j, s in zip(wanted.grid.contacts.number.tolist(), wanted.shared.shares, strict=True):
+        np.testing.assert_allclose(share[j], s, atol=3e-3)
+    # the same load all along the face, and Hertz's pressure of the plane
+    line_load = found.line_load[:, :, 1]
+    for p in range(4):
+        for s in found.lines.at(p):
+            np.testing.assert_allclose(line_load[p, s], line_load[p, s].mean(), rtol=2e-3)
+    radius = wanted.grid.contacts.relative_radius
+    pressure = engagement.compliance.pressure(wanted.loads[:, :, 1], radius).max()
+    assert found.pressure[:, :, 1].max() == pytest.approx(pressure, rel=3e-3)
+    np.testing.assert_allclose(found.face_load_factor, 1.0, atol=3e-3)
+
+
+def test_a_helix_that_goes_to_zero_is_a_spur_pair():
+    spur = gear(0.0)
+    straight = solid(spur)
+    pair = GearPair(spur, spur)
+    wanted = FlankPair(pair, {"driver": straight, "driven": straight}, positions=2).solve([LOAD])
+    beta = 1e-5
+    hands = [gear(beta, hand) for hand in ("right", "left")]
+    solids = [solid(one) for one in hands]
+    found = FlankPair(
+        GearPair(*hands), dict(zip(("driver", "driven"), solids, strict=True)), positions=2
+    ).solve([LOAD])  # fmt: skip
+    # Acute and obtuse end faces reach differently far into the face (`fem.solid.contact`), however small the helix.
+    np.testing.assert_allclose(found.transmission_error, wanted.transmission_error, rtol=1e-4)
+    np.testing.assert_allclose(found.contact.force, wanted.contact.force, atol=2e-3 * LOAD)
+
+
+def test_mirrored_hands_mirror_the_load(solved, known):
+    flanks, matrix = known
+    mirrored = FlankGaps(face_position=MISALIGNED.face_position, line_gap=MISALIGNED.line_gap[::-1].copy())
+    first = flanks.solve([LOAD], MISALIGNED, matrix)
+    second = flank_pair(solved, "left").solve([LOAD], mirrored)
+    np.testing.assert_allclose(second.transmission_error, first.transmission_error, rtol=1e-7)
+    np.testing.assert_allclose(second.mean_over_face, first.mean_over_face[::-1], rtol=1e-5)
+
+
+def test_exchanged_gears_answer_alike(solved, known):
+    flanks, matrix = known
+    found = flanks.solve([LOAD], MISALIGNED, matrix)
+    solids = solved[1]
+    other, exchanged = flanks.pair.reversed(), {"driver": solids["left"], "driven": solids["right"]}
+    # the same roll positions, seen from the other side: x changes its sign
+    lines = contact_lines(other, -flanks.roll, flanks.panel * MODULE)
+    again = solve_contact(
+        flank_compliance(other, exchanged, lines, LOAD), MISALIGNED.at(other, lines), np.array([LOAD])
+    )  # fmt: skip
+    np.testing.assert_allclose(again.approach, found.transmission_error, rtol=1e-9)
+    np.testing.assert_allclose(np.sort(again.force, axis=1), np.sort(found.contact.force, axis=1), atol=1e-8 * LOAD)
+
+
+def test_compliances_are_symmetric_and_forces_sum_to_the_load(known):
+    flanks, matrix = known
+    c = matrix.matrix
+    np.testing.assert_allclose(c, c.transpose(0, 2, 1), rtol=1e-12, atol=1e-12 * np.abs(c[:, :4, :4]).max())
+    loads = np.array([1e-3, 1.0, 2000.0, 20000.0])
+    found = flanks.solve(loads, MISALIGNED, matrix)
+    assert found.equilibrium.max() < 1e-12
+    assert found.contact.residual.max() < 1e-9
+    np.testing.assert_allclose(found.share.sum(axis=0), 1.0, rtol=1e-12)
+    cell = np.diff(found.cells)[:, None]
+    np.testing.assert_allclose((found.over_face * cell).sum(axis=1), np.broadcast_to(loads, (4, 4)), rtol=1e-10)
+    assert found.contact.force.min() >= 0.0
+    # light loads stand where the gap is smallest, heavy ones all over the face
+    on = (found.contact.force > 0.0).sum(axis=(0, 1))
+    assert np.all(np.diff(on) >= 0)
+    assert on[0] < on[-1] == flanks.compliance(LOAD).lines.present.sum()
+    assert np.all(np.diff(found.face_load_factor[1:]) < 0.0)
+
+
+def test_a_rigid_shift_changes_nothing_but_the_approach(known):
+    flanks, matrix = known
+    found = flanks.solve([LOAD], MISALIGNED, matrix)
+    moved = FlankGaps(face_position=MISALIGNED.face_position, line_gap=MISALIGNED.line_gap + 1e-3)
+    again = flanks.solve([LOAD], moved, matrix)
+    np.testing.assert_allclose(again.transmission_error - 1e-3, found.transmission_error, rtol=1e-9)
+    np.testing.assert_allclose(again.contact.force, found.contact.force, atol=1e-9 * LOAD)
+
+
+def test_stiffness_is_the_slope_of_the_load(known):
+    flanks, matrix = known
+    found = flanks.solve([LOAD, 1.001 * LOAD], MISALIGNED, matrix)
+    slope = 1e-3 * LOAD / np.diff(found.transmission_error, axis=1)[:, 0]
+    np.testing.assert_allclose(slope, found.contact.stiffness.mean(axis=1), rtol=1e-5)
+
+
+def test_relief_over_the_roll_angle_takes_load_from_the_tips(known):
+    flanks, matrix = known
+    relief = tip_relief(flanks.pair.driver, 30e-6, length=1.2e-3)
+    plain = flanks.solve([LOAD], None, matrix)
+    relieved = flanks.solve([LOAD], FlankGaps(relief, relief), matrix)
+    tip = matrix.lines.at_edge & matrix.lines.present
+    assert plain.line_load[tip].max() > 0.0
+    assert relieved.line_load[tip].max() < 0.3 * plain.line_load[tip].max()
+
+
+def test_without_coupling_pairs_are_stiffer_and_the_error_is_told(solved, known):
+    flanks, matrix = known
+    found = flanks.solve([LOAD], MISALIGNED, matrix)
+    alone = flank_pair(solved, coupling=False).solve([LOAD], MISALIGNED)
+    several = (found.share > 0.0).sum(axis=0) > 1
+    assert several.any()
+    assert (alone.transmission_error < 0.95 * found.transmission_error)[several].all()
+    np.testing.assert_allclose(alone.transmission_error[~several], found.transmission_error[~several], rtol=1e-9)
+    same = flank_error(flanks, found, flanks.gears, MISALIGNED)
+    # the same gears: what is left is that of the panels
+    assert 0.0 < same.mean[0] < 5e-3 * found.transmission_error.mean()
+    assert 0.0 < same.face_load_factor[0] < 0.02 * found.face_load_factor[0]
+
+
+def test_contact_lines_fill_the_plane_of_action(known):
+    flanks, _ = known
+    pair = flanks.pair
+    roll = pair.x_start + pair.base_pitch * (np.arange(400) + 0.5) / 400
+    lines = contact_lines(pair, roll, 1e-3)
+    # mean length of all lines over a base pitch: the area of the plane of action over the pitch, less the short ones
+    area = pair.path_length * pair.face_width / pair.base_pitch
+    assert area * (1.0 - 1e-3) < lines.length.mean() < area * (1.0 + 1e-9)
+    at, slope = lines.present, pair.driver.twist * pair.driver.base_radius
+    start = np.broadcast_to(lines.roll[:, None], at.shape) + lines.pair * pair.base_pitch
+    np.testing.assert_allclose(lines.x[at], (start - slope * lines.z)[at], atol=1e-15)
+    assert lines.x[at].min() >= pair.x_start
+    assert lines.x[at].max() <= pair.x_end
+    np.testing.assert_allclose(lines.support.sum(axis=1), lines.length, rtol=1e-12)
+    np.testing.assert_allclose(hat_averages(lines, np.where(at, 3.0, 0.0))[at], 3.0, rtol=1e-12)
+
+
+def made_up(rng, stations, hertz, cut=0):
+    """Two lines with random positive definite compliances."""
+    z = np.sort(rng.uniform(-1e-2, 1e-2, stations))
+    pair = (np.arange(stations) >= (cut or stations)).astype(int)
+    lines = ContactLines(
+        np.zeros(1), pair[None], np.ones((1, stations), bool), np.zeros((1, stations)), z[None], -1e-2, 1e-2,
+        np.zeros((1, stations), bool),
+    )  # fmt: skip
+    root = rng.normal(size=(stations, stations)) * 1e-5
+    matrix = root @ root.T + 1e-10 * np.eye(stations)
+    slope = 1e-12 if hertz else 0.0
+    fixed = None if hertz else np.ones((1, stations))
+    return FlankCompliance(lines, matrix[None], slope, np.full((1, stations), 1e-14), fixed)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_active_sets_against_all_subsets(seed):
+    rng = np.random.default_rng(seed)
+    known = made_up(rng, 7, hertz=False, cut=3)
+    gap = rng.uniform(0.0, 3e-8, (1, 7))
+    load = np.array([1.0, 30.0, 1000.0])
+    found = solve_contact(known, gap, load)
+    c, e = known.matrix[0], hat_averages(known.lines, gap)[0]
+    for i, total in enumerate(load):
+        best = None
+        for bits in product((False, True), repeat=7):
+            on = np.flatnonzero(bits)
+            if on.size == 0:
+                continue
+            system = np.block([[c[np.ix_(on, on)], -np.ones((on.size, 1))], [np.ones((1, on.size)), np.zeros((1, 1))]])
+            solution = np.linalg.solve(system, np.append(-e[on], total))
+            force = np.zeros(7)
+            force[on] = solution[:-1]
+            if force.min() >= 0.0 and (c @ force + e - solution[-1] >= -1e-9 * abs(solution[-1])).all():
+                best = force, solution[-1]
+        assert best is not None
+        np.testing.assert_allclose(found.force[0, :, i], best[0], atol=1e-8 * total)
+        assert found.approach[0, i] == pytest.approx(best[1], rel=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_contacts_that_widen_meet_their_conditions(seed):
+    """The conditions, by plain quadrature on a fine grid."""
+    rng = np.random.default_rng(100 + seed)
+    known = made_up(rng, 9, hertz=True, cut=4)
+    gap = rng.uniform(0.0, 1e-7, (1, 9))
+    found = solve_contact(known, gap, np.array([500.0]))
+    z, force = known.lines.z[0], found.force[0, :, 0]
+    u = known.matrix[0] @ force
+    for a, b in ((0, 4), (4, 9)):
+        x = np.linspace(z[a], z[b - 1], 400_001)
+        x = 0.5 * (x[1:] + x[:-1])
+        hats = np.array([np.interp(x, z[a:b], np.eye(b - a)[i]) for i in range(b - a)])
+        hats /= hats.mean(axis=1, keepdims=True) * (z[b - 1] - z[a])
+        f = force[a:b] @ hats
+        log = np.log(np.sqrt(1e-14 * np.where(f > 0.0, f, 1.0)))
+        u[a:b] += (hats * (-2e-12 * f * log)).mean(axis=1) * (z[b - 1] - z[a])
+        u[a:b] += (hats * np.interp(x, z[a:b], gap[0, a:b])).mean(axis=1) * (z[b - 1] - z[a])
+    rest = u - found.approach[0, 0]
+    scale = found.approach[0, 0]
+    assert np.abs(rest[force > 0.0]).max() < 2e-4 * scale
+    assert (rest[force == 0.0] > -2e-4 * scale).all()
+    assert force.sum() == pytest.approx(500.0, rel=1e-12)
+
+
+def test_loads_must_be_positive(known):
+    flanks, matrix = known
+    for load in (0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(InputError, match="positive"):
+            flanks.solve([load], None, matrix)
