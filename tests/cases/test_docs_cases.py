@@ -19,7 +19,8 @@ DOCS = ROOT / "docs"
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
     "choose-a-tolerance", "corner-contact-warning", "cost", "dynamic-factor", "export", "helical-misalignment",
-    "load-over-the-face", "python-mechanics", "several-meshes", "sweep-on-a-cluster", "sweeps", "tutorial", "validate-root-stress-formula",
+    "load-over-the-face", "python-mechanics", "several-meshes", "sweep-on-a-cluster", "sweeps", "tutorial",
+    "validate-root-stress-formula",
 }  # fmt: skip
 
 
