@@ -36,7 +36,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType({
     "pair": Kind("a pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _LOADED),
     "relief": Kind("a pair whose profile relief is to be designed", ("pinion", "wheel"), _LOADED),
     "helical": Kind("a helical pair and the errors of its assembly", ("pinion", "wheel"),
-                    ("pressure_angle", "helix_angle", "face_width")),
+                    ("pressure_angle", "helix_angle", "profile_shift", "rack", "face_width")),
     "train": Kind("motor, pair and machine in motion: resonances, dynamic factor", ("pinion", "wheel"), _LOADED),
     "study": Kind("root-stress formulas against finite elements over many gears", ("gear",), _TOOTH),
 })  # fmt: skip

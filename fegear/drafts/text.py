@@ -48,6 +48,8 @@ normal_module = {module}{module_note}
 pressure_angle = {pressure_angle}     # in the normal section
 helix_angle = {helix_angle}{helix_angle_note}
 hand = "{hand}"
+profile_shift = {profile_shift}{profile_shift_note}
+rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
 """
 _PAIR = """\
@@ -124,12 +126,12 @@ def _gear(answers: Answers, number: int) -> str:
     kind = KINDS[answers.kind]
     texts = _texts(answers, ("module", *(name for name in kind.asks if name not in ("torque", "speed"))))
     texts |= {"name": kind.gears[number], "teeth": answers.numbers("teeth")[number]}
-    if answers.kind == "helical":
-        return _HELICAL.format(**texts, hand=("right", "left")[number])
     shift = float(answers.numbers("profile_shift")[number])
     texts["profile_shift"] = repr(shift)
-    texts["tip_diameter"] = _length(answers.si("module") * (int(texts["teeth"]) + 2.0 * (1.0 + shift)))
     texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
+    if answers.kind == "helical":
+        return _HELICAL.format(**texts, hand=("right", "left")[number])
+    texts["tip_diameter"] = _length(answers.si("module") * (int(texts["teeth"]) + 2.0 * (1.0 + shift)))
     return _SPUR.format(**texts)
 
 
