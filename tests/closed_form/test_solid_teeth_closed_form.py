@@ -251,6 +251,24 @@ def test_an_even_load_converges_along_the_face_faster_than_any_order():
     assert error[2] < 1e-3 * found[11].max()
 
 
+def test_order_of_convergence_in_the_section():
+    """Shorter edges and higher orders both pay; what limits the order is the pressure, whose slope ends with a jump."""
+    pressed = bands(14.1, 0.0, 0.75, 0.5, profile="even")
+    base = SolidSettings().section
+
+    def moved(order, factor):
+        settings = replace(CUBIC, section=replace(base.scaled(factor), order=order))
+        return solve_solid(TOOTH, 0.0, 1.5, NU, BORE, settings, reach=0).deflection(0, pressed, pressed)[0, 0]
+
+    exact = moved(4, 0.6)
+    error = {(order, factor): abs(moved(order, factor) / exact - 1.0) for order in (2, 3) for factor in (2.0, 0.7)}
+    for order in (2, 3):
+        assert math.log(error[order, 2.0] / error[order, 0.7]) / math.log(2.0 / 0.7) > 1.8
+    for factor in (2.0, 0.7):
+        assert error[3, factor] < 0.2 * error[2, factor]
+    assert error[3, 0.7] < 1e-4
+
+
 def test_bands_stay_on_the_face():
     known = solved(0.0, 2.0, CUBIC)
     with pytest.raises(RangeError, match="reaches over an end face"):
