@@ -162,3 +162,19 @@ def test_rows_that_only_one_table_has_are_counted_and_kept():
     assert difference.share == pytest.approx(5.0 / 40.0)
     assert found.differs(1.0)
     assert not join(first, first).differs(0.0)
+
+
+def test_a_table_over_a_grid_is_no_curve():
+    """Three rows at each place: joined row by row, and not interpolated where the places differ."""
+
+    def grid(places, values):
+        return Table("t", (Column("radius", np.repeat(places, 3)), Column("c", np.array(values, dtype=float))))
+
+    one = grid([1.0, 2.0], [1, 2, 3, 4, 5, 6])
+    same = join(one, grid([1.0, 2.0], [1, 2, 3, 4, 5, 7]))
+    (changed,) = same.differences
+    assert changed.largest == 1.0
+    assert same.only_first == same.only_second == 0
+    other = join(one, grid([1.1, 1.9], [1, 2, 3, 4, 5, 6]))
+    assert other.only_first == other.only_second == 6
+    assert np.isnan(other.differences[0].largest)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.figure import Axis, Curve, Figure, Panel
+from fegear.studies.comparison.tables import follows
 
 if TYPE_CHECKING:
     from fegear.engine.table import Column, Table
@@ -42,8 +43,7 @@ def _columns(joined: Joined, tolerance: float) -> list[Column]:
 
 
 def _rising(table: Table) -> bool:
-    first = table.columns[0].si
-    return len(first) >= _ROWS and np.issubdtype(first.dtype, np.number) and bool(np.all(np.diff(first) >= 0.0))
+    return len(table) >= _ROWS and follows(table, table.columns[0].name)
 
 
 def _panel(tables: tuple[Table, Table], name: str, labels: tuple[str, str]) -> Panel:

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 #: Digits by which rows are known: the same place, computed anew, may differ in the last ones.
 _DIGITS = 9
+#: Rows at one place: a curve has two where it jumps, a table over a grid has more.
+_MOST_ALIKE = 2
 
 
 class Difference(NamedTuple):
@@ -92,7 +94,7 @@ def join(first: Table, second: Table, labels: tuple[str, str] = ("a", "b")) -> J
         a, b = _at(one, at[0]), _at(other, at[1]) * (1.0 if one.unit == other.unit else np.nan)
         for label, values in zip((*labels, "change"), (a, b, b - a), strict=True):
             columns.append(Column(f"{name}_{label}", values, one.unit, one.meaning))
-        if not np.isfinite(a + b).any() and len(keys) == 1 and _rising(first, keys[0]) and _rising(second, keys[0]):
+        if not np.isfinite(a + b).any() and len(keys) == 1 and follows(first, keys[0]) and follows(second, keys[0]):
             places = first.column(keys[0])
             a = _numbers(one)
             b = np.interp(_numbers(places), _numbers(second.column(keys[0])), _numbers(other), np.nan, np.nan)
@@ -107,9 +109,12 @@ def _numbers(column: Column) -> Array:
     return np.asarray(column.si, dtype=float)
 
 
-def _rising(table: Table, name: str) -> bool:
-    places = table.column(name).si
-    return _numeric(table, name) and len(places) > 1 and bool(np.all(np.diff(_numbers(table.column(name))) >= 0.0))
+def follows(table: Table, name: str) -> bool:
+    """Whether the rows are a curve over a column: rising, with a place twice where the curve jumps, not more often."""
+    if not _numeric(table, name) or len(table) < 2:
+        return False
+    places = _numbers(table.column(name))
+    return bool(np.all(np.diff(places) >= 0.0)) and int(np.unique(places, return_counts=True)[1].max()) <= _MOST_ALIKE
 
 
 def _numeric(table: Table, name: str) -> bool:
