@@ -45,6 +45,12 @@ class Plan:
     remarks: tuple[str, ...] = ()
 
 
+def _straight(scene: Scene) -> str:
+    """What a case of helical gears alone should know of results that are about spur gears."""
+    alone = bool(scene.gears) and not scene.spur_gears
+    return ": it may be about spur gears, and those of this case are helical" if alone else ""
+
+
 def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
     """Derive the tasks from the wanted results.
 
@@ -89,7 +95,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
                 "results",
                 f'"{result}"',
                 "asks for something that this case does not describe",
-                "add the gear, pair or train that it is about",
+                "add the gear, pair or train that it is about" + _straight(scene),
             )
         for stage, subject in wanted:
             require(Task(stage.name, subject), f'requested by results = ["{result}"]')
