@@ -3,9 +3,10 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from fegear.fem.solid import SolidInfluence, SolidSettings, solid_influence, solid_settings, solve_solid
+from fegear.fem.solid import SolidInfluence, SolidSettings, bands, solid_influence, solid_settings, solve_solid
 from fegear.fem.solid.influence import _SHARES as SHARES
 from fegear.geometry import BasicRack, Tooth
 
@@ -30,6 +31,34 @@ def estimated_and_true(gear, settings, finer):
 def test_a_coarse_solution_tells_its_error():
     told, true = estimated_and_true((12, 20, 2, 0.5, 0.3), SolidSettings().scaled(1.6), SolidSettings())
     assert all(true[key] / SHARES[key] <= told[key] for key in told)
+
+
+@pytest.mark.parametrize(
+    ("tooth", "degrees", "width", "poisson_ratio", "bore"),
+    [
+        pytest.param(Tooth(28), 20, 3, 0.49, 0.7, id="all but incompressible"),
+        pytest.param(Tooth(28), 20, 0.3, 0.3, 0.7, id="a thin sheet"),
+        pytest.param(Tooth(8), 15, 3, 0.3, 0.4, id="undercut"),
+        pytest.param(Tooth(300), 20, 4, 0.0, 0.95, id="many teeth on a thin rim"),
+        pytest.param(Tooth(30, BasicRack(1.0, 1.25, 0.4719)), 10, 3, 0.3, 0.6, id="full fillet"),
+        pytest.param(Tooth(20), 45, 3, 0.3, 0.02, id="steep helix, small bore"),
+        pytest.param(Tooth(25, tip_rounding=0.1), -20, 2, 0.3, 0.6, id="rounded tip"),
+    ],
+)
+def test_unusual_gears_are_solved(tooth, degrees, width, poisson_ratio, bore):
+    settings = SolidSettings().scaled(1.8)
+    tau = math.tan(math.radians(degrees)) / (0.5 * tooth.teeth)
+    known = solve_solid(tooth, tau, width, poisson_ratio, bore * tooth.root_radius, settings)
+    flank = known.flank
+    radius = flank.radius_of_arc(flank.flank_start + np.array([0.3, 0.6]) * (flank.flank_end - flank.flank_start))
+    pressed = bands(radius, [-0.05, 0.05], 0.1, known.band_half_width(radius))
+    own = known.deflection(0, pressed, pressed)
+    assert np.linalg.eigvalsh(0.5 * (own + own.T)).min() > 0.0
+    for k in (-1, 0, 1):
+        there, back = known.deflection(k, pressed, pressed), known.deflection(-k, pressed, pressed)
+        np.testing.assert_allclose(there, back.T, atol=1e-12 * own.max())
+    tension = known.largest_root_stress(0, "tension", pressed, [0.0])[0]
+    assert np.all((tension > 0.0) & np.isfinite(tension))
 
 
 @pytest.mark.long
