@@ -116,8 +116,12 @@ class PairPart(Part):
         except InputError as error:
             raise at(prefix, error, {"pair": ""}) from None
 
-    def build_helical(self, design: GearPair, prefix: str, *, misaligned: bool) -> HelicalPair:
+    def build_helical(
+        self, design: GearPair, prefix: str, *, misaligned: bool, distributed: bool = False
+    ) -> HelicalPair:
         """Make the flanks of a pair; their errors count only where the scene calls for misalignment.
+
+        `distributed` says that the case asks for a load distribution, which knows several loads.
 
         Raises
         ------
@@ -125,6 +129,8 @@ class PairPart(Part):
             If a key asks for what is not computed for helical pairs.
         """
         for key in ("compliance", "root_stress", "loads", "speed"):
+            if key == "loads" and distributed:
+                continue
             if key in self.model_fields_set and design.driver.helix_angle != 0.0:
                 raise InputError(
                     f"{prefix}.{key}", "(given)", "is not computed for a helical pair yet: its flanks are rigid",

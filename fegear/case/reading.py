@@ -170,7 +170,12 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
             )  # fmt: skip
     pairs = {key: pair.build(gears, f"pair.{key}") for key, pair in case.pair.items()}
     helical_pairs = {
-        key: pair.build_helical(pairs[key], f"pair.{key}", misaligned=case.effects.misalignment)
+        key: pair.build_helical(
+            pairs[key],
+            f"pair.{key}",
+            misaligned=case.effects.misalignment,
+            distributed="load-distribution" in case.results,
+        )
         for key, pair in case.pair.items()
         if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical
     }

@@ -251,8 +251,7 @@ LOAD_DISTRIBUTION = Stage(
     name="load-distribution",
     title="Load over the flanks",
     results=("load-distribution",),
-    about="line load and pressure over face and flank of a spur or helical pair with its width, K_Hbeta, shares, "
-    "transmission error",
+    about="line load and pressure over the flanks of a spur or helical pair with its width, K_Hbeta",
     subjects=_subjects,
     inputs=flanks_to_load,
     compute=_compute,

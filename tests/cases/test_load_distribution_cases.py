@@ -89,6 +89,15 @@ def test_left_out_coupling_is_told_with_its_size(cache, outcome):
     assert any("effects.hertz" in remark for remark in found.remarks)
 
 
+def test_every_load_of_the_case_has_its_row(cache, outcome):
+    found = ran(cache, 'pair.I.loads=["900 N", "7200 N"]')
+    rows = columns(found, "load_distribution_loads_I")
+    np.testing.assert_allclose(rows["load [N]"], [900.0, 3600.0, 7200.0])
+    assert np.all(np.diff(rows["te_mean [um]"]) > 0.0)
+    assert np.all(np.diff(rows["K_Hbeta"]) < 0.0)  # what keeps the flanks apart matters less under more load
+    assert rows["te_mean [um]"][1] == pytest.approx(value(outcome, "te_mean").si * 1e6, rel=1e-6)
+
+
 def test_the_pictures_are_drawn(outcome, tmp_path):
     for figure in outcome.figures:
         list(draw_pictures(figure, tmp_path))
