@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -36,6 +36,7 @@ class StiffnessPart(Part):
     load: PositiveLineLoad | None = None
     pair: str | None = None
     face_positions: FacePositions | None = None
+    source: Literal["solid", "slices"] = "solid"
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:
@@ -43,6 +44,8 @@ class StiffnessPart(Part):
             raise refuse("contradicts radii", "give either radii or positions", key="positions")
         if self.contact_half_width is not None and self.load is not None:
             raise refuse("contradicts contact_half_width", "give either of them", key="load")
+        if self.face_positions is None and self.source == "slices":
+            raise refuse("has no meaning for a plane gear", "give face_positions too, or remove it", key="source")
         if self.face_positions is not None:
             self._check_bands()
         return self

@@ -24,6 +24,8 @@ _USUAL_TOLERANCE, _FOLLOWS, _COARSEST, _FINE_TOLERANCE = 1e-2, 0.25, 1.25, 3e-3
 #: third power of the width [modules] adds, and the power of one over the edge length, or of the elements' order, with
 #: which both grow.
 _SECONDS, _BY_WIDTH, _GROWTH = 2.5, 6e-3, 4.0
+#: Of one in slices.
+_SECONDS_OF_SLICES = 0.6
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,11 @@ def settings_of_case(accuracy: AccuracyPart) -> SolidSettings:
     return replace(chosen, section=replace(chosen.section, **given)) if given else chosen
 
 
+def solid_settings_of(scene: Scene) -> SolidSettings:
+    """Settings of a case's solid gears: those for its tolerance, as a solid or in slices."""
+    return replace(settings_of_case(scene.case.accuracy), source=scene.case.stiffness.source)
+
+
 def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
     """What the case asks of the solid influence functions of a gear."""
     accuracy, reach = scene.case.accuracy, 1
@@ -71,7 +78,7 @@ def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
         for key, part in scene.case.pair.items():
             if name in (part.driver, part.driven):
                 reach = max(reach, math.ceil(scene.pairs[key].total_contact_ratio))
-    return SolidGearToSolve(scene.gears[name], settings_of_case(accuracy), accuracy.tolerance, reach, name)
+    return SolidGearToSolve(scene.gears[name], solid_settings_of(scene), accuracy.tolerance, reach, name)
 
 
 def check_solid_gear(scene: Scene, name: str) -> None:
@@ -82,6 +89,11 @@ def check_solid_gear(scene: Scene, name: str) -> None:
     InputError
     """
     part = scene.case.gear[name]
+    if scene.case.stiffness.source == "slices" and "load-distribution" in scene.case.results:
+        raise InputError(
+            "stiffness.source", '"slices"', "is for the table over the face; load-distribution takes the solid gear",
+            "ask for one of both results, or remove source",
+        )  # fmt: skip
     if part.face_width is None:
         raise InputError(
             f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",
@@ -126,7 +138,8 @@ def seconds_of_solid_gear(settings: SolidSettings, width: float) -> float:
 
     usual, section = SolidSettings().section, settings.section
     finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
-    return (_SECONDS + _BY_WIDTH * width**3) * finer**_GROWTH
+    alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + _BY_WIDTH * width**3
+    return alone * finer**_GROWTH
 
 
 def solid_solution_settings(influence: SolidInfluence) -> dict[str, object]:

@@ -11,8 +11,8 @@ from fegear.engine.stage import Forecast, Stage, Task
 from fegear.models.solid_influence import (
     check_solid_gear,
     seconds_of_solid_gear,
-    settings_of_case,
     solid_gear_to_solve,
+    solid_settings_of,
     solid_solution_settings,
     solve_solid_influence,
 )
@@ -44,7 +44,7 @@ def _present(influence: SolidInfluence, _asked: SolidGearToSolve) -> Outcome:
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    settings, gear = settings_of_case(scene.case.accuracy), scene.gears[name]
+    settings, gear = solid_settings_of(scene), scene.gears[name]
     return Forecast(asdict(settings), seconds_of_solid_gear(settings, gear.face_width / gear.module))
 
 

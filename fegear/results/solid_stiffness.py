@@ -154,9 +154,17 @@ def _present(table: SolidTable, asked: SolidTableInputs) -> Outcome:
         table,
         (_table(name, table),),
         _values(name, table),
-        remarks=(bands, *_missed(table, asked), *asked.assumed),
+        remarks=(bands, *_sliced(table, asked), *_missed(table, asked), *asked.assumed),
         figures=solid_figures(name, asked.gear, table, _USUAL_FORCE * m / 1e-3),
     )
+
+
+def _sliced(table: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
+    """Say what slices are."""
+    if table.influence.settings.source == "solid":
+        return ()
+    said = "coupled slices of its plane section stand in for the solid; errors are the largest misses on solid gears"
+    return (f"Gear {asked.name} over its face: {said}.",)
 
 
 def _missed(t: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:

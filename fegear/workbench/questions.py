@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
@@ -106,6 +106,7 @@ def stiffness_table(
     positions: int | None = None,
     contact_half_width: Length | None = None,
     face_positions: int | Iterable[Length] | None = None,
+    source: Literal["solid", "slices"] | None = None,
     tolerance: float | None = None,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
@@ -123,6 +124,8 @@ def stiffness_table(
         Half the width that the load presses on; .02 modules by default.
     face_positions : int or iterable of lengths, optional
         Solve the gear, spur or helical, with its width: so many places along the face, or the places from its middle.
+    source : {"solid", "slices"}, optional
+        With face positions: the solid gear, or cheaper coupled slices of its plane section.
     tolerance : float, optional
         Relative error that the mesh is chosen for.
     progress, cache
@@ -136,7 +139,7 @@ def stiffness_table(
     part: dict[str, Any] = {"gear": gear.name}
     given = {"radii": None if radii is None else listed(radii) or [radii], "positions": positions,
              "contact_half_width": contact_half_width,
-             "face_positions": listed(face_positions) or face_positions}  # fmt: skip
+             "face_positions": listed(face_positions) or face_positions, "source": source}  # fmt: skip
     part |= {key: value for key, value in given.items() if value is not None}
     scene = _scene("stiffness", {"gear": {gear.name: gear.keys}, "stiffness": part}, tolerance)
     return run_scene(scene, progress=progress, cache=gear.known if cache is None else cache)

@@ -20,7 +20,9 @@ from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.fillet import SolidFillet
 from fegear.fem.solid.plausible import check_solid
 from fegear.fem.solid.settings import SolidSettings
-from fegear.fem.solid.solution import SolidSolution, solve_solid
+from fegear.fem.solid.slice_laws import missed_by_slices
+from fegear.fem.solid.slices import solver_of
+from fegear.fem.solid.solution import SolidSolution
 from fegear.fem.trace import LoadedFlank
 from fegear.solution_cache import SolutionCache
 
@@ -119,6 +121,10 @@ class SolidInfluence:
 
     def contact_error(self, radius: ArrayLike, stations: ArrayLike, half_width: ArrayLike) -> Array:
         """Estimated error of `contact_compliance`, entry by entry: what the coarser solution makes of it."""
+        if self.settings.source == "slices":
+            known = self.contact_compliance(radius, stations, half_width)
+            own = np.sqrt(np.diagonal(known))
+            return np.asarray(self.error["contact"] * np.multiply.outer(own, own))
         if self.coarse is None:
             return np.full((np.size(radius), np.size(radius)), np.nan)
         other = line_compliance(self.coarse, contact_line(self.coarse, radius, stations), half_width)
@@ -136,6 +142,8 @@ class SolidInfluence:
     def error(self) -> Mapping[str, float]:
         """Largest estimated relative errors over flank and face; empty without a second solution.
 
+        Those of slices are the largest misses of `tests/golden/make_slices.py`.
+
         Returns
         -------
         dict of str to float
@@ -145,6 +153,8 @@ class SolidInfluence:
             (of the pressed bands, over the same), root_tension and root_compression (the largest of each hat; tension
             of those above 35 % of the flank).
         """
+        if self.settings.source == "slices":
+            return missed_by_slices(self.fine.tau)
         if self.coarse is None:
             return MappingProxyType({})
         found = dict.fromkeys(("contact", "neighbour", "root_tension", "root_compression"), 0.0)
@@ -244,13 +254,15 @@ def solid_influence(
     settings = settings or SolidSettings()
     check_bore(section, bore_radius)
     check_solid(section, tau, width, poisson_ratio, settings, held)
+    by = solver_of(settings)
+    estimate_error &= settings.source == "solid"  # that of slices is known from the gears that they were held against
 
     def solve(chosen: SolidSettings) -> SolidSolution:
         return known_or_solved(
             cache or SolutionCache(),
             section,
             ("solid", tau, width, poisson_ratio, bore_radius, chosen, reach, held),
-            lambda: solve_solid(section, tau, width, poisson_ratio, bore_radius, chosen, reach=reach, held=held),
+            lambda: by(section, tau, width, poisson_ratio, bore_radius, chosen, reach=reach, held=held),
             _KINDS,
         )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields, replace
+from typing import Literal
 
 from fegear.errors import InputError
 from fegear.fem.settings import MeshSettings
@@ -38,6 +39,8 @@ class SolidSettings:
         the face, at most all.
     band_half_width : float
         Half-width of the pressure that loads the flank.
+    source : {"solid", "slices"}
+        The whole solid, or slices of its plane section that are coupled along the face (`slices`).
     """
 
     section: MeshSettings = field(default=_SECTION)
@@ -46,12 +49,13 @@ class SolidSettings:
     wave_reach: float = 2.5
     fewest_waves: float = 6.0
     band_half_width: float = 0.25
+    source: Literal["solid", "slices"] = "solid"
 
     def __post_init__(self) -> None:
         """Refuse settings that make no mesh."""
         for f in fields(self):
             value = getattr(self, f.name)
-            if f.name != "section" and not (math.isfinite(value) and value > 0.0):
+            if f.name not in ("section", "source") and not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"accuracy.{f.name}", value, "must be positive and finite")
         if self.least_degree < 3:
             raise InputError("accuracy.least_degree", self.least_degree, "must be at least 3")

@@ -27,6 +27,11 @@ if TYPE_CHECKING:
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.gear import Gear
 
+#: What each number is called among the errors of the influence functions.
+_MISSED = {
+    "c_self": "contact", "c_prev": "neighbour", "c_next": "neighbour",
+    "root_tension": "root_tension", "root_compression": "root_compression",
+}  # fmt: skip
 #: How far a band reaches to either side along the face, where the face goes on so far [modules].
 BAND_REACH = 0.5
 #: Places along the face per module at which root stress is looked at, and how many at least.
@@ -135,7 +140,9 @@ def solid_table(
     z, before, after, b = (x * m for x in (asked.place, asked.before, asked.after, asked.half_width))
     fine = band_numbers(influence.fine, asked)
     relative = {key: np.full((r.size, 1), np.nan) for key in fine}
-    if influence.coarse is not None:
+    if influence.settings.source == "slices":
+        relative = {key: np.full((r.size, 1), influence.error[_MISSED[key]]) for key in fine}
+    elif influence.coarse is not None:
         coarse = band_numbers(influence.coarse, asked)
         relative = {key: np.abs(coarse[key] / fine[key] - 1.0).max(axis=1, keepdims=True) for key in fine}
     c = {key: fine[key] / (gear.material.young_modulus * m) for key in ("c_self", "c_prev", "c_next")}

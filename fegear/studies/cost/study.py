@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 _ANSWER_SECONDS = {"te-peak-to-peak": 0.15, "tooth-force": 1.1, "dynamic-factor": 2.0}
 _KNOB_SECONDS = 6.0
 #: How many gears with their width the knobs solve, in seconds of one with the usual settings.
-_SOLIDS = 22.0
+_SOLIDS = 25.0
 
 
 def forecast(asked: Asked, ladder: Ladder) -> float:
