@@ -102,10 +102,10 @@ def test_narrowed_bands_of_a_plane_tooth_are_the_plane_contacts():
 def test_a_contact_does_not_know_how_wide_it_was_pressed_nor_on_which_polynomials(twist):
     """Wide bands on few functions and narrow ones on many, both narrowed to the same contacts, at the end faces too."""
     base, found = SolidSettings(), []
-    for degree, width, edge in ((6, 0.25, 0.3), (9, 0.16, 0.2)):
+    for degree, width, edge in ((5, 0.25, 0.3), (8, 0.17, 0.2)):
         section = replace(base.section, flank_edge_length=edge)
         settings = replace(base, section=section, least_degree=degree, waves_per_module=1e-3, band_half_width=width)
-        known = solve_solid(TOOTH, twist, 2.0, 0.3, BORE, settings, reach=0)
+        known = solve_solid(TOOTH, twist, 2.0, 0.3, 0.85 * TOOTH.root_radius, settings, reach=0)
         stations = np.linspace(-1.0, 1.0, 5)
         rolled = math.sqrt(13.95**2 - TOOTH.base_radius**2) - twist * TOOTH.base_radius * stations
         radius = np.hypot(TOOTH.base_radius, rolled)
@@ -114,6 +114,6 @@ def test_a_contact_does_not_know_how_wide_it_was_pressed_nor_on_which_polynomial
         found.append((line_compliance(known, line, 0.02), raw))
     (wide, raw_wide), (narrow, raw_narrow) = found
     size = np.sqrt(np.outer(np.diagonal(narrow), np.diagonal(narrow)))
-    assert np.abs((wide - narrow) / size).max() < 4e-3
+    assert np.abs((wide - narrow) / size).max() < 6e-3
     assert np.abs((raw_wide - raw_narrow) / np.diagonal(raw_narrow)).max() > 0.02
     np.testing.assert_allclose(wide, wide.T, rtol=1e-9)
