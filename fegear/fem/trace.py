@@ -152,8 +152,8 @@ class LoadedFlank:
         r = np.asarray(radius, dtype=float)
         low, high = self.lowest_radius, self.highest_radius
         slack = 1e-7 * high
-        if r.size and (r.min() < low - slack or r.max() > high + slack):
-            off = r[(r < low - slack) | (r > high + slack)][0]
+        if r.size and not (r.min() >= low - slack and r.max() <= high + slack):
+            off = r[~((r >= low - slack) & (r <= high + slack))][0]
             raise RangeError(
                 "radius", f"{off:.8g} modules", f"lies off the flank, which runs from {low:.8g} to {high:.8g}"
             )

@@ -1,11 +1,10 @@
 """Write solid_gears.json: twelve gears with a width at which two levels of fegear's elements might be wrong alike.
 
 Undercut, thin rims, narrow and wide faces, helices of both hands up to 35 degrees. The references are fegear's own
-solid, set up so that they share as little as possible with its usual settings: elements of order 4 on a section of other
-edges, twice as many functions along the face and all of them at every node (of faces wider than 8 modules: more than
-twice as many of them), and pressures less than half as wide, so that little is left for what widths and end faces are
-exchanged with. `apart` is what a second reference, between both, differs by. Run by hand, ten minutes of processor
-time:
+solid, set up so that they share as little as possible with its usual settings: elements of order 4 on a section of
+other edges, more functions along the face and all of them at every node (of faces wider than 8 modules: twice as many
+of them), and pressures half as wide, so that little is left for what widths and end faces are exchanged with. The
+second reference, between both, shows what the first leaves. Run by hand, ten minutes of processor time:
 
 python tests/golden/make_solid_gears.py [first|second] [NAME ...]
 """
@@ -104,16 +103,23 @@ def pressed_line(solution, radius, stations):
     return hats(radius, stations, np.minimum(0.7 * room, PRESSED), slope=solution.line_slope(radius))
 
 
+def loads_among(count):
+    """Stations whose loads neighbours and fillets answer to: both ends of the line and its middle."""
+    return [0, count // 2, count - 1]
+
+
 def quantities(solution, gear):
     """What is compared: a list over the contact lines of arrays by name."""
     found = []
     for radius, stations in lines_of(gear):
         wide = pressed_line(solution, radius, stations)
-        one = {"radius": radius, "stations": stations}
+        arc = solution.flank.arc_of_radius(radius) - solution.flank.flank_start
+        place = arc / (solution.flank.flank_end - solution.flank.flank_start)
+        one = {"radius": radius, "stations": stations, "place": place}
         for b in CONTACTS:
             c = line_compliance(solution, contact_line(solution, radius, stations), b)
             one |= {f"own {b}": np.diagonal(c), f"even {b}": c.sum(axis=1), f"beside {b}": np.diagonal(c, 1)}
-        few = [0, stations.size // 2, stations.size - 1]
+        few = loads_among(stations.size)
         for k, name in ((1, "next"), (-1, "prev")):
             one[name] = solution.deflection(k, wide, wide)[few]
         pressed = bands(*(getattr(wide, x)[few] for x in ("radius", "zeta", "before", "half_width")),

@@ -109,9 +109,9 @@ def loads_of(pressed: Bands, flank: LoadedFlank, face: FaceFunctions) -> Array:
     Raises
     ------
     RangeError
-        If a band reaches over an end face, has no extent or no width.
+        If a band reaches over an end face, has no extent or no width, or is wider than the flank.
     """
-    _check(pressed, face)
+    _check(pressed, flank, face)
     arc = flank.arc_of_radius(pressed.radius)
     z, weight = _gauss(pressed, face)
     shape = face.at(z.ravel())[0].reshape(face.count, *z.shape)
@@ -177,7 +177,7 @@ def _room(flank: LoadedFlank, half_width: Array) -> tuple[Array, Array]:
     return flank.flank_start + most, flank.flank_end - most
 
 
-def _check(pressed: Bands, face: FaceFunctions) -> None:
+def _check(pressed: Bands, flank: LoadedFlank, face: FaceFunctions) -> None:
     half = 0.5 * face.width * (1.0 + _ON_FACE)
     over = (pressed.zeta - pressed.before < -half) | (pressed.zeta + pressed.after > half)
     if over.any() or not np.isfinite(pressed.zeta).all():
@@ -187,5 +187,22 @@ def _check(pressed: Bands, face: FaceFunctions) -> None:
         )
     if not ((pressed.before >= 0.0) & (pressed.after >= 0.0) & (pressed.before + pressed.after > 0.0)).all():
         raise RangeError("reach", "not positive", "must be positive: a band has an extent along the face")
-    if not (np.isfinite(pressed.half_width) & (pressed.half_width > 0.0)).all():
-        raise RangeError("half_width", "not positive", "must be positive and finite")
+    if not np.isfinite(pressed.slope).all():
+        raise RangeError("slope", "not finite", "must be finite: arc length up the flank per length along the face")
+    check_half_width(pressed.half_width, flank)
+
+
+def check_half_width(half_width: Array, flank: LoadedFlank) -> None:
+    """Refuse pressures without a width, or wider than the flank.
+
+    Raises
+    ------
+    RangeError
+    """
+    most = 0.5 * (flank.flank_end - flank.flank_start)
+    wrong = ~((half_width > 0.0) & (half_width <= most))
+    if wrong.any():
+        raise RangeError(
+            "half_width", f"{half_width[wrong][0]:.6g} modules",
+            f"must be positive and at most {most:.6g} modules: a contact has a width and lies on the flank",
+        )  # fmt: skip

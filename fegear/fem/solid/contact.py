@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.influence import curvature_slope
-from fegear.fem.solid.bands import overlap, profile_moments, profiles_at
+from fegear.fem.solid.bands import check_half_width, overlap, profile_moments, profiles_at
 from fegear.fem.solid.end_slope import end_slope
 from fegear.fem.solid.half_space import band_cosines, function_cosines, galerkin_compliance
 
@@ -55,8 +55,14 @@ def line_compliance(solution: SolidSolution, line: Bands, half_width: ArrayLike)
     ndarray, shape (P, P)
         Approach along the transverse line of action per unit transverse force, weighted with the contacts' own
         pressures. As in the plane it is that of Hertz's centre, which lies deeper than the mean.
+
+    Raises
+    ------
+    RangeError
+        If a contact has no width, is wider than the flank, or its band does not lie on flank and face.
     """
     b = np.broadcast_to(np.asarray(half_width, dtype=float), (line.count,))
+    check_half_width(b, solution.flank)
     common = overlap(line)
     slope = (1.0 - solution.poisson_ratio**2) * solution.normal_length / np.pi
     found = solution.deflection(0, line, line)

@@ -40,8 +40,12 @@ _KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings,
 #: Where errors are looked for: contact lines through these shares of the flank's length in the middle of the face,
 #: where they stay off its ends by a share of it; root tension of what stands above another share.
 _UP, _FOOT, _ABOVE_FOOT = (0.12, 0.3, 0.5, 0.7, 0.88), 0.07, 0.35
-#: Parts of the difference from the coarser solution that are taken for the error of the finer one.
-_SHARES = {"contact": 1.0, "neighbour": 1.5, "root_tension": 1.0, "root_compression": 1.0}
+#: Parts of the difference from the coarser solution, whose edges are longer by a factor of 1.35, that are taken for the
+#: largest error of the finer one over flank and face. Neighbours see the body, which has almost as few edges in both.
+_SHARES = {"contact": 1.0, "neighbour": 3.0, "root_tension": 1.5, "root_compression": 1.5}
+#: The same of single entries, where no largest difference stands in for one that is small by chance: of errors that go
+#: with the power 1.7 of the edges, and of stress, whose goes with the first.
+ENTRY_SHARES = {"contact": 1.5, "neighbour": 3.0, "root_tension": 2.9, "root_compression": 2.9}
 #: Stations along them: so far apart [modules], so many steps at most.
 _STATION, _MOST_STATIONS = 0.5, 24
 
@@ -120,7 +124,7 @@ class SolidInfluence:
         return line_compliance(self.fine, contact_line(self.fine, radius, stations), half_width)
 
     def contact_error(self, radius: ArrayLike, stations: ArrayLike, half_width: ArrayLike) -> Array:
-        """Estimated error of `contact_compliance`, entry by entry: what the coarser solution makes of it."""
+        """Estimated error of `contact_compliance`, entry by entry: by what the coarser solution makes of it."""
         if self.settings.source == "slices":
             known = self.contact_compliance(radius, stations, half_width)
             own = np.sqrt(np.diagonal(known))
@@ -128,7 +132,7 @@ class SolidInfluence:
         if self.coarse is None:
             return np.full((np.size(radius), np.size(radius)), np.nan)
         other = line_compliance(self.coarse, contact_line(self.coarse, radius, stations), half_width)
-        return np.abs(self.contact_compliance(radius, stations, half_width) - other)
+        return ENTRY_SHARES["contact"] * np.abs(self.contact_compliance(radius, stations, half_width) - other)
 
     def fillet_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> Array:
         """Surface stress of a fillet: see `SolidSolution.fillet_stress`."""
@@ -253,7 +257,7 @@ def solid_influence(
     started = time.perf_counter()
     settings = settings or SolidSettings()
     check_bore(section, bore_radius)
-    check_solid(section, tau, width, poisson_ratio, settings, held)
+    check_solid(section, tau, width, poisson_ratio, settings, held, reach)
     by = solver_of(settings)
     estimate_error &= settings.source == "solid"  # that of slices is known from the gears that they were held against
 

@@ -29,6 +29,7 @@ def check_solid(
     poisson_ratio: float,
     settings: SolidSettings,
     held: tuple[float, float] | None,
+    reach: int,
 ) -> None:
     """Refuse widths, twists and held parts that cannot be meshed or make no sense; arguments as of `solid_influence`.
 
@@ -55,6 +56,8 @@ def check_solid(
             f"asks for polynomials of degree {settings.degree(width)} along a face of {width:.6g} modules; "
             f"{_HIGHEST_DEGREE} is what can be solved", "lower it, or shorten the face",
         )  # fmt: skip
+    if reach < 0:
+        raise RangeError("reach", reach, "must be at least 0: so many teeth to either side are known")
     if held is None:
         return
     low, high = held

@@ -18,6 +18,8 @@ _SECTION = MeshSettings(
 
 #: By how much the solution that shows the error is coarser.
 _COARSER = 1.35
+#: How much less room its bands take beside the ends of the flank, where room alone decides how wide they are.
+_OTHER_ROOM = 0.7
 #: What the usual settings and the finer ones meet, and the power of the tolerance that edges go with.
 _USUAL, _FINE, _ORDER = 1e-2, 3e-3, 0.33
 
@@ -39,6 +41,8 @@ class SolidSettings:
         the face, at most all.
     band_half_width : float
         Half-width of the pressure that loads the flank.
+    room_share : float
+        Share of the room to the nearer end of the flank that it takes at most.
     source : {"solid", "slices"}
         The whole solid, or slices of its plane section that are coupled along the face (`slices`).
     """
@@ -49,6 +53,7 @@ class SolidSettings:
     wave_reach: float = 2.5
     fewest_waves: float = 6.0
     band_half_width: float = 0.25
+    room_share: float = 0.7
     source: Literal["solid", "slices"] = "solid"
 
     def __post_init__(self) -> None:
@@ -57,6 +62,10 @@ class SolidSettings:
             value = getattr(self, f.name)
             if f.name not in ("section", "source") and not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"accuracy.{f.name}", value, "must be positive and finite")
+        if self.room_share > 0.95:
+            raise InputError("accuracy.room_share", self.room_share, "must be at most 0.95: a band stays on the flank")
+        if self.fewest_waves < 2.0:  # a rigid motion along the face takes two
+            raise InputError("accuracy.fewest_waves", self.fewest_waves, "must be at least 2")
         if self.least_degree < 3:
             raise InputError("accuracy.least_degree", self.least_degree, "must be at least 3")
 
@@ -78,9 +87,8 @@ class SolidSettings:
 
     def coarser(self) -> SolidSettings:
         """The set whose solution shows the error of this one's: nothing that leaves an error is the same."""
-        if self == _THIRD:
-            return SolidSettings()
-        return self.scaled(_COARSER)
+        other = SolidSettings() if self == _THIRD else self.scaled(_COARSER)
+        return replace(other, room_share=_OTHER_ROOM * self.room_share)
 
 
 #: Elements of order 4, more functions along the face, narrower bands.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.errors import RangeError
 from fegear.fem.ring import closed_ring
 from fegear.fem.root_stress import extreme
 from fegear.fem.sector import mesh_sector
@@ -35,8 +36,8 @@ if TYPE_CHECKING:
 
 #: How far below a contact's edge root tension begins [modules], or half of what of the fillet it leaves free.
 _FROM_CONTACT = 0.25
-#: A pressure takes this share of the room to the nearer end of the flank, and at least this share of the flank.
-_ROOM_SHARE, _NARROWEST = 0.7, 0.02
+#: A pressure is at least this share of the flank wide, however little room there is to its end.
+_NARROWEST = 0.02
 #: Radius of curvature at least, beside the base circle, where an involute's vanishes [modules].
 _LEAST_RADIUS = 0.25
 _FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
@@ -96,7 +97,7 @@ class SolidSolution:
         arc = self.flank.arc_of_radius(np.atleast_1d(np.asarray(radius, dtype=float)))
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
         length = self.flank.flank_end - self.flank.flank_start
-        return np.clip(_ROOM_SHARE * room, _NARROWEST * length, self.settings.band_half_width)
+        return np.clip(self.settings.room_share * room, _NARROWEST * length, self.settings.band_half_width)
 
     @property
     def normal_length(self) -> float:
@@ -122,10 +123,23 @@ class SolidSolution:
 
         Along the transverse line of action, weighted with the pressure of the watched band, so that
         c_k(p, q) = c_-k(q, p) to round-off.
+
+        Raises
+        ------
+        RangeError
+            If tooth k is beyond reach, or a band does not lie on flank and face.
         """
+        self._check_tooth(k)
         loads = loads_of(pressed, self.flank, self.face)
         own = loads if watched is pressed else loads_of(watched, self.flank, self.face)
         return np.asarray(own.T @ self.compliance[k] @ loads)
+
+    def _check_tooth(self, k: int) -> None:
+        if k not in self.compliance:
+            raise RangeError(
+                "k", k, f"must be a whole number from {-self.reach} to {self.reach}: teeth that were solved for",
+                "ask for a larger reach",
+            )  # fmt: skip
 
     def largest_root_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> tuple[Array, Array]:
         """Largest tension (or compression) up a fillet of tooth k at places along the face, shape (Z, P) each.
@@ -172,8 +186,19 @@ class SolidSolution:
         -------
         ndarray, shape (3, points, Z, P)
             Along the fillet in the transverse section, across it (all but axial), and the shear between both.
+
+        Raises
+        ------
+        RangeError
+            If tooth k is beyond reach, a place lies off the face, or a band off flank or face.
         """
-        values, slopes = self.face.at(np.atleast_1d(np.asarray(zeta, dtype=float)))
+        self._check_tooth(k)
+        z, half = np.atleast_1d(np.asarray(zeta, dtype=float)), 0.5 * self.width
+        if (off := z[~(np.abs(z) <= half * (1.0 + 1e-9))]).size:
+            raise RangeError(
+                "zeta", f"{off[0]:.6g} modules", f"lies off the face, which runs from {-half:.6g} to {half:.6g} modules"
+            )
+        values, slopes = self.face.at(z)
         moved = self.displacement[k, side] @ loads_of(pressed, self.flank, self.face)
         return surface_stress(self.fillets[side], self.tau, self.poisson_ratio, moved, values, slopes)
 

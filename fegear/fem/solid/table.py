@@ -13,6 +13,7 @@ from fegear.errors import RangeError
 from fegear.fem.root_stress import extreme
 from fegear.fem.solid.bands import bands, hats
 from fegear.fem.solid.contact import line_compliance
+from fegear.fem.solid.influence import ENTRY_SHARES
 from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.arrays import Array, Mask
     from fegear.fem.influence import Side
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.influence import SolidInfluence
@@ -34,6 +35,13 @@ _MISSED = {
 }  # fmt: skip
 #: How far a band reaches to either side along the face, where the face goes on so far [modules].
 BAND_REACH = 0.5
+#: How far up and down the flank, as a share of it, the worst difference of two solutions is looked for.
+_BESIDE = 0.26
+#: Which estimate each number of the table goes by.
+_ESTIMATE = {
+    "c_self": "contact", "c_prev": "neighbour", "c_next": "neighbour", "root_tension": "root_tension",
+    "root_compression": "root_compression",
+}  # fmt: skip
 #: Places along the face per module at which root stress is looked at, and how many at least.
 _PLACES_PER_MODULE, _FEWEST_PLACES = 5.0, 33
 
@@ -85,8 +93,8 @@ class SolidTable(ReadOnlyArrays):
         after.
     root : mapping of {"tension", "compression"} to RootStressOfBands
     errors : mapping of str to ndarray
-        Estimated absolute error of c_self, c_neighbour, root_tension, root_compression: what a coarser solution
-        differs by, the worst along the face for each radius; NaN without one.
+        Estimated absolute error of c_self, c_neighbour, root_tension, root_compression: by what a coarser solution
+        differs, the worst along the face and over the radii beside each; NaN without one.
     influence : SolidInfluence
         What the table was made from.
     seconds : float
@@ -144,7 +152,11 @@ def solid_table(
         relative = {key: np.full((r.size, 1), influence.error[_MISSED[key]]) for key in fine}
     elif influence.coarse is not None:
         coarse = band_numbers(influence.coarse, asked)
-        relative = {key: np.abs(coarse[key] / fine[key] - 1.0).max(axis=1, keepdims=True) for key in fine}
+        beside = _radii_beside(influence.fine, asked.radius)
+        for key in fine:
+            relative[key] = ENTRY_SHARES[_ESTIMATE[key]] * _worst_beside(
+                np.abs(coarse[key] / fine[key] - 1.0).max(axis=1), beside
+            )
     c = {key: fine[key] / (gear.material.young_modulus * m) for key in ("c_self", "c_prev", "c_next")}
     root = {side: _root(influence.fine, side, asked, m) for side in influence.fine.fillets}
     errors = {
@@ -222,6 +234,18 @@ def band_numbers(solution: SolidSolution, asked: BandsOfTable) -> dict[str, Arra
     for side in solution.fillets:
         found[f"root_{side}"] = _root(solution, side, asked, 1.0).value
     return found
+
+
+def _radii_beside(solution: SolidSolution, radius: Array) -> Mask:
+    """Which radii lie within a share of the flank beside each: two solutions may agree at one of them by chance."""
+    flank = solution.flank
+    arc = flank.arc_of_radius(radius)
+    return np.asarray(np.abs(arc[:, None] - arc) <= _BESIDE * (flank.flank_end - flank.flank_start))
+
+
+def _worst_beside(apart: Array, beside: Mask) -> Array:
+    """Largest of what two solutions differ by beside each radius, shape (R, 1)."""
+    return np.where(beside, apart, 0.0).max(axis=1, keepdims=True)
 
 
 def _own(solution: SolidSolution, radius: float, asked: BandsOfTable, j: int, half_width: float) -> float:
