@@ -42,10 +42,10 @@ _KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings,
 _UP, _FOOT, _ABOVE_FOOT = (0.12, 0.3, 0.5, 0.7, 0.88), 0.07, 0.35
 #: Parts of the difference from the coarser solution, whose edges are longer by a factor of 1.35, that are taken for the
 #: largest error of the finer one over flank and face. Neighbours see the body, which has almost as few edges in both.
-_SHARES = {"contact": 1.0, "neighbour": 3.0, "root_tension": 1.5, "root_compression": 1.5}
+_SHARES = {"contact": 1.0, "neighbour": 4.0, "root_tension": 1.5, "root_compression": 1.5}
 #: The same of single entries, where no largest difference stands in for one that is small by chance: of errors that go
 #: with the power 1.7 of the edges, and of stress, whose goes with the first.
-ENTRY_SHARES = {"contact": 1.5, "neighbour": 3.0, "root_tension": 2.9, "root_compression": 2.9}
+ENTRY_SHARES = {"contact": 1.5, "neighbour": 4.0, "root_tension": 2.9, "root_compression": 2.9}
 #: Stations along them: so far apart [modules], so many steps at most.
 _STATION, _MOST_STATIONS = 0.5, 24
 
