@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from fegear.case.part import Number, Part, PositiveNumber, PositiveSpeed, at_most, quantity, refuse, spelt_also
+from fegear.case.part import (
+    Number,
+    Part,
+    PositiveNumber,
+    PositiveSpeed,
+    at_most,
+    quantity,
+    refuse,
+    refuse_more,
+    spelt_also,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -109,7 +119,12 @@ class DesignChartPart(Part):
     amounts: Annotated[list[PositiveNumber], Field(min_length=1)]
     lengths: Annotated[list[PositiveNumber], Field(min_length=1)]
     shape: Literal["linear", "parabolic"] = "linear"
-    unequal: list[UnequalReliefPart] = Field(default_factory=list)
+    unequal: list[UnequalReliefPart] = Field(default_factory=list, max_length=1000)
+
+    @model_validator(mode="after")
+    def _few_enough(self) -> Self:
+        refuse_more(100_000, "reliefs", len(self.amounts), len(self.lengths))
+        return self
 
 
 class DynamicsPart(Part):

@@ -31,9 +31,9 @@ class _Range(Part):
     def _rising(self) -> Self:
         start, stop = self.ends
         if stop <= start:
-            raise refuse("must be greater than start", key="stop", value=stop)
+            raise refuse("must be greater than start", key="stop")
         if self.spacing == "logarithmic" and start <= 0.0:
-            raise refuse("must be greater than zero on a logarithmic scale", key="start", value=start)
+            raise refuse("must be greater than zero on a logarithmic scale", key="start")
         return self
 
     @property

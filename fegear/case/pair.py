@@ -148,6 +148,8 @@ class PairPart(Part):
             if self.misalignment is not None and self.misalignment.lead is not None:
                 names["lead_angle"] = names["lead"]
             names |= {key: f"modification.{key}" for key in ("parabola", "crown")}
+            if error.key == "crown" and self.modification is not None:  # below, it is a turn of the section
+                error = type(error)("crown", f"{self.modification.crown * 1e3:.6g} mm", error.rule, error.remedy)
             raise at(prefix, error, names) from None
 
     def normal_load(self, pair: GearPair) -> float | None:

@@ -53,7 +53,9 @@ class ExternalForcePart(Part):
 
     @model_validator(mode="after")
     def _one_frequency(self) -> Self:
-        if (self.order is None) == (self.frequency is None):
+        if self.order is not None and self.frequency is not None:
+            raise refuse("contradicts order", "give either", key="frequency")
+        if self.order is None and self.frequency is None:
             raise refuse("must be given, or a frequency instead", "give either", key="order")
         if not any(self.components):
             raise refuse(

@@ -19,6 +19,7 @@ _KINDS = {
     "string_type": "must be a text in quotes",
     "bool_type": "must be true or false",
     "list_type": "must be a list in square brackets",
+    "tuple_type": "must be a text in quotes or a list of them",
     "dict_type": "must be a table",
     "model_type": "must be a table of keys and values",
     "finite_number": "must be finite",

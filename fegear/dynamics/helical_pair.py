@@ -260,8 +260,12 @@ class ReducedPairModel:
         modal_damping : float
             Uniform damping ratio.
         """
-        if not (mass > 0.0 and aspect_ratio > 0.0 and min(alpha_y, alpha_z, alpha_theta) >= 0.0):
-            raise InputError("ratios", (mass, aspect_ratio, alpha_y, alpha_z, alpha_theta), "must not be negative")
+        for key, value in (("mass", mass), ("aspect_ratio", aspect_ratio)):
+            if not value > 0.0:
+                raise InputError(f"unity_ratio.{key}", value, "must be greater than zero")
+        for key, value in (("alpha_y", alpha_y), ("alpha_z", alpha_z), ("alpha_theta", alpha_theta)):
+            if not value >= 0.0:
+                raise InputError(f"unity_ratio.{key}", value, "must not be negative")
         nu4 = aspect_ratio**4
         masses = 0.5 * mass * np.array([2.0, 2.0, 1.0 / nu4, 1.0, 2.0])
         ratios = np.array([alpha_y, 0.5 * alpha_z, 0.5 * alpha_theta / nu4, 0.5 * alpha_theta, 0.0])

@@ -44,7 +44,8 @@ def mesh_of(scene: Scene, name: str) -> MeshParameters:
             z, load, deflection, face_width=part.face_width or math.nan, base_helix_angle=part.base_helix_angle
         )
     except InputError as error:
-        raise at("", error) if error.key.startswith(prefix) else at(prefix, error) from None
+        of_case = error.key.startswith(prefix)
+        raise error if of_case else at(prefix, error, {error.key: error.key.removeprefix("mesh.")}) from None
 
 
 def _read_distribution(path: Path, key: str) -> list[NDArray[np.float64]]:
@@ -95,4 +96,5 @@ def model_at(
             return replace(model, driver=i, driven=j)
         return replace(model, bearing_stiffness=value * model.bearing_stiffness)
     except InputError as error:
-        raise type(error)(f"{prefix}.follow.{parameter}", value, error.rule, error.remedy) from None
+        found = f"{math.degrees(value):.6g} deg" if parameter == "base_helix_angle" else value
+        raise type(error)(f"{prefix}.follow.{parameter}", found, error.rule, error.remedy) from None

@@ -64,7 +64,7 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
     Raises
     ------
     InputError
-        If a gear or a format is unknown, or nothing can be written because all gears are helical.
+        If a gear or a format is unknown, or nothing can be written because all gears are helical or there is none.
     """
     wanted = {part.strip() for part in formats.split(",") if part.strip()}
     for one in sorted(wanted.difference(FORMATS)):
@@ -72,6 +72,8 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
     if not wanted:
         raise InputError("--format", f'"{formats}"', "names no format", f"choose from {', '.join(FORMATS)}")
     every = list(scene.gears)
+    if not every:
+        raise InputError("gear", "(not given)", "is missing: the case describes no gear to export", "add [gear.NAME]")
     for name in names:
         if name not in every:
             raise InputError("--gear", f'"{name}"', "is no gear of this case", nearest(name, every))

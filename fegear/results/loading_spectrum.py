@@ -13,7 +13,7 @@ from fegear.case.loading import LoadingPart
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
-from fegear.errors import InputError
+from fegear.errors import InputError, RangeError
 from fegear.results.drawn_loading import loading_figures
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ _RAMP, _PATH = 201, 401
 _LOWEST, _LOBES, _BELOW, _ABOVE = 0.1, 2.9, 199, 501
 #: Highest of the ramp's own frequency q.
 _HIGHEST_Q = 30.0
+#: Largest contact ratio: gears have 1 to 4, and each base pitch of the path costs memory.
+_LARGEST_RATIO = 100.0
 #: Exponent of the polynomial family where the case names none.
 _EXPONENT = 7
 
@@ -117,7 +119,18 @@ def loading_functions(asked: LoadingInputs) -> tuple[LoadingFunction, ...]:
     """Every combination of exponent, slope and peak."""
     from fegear.design.loading import LoadingFunction, Ramp
 
-    part = asked.part
+    part, ratio = asked.part, asked.length / asked.base_pitch
+    if part.contact_ratio is not None and ratio < 1.0:
+        raise RangeError(
+            "loading.contact_ratio", part.contact_ratio,
+            "leaves no pair to carry the load at some positions", "choose at least 1",
+        )  # fmt: skip
+    if ratio > _LARGEST_RATIO:
+        key = "contact_ratio" if part.contact_ratio is not None else "length"
+        raise RangeError(
+            f"loading.{key}", f"{ratio:.6g} base pitches", "is a contact ratio that no gears have",
+            f"choose at most {_LARGEST_RATIO:g}",
+        )  # fmt: skip
     exponents = (part.exponents or [_EXPONENT]) if part.family == "polynomial" else [None]
     try:
         return tuple(

@@ -135,6 +135,106 @@ def test_refusals_name_key_and_remedy_in_the_units_of_the_case(overrides, words)
     assert "modules" not in str(refused.value) or "neck" in str(refused.value)
 
 
+SLOPES, EXCITED, FOLLOWED = (
+    "sources/mark_fig08",
+    "sources/blankenship_singh_forces",
+    "sources/blankenship_singh_helical",
+)
+LINES, FRICTION, FACE = "sources/litvin_fig01", "sources/lin_huston_coy_fig5b", "spur_over_the_face"
+EXCITATION, FOLLOW = "transmissibility.I.excitation", "transmissibility.I.follow"
+OF_MESH, UNITY = "transmissibility.I.mesh", "transmissibility.I.unity_ratio"
+
+
+@pytest.mark.parametrize(
+    ("case", "override", "key", "words"),
+    [
+        ("sources/mark_fig12", "loading.length=1e9 mm", "loading.length", "no gears have; choose at most 100"),
+        (SLOPES, "loading.contact_ratio=1e9", "loading.contact_ratio", "choose at most 100"),
+        (SLOPES, "loading.contact_ratio=0.5", "loading.contact_ratio", "choose at least 1"),
+        (SLOPES, "loading.slopes=[nan]", r"loading.slopes[0]", "must be finite"),
+        (SLOPES, "loading.peaks=[]", "loading.peaks", "must not be empty"),
+        (SLOPES, "loading={}", "loading.contact_ratio", "no pair is named"),
+        ("sources/mark_series", "transmission_error.terms=201", "transmission_error.terms", "equal to 200"),
+        ("sources/mark_series", "transmission_error={terms=3}", "transmission_error.terms", "mark-series"),
+        ("sources/mark_fig22", "pair.I.root_stress={source=5}", "pair.I.root_stress.source", "quotes or a list"),
+        ("sources/mark_fig22", "pair.I.root_stress={source=[]}", "pair.I.root_stress.source", "must not be empty"),
+        ("sources/mark_fig22", "dynamics.speed=0 rpm", "dynamics.speed", "greater than zero"),
+        (EXCITED, f"{EXCITATION}.speeds=[]", f"{EXCITATION}.speeds.values", "must not be empty"),
+        (EXCITED, f"{EXCITATION}.transmission_error={{}}", f"{EXCITATION}.transmission_error.pair", "give pair, file"),
+        (
+            EXCITED, f"{EXCITATION}.external=[{{on='driver', order=1, frequency='5 Hz', y='1 N'}}]",
+            f"{EXCITATION}.external[0].frequency", "contradicts order",
+        ),
+        (EXCITED, f"{OF_MESH}.base_helix_angle=90 deg", f"{OF_MESH}.base_helix_angle", "between -90 and 90 deg"),
+        (EXCITED, f"{UNITY}.aspect_ratio=0", f"{UNITY}.aspect_ratio", "greater"),
+        (EXCITED, f"{UNITY}.alpha_z=-1", f"{UNITY}.alpha_z", "negative"),
+        (FOLLOWED, f"{FOLLOW}={{}}", FOLLOW, "names no parameter"),
+        (
+            FOLLOWED, f"{FOLLOW}.base_helix_angle={{start='5 deg', stop='5 deg'}}",
+            f"{FOLLOW}.base_helix_angle.stop", "= 5 deg",
+        ),
+        (
+            FOLLOWED, f"{FOLLOW}.base_helix_angle={{start='0 deg', stop='90 deg', count=3}}",
+            f"{FOLLOW}.base_helix_angle", "= 90 deg",
+        ),
+        (FOLLOWED, f"{FOLLOW}.mu={{start=-3, stop=1, count=3}}", f"{FOLLOW}.mu", "at least kappa"),
+        (FRICTION, "dynamics.friction={law='constant'}", "dynamics.friction.coefficient", "is needed by law"),
+        (
+            FRICTION, "dynamics.friction={law='benedict-kelley', viscosity='1 N'}",
+            "dynamics.friction.viscosity", "not a viscosity",
+        ),
+        (
+            "sources/lin_townsend_oswald_fig4", "design.chart={amounts_over_delta=[0], lengths=[1]}",
+            "design.chart", "greater than 0",
+        ),
+        (
+            "lin_design_chart", "dynamics.chart={amounts=[1], lengths=[1], mesh='Z'}",
+            "dynamics.chart.mesh", "known here: I",
+        ),
+        (
+            "lin_design_chart", f"dynamics.chart={{amounts={[1.0] * 400}, lengths={[1.0] * 400}}}",
+            "dynamics.chart", "160,000",
+        ),
+        (LINES, "gear.pinion.helix_angle=89 deg", "gear.pinion.helix_angle", "between 0 and 60 deg"),
+        (LINES, "gear.pinion.helix_angle=0 deg", "gear.pinion.hand", "contradicts the helix angle"),
+        (LINES, "gear.pinion.hand=right", "pair.I.hand", "opposite hands"),
+        (LINES, "gear.pinion.bore_radius=300 mm", "gear.pinion.bore_radius", "root radius"),
+        (LINES, "gear.pinion.module=2 mm", "gear.pinion.module", "write normal_module"),
+        (LINES, "gear.pinion.face_width=0 mm", "gear.pinion.face_width", "greater than zero"),
+        (LINES, "results=['load-sharing']", "results", "add the gear, pair or train that it is about"),
+        (LINES, "pair.I.misalignment={lead='1 um', lead_angle='1 arcmin'}", "pair.I.misalignment.lead", "contradicts"),
+        ("litvin_lead", "pair.I.misalignment={lead='1 m'}", "pair.I.misalignment.lead", "within 20%"),
+        (
+            "sources/litvin_fig10", "pair.I.modification={crown='1 m'}",
+            "pair.I.modification.crown", "= 1000 mm: takes more",
+        ),
+        (FACE, "stiffness.face_positions=['20 mm']", r"stiffness.face_positions[0]", "from -4 mm to 4 mm"),
+        (FACE, "stiffness.face_positions=0", "stiffness.face_positions", "equal to 1"),
+        (FACE, "stiffness.positions=100000", "stiffness.face_positions", "500,000 bands"),
+        (FACE, "gear.a.face_width=600 mm", "gear.a.face_width", "60 modules"),
+    ],
+)  # fmt: skip
+def test_results_of_literature_and_width_refuse_by_the_key_that_the_case_has(case, override, key, words):
+    def run():
+        scene = read_scene(CASES / f"{case}.toml", [override])
+        return run_plan(scene, make_plan(scene, STAGES))
+
+    with pytest.raises(InputError) as refused:
+        run()
+    text = str(refused.value)
+    assert text.startswith(key)
+    assert words in text
+    assert len(text) < 300
+
+
+@pytest.mark.parametrize("formats", ["step", "msh", "dxf,solid-inp"])
+def test_a_case_without_gears_has_nothing_to_export(formats, tmp_path):
+    from fegear.output.export import export_gears
+
+    with pytest.raises(InputError, match="describes no gear"):
+        export_gears(read_scene(CASES / f"{SLOPES}.toml", []), tmp_path, (), formats)
+
+
 def test_a_new_body_s_torque_may_be_set_and_a_misspelt_table_is_named():
     case = CASES / "two_stage_gearbox.toml"
     scene = read_scene(case, ["train.torque.pinion_2=-5 N*m"])
