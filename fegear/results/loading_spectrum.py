@@ -126,9 +126,9 @@ def loading_functions(asked: LoadingInputs) -> tuple[LoadingFunction, ...]:
             "leaves no pair to carry the load at some positions", "choose at least 1",
         )  # fmt: skip
     if ratio > _LARGEST_RATIO:
-        key = "contact_ratio" if part.contact_ratio is not None else "length"
+        given = "contact_ratio" if part.contact_ratio is not None else "length"
         raise RangeError(
-            f"loading.{key}", f"{ratio:.6g} base pitches", "is a contact ratio that no gears have",
+            f"loading.{given}", f"{ratio:.6g} base pitches", "is a contact ratio that no gears have",
             f"choose at most {_LARGEST_RATIO:g}",
         )  # fmt: skip
     exponents = (part.exponents or [_EXPONENT]) if part.family == "polynomial" else [None]
