@@ -48,7 +48,7 @@ class MeshParameters:
             )  # fmt: skip
         if not abs(self.base_helix_angle) < 0.5 * math.pi:
             angle = f"{math.degrees(self.base_helix_angle):.6g} deg"
-            raise RangeError("mesh.base_helix_angle", angle, "must lie between -90 and 90 deg")
+            raise RangeError("mesh.base_helix_angle", angle, "must lie inside (-90, 90) deg")
 
     def matrix(self) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
         """Mesh stiffness over q = (y, z, b theta_x, a theta_y, a theta_z), shape (5, 5) [N/m] (Eq. 6)."""

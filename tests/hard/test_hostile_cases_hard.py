@@ -165,7 +165,7 @@ OF_MESH, UNITY = "transmissibility.I.mesh", "transmissibility.I.unity_ratio"
             EXCITED, f"{EXCITATION}.external=[{{on='driver', order=1, frequency='5 Hz', y='1 N'}}]",
             f"{EXCITATION}.external[0].frequency", "contradicts order",
         ),
-        (EXCITED, f"{OF_MESH}.base_helix_angle=90 deg", f"{OF_MESH}.base_helix_angle", "between -90 and 90 deg"),
+        (EXCITED, f"{OF_MESH}.base_helix_angle=90 deg", f"{OF_MESH}.base_helix_angle", "inside (-90, 90) deg"),
         (EXCITED, f"{UNITY}.aspect_ratio=0", f"{UNITY}.aspect_ratio", "greater"),
         (EXCITED, f"{UNITY}.alpha_z=-1", f"{UNITY}.alpha_z", "negative"),
         (FOLLOWED, f"{FOLLOW}={{}}", FOLLOW, "names no parameter"),
