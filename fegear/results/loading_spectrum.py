@@ -123,7 +123,7 @@ def loading_functions(asked: LoadingInputs) -> tuple[LoadingFunction, ...]:
     if part.contact_ratio is not None and ratio < 1.0:
         raise RangeError(
             "loading.contact_ratio", part.contact_ratio,
-            "leaves no pair to carry the load at some positions", "choose at least 1",
+            "is below 1: no pair is left to carry the load at some positions", "choose at least 1",
         )  # fmt: skip
     if ratio > _LARGEST_RATIO:
         given = "contact_ratio" if part.contact_ratio is not None else "length"
