@@ -53,6 +53,7 @@ class PairKeys(TypedDict, total=False):
     speed: Quantity
     root_stress: Mapping[str, Any]
     misalignment: Mapping[str, Any]
+    line_error: Mapping[str, Any]
     modification: Mapping[str, Any]
     axial_offset: Quantity
     iso_6336: Mapping[str, Any]

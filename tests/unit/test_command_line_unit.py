@@ -110,7 +110,7 @@ def test_export_writes_drawings_and_meshes(case, tmp_path):
         "a_tooth_polyline.dxf",
         "a_tooth_spline.dxf",
     }
-    for arguments, words in ((("--gear", "c"), "known here: a, b"), (("--format", "step"), "no format")):
+    for arguments, words in ((("--gear", "c"), "known here: a, b"), (("--format", "iges"), "no format")):
         done = fegear("export", case, *arguments, "--out", "new", cwd=tmp_path)
         assert (done.returncode, words in done.stderr, (tmp_path / "new").exists()) == (2, True, False)
 
