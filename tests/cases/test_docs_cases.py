@@ -18,9 +18,9 @@ DOCS = ROOT / "docs"
 
 #: Pages whose runs cost more than a second or two; ./docs.sh runs every page, and so does the long run of the tests.
 COSTLY = {
-    "choose-a-tolerance", "corner-contact-warning", "cost", "dynamic-factor", "export", "helical-misalignment",
-    "load-over-the-face", "python-mechanics", "several-meshes", "sweep-on-a-cluster", "sweeps", "tutorial",
-    "validate-root-stress-formula",
+    "choose-a-tolerance", "commands", "corner-contact-warning", "cost", "dynamic-factor", "export",
+    "gear-with-its-width", "helical-misalignment", "load-over-the-face", "python", "python-mechanics", "several-meshes",
+    "sweep-on-a-cluster", "sweeps", "tutorial", "use-my-own-mesh", "validate-root-stress-formula",
 }  # fmt: skip
 
 

@@ -28,6 +28,7 @@ def estimated_and_true(gear, settings, finer):
     return known.error, true
 
 
+@pytest.mark.long
 def test_a_coarse_solution_tells_its_error():
     told, true = estimated_and_true((12, 20, 2, 0.5, 0.3), SolidSettings().scaled(1.6), SolidSettings())
     assert all(true[key] / SHARES[key] <= told[key] for key in told)

@@ -203,6 +203,8 @@ NAMES = sorted(path.stem for path in CASES.glob("*.toml"))
 
 
 def run_slips(seed: int, count: int, folder: Path) -> list[str]:
+    folder = folder / "cases"  # meshes stand beside it
+    folder.mkdir()
     dice, wrong = random.Random(seed), []  # noqa: S311  (nobody guesses it)
     for _ in range(count):
         name = dice.choice(NAMES)
