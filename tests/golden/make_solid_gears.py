@@ -4,8 +4,8 @@ Undercut, thin rims, narrow and wide faces, helices of both hands up to 35 degre
 solid, set up so that they share as little as possible with its usual settings: elements of order 4 on a section of
 other edges, more functions along the face and all of them at every node (of faces wider than 8 modules: twice as many
 of them), and pressures half as wide, so that little is left for what widths and end faces are exchanged with. The
-second reference, between both, shows what the first leaves. The widest gear takes more than 3 GB and is not among the
-stored ones. Run by hand, ten minutes of processor time:
+second reference, between both, shows what the first leaves. Run by hand, ten minutes of processor time and more than
+3 GB for the widest gear:
 
 python tests/golden/make_solid_gears.py [first|second] [NAME ...]
 """
