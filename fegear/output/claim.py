@@ -12,6 +12,8 @@ import tempfile
 import time
 from typing import TYPE_CHECKING, TextIO
 
+from fegear.output.undisturbed import undisturbed
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
@@ -51,21 +53,17 @@ def claimed(folder: Path) -> Iterator[Path]:
     OSError
         If it cannot be made.
     """
-    holder = _locked(folder)
-    if holder is None:
-        own = folder.with_name(f"{folder.name}-{os.getpid()}")
-        shutil.rmtree(own, ignore_errors=True)
-        own.mkdir()
-        try:
-            yield own
-        finally:
-            shutil.rmtree(own, ignore_errors=True)
-        return
-    with holder:
-        try:
-            yield folder
-        finally:
-            _removed(folder)
+    with contextlib.ExitStack() as held:
+        with undisturbed():  # a stop between making the folder and knowing of it would leave it behind
+            holder = _locked(folder)
+            if holder is None:
+                folder = folder.with_name(f"{folder.name}-{os.getpid()}")
+                shutil.rmtree(folder, ignore_errors=True)
+                folder.mkdir()
+            else:
+                held.enter_context(holder)
+            held.callback(_removed, folder)
+        yield folder
 
 
 def clear_abandoned(base: Path, keep: str) -> None:
@@ -78,15 +76,16 @@ def clear_abandoned(base: Path, keep: str) -> None:
 
 def _removed(folder: Path) -> None:
     """Remove a folder that we hold; its holder's file last, for without it the folder is anybody's."""
-    with contextlib.suppress(OSError):
-        for item in folder.iterdir():
-            if item.is_dir() and not item.is_symlink():
-                shutil.rmtree(item, ignore_errors=True)
-            elif item.name != HOLDER:
-                item.unlink()
-    with contextlib.suppress(OSError):
-        (folder / HOLDER).unlink()
-        folder.rmdir()
+    with undisturbed(at_the_end=True):
+        with contextlib.suppress(OSError):
+            for item in folder.iterdir():
+                if item.is_dir() and not item.is_symlink():
+                    shutil.rmtree(item, ignore_errors=True)
+                elif item.name != HOLDER:
+                    item.unlink()
+        with contextlib.suppress(OSError):
+            (folder / HOLDER).unlink(missing_ok=True)
+            folder.rmdir()
 
 
 def _locked(folder: Path) -> TextIO | None:

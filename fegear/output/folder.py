@@ -5,8 +5,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import signal
-import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +12,7 @@ from fegear.errors import NO_ROOM, InputError
 from fegear.output.claim import HeldError, claimed, clear_abandoned, folder_for
 from fegear.output.exchange import JOURNAL, RECORD, check_room, exchange, put_back
 from fegear.output.file_names import file_name
+from fegear.output.undisturbed import undisturbed
 from fegear.streams import complain
 
 if TYPE_CHECKING:
@@ -65,7 +64,7 @@ def whole_or_nothing(target: Path, key: str = "--out", say: Callable[[str], None
     """
     made: list[Path] = []
     with contextlib.ExitStack() as held:
-        with _refusals(key, target):
+        with undisturbed(), _refusals(key, target):
             target = _real(target, key)
             made = _made_parents(target.parent)
             held.callback(_remove_empty, made)
@@ -77,7 +76,7 @@ def whole_or_nothing(target: Path, key: str = "--out", say: Callable[[str], None
             scratch = _emptied(work / "new")
         with _refusals(key, target, NO_ROOM):
             yield scratch
-        with _undisturbed(), _refusals(key, target):
+        with undisturbed(at_the_end=True), _refusals(key, target):
             kept = exchange(work, scratch, target, all_of_it=(scratch / SUMMARY).is_file())
         for old, new in kept.items():
             say(f"{target / old} was not what a run of fegear had written; it is kept as {new}.")
@@ -148,22 +147,6 @@ def _remove_empty(folders: list[Path]) -> None:
     for folder in folders:
         with contextlib.suppress(OSError):
             folder.rmdir()
-
-
-@contextlib.contextmanager
-def _undisturbed() -> Iterator[None]:
-    """Hold Ctrl-C and requests to stop back for the few milliseconds in which finished files are moved."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    names = ("SIGINT", "SIGTERM", "SIGHUP")
-    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in numbers}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def files_in(folder: Path) -> list[str]:

@@ -220,6 +220,44 @@ def test_a_stop_request_clears_the_scratch_folder_away(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
 
 
+def test_work_begun_ahead_holds_no_stopped_program_back():
+    """A stop in the middle of an import can leave its lock taken; what still imports must not be waited for."""
+    program = (
+        "import _imp\nfrom fegear.output.report.ahead import begun\n"
+        "_imp.acquire_lock()\nbegun(lambda: __import__('wave'))\nraise SystemExit(143)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", program], check=False, env=ENVIRONMENT, timeout=60).returncode == 143
+
+
+@pytest.mark.parametrize("number", ["SIGTERM", "SIGINT"])
+@pytest.mark.parametrize(
+    ("moment", "code", "left"),
+    [("platform.node", 7, []), ("Path.rmdir", 0, ["out"])],
+    ids=["between making the scratch folder and knowing of it", "half way through its removal"],
+)
+def test_a_stop_in_the_worst_moment_leaves_no_folder(tmp_path, moment, code, left, number):
+    program = (
+        "import os, platform, signal, sys\nfrom pathlib import Path\n"
+        "from fegear.cli import _heed_requests_to_stop, _Stopped\n"
+        "from fegear.output.folder import whole_or_nothing\n"
+        "_heed_requests_to_stop()\n"
+        f"real, seen = {moment}, []\n"
+        "def stopped(*a, **k):\n"
+        f"    seen.append(1)\n    os.kill(os.getpid(), signal.{number})\n    return real(*a, **k)\n"
+        f"{moment} = stopped\n"
+        "try:\n"
+        "    with whole_or_nothing(Path(sys.argv[1])) as scratch:\n"
+        "        (scratch / 'summary.json').write_text('{}')\n"
+        "except (_Stopped, KeyboardInterrupt):\n    sys.exit(7 if seen else 8)\n"
+        "sys.exit(0 if seen else 9)\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path / "out")], check=False, env=ENVIRONMENT, timeout=60
+    )
+    assert run.returncode == code
+    assert [p.name for p in tmp_path.iterdir()] == left
+
+
 @pytest.mark.parametrize(
     ("make", "word"),
     [
