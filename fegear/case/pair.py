@@ -82,6 +82,10 @@ class IsoPart(Part):
     accuracy_grade: Annotated[int, Field(ge=0, le=12)] = 6
 
 
+#: How wide the teeth of a loaded pair are: a section, coupled slices of it, or solid gears.
+Width = Literal["plane", "slices", "solid"]
+
+
 class PairPart(Part):
     """Two gears in mesh and the load between them."""
 
@@ -92,6 +96,7 @@ class PairPart(Part):
     torque: PositiveTorque | None = None
     loads: Annotated[list[PositiveForce], Field(min_length=1), at_most(1000, "loads")] | None = None
     speed: PositiveSpeed | None = None
+    width: Width | None = None
     compliance: CompliancePart = Field(default_factory=CompliancePart)
     root_stress: RootStressPart = Field(default_factory=RootStressPart)
     misalignment: MisalignmentPart | None = None
@@ -112,30 +117,39 @@ class PairPart(Part):
         """Make the pair from the scene's gears."""
         distance = math.nan if self.centre_distance is None else self.centre_distance
         try:
-            return GearPair(gears[self.driver], gears[self.driven], distance)
+            pair = GearPair(gears[self.driver], gears[self.driven], distance)
         except InputError as error:
             raise at(prefix, error, {"pair": ""}) from None
+        self._check_width(pair, prefix)
+        return pair
 
-    def build_helical(
-        self, design: GearPair, prefix: str, *, misaligned: bool, distributed: bool = False
-    ) -> HelicalPair:
-        """Make the flanks of a pair; their errors count only where the scene calls for misalignment.
+    def _check_width(self, pair: GearPair, prefix: str) -> None:
+        """Refuse what contradicts the width in which the pair is loaded."""
+        if pair.driver.helix_angle != 0.0 and self.width == "plane":
+            raise InputError(
+                f"{prefix}.width", '"plane"', "has no meaning for helical gears: their load moves along the face",
+                'write width = "solid" or "slices", or remove it',
+            )  # fmt: skip
+        if self.width_in(pair) == "plane":
+            return
+        if "compliance" in self.model_fields_set:
+            raise InputError(
+                f"{prefix}.compliance", "(given)",
+                "is for plane teeth, and gears with a width are solved by finite elements",
+                "remove compliance" if pair.driver.helix_angle else 'remove compliance, or write width = "plane"',
+            )  # fmt: skip
+        if self.root_stress.source != ("fe",):
+            raise InputError(
+                f"{prefix}.root_stress.source", list(self.root_stress.source),
+                "is for plane teeth: over the face, root stress comes from finite elements", 'write source = "fe"',
+            )  # fmt: skip
 
-        `distributed` says that the case asks for a load distribution, which knows several loads.
+    def width_in(self, pair: GearPair) -> Width:
+        """Width in which the pair is loaded: as given, else plane for spur and solid for helical gears."""
+        return self.width or ("plane" if pair.driver.helix_angle == 0.0 else "solid")
 
-        Raises
-        ------
-        InputError
-            If a key asks for what is not computed for helical pairs.
-        """
-        for key in ("compliance", "root_stress", "loads", "speed"):
-            if key == "loads" and distributed:
-                continue
-            if key in self.model_fields_set and design.driver.helix_angle != 0.0:
-                raise InputError(
-                    f"{prefix}.{key}", "(given)", "is not computed for a helical pair yet: its flanks are rigid",
-                    f"remove {key}; tooth_contact.load gives contact ellipses, load or torque the crosscheck",
-                )  # fmt: skip
+    def build_helical(self, design: GearPair, prefix: str, *, misaligned: bool) -> HelicalPair:
+        """Make the rigid flanks of a pair; their errors count only where the scene calls for misalignment."""
         try:
             return build_pair(
                 design,

@@ -22,6 +22,7 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from fegear.case.pair import Width
     from fegear.geometry import Gear, GearPair
     from fegear.helical.pair import HelicalPair
 
@@ -69,6 +70,20 @@ class Scene:
     def spur_pairs(self) -> dict[str, GearPair]:
         """The pairs of spur gears."""
         return {name: pair for name, pair in self.pairs.items() if pair.driver.helix_angle == 0.0}
+
+    def width_of(self, pair: str) -> Width:
+        """In which width a pair is loaded: as its key says, else plane for spur and solid for helical gears."""
+        return self.case.pair[pair].width_in(self.pairs[pair])
+
+    @property
+    def plane_pairs(self) -> dict[str, GearPair]:
+        """The pairs whose teeth are loaded in the plane."""
+        return {name: pair for name, pair in self.pairs.items() if self.width_of(name) == "plane"}
+
+    @property
+    def wide_pairs(self) -> dict[str, GearPair]:
+        """The pairs whose teeth are loaded with their width."""
+        return {name: pair for name, pair in self.pairs.items() if self.width_of(name) != "plane"}
 
     def file(self, text: str, key: str) -> Path:
         """Return the path of a file that the case names, or refuse if it is not there."""
@@ -174,7 +189,6 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
             pairs[key],
             f"pair.{key}",
             misaligned=case.effects.misalignment,
-            distributed="load-distribution" in case.results,
         )
         for key, pair in case.pair.items()
         if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical

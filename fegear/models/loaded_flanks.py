@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class FlanksToLoad:
     nominal : float
         [N].
     positions, panels : int
+    width : {"solid", "slices"}
+        What the gears are solved as.
     name : str
         Of the pair.
     """
@@ -62,6 +64,7 @@ class FlanksToLoad:
     nominal: float
     positions: int
     panels: int
+    width: Literal["solid", "slices"] = "solid"
     name: str = field(default="", compare=False)
 
     @property
@@ -105,8 +108,9 @@ def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
     nominal = part.normal_load(pair) or math.nan
     asked = scene.case.load_distribution
     panels = asked.panels or max(4, math.ceil(_PANELS_PER_MODULE * pair.face_width / pair.driver.module - 1e-9))
+    width: Literal["solid", "slices"] = "slices" if part.width == "slices" else "solid"
     return FlanksToLoad(
-        pair, own, (first, second), z, gap, part.all_loads(pair), nominal, asked.positions, panels, name
+        pair, own, (first, second), z, gap, part.all_loads(pair), nominal, asked.positions, panels, width, name
     )
 
 
@@ -142,7 +146,7 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
     for gear in (part.driver, part.driven):
         check_solid_gear(scene, gear)
     if part.normal_load(pair) is None:
-        raise InputError(f"pair.{name}.load", "(not given)", "is needed for a load distribution", "give load or torque")
+        raise InputError(f"pair.{name}.load", "(not given)", "is needed to load the flanks", "give load or torque")
     if abs(pair.driver.face_width - pair.driven.face_width) > 1e-9 * pair.face_width:
         raise InputError(
             f"gear.{part.driven}.face_width", f"{pair.driven.face_width * 1e3:.6g} mm",
@@ -151,7 +155,7 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
         )  # fmt: skip
     if part.axial_offset:
         raise InputError(
-            f"pair.{name}.axial_offset", f"{part.axial_offset * 1e3:.6g} mm", "is not known to a load distribution yet",
+            f"pair.{name}.axial_offset", f"{part.axial_offset * 1e3:.6g} mm", "is not known to a pair with a width yet",
             "leave it out",
         )  # fmt: skip
     try:
@@ -173,7 +177,7 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
         if effects.relief and flank.wants_delta:
             raise InputError(
                 f"gear.{flank.gear}.relief", "amount_over_delta", "counts in deflections of plane teeth",
-                "give the amount as a length for a load distribution",
+                "give the amount as a length for a pair with a width",
             )  # fmt: skip
         try:
             build_relief(pair, member, flank, math.nan) if effects.relief else None

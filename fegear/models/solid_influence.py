@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from fegear.case.part import at
 from fegear.errors import InputError, RangeError
@@ -65,20 +65,55 @@ def settings_of_case(accuracy: AccuracyPart) -> SolidSettings:
     return replace(chosen, section=replace(chosen.section, **given)) if given else chosen
 
 
-def solid_settings_of(scene: Scene) -> SolidSettings:
-    """Settings of a case's solid gears: those for its tolerance, as a solid or in slices."""
-    return replace(settings_of_case(scene.case.accuracy), source=scene.case.stiffness.source)
+def solid_settings_of(scene: Scene, name: str) -> SolidSettings:
+    """Settings of a solid gear: those for the case's tolerance, as a solid or in slices."""
+    return replace(settings_of_case(scene.case.accuracy), source=_source(scene, name))
+
+
+def _source(scene: Scene, name: str) -> Literal["solid", "slices"]:
+    """Solid or slices, as the gear's pairs and the table over its face have it.
+
+    Raises
+    ------
+    InputError
+        If they want both.
+    """
+    wanted: dict[str, Literal["solid", "slices"]] = {}
+    for key in flank_pairs(scene):
+        part = scene.case.pair[key]
+        if name in (part.driver, part.driven):
+            wanted[f"pair.{key}.width"] = "slices" if part.width == "slices" else "solid"
+    table = scene.case.stiffness
+    if table.face_positions is not None and table.gear in (None, name) and "stiffness" in scene.case.results:
+        wanted["stiffness.source"] = table.source
+    if len(set(wanted.values())) > 1:
+        one = next(key for key, value in wanted.items() if value == "slices")
+        other = next(key for key, value in wanted.items() if value == "solid")
+        raise InputError(
+            one, '"slices"', f"contradicts {other}: gear {name} is solved once in a case, as a solid or in slices",
+            "write the same for both, or ask for one of them in a case of its own",
+        )  # fmt: skip
+    return next(iter(wanted.values()), table.source)
+
+
+def flank_pairs(scene: Scene) -> tuple[str, ...]:
+    """The pairs that the case's results load with their width, if they have a load.
+
+    ``load-distribution`` is for every pair that is not plane by its key, other results for those with a width.
+    """
+    if "load-distribution" in scene.case.results:
+        return tuple(key for key, part in scene.case.pair.items() if part.width != "plane")
+    return tuple(key for key in scene.wide_pairs if scene.case.pair[key].normal_load(scene.pairs[key]) is not None)
 
 
 def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
     """What the case asks of the solid influence functions of a gear."""
     accuracy, reach = scene.case.accuracy, 1
-    if "load-distribution" in scene.case.results:
-        # As far as two pairs of one mesh can stand apart.
-        for key, part in scene.case.pair.items():
-            if name in (part.driver, part.driven):
-                reach = max(reach, math.ceil(scene.pairs[key].total_contact_ratio))
-    return SolidGearToSolve(scene.gears[name], solid_settings_of(scene), accuracy.tolerance, reach, name)
+    for key in flank_pairs(scene):
+        if name in (scene.case.pair[key].driver, scene.case.pair[key].driven):
+            # As far as two pairs of one mesh can stand apart.
+            reach = max(reach, math.ceil(scene.pairs[key].total_contact_ratio))
+    return SolidGearToSolve(scene.gears[name], solid_settings_of(scene, name), accuracy.tolerance, reach, name)
 
 
 def check_solid_gear(scene: Scene, name: str) -> None:
@@ -89,11 +124,7 @@ def check_solid_gear(scene: Scene, name: str) -> None:
     InputError
     """
     part = scene.case.gear[name]
-    if scene.case.stiffness.source == "slices" and "load-distribution" in scene.case.results:
-        raise InputError(
-            "stiffness.source", '"slices"', "is for the table over the face; load-distribution takes the solid gear",
-            "ask for one of both results, or remove source",
-        )  # fmt: skip
+    _source(scene, name)
     if part.face_width is None:
         raise InputError(
             f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",

@@ -19,6 +19,7 @@ from fegear.results import (
     geometry,
     load_distribution,
     load_sharing,
+    loaded_flanks,
     loaded_pair,
     loading_spectrum,
     mesh_force_spectrum,
@@ -66,6 +67,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             load_sharing.LOAD_SHARING,
             transmission_error.TRANSMISSION_ERROR,
             root_stress_history.ROOT_STRESS_HISTORY,
+            loaded_flanks.LOADED_FLANKS,
             load_distribution.LOAD_DISTRIBUTION,
         ),
         "Profile relief": (

@@ -2,91 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Forecast, Stage
-from fegear.geometry.pair import MEMBERS
-from fegear.models.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
-from fegear.models.pair_inputs import gear_name
+from fegear.engine.stage import Forecast, Stage, Subject
+from fegear.errors import InputError
+from fegear.models.loaded_flanks import FLANK_EFFECTS
+from fegear.results import forecasts
 from fegear.results.drawn_load_distribution import load_distribution_figures
-from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
+from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.sources import HERTZ, INVOLUTE, RING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.flank import LoadedFlanks
-    from fegear.contact.flank.error import FlankError
-    from fegear.engine.stage import Task, Upstream, Work
-    from fegear.models.loaded_flanks import FlanksToLoad
-
-#: Seconds of one contact line on one gear, and of the contact at one roll position.
-_LINE, _CONTACT = 0.03, 0.004
-
-
-@dataclass(frozen=True)
-class LoadDistributionData:
-    """What the stage hands to tables and pictures.
-
-    Parameters
-    ----------
-    found : LoadedFlanks
-    error : FlankError
-    nominal : int
-        Number of the nominal load.
-    neglected : mapping of str to (float, float)
-        By the effects that are off: mean transmission error [m] and K_Hbeta with each of them on.
-    """
-
-    found: LoadedFlanks
-    error: FlankError
-    nominal: int
-    neglected: Mapping[str, tuple[float, float]]
-
-
-def _compute(asked: FlanksToLoad, upstream: Upstream, _work: Work) -> LoadDistributionData:
-    from fegear.contact.flank import FlankPair
-    from fegear.contact.flank.error import flank_error
-
-    effects = asked.effects
-    solved = [solid_solution_of(upstream, gear) for gear in asked.gears]
-    fine = {member: one.fine for member, one in zip(MEMBERS, solved, strict=True)}
-    coupling, hertz = effects.neighbour_coupling, effects.hertz
-    flanks = FlankPair(asked.pair, fine, coupling, hertz, asked.panel, asked.positions)
-    gaps = asked.gaps(relief=effects.relief, misalignment=effects.misalignment)
-    known = flanks.compliance(asked.nominal)
-    found = flanks.solve(asked.loads, gaps, known)
-    coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
-    error = flank_error(flanks, found, coarse, gaps)
-    neglected = {}
-    for effect in FLANK_EFFECTS:
-        if effects.is_on(effect) or not _has_data(asked, effect):
-            continue
-        others, again, apart = flanks, known, gaps
-        if effect == "neighbour_coupling":
-            others = replace(flanks, coupling=True)
-            again = others.compliance(asked.nominal)
-        elif effect == "hertz":
-            again = replace(known, fixed_half_width=None)
-        else:
-            on = {"relief": effects.relief, "misalignment": effects.misalignment, effect: True}
-            apart = asked.gaps(**on)
-        other = others.solve([asked.nominal], apart, again)
-        neglected[effect] = float(other.transmission_error.mean()), float(other.face_load_factor[0])
-    return LoadDistributionData(found, error, asked.loads.index(asked.nominal), neglected)
-
-
-def _has_data(asked: FlanksToLoad, effect: str) -> bool:
-    if effect == "relief":
-        return any(flank.relief is not None and not flank.wants_delta for flank in asked.flanks)
-    return effect != "misalignment" or asked.line_gap.size > 0
+    from fegear.results.loaded_flanks import LoadedFlanksData
 
 
 def _stations(name: str, found: LoadedFlanks, i: int) -> Table:
@@ -125,7 +59,7 @@ def _over_face(name: str, found: LoadedFlanks, i: int) -> Table:
     return Table(f"load_over_face_{name}", columns, f"Load over the face of pair {name}")
 
 
-def _positions(name: str, data: LoadDistributionData) -> Table:
+def _positions(name: str, data: LoadedFlanksData) -> Table:
     found, i = data.found, data.nominal
     columns = [
         Column("roll", found.lines.roll, "mm", "roll position: x of pair 0 in the middle of the face"),
@@ -143,7 +77,7 @@ def _positions(name: str, data: LoadDistributionData) -> Table:
     return Table(f"load_distribution_roll_{name}", tuple(columns), f"Shares and transmission error of pair {name}")
 
 
-def _loads(name: str, data: LoadDistributionData) -> Table:
+def _loads(name: str, data: LoadedFlanksData) -> Table:
     found, error = data.found, data.error
     te = found.transmission_error
     columns = (
@@ -158,14 +92,14 @@ def _loads(name: str, data: LoadDistributionData) -> Table:
     return Table(f"load_distribution_loads_{name}", columns, f"Pair {name} under every load")
 
 
-def _ripple_error(data: LoadDistributionData) -> Array:
+def _ripple_error(data: LoadedFlanksData) -> Array:
     """Of the coarser solution, and of half as many roll positions."""
     te = data.found.transmission_error
     return np.asarray(data.error.peak_to_peak + np.abs(np.ptp(te, axis=0) - np.ptp(te[::2], axis=0)))
 
 
-def _present(data: LoadDistributionData, asked: FlanksToLoad) -> Outcome:
-    name, found, i = asked.name, data.found, data.nominal
+def _present(data: LoadedFlanksData, inputs: Subject) -> Outcome:
+    name, found, i = inputs.name, data.found, data.nominal
     te, lines = found.transmission_error[:, i], found.lines
     pressure, load = found.pressure[:, :, i], found.line_load[:, :, i]
     inner = np.where(lines.at_edge, 0.0, pressure)
@@ -188,16 +122,12 @@ def _present(data: LoadDistributionData, asked: FlanksToLoad) -> Outcome:
         Value(f"{name}.equilibrium", float(found.equilibrium.max()), "", 0.0, "sum of all forces less load, over load"),
     )  # fmt: skip
     tables = (_stations(name, found, i), _over_face(name, found, i), _positions(name, data), _loads(name, data))
-    settings = {
-        "positions": asked.positions, "panels": asked.panels, "stations": int(lines.present.sum()),
-        "newton_steps": found.contact.steps, "seconds": {k: round(v, 6) for k, v in found.seconds.items()},
-    }  # fmt: skip
     figures = load_distribution_figures(name, found, i)
-    return Outcome(data, tables, values, settings, tuple(_remarks(data, asked)), figures)
+    return Outcome(data, tables, values, remarks=tuple(_remarks(name, data)), figures=figures)
 
 
-def _remarks(data: LoadDistributionData, asked: FlanksToLoad) -> list[str]:
-    name, found, i = asked.name, data.found, data.nominal
+def _remarks(name: str, data: LoadedFlanksData) -> list[str]:
+    found, i = data.found, data.nominal
     lines, load = found.lines, found.line_load[:, :, i]
     remarks = []
     if (edge := float(np.where(lines.at_edge, load, 0.0).max())) > 0.0:
@@ -215,36 +145,25 @@ def _remarks(data: LoadDistributionData, asked: FlanksToLoad) -> list[str]:
     active = (found.contact.force[:, :, i] > 0.0).sum() / lines.present.sum()
     if active < 1.0:
         remarks.append(f"Pair {name}: {1.0 - active:.1%} of the stations on the contact lines do not touch.")
-    told = {
-        "neighbour_coupling": "what pairs do to each other is left out",
-        "hertz": "contacts do not widen with their load",
-        "relief": "gears have a relief that is left out",
-        "misalignment": "the pair has a line_error that is left out",
-    }
-    mean, factor = float(found.transmission_error[:, i].mean()), float(found.face_load_factor[i])
-    for effect, (te, k) in data.neglected.items():
-        remarks.append(
-            f"Pair {name}: {told[effect]} (effects.{effect}). With it the mean transmission error would be "
-            f"{te * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {k:.4g} for {factor:.4g}."
-        )
     return remarks
 
 
 def _subjects(scene: Scene) -> tuple[str, ...]:
-    """All pairs that carry a load; all pairs where none does, so that the missing load is reported."""
-    pairs = scene.pairs
-    return tuple(name for name in pairs if scene.case.pair[name].normal_load(pairs[name]) is not None) or tuple(pairs)
+    """All pairs that carry a load and are not plane by their key; all where none is, so that it is reported."""
+    loaded = [name for name, pair in scene.pairs.items() if scene.case.pair[name].normal_load(pair) is not None]
+    return tuple(name for name in loaded if scene.case.pair[name].width != "plane") or tuple(loaded or scene.pairs)
 
 
-def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return needs_solid_solution(gear_name(scene, name, "driver"), gear_name(scene, name, "driven"))
+def _check(scene: Scene, name: str) -> None:
+    if scene.case.pair[name].width == "plane":
+        raise InputError(
+            f"pair.{name}.width", '"plane"', 'contradicts results = ["load-distribution"], which is over the face',
+            'write width = "solid" or "slices", or remove it',
+        )  # fmt: skip
 
 
-def _forecast(scene: Scene, name: str) -> Forecast:
-    asked = flanks_to_load(scene, name)
-    lines = asked.positions * (1.0 + asked.pair.total_contact_ratio)
-    seconds = 2.0 * 2.0 * _LINE * lines + _CONTACT * asked.positions * (1 + len(asked.loads))
-    return Forecast({"positions": asked.positions, "panels": asked.panels}, seconds)
+def _forecast(_scene: Scene, _name: str) -> Forecast:
+    return forecasts.constant(0.05)
 
 
 LOAD_DISTRIBUTION = Stage(
@@ -253,11 +172,11 @@ LOAD_DISTRIBUTION = Stage(
     results=("load-distribution",),
     about="line load and pressure over the flanks of a spur or helical pair with its width, K_Hbeta",
     subjects=_subjects,
-    inputs=flanks_to_load,
-    compute=_compute,
+    inputs=Subject.of,
+    compute=lambda inputs, upstream, _work: loaded_flanks(upstream, inputs.name),
     present=_present,
-    needs=_needs,
-    check=check_flanks_to_load,
+    needs=needs_flanks,
+    check=_check,
     effects=FLANK_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,

@@ -20,7 +20,7 @@ from fegear.results.loaded_pair import (
     engagement_marks,
     needs_pair,
     over_loads,
-    spur_pairs,
+    plane_pairs,
     under,
 )
 from fegear.results.sources import HERTZ
@@ -159,7 +159,7 @@ LOAD_SHARING = Stage(
     title="Load sharing",
     results=("load-sharing",),
     about="load, deflection and contact pressure of a tooth pair from first to last contact",
-    subjects=spur_pairs,
+    subjects=plane_pairs,
     needs=needs_pair,
     inputs=Subject.of,
     compute=_compute,

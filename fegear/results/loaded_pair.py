@@ -84,9 +84,9 @@ def pitch_marks(pair: LoadedPair, x: Array) -> tuple[Mark, ...]:
     return tuple(m for m in path_marks(pair.engagement.pair) if low - room <= m.at <= high + room)
 
 
-def spur_pairs(scene: Scene) -> tuple[str, ...]:
-    """All pairs of spur gears that carry a load; all pairs where none does, so that the missing load is reported."""
-    pairs = scene.spur_pairs
+def plane_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs of plane teeth that carry a load; all of them where none does, so that the missing load is reported."""
+    pairs = scene.plane_pairs
     loaded = tuple(name for name, pair in pairs.items() if scene.case.pair[name].normal_load(pair) is not None)
     return loaded or tuple(pairs)
 
@@ -191,7 +191,7 @@ LOADED_PAIR = Stage(
     name="loaded-pair",
     title="Compliances of a loaded pair",
     results=(),
-    subjects=spur_pairs,
+    subjects=plane_pairs,
     needs=_needs,
     inputs=_inputs,
     compute=_compute,

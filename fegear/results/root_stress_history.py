@@ -17,7 +17,7 @@ from fegear.models.pair_inputs import gear_name
 from fegear.models.root_stress_source import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.results import forecasts
 from fegear.results.gear_solution import solution_of
-from fegear.results.loaded_pair import EFFECTS, engagement_marks, loaded_pair, needs_pair, spur_pairs
+from fegear.results.loaded_pair import EFFECTS, engagement_marks, loaded_pair, needs_pair, plane_pairs
 from fegear.results.root_stress_parts import (
     cited_sources,
     ending,
@@ -231,7 +231,7 @@ ROOT_STRESS_HISTORY = Stage(
     title="Root stress through the mesh",
     results=("root-stress-history",),
     about="root stress of both gears as a tooth passes through the mesh",
-    subjects=spur_pairs,
+    subjects=plane_pairs,
     needs=_needs,
     inputs=_inputs,
     compute=_compute,

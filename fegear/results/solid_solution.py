@@ -44,7 +44,7 @@ def _present(influence: SolidInfluence, _asked: SolidGearToSolve) -> Outcome:
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
-    settings, gear = solid_settings_of(scene), scene.gears[name]
+    settings, gear = solid_settings_of(scene, name), scene.gears[name]
     return Forecast(asdict(settings), seconds_of_solid_gear(settings, gear.face_width / gear.module))
 
 

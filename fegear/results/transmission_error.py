@@ -20,7 +20,7 @@ from fegear.results.loaded_pair import (
     needs_pair,
     over_loads,
     pitch_marks,
-    spur_pairs,
+    plane_pairs,
     under,
 )
 from fegear.results.mark_transmission_error import mark_data, present_mark
@@ -346,7 +346,7 @@ TRANSMISSION_ERROR = Stage(
     title="Transmission error",
     results=("transmission-error",),
     about="loaded transmission error, mesh stiffness, their harmonics, and both over load",
-    subjects=spur_pairs,
+    subjects=plane_pairs,
     needs=needs_pair,
     inputs=_inputs,
     compute=_compute,

@@ -51,6 +51,7 @@ class PairKeys(TypedDict, total=False):
     """Keys of ``[pair.NAME]`` of a case file besides its gears, its load, the centre distance and the compliance."""
 
     speed: Quantity
+    width: Literal["plane", "slices", "solid"]
     root_stress: Mapping[str, Any]
     misalignment: Mapping[str, Any]
     line_error: Mapping[str, Any]

@@ -10,8 +10,10 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.errors import InputError
+from fegear.models.solid_influence import solid_gear_to_solve
 from fegear.output.draw_png import draw_pictures
 from fegear.results.catalogue import STAGES
+from fegear.results.loaded_flanks import LOADED_FLANKS
 from fegear.solution_cache import SolutionCache
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
@@ -29,6 +31,11 @@ def cache():
 def ran(cache, *overrides):
     scene = read_scene(CASE, [*COARSE, *overrides])
     return run_plan(scene, make_plan(scene, STAGES), cache=cache).outcomes[Task("load-distribution", "I")]
+
+
+def neglected(outcome):
+    """What the stage before says of the effects that are off."""
+    return LOADED_FLANKS.present(outcome.data, outcome.data.asked).remarks
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +78,7 @@ def test_the_load_goes_to_the_end_without_a_gap_and_crowning_takes_it_from_there
     assert columns(crowned, "load_over_face_I")["factor"][0] < face[0]
     even = ran(cache, "effects.misalignment=false")
     assert value(even, "K_Hbeta").si < value(outcome, "K_Hbeta").si
-    (told,) = (r for r in even.remarks if "effects.misalignment" in r)
+    (told,) = (r for r in neglected(even) if "effects.misalignment" in r)
     assert f"{value(outcome, 'te_mean').si * 1e6:.4g} um for {value(even, 'te_mean').si * 1e6:.4g} um" in told
 
 
@@ -85,8 +92,8 @@ def test_a_table_over_the_face_is_the_same_as_its_key(cache, outcome, tmp_path):
 def test_left_out_coupling_is_told_with_its_size(cache, outcome):
     found = ran(cache, "effects.neighbour_coupling=false", 'effects.hertz="none"')
     assert value(found, "te_mean").si < value(outcome, "te_mean").si
-    assert any("effects.neighbour_coupling" in remark for remark in found.remarks)
-    assert any("effects.hertz" in remark for remark in found.remarks)
+    assert any("effects.neighbour_coupling" in remark for remark in neglected(found))
+    assert any("effects.hertz" in remark for remark in neglected(found))
 
 
 def test_every_load_of_the_case_has_its_row(cache, outcome):
@@ -112,8 +119,38 @@ def test_the_pictures_are_drawn(outcome, tmp_path):
         ("pair.I.line_error={}", "line_error"),
         ('pair.I.line_error={file="nowhere.csv"}', "nowhere.csv"),
         ("load_distribution.positions=1", "positions"),
+        ('pair.I.width="plane"', "no meaning for helical gears"),
+        ('pair.I.width="thick"', "width"),
+        ('pair.I.compliance={source="cornell"}', "pair.I.compliance"),
+        ('pair.I.root_stress={source="heywood"}', "root_stress.source"),
     ],
 )
 def test_what_cannot_be_computed_is_refused(override, word):
     with pytest.raises(InputError, match=word):
         make_plan(read_scene(CASE, [*COARSE, override]), STAGES)
+
+
+def test_the_width_of_a_spur_pair_is_plane_unless_it_is_named_or_asked_for():
+    straight = [f"gear.{gear}.{key}" for gear in ("pinion", "wheel") for key in ('helix_angle="0 deg"', 'hand="spur"')]
+    scene = read_scene(CASE, straight)
+    assert scene.width_of("I") == "plane"
+    assert set(scene.plane_pairs) == {"I"}
+    assert not scene.wide_pairs
+    steps = {str(step.task) for step in make_plan(scene, STAGES).steps}
+    assert "loaded-flanks of I" in steps  # the result is over the face
+    with pytest.raises(InputError, match="contradicts results"):
+        make_plan(read_scene(CASE, [*straight, 'pair.I.width="plane"']), STAGES)
+    wide = read_scene(CASE, [*straight, 'pair.I.width="slices"'])
+    assert wide.width_of("I") == "slices"
+    assert set(wide.wide_pairs) == {"I"}
+    assert solid_gear_to_solve(wide, "pinion").settings.source == "slices"
+    assert solid_gear_to_solve(scene, "pinion").settings.source == "solid"
+
+
+def test_one_gear_is_not_solved_as_a_solid_and_in_slices():
+    both = ['results=["load-distribution", "stiffness"]', "stiffness.face_positions=3", 'stiffness.gear="pinion"']
+    with pytest.raises(InputError, match=r"stiffness.source.*contradicts pair.I.width"):
+        make_plan(read_scene(CASE, [*both, 'stiffness.source="slices"']), STAGES)
+    scene = read_scene(CASE, [*both, 'stiffness.source="slices"', 'pair.I.width="slices"'])
+    assert solid_gear_to_solve(scene, "pinion").settings.source == "slices"
+    assert make_plan(scene, STAGES).steps

@@ -11,7 +11,7 @@ import numpy as np
 from fegear.errors import InputError
 from fegear.models.motion import motion_inputs
 from fegear.results.gear_contacts import contact_half_width, load_radii
-from fegear.results.loaded_pair import spur_pairs
+from fegear.results.loaded_pair import plane_pairs
 from fegear.studies.cost.quantities import OF_GEAR, Quantity
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def _names(scene: Scene) -> list[str]:
 def _pair(scene: Scene, names: list[str]) -> str:
     if not set(names) - set(OF_GEAR):
         return ""
-    loaded = [name for name in spur_pairs(scene) if scene.case.pair[name].normal_load(scene.pairs[name]) is not None]
+    loaded = [name for name in plane_pairs(scene) if scene.case.pair[name].normal_load(scene.pairs[name]) is not None]
     chosen = scene.case.cost.pair or next((p for p in (scene.case.stiffness.pair, *loaded) if p in loaded), None)
     if chosen is None or chosen not in loaded:
         raise InputError(

@@ -1,0 +1,178 @@
+"""Stage ``loaded-flanks``: a pair of gears with a width under all its loads, for the stages that tell of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.geometry.pair import MEMBERS
+from fegear.models.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
+from fegear.models.pair_inputs import gear_name
+from fegear.models.solid_influence import flank_pairs
+from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
+from fegear.results.sources import HERTZ, INVOLUTE, RING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.contact.flank import FlankCompliance, FlankGaps, FlankPair, LoadedFlanks
+    from fegear.contact.flank.error import FlankError
+    from fegear.engine.stage import Upstream, Work
+    from fegear.models.loaded_flanks import FlanksToLoad
+
+#: Seconds of one contact line on one gear, and of the contact at one roll position.
+_LINE, _CONTACT = 0.03, 0.004
+
+
+@dataclass(frozen=True)
+class LoadedFlanksData:
+    """What the stage hands to those that stand on it.
+
+    Parameters
+    ----------
+    asked : FlanksToLoad
+        What the case says of the pair.
+    flanks : FlankPair
+        The pair, ready to be loaded again under other gaps and loads.
+    known : FlankCompliance
+        Its compliances at all roll positions, made for the nominal load.
+    gaps : FlankGaps
+        What keeps the flanks apart, of the effects that are on.
+    found : LoadedFlanks
+        Under every load of the case, ascending.
+    error : FlankError
+        Estimated errors of `found`.
+    nominal : int
+        Number of the nominal load among them.
+    neglected : mapping of str to (float, float)
+        By the effects that are off: mean transmission error [m] and K_Hbeta at the nominal load with each of them on.
+    """
+
+    asked: FlanksToLoad
+    flanks: FlankPair
+    known: FlankCompliance
+    gaps: FlankGaps
+    found: LoadedFlanks
+    error: FlankError
+    nominal: int
+    neglected: Mapping[str, tuple[float, float]]
+
+
+def wide_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs with a width that carry a load; all of them where none does, so that the missing load is reported."""
+    return tuple(name for name in flank_pairs(scene) if name in scene.wide_pairs) or tuple(scene.wide_pairs)
+
+
+def needs_flanks(_scene: Scene, name: str) -> tuple[Task, ...]:
+    """The task of this stage for a pair."""
+    return (Task("loaded-flanks", name),)
+
+
+def loaded_flanks(upstream: Upstream, name: str) -> LoadedFlanksData:
+    """What this stage computed for a pair."""
+    return cast("LoadedFlanksData", upstream[Task("loaded-flanks", name)])
+
+
+def _compute(asked: FlanksToLoad, upstream: Upstream, _work: Work) -> LoadedFlanksData:
+    from fegear.contact.flank import FlankPair
+    from fegear.contact.flank.error import flank_error
+
+    effects = asked.effects
+    solved = [solid_solution_of(upstream, gear) for gear in asked.gears]
+    fine = {member: one.fine for member, one in zip(MEMBERS, solved, strict=True)}
+    coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
+    flanks = FlankPair(
+        asked.pair, fine, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions
+    )  # fmt: skip
+    gaps = asked.gaps(relief=effects.relief, misalignment=effects.misalignment)
+    known = flanks.compliance(asked.nominal)
+    found = flanks.solve(asked.loads, gaps, known)
+    error = flank_error(flanks, found, coarse, gaps)
+    neglected = {
+        effect: _with(effect, asked, flanks, known, gaps)
+        for effect in FLANK_EFFECTS
+        if not effects.is_on(effect) and _has_data(asked, effect)
+    }
+    return LoadedFlanksData(asked, flanks, known, gaps, found, error, asked.loads.index(asked.nominal), neglected)
+
+
+def _has_data(asked: FlanksToLoad, effect: str) -> bool:
+    if effect == "relief":
+        return any(flank.relief is not None and not flank.wants_delta for flank in asked.flanks)
+    return effect != "misalignment" or asked.line_gap.size > 0
+
+
+def _with(
+    effect: str, asked: FlanksToLoad, flanks: FlankPair, known: FlankCompliance, gaps: FlankGaps
+) -> tuple[float, float]:
+    """Mean transmission error and K_Hbeta under the nominal load with an effect that is off."""
+    if effect == "neighbour_coupling":
+        flanks = replace(flanks, coupling=True)
+        known = flanks.compliance(asked.nominal)
+    elif effect == "hertz":
+        known = replace(known, fixed_half_width=None)
+    else:
+        on = {"relief": asked.effects.relief, "misalignment": asked.effects.misalignment, effect: True}
+        gaps = asked.gaps(**on)
+    found = flanks.solve([asked.nominal], gaps, known)
+    return float(found.transmission_error.mean()), float(found.face_load_factor[0])
+
+
+def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
+    found = data.found
+    settings = {
+        "width": asked.width, "positions": asked.positions, "panels": asked.panels,
+        "stations": int(found.lines.present.sum()), "newton_steps": found.contact.steps,
+        "hertz": asked.effects.hertz, "neighbour_coupling": asked.effects.neighbour_coupling,
+        "nominal_load": asked.nominal, "loads": list(asked.loads),
+        "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
+    }  # fmt: skip
+    return Outcome(data, settings=settings, remarks=_neglected(data))
+
+
+def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say how much the effects would change that are off."""
+    told = {
+        "neighbour_coupling": "what pairs do to each other is left out",
+        "hertz": "contacts do not widen with their load",
+        "relief": "gears have a relief that is left out",
+        "misalignment": "the pair has a line_error that is left out",
+    }
+    found, i = data.found, data.nominal
+    mean, factor = float(found.transmission_error[:, i].mean()), float(found.face_load_factor[i])
+    return tuple(
+        f"Pair {data.asked.name}: {told[effect]} (effects.{effect}). With it the mean transmission error would be "
+        f"{te * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {k:.4g} for {factor:.4g}."
+        for effect, (te, k) in data.neglected.items()
+    )
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    return needs_solid_solution(gear_name(scene, name, "driver"), gear_name(scene, name, "driven"))
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    asked = flanks_to_load(scene, name)
+    lines = asked.positions * (1.0 + asked.pair.total_contact_ratio)
+    seconds = 2.0 * 2.0 * _LINE * lines + _CONTACT * asked.positions * (1 + len(asked.loads))
+    return Forecast({"positions": asked.positions, "panels": asked.panels}, seconds)
+
+
+LOADED_FLANKS = Stage(
+    name="loaded-flanks",
+    title="Contact over the flanks",
+    results=(),
+    subjects=wide_pairs,
+    inputs=flanks_to_load,
+    compute=_compute,
+    present=_present,
+    needs=_needs,
+    check=check_flanks_to_load,
+    effects=FLANK_EFFECTS,
+    cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
+    forecast=_forecast,
+)
