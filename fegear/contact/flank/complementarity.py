@@ -137,6 +137,11 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array) -> Contact:
     return Contact(forces, approach.reshape(shape), stiffness.reshape(shape), residual.reshape(shape), steps)
 
 
+def tangent_compliance(known: FlankCompliance, place: Index, force: Array) -> Array:
+    """What forces (B, M) at roll positions `place` leave of the compliances: their slopes, shape (B, M, M) [m/N]."""
+    return _tangent(known, place, force)[0]
+
+
 def _tangent(known: FlankCompliance, place: Index, force: Array) -> tuple[Array, Array]:
     """Tangent compliances at forces of shape (B, M), and what the tangent leaves at zero force."""
     lines, s = known.lines, known.log_slope
