@@ -31,7 +31,7 @@ from fegear.contact.flank.lines import base_twist
 from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
+    from fegear.arrays import Array, Mask
     from fegear.contact.flank.lines import ContactLines
     from fegear.contact.flank.loaded import LoadedFlanks
     from fegear.geometry.pair import GearPair
@@ -120,7 +120,7 @@ def tilt_lever(pair: GearPair, lines: ContactLines) -> Array:
     return np.where(lines.present, lines.z - base_twist(pair) * lines.x, 0.0)
 
 
-def stiffness_of(matrix: Array, active: Array, ways: Array) -> Array:
+def stiffness_of(matrix: Array, active: Mask, ways: Array) -> Array:
     """Forces C_t^-1 ways on the active stations, shape (P, M, ways); none on the others.
 
     Parameters
