@@ -8,6 +8,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from fegear.case.flank import BiasPart, LeadPart, TopographyPart
 from fegear.case.part import (
     Angle,
     LengthOrZero,
@@ -106,6 +107,9 @@ class GearPart(Part):
     tooth_mesh: str | None = None
     tooth_mesh_fillet: Literal["rack", "own"] = "rack"
     relief: ReliefPart | None = None
+    lead: LeadPart | None = None
+    bias: BiasPart | None = None
+    topography: TopographyPart | None = None
     spacing_errors: SpacingErrorsPart | None = None
     helix_angle: Angle | None = None
     hand: Literal["left", "right", "spur"] | None = None

@@ -23,7 +23,7 @@ Shape = Literal["linear", "parabolic"]
 STARTS = ("start_roll_angle", "start_radius", "length", "normalised_length")
 
 
-def _several(part: type[Part]) -> BeforeValidator:
+def several(part: type[Part]) -> BeforeValidator:
     """Let one table stand for a list of one."""
 
     def read(value: Any) -> Any:
@@ -120,10 +120,10 @@ class ReliefTablePart(Part):
 class ReliefPart(Part):
     """Profile modification of every tooth of a gear; parts of any kind add up."""
 
-    tip: Annotated[list[TipReliefPart], _several(TipReliefPart)] = Field(default_factory=list)
-    root: Annotated[list[RootReliefPart], _several(RootReliefPart)] = Field(default_factory=list)
-    crowning: Annotated[list[CrowningPart], _several(CrowningPart)] = Field(default_factory=list)
-    table: Annotated[list[ReliefTablePart], _several(ReliefTablePart)] = Field(default_factory=list)
+    tip: Annotated[list[TipReliefPart], several(TipReliefPart)] = Field(default_factory=list)
+    root: Annotated[list[RootReliefPart], several(RootReliefPart)] = Field(default_factory=list)
+    crowning: Annotated[list[CrowningPart], several(CrowningPart)] = Field(default_factory=list)
+    table: Annotated[list[ReliefTablePart], several(ReliefTablePart)] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _something(self) -> Self:

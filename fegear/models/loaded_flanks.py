@@ -14,6 +14,7 @@ from fegear.case.part import at
 from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import refuse_load
+from fegear.models.flank_modifications import gear_face
 from fegear.models.loaded_pair import build_relief
 from fegear.models.pair_inputs import gear_flanks, gear_name
 from fegear.models.solid_influence import check_solid_gear
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.flank import FlankGaps
     from fegear.geometry import GearPair
+    from fegear.models.flank_modifications import FaceModifications
     from fegear.models.pair_inputs import Flanks
 
 #: Effects that loaded flanks know.
@@ -42,6 +44,8 @@ class FlanksToLoad:
         `FLANK_EFFECTS`; all others are off.
     flanks : tuple of (Flanks, Flanks)
         Of driver and driven.
+    faces : tuple of (FaceModifications, FaceModifications)
+        The same over the face.
     face_position, line_gap : ndarray, shape (n,)
         [m]; empty for none.
     loads : tuple of float
@@ -58,6 +62,7 @@ class FlanksToLoad:
     pair: GearPair
     effects: EffectsPart
     flanks: tuple[Flanks, Flanks]
+    faces: tuple[FaceModifications, FaceModifications]
     face_position: Array
     line_gap: Array
     loads: tuple[float, ...]
@@ -77,6 +82,13 @@ class FlanksToLoad:
         """Length of a panel [modules]."""
         return self.pair.face_width / self.panels / self.pair.driver.module
 
+    def has_data(self, effect: str) -> bool:
+        """Whether the case says what an effect needs; of others than relief and misalignment it does."""
+        if effect == "relief":
+            relieved = any(flank.relief for flank in self.flanks) or any(face.given for face in self.faces)
+            return relieved and not any(flank.wants_delta for flank in self.flanks)
+        return effect != "misalignment" or self.line_gap.size > 0
+
     def gaps(self, *, relief: bool, misalignment: bool) -> FlankGaps:
         """What keeps the flanks apart."""
         from fegear.contact.flank import FlankGaps
@@ -87,7 +99,8 @@ class FlanksToLoad:
                 build_relief(self.pair, member, flank, math.nan)
                 for member, flank in zip(MEMBERS, self.flanks, strict=True)
             )
-            apart = replace(apart, driver_relief=driver, driven_relief=driven)
+            first, second = (face.built(self.pair, m) for m, face in zip(MEMBERS, self.faces, strict=True))
+            apart = replace(apart, driver_relief=driver, driven_relief=driven, driver_flank=first, driven_flank=second)
         if misalignment:
             apart = replace(apart, face_position=self.face_position, line_gap=self.line_gap)
         return apart
@@ -104,13 +117,14 @@ def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
     own = EffectsPart(**{effect: getattr(effects, effect) for effect in FLANK_EFFECTS})
+    faces = gear_face(scene, first.gear), gear_face(scene, second.gear)
     z, gap = _line_gap(scene, name)
     nominal = part.normal_load(pair) or math.nan
     asked = scene.case.load_distribution
     panels = asked.panels or max(4, math.ceil(_PANELS_PER_MODULE * pair.face_width / pair.driver.module - 1e-9))
     width: Literal["solid", "slices"] = "slices" if part.width == "slices" else "solid"
     return FlanksToLoad(
-        pair, own, (first, second), z, gap, part.all_loads(pair), nominal, asked.positions, panels, width, name
+        pair, own, (first, second), faces, z, gap, part.all_loads(pair), nominal, asked.positions, panels, width, name
     )
 
 
@@ -179,6 +193,8 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
                 f"gear.{flank.gear}.relief", "amount_over_delta", "counts in deflections of plane teeth",
                 "give the amount as a length for a pair with a width",
             )  # fmt: skip
+        if effects.relief:
+            asked.faces[MEMBERS.index(member)].built(pair, member)
         try:
             build_relief(pair, member, flank, math.nan) if effects.relief else None
         except InputError as error:

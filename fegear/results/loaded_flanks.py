@@ -95,15 +95,9 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, _work: Work) -> LoadedFlan
     neglected = {
         effect: _with(effect, asked, flanks, known, gaps)
         for effect in FLANK_EFFECTS
-        if not effects.is_on(effect) and _has_data(asked, effect)
+        if not effects.is_on(effect) and asked.has_data(effect)
     }
     return LoadedFlanksData(asked, flanks, known, gaps, found, error, asked.loads.index(asked.nominal), neglected)
-
-
-def _has_data(asked: FlanksToLoad, effect: str) -> bool:
-    if effect == "relief":
-        return any(flank.relief is not None and not flank.wants_delta for flank in asked.flanks)
-    return effect != "misalignment" or asked.line_gap.size > 0
 
 
 def _with(
@@ -139,7 +133,7 @@ def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
     told = {
         "neighbour_coupling": "what pairs do to each other is left out",
         "hertz": "contacts do not widen with their load",
-        "relief": "gears have a relief that is left out",
+        "relief": "gears have a relief or lead modifications that are left out",
         "misalignment": "the pair has a line_error that is left out",
     }
     found, i = data.found, data.nominal

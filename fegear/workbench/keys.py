@@ -40,6 +40,9 @@ class GearKeys(TypedDict, total=False):
     tooth_mesh: str
     tooth_mesh_fillet: Literal["rack", "own"]
     relief: Mapping[str, Any]
+    lead: Mapping[str, Any]
+    bias: Quantity | Mapping[str, Any]
+    topography: Mapping[str, Any]
     spacing_errors: Sequence[Quantity] | Mapping[str, Any]
     helix_angle: Quantity
     hand: Literal["left", "right", "spur"]

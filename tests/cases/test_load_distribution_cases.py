@@ -89,6 +89,28 @@ def test_a_table_over_the_face_is_the_same_as_its_key(cache, outcome, tmp_path):
     assert value(found, "K_Hbeta").si == pytest.approx(value(outcome, "K_Hbeta").si, rel=1e-9)
 
 
+def test_lead_modifications_of_either_gear_count_as_line_errors_do(cache, tmp_path):
+    """One formula, four ways to write it: per pair, per gear, as a table over the face, on a grid."""
+    lead = tmp_path / "lead.csv"
+    lead.write_text("z [mm],removal [um]\n-4,0\n4,10\n", "utf-8")
+    grid = tmp_path / "grid.csv"
+    rows = [f"{r},{z},{1.25 * (z + 4)}" for r in (5, 60) for z in (-4, 4)]
+    grid.write_text("\n".join(["roll_angle [deg],z [mm],removal [um]", *rows]), "utf-8")
+    wanted = value(ran(cache), "K_Hbeta").si
+    own = [
+        'gear.pinion.lead={slope="10 um"}', 'gear.wheel.lead={slope="6 um", end_relief={amount="4 um", length="8 mm", '
+        'end="II"}}', f'gear.pinion.lead={{file="{lead.as_posix()}"}}',
+        f'gear.wheel.topography={{file="{grid.as_posix()}"}}',
+    ]  # fmt: skip
+    for key in own:
+        found = ran(cache, key, "effects.relief=true", "effects.misalignment=false")
+        assert value(found, "K_Hbeta").si == pytest.approx(wanted, rel=1e-9), key
+    twisted = ran(cache, 'gear.pinion.bias="10 um"', "effects.relief=true", "effects.misalignment=false")
+    assert value(twisted, "K_Hbeta").si != pytest.approx(wanted, rel=1e-3)
+    (told,) = (r for r in ran(cache, "effects.relief=false", own[0]).remarks if "effects.relief" in r)
+    assert "lead modifications that are left out" in told
+
+
 def test_left_out_coupling_is_told_with_its_size(cache, outcome):
     found = ran(cache, "effects.neighbour_coupling=false", 'effects.hertz="none"')
     assert value(found, "te_mean").si < value(outcome, "te_mean").si
@@ -123,6 +145,9 @@ def test_the_pictures_are_drawn(outcome, tmp_path):
         ('pair.I.width="thick"', "width"),
         ('pair.I.compliance={source="cornell"}', "pair.I.compliance"),
         ('pair.I.root_stress={source="heywood"}', "root_stress.source"),
+        ("gear.wheel.lead={}", "lead"),
+        ('gear.wheel.lead={end_relief={amount="5 um", length="9 mm"}}', r"wheel.lead.end_relief\[0\].length"),
+        ('gear.wheel.topography={file="nowhere.csv"}', "nowhere.csv"),
     ],
 )
 def test_what_cannot_be_computed_is_refused(override, word):

@@ -12,8 +12,9 @@ along the driver's axis, in whose drawing the driver turns clockwise, its loaded
 """
 
 from fegear.contact.flank.compliance import FlankCompliance, flank_compliance
+from fegear.contact.flank.gaps import FlankGaps
 from fegear.contact.flank.lines import ContactLines, contact_lines
-from fegear.contact.flank.loaded import FlankGaps, FlankPair, LoadedFlanks
+from fegear.contact.flank.loaded import FlankPair, LoadedFlanks
 
 __all__ = [
     "ContactLines",

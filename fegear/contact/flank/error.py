@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.arrays import Array
-    from fegear.contact.flank.loaded import FlankGaps, FlankPair, LoadedFlanks
+    from fegear.contact.flank.gaps import FlankGaps
+    from fegear.contact.flank.loaded import FlankPair, LoadedFlanks
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.pair import Member
 

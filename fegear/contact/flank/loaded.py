@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,11 +12,11 @@ import numpy as np
 
 from fegear.contact.flank.complementarity import solve_contact
 from fegear.contact.flank.compliance import flank_compliance
+from fegear.contact.flank.gaps import FlankGaps
 from fegear.contact.flank.lines import base_twist, contact_lines
 from fegear.errors import InputError
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
-from fegear.geometry.relief import UNMODIFIED, Relief
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,33 +29,6 @@ if TYPE_CHECKING:
     from fegear.contact.flank.lines import ContactLines
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.pair import GearPair, Member
-
-
-@dataclass(frozen=True)
-class FlankGaps(ReadOnlyArrays):
-    """What keeps unloaded flanks apart along the line of action, removal positive.
-
-    Parameters
-    ----------
-    driver_relief, driven_relief : Relief
-        Over the roll angle, the same all over the face.
-    face_position, line_gap : ndarray, shape (n,)
-        Gap over the face position from the middle of the common face [m], straight between: lead modifications,
-        misalignment in the plane of action, deflected shafts. Empty for none.
-    """
-
-    driver_relief: Relief = UNMODIFIED
-    driven_relief: Relief = UNMODIFIED
-    face_position: Array = field(default_factory=lambda: np.empty(0))
-    line_gap: Array = field(default_factory=lambda: np.empty(0))
-
-    def at(self, pair: GearPair, lines: ContactLines) -> Array:
-        """Gap at the stations, shape (P, M) [m]."""
-        gap = self.driver_relief.removal(pair.roll_angle(lines.x, "driver"))
-        gap = gap + self.driven_relief.removal(pair.roll_angle(lines.x, "driven"))
-        if self.line_gap.size:
-            gap = gap + np.interp(lines.z, self.face_position, self.line_gap)
-        return np.asarray(gap)
 
 
 @dataclass(frozen=True)
