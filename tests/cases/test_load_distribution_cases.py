@@ -97,11 +97,13 @@ def test_lead_modifications_of_either_gear_count_as_line_errors_do(cache, tmp_pa
     rows = [f"{r},{z},{1.25 * (z + 4)}" for r in (5, 60) for z in (-4, 4)]
     grid.write_text("\n".join(["roll_angle [deg],z [mm],removal [um]", *rows]), "utf-8")
     wanted = value(ran(cache), "K_Hbeta").si
-    own = [
-        'gear.pinion.lead={slope="10 um"}', 'gear.wheel.lead={slope="6 um", end_relief={amount="4 um", length="8 mm", '
-        'end="II"}}', f'gear.pinion.lead={{file="{lead.as_posix()}"}}',
+    end = '{amount="4 um", length="8 mm", end="II"}'
+    own = (
+        'gear.pinion.lead={slope="10 um"}',
+        f'gear.wheel.lead={{slope="6 um", end_relief={end}}}',
+        f'gear.pinion.lead={{file="{lead.as_posix()}"}}',
         f'gear.wheel.topography={{file="{grid.as_posix()}"}}',
-    ]  # fmt: skip
+    )
     for key in own:
         found = ran(cache, key, "effects.relief=true", "effects.misalignment=false")
         assert value(found, "K_Hbeta").si == pytest.approx(wanted, rel=1e-9), key
