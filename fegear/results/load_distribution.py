@@ -17,7 +17,6 @@ from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.sources import HERTZ, INVOLUTE, RING
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.flank import LoadedFlanks
     from fegear.results.loaded_flanks import LoadedFlanksData
@@ -51,10 +50,10 @@ def _over_face(name: str, found: LoadedFlanks, i: int) -> Table:
     mean = float(found.load[i] / (ends[-1] - ends[0]))
     columns = (
         Column("z", 0.5 * (ends[1:] + ends[:-1]), "mm", "along the face, from its middle"),
-        Column("mean_line_load", whole.mean(axis=0), "N/mm", "of all pairs, averaged over a base pitch"),
+        Column("mean_line_load", found.mean_over_face[:, i], "N/mm", "of all pairs, averaged over a base pitch"),
         Column("least_line_load", whole.min(axis=0), "N/mm", "of all roll positions"),
         Column("largest_line_load", whole.max(axis=0), "N/mm", "of all roll positions"),
-        Column("factor", whole.mean(axis=0) / mean, "", "mean_line_load over load per face width"),
+        Column("factor", found.mean_over_face[:, i] / mean, "", "mean_line_load over load per face width"),
     )
     return Table(f"load_over_face_{name}", columns, f"Load over the face of pair {name}")
 
@@ -82,20 +81,14 @@ def _loads(name: str, data: LoadedFlanksData) -> Table:
     te = found.transmission_error
     columns = (
         Column("load", found.load, "N", "along the line of action"),
-        Column("te_mean", te.mean(axis=0), "um", "mean transmission error over a base pitch"),
+        Column("te_mean", found.mean_transmission_error, "um", "mean transmission error over a base pitch"),
         Column("te_mean_error", error.mean, "um", "estimated error"),
         Column("te_peak_to_peak", np.ptp(te, axis=0), "um", "over the roll positions"),
-        Column("te_peak_to_peak_error", _ripple_error(data), "um", "estimated error"),
+        Column("te_peak_to_peak_error", error.peak_to_peak, "um", "estimated error"),
         Column("K_Hbeta", found.face_load_factor, "", "largest over mean load per face width"),
         Column("K_Hbeta_error", error.face_load_factor, "", "estimated error"),
     )
     return Table(f"load_distribution_loads_{name}", columns, f"Pair {name} under every load")
-
-
-def _ripple_error(data: LoadedFlanksData) -> Array:
-    """Of the coarser solution, and of half as many roll positions."""
-    te = data.found.transmission_error
-    return np.asarray(data.error.peak_to_peak + np.abs(np.ptp(te, axis=0) - np.ptp(te[::2], axis=0)))
 
 
 def _present(data: LoadedFlanksData, inputs: Subject) -> Outcome:
@@ -108,8 +101,9 @@ def _present(data: LoadedFlanksData, inputs: Subject) -> Outcome:
     k_error = float(data.error.face_load_factor[i])
     where = f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
     values = (
-        Value(f"{name}.te_mean", float(te.mean()), "um", float(data.error.mean[i]), "mean transmission error"),
-        Value(f"{name}.te_peak_to_peak", float(np.ptp(te)), "um", float(_ripple_error(data)[i]),
+        Value(f"{name}.te_mean", float(found.mean_transmission_error[i]), "um", float(data.error.mean[i]),
+              "mean transmission error"),
+        Value(f"{name}.te_peak_to_peak", float(np.ptp(te)), "um", float(data.error.peak_to_peak[i]),
               "of the transmission error over the roll positions"),
         Value(f"{name}.K_Hbeta", float(found.face_load_factor[i]), "", k_error,
               "largest load per face width over the mean one, averaged over a base pitch"),

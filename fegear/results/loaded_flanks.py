@@ -113,7 +113,7 @@ def _with(
         on = {"relief": asked.effects.relief, "misalignment": asked.effects.misalignment, effect: True}
         gaps = asked.gaps(**on)
     found = flanks.solve([asked.nominal], gaps, known)
-    return float(found.transmission_error.mean()), float(found.face_load_factor[0])
+    return float(found.mean_transmission_error[0]), float(found.face_load_factor[0])
 
 
 def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
@@ -137,7 +137,7 @@ def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
         "misalignment": "the pair has a line_error that is left out",
     }
     found, i = data.found, data.nominal
-    mean, factor = float(found.transmission_error[:, i].mean()), float(found.face_load_factor[i])
+    mean, factor = float(found.mean_transmission_error[i]), float(found.face_load_factor[i])
     return tuple(
         f"Pair {data.asked.name}: {told[effect]} (effects.{effect}). With it the mean transmission error would be "
         f"{te * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {k:.4g} for {factor:.4g}."

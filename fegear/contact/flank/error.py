@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.contact.flank.gaps import FlankGaps
     from fegear.contact.flank.loaded import FlankPair, LoadedFlanks
+    from fegear.contact.fourier import Panels
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.pair import Member
 
@@ -61,9 +62,18 @@ def flank_error(
             for k, j in zip(at.tolist(), found.pair_numbers.tolist(), strict=True)]  # fmt: skip
     share = np.stack([np.abs(found.share[i] - (other.share[k] if on else 0.0))
                       for i, (k, on) in enumerate(zip(at.tolist(), same, strict=True))])  # fmt: skip
-    over = other.load_between(found.cells).mean(axis=0)
+    over = other.mean_between(found.cells)
     factor = over.max(axis=0) / (found.load / (found.lines.high - found.lines.low))
     return FlankError(
-        np.abs(again - te), share, np.abs(again.mean(axis=0) - te.mean(axis=0)),
-        np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), np.abs(factor - found.face_load_factor),
+        np.abs(again - te), share, np.abs(other.mean_transmission_error - found.mean_transmission_error),
+        np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)) + _between_positions(flanks.points, te),
+        np.abs(factor - found.face_load_factor),
     )  # fmt: skip
+
+
+def _between_positions(points: Panels, te: Array) -> Array:
+    """What half of the roll positions on each piece of the base pitch miss of the peak-to-peak value [m]."""
+    piece = np.searchsorted(points.breaks, points.x)
+    within = np.arange(points.x.size) - np.searchsorted(piece, piece)  # from the start of its piece on
+    last = np.append(piece[1:] != piece[:-1], True)
+    return np.asarray(np.ptp(te, axis=0) - np.ptp(te[(within % 2 == 0) | last], axis=0))

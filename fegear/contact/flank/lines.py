@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,6 +45,8 @@ class ContactLines(ReadOnlyArrays):
         Ends of the common face [m].
     at_edge : ndarray of bool
         Whether the line ends here at a tip or form circle.
+    weight : ndarray, shape (P,)
+        Part of a base pitch that each roll position stands for; they add up to 1. Empty: all alike.
     """
 
     roll: Array
@@ -55,6 +57,13 @@ class ContactLines(ReadOnlyArrays):
     low: float
     high: float
     at_edge: Mask
+    weight: Array = field(default_factory=lambda: np.empty(0))
+
+    def mean(self, values: Array) -> Array:
+        """Mean over a base pitch of what is known at the roll positions, shape (P, ...)."""
+        count = self.roll.size
+        weight = self.weight if self.weight.size else np.full(count, 1.0 / count)
+        return np.asarray(np.tensordot(weight, values, axes=1))
 
     @property
     def panel(self) -> Array:
@@ -88,7 +97,12 @@ def base_twist(pair: GearPair) -> float:
     return pair.driver.twist * pair.driver.base_radius
 
 
-def contact_lines(pair: GearPair, roll: ArrayLike, panel: float) -> ContactLines:
+def shortest_line(pair: GearPair) -> float:
+    """Length along the face below which a contact line is left out [m]."""
+    return min(SHORTEST_LINE * pair.driver.module, 0.5 * pair.face_width)
+
+
+def contact_lines(pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLike = ()) -> ContactLines:
     """Divide the contact lines of all pairs in reach.
 
     Parameters
@@ -98,6 +112,8 @@ def contact_lines(pair: GearPair, roll: ArrayLike, panel: float) -> ContactLines
         Roll positions [m]: x of pair 0 in the middle of the face.
     panel : float
         Length of a panel along the face, at most [m].
+    weight : array_like, shape (P,) or (0,)
+        Part of a base pitch that each roll position stands for.
 
     Returns
     -------
@@ -110,7 +126,7 @@ def contact_lines(pair: GearPair, roll: ArrayLike, panel: float) -> ContactLines
     """
     positions = np.atleast_1d(np.asarray(roll, dtype=float))
     half, slope, pitch = 0.5 * pair.face_width, base_twist(pair), pair.base_pitch
-    shortest = min(SHORTEST_LINE * pair.driver.module, 0.5 * pair.face_width)
+    shortest = shortest_line(pair)
     found: list[list[tuple[int, Array, Array, tuple[bool, bool]]]] = []
     for x0 in positions.tolist():
         lines = []
@@ -139,7 +155,7 @@ def contact_lines(pair: GearPair, roll: ArrayLike, panel: float) -> ContactLines
             number[p, here], present[p, here], x_[p, here], z_[p, here] = j, True, x, z
             at_edge[p, at], at_edge[p, at + z.size - 1] = edges
             at += z.size
-    return ContactLines(positions, number, present, x_, z_, -half, half, at_edge)
+    return ContactLines(positions, number, present, x_, z_, -half, half, at_edge, np.asarray(weight, dtype=float))
 
 
 def _limits(pair: GearPair, x: float, slope: float, half: float) -> tuple[float, float, tuple[bool, bool]]:

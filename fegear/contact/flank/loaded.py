@@ -14,6 +14,8 @@ from fegear.contact.flank.complementarity import solve_contact
 from fegear.contact.flank.compliance import flank_compliance
 from fegear.contact.flank.gaps import FlankGaps
 from fegear.contact.flank.lines import base_twist, contact_lines
+from fegear.contact.flank.positions import roll_points
+from fegear.contact.flank.swept import load_below, swept_mean
 from fegear.errors import InputError
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
@@ -27,8 +29,13 @@ if TYPE_CHECKING:
     from fegear.contact.flank.complementarity import Contact
     from fegear.contact.flank.compliance import FlankCompliance, Hertz
     from fegear.contact.flank.lines import ContactLines
+    from fegear.contact.fourier import Panels
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.pair import GearPair, Member
+
+
+#: Parts of the face whose loads are told apart: so long at most [modules], so many at least.
+_CELL, _FEWEST_CELLS = 0.5, 4
 
 
 @dataclass(frozen=True)
@@ -60,6 +67,11 @@ class LoadedFlanks(ReadOnlyArrays):
     def transmission_error(self) -> Array:
         """zeta [m], shape (P, L)."""
         return self.contact.approach
+
+    @property
+    def mean_transmission_error(self) -> Array:
+        """Mean over a base pitch [m], shape (L,)."""
+        return self.lines.mean(self.transmission_error)
 
     @cached_property
     def line_load(self) -> Array:
@@ -96,15 +108,12 @@ class LoadedFlanks(ReadOnlyArrays):
 
     @cached_property
     def cells(self) -> Array:
-        """Ends of equal parts of the face over which load is summed, shape (cells + 1,) [m].
+        """Ends of equal parts of the face over which load is summed, shape (cells + 1,) [m]: half a module, or less.
 
-        As long as a panel; up to twice that where the ends of contact lines move on so far from one roll position to
-        the next, for there they bear more than the rest of the line.
+        Neither panels nor roll positions change them, and half a module is longer than what both do to a mean.
         """
         lines = self.lines
-        step = self.pair.base_pitch / lines.roll.size / max(abs(base_twist(self.pair)), 1e-12)
-        panel = float(lines.panel.max())
-        count = max(2, math.floor((lines.high - lines.low) / min(max(panel, step), 2.0 * panel) + 1e-6))
+        count = max(_FEWEST_CELLS, math.ceil((lines.high - lines.low) / (_CELL * self.pair.driver.module) - 1e-6))
         return np.linspace(lines.low, lines.high, count + 1)
 
     @cached_property
@@ -118,18 +127,22 @@ class LoadedFlanks(ReadOnlyArrays):
         total = np.zeros((lines.roll.size, ends.size, self.load.size))
         for p in range(lines.roll.size):
             for s in lines.at(p):
-                for i in range(self.load.size):
-                    total[p, :, i] += _load_below(lines.z[p, s], self.line_load[p, s, i], ends)
+                total[p] += load_below(lines.z[p, s], self.line_load[p, s], ends)
         return np.asarray(np.diff(total, axis=1) / np.diff(ends)[:, None])
 
-    @property
+    def mean_between(self, ends: Array) -> Array:
+        """The same averaged over a base pitch, shape (n - 1, L) [N/m]: see `fegear.contact.flank.swept`."""
+        swept = swept_mean(self.lines, self.line_load, ends, self.pair.base_pitch)
+        return np.asarray(swept / np.diff(ends)[:, None])
+
+    @cached_property
     def mean_over_face(self) -> Array:
-        """The same averaged over the roll positions, shape (cells, L) [N/m]."""
-        return np.asarray(self.over_face.mean(axis=0))
+        """Load over each of `cells` averaged over a base pitch, shape (cells, L) [N/m]."""
+        return self.mean_between(self.cells)
 
     @property
     def face_load_factor(self) -> Array:
-        """K_Hbeta, shape (L,): largest load per face width over the mean one, averaged over the roll positions.
+        """K_Hbeta, shape (L,): largest load per face width over the mean one, averaged over a base pitch.
 
         ISO 6336-1, 7.2: (F / b)_max / (F_m / b).
         """
@@ -161,16 +174,6 @@ class LoadedFlanks(ReadOnlyArrays):
         return found
 
 
-def _load_below(z: Array, line_load: Array, ends: Array) -> Array:
-    """Integral of a line load, straight between its stations, up to some heights, shape (n,) [N]."""
-    h = np.diff(z)
-    whole = np.concatenate([[0.0], np.cumsum(0.5 * h * (line_load[1:] + line_load[:-1]))])
-    at = np.clip(ends, z[0], z[-1])
-    i = np.clip(np.searchsorted(z, at, side="right") - 1, 0, h.size - 1)
-    part = (at - z[i]) / h[i]
-    return np.asarray(whole[i] + h[i] * part * (line_load[i] + 0.5 * part * (line_load[i + 1] - line_load[i])))
-
-
 @dataclass(frozen=True)
 class FlankPair:
     """A pair of gears with a width, ready to be loaded.
@@ -196,16 +199,24 @@ class FlankPair:
     positions: int = 16
 
     @property
+    def points(self) -> Panels:
+        """Roll positions and their weights over a base pitch, for means and Fourier series: see `roll_points`."""
+        return roll_points(self.pair, self.positions)
+
+    @property
     def roll(self) -> Array:
-        """Roll positions, the middles of equal parts of a base pitch [m]."""
-        return np.asarray(self.pair.x_start + self.pair.base_pitch * (np.arange(self.positions) + 0.5) / self.positions)
+        """Roll positions [m]."""
+        return self.points.x
 
     def compliance(self, load: float) -> FlankCompliance:
         """Lines and compliances at all roll positions; see `flank_compliance` for `load`."""
         for member in MEMBERS:
             if self.gears[member].reach == 0 and self.coupling:
                 raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
-        lines = contact_lines(self.pair, self.roll, self.panel * self.pair.driver.module)
+        points = self.points
+        lines = contact_lines(
+            self.pair, points.x, self.panel * self.pair.driver.module, points.weights / points.period
+        )  # fmt: skip
         return flank_compliance(self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz)
 
     def solve(

@@ -1,0 +1,93 @@
+"""Roll positions of loaded flanks, and loads averaged over them: closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.contact.flank import contact_lines
+from fegear.contact.flank.lines import shortest_line
+from fegear.contact.flank.positions import line_breaks, roll_points
+from fegear.contact.flank.swept import load_below, swept_mean
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+
+STEEL = Material(206.8e9, 0.3, 7850.0)
+
+
+def pair(beta, teeth=(23, 57), width=30e-3, module=3e-3):
+    gears = []
+    for z, hand in zip(teeth, ("right", "left"), strict=True):
+        tooth = Tooth(z, BasicRack(1.0, 1.25, 0.25), helix_angle=math.radians(beta))
+        bore = 0.5 * tooth.root_radius * module
+        gears.append(Gear(tooth, module, bore, width, STEEL, "strain", hand if beta else "spur"))
+    return GearPair(*gears)
+
+
+@pytest.mark.parametrize("beta", [0.0, 1e-6, 0.1, 3.0, 20.0, 35.0])
+@pytest.mark.parametrize("count", [1, 5, 16, 33])
+def test_positions_are_as_many_as_asked_and_stand_for_one_base_pitch(beta, count):
+    gears = pair(beta)
+    points = roll_points(gears, count)
+    assert points.x.size == count
+    assert points.weights.sum() == pytest.approx(gears.base_pitch, rel=1e-12)
+    assert points.weights.min() > 0.0
+    assert np.all(np.diff(points.x) > 0.0)
+    assert np.ptp(points.x) < gears.base_pitch
+    # what is straight between the breaks is integrated exactly
+    wanted = gears.base_pitch * (points.breaks[0] + 0.5 * gears.base_pitch)
+    if count >= 16:
+        assert points.weights @ points.x == pytest.approx(wanted, rel=1e-9, abs=1e-3 * gears.base_pitch**2)
+
+
+@pytest.mark.parametrize("beta", [0.0, 20.0])
+def test_pairs_come_and_go_only_at_breaks(beta):
+    gears = pair(beta)
+    points = roll_points(gears, 24)
+    for a, b in zip(points.breaks, points.breaks[1:], strict=False):
+        inside = contact_lines(gears, a + (b - a) * np.array([1e-6, 0.3, 0.7, 1.0 - 1e-6]), 1e-3)
+        pairs = [tuple(np.unique(inside.pair[p, inside.present[p]])) for p in range(4)]
+        assert b - a < 1e-9 or len(set(pairs)) == 1
+    # both sides of each are among the positions
+    for place in line_breaks(gears):
+        away = np.mod(points.x - place + 0.5 * gears.base_pitch, gears.base_pitch) - 0.5 * gears.base_pitch
+        assert 0.0 < away[away > 0.0].min() < 6e-3 * gears.base_pitch
+        assert 0.0 < (-away[away < 0.0]).min() < 6e-3 * gears.base_pitch
+
+
+@pytest.mark.parametrize(("beta", "slack"), [(0.0, 1e-6), (3.0, 4e-3), (20.0, 4e-3), (35.0, 4e-3)])
+def test_an_even_line_load_bears_the_path_length_over_the_pitch_everywhere(beta, slack):
+    gears = pair(beta)
+    points = roll_points(gears, 24)
+    lines = contact_lines(gears, points.x, 1e-3, points.weights / points.period)
+    # heights that short lines in the corners do not reach
+    ends = np.linspace(lines.low + 2.0 * shortest_line(gears), lines.high - 2.0 * shortest_line(gears), 14)
+    even = np.ones((*lines.x.shape, 2)) * np.array([1.0, 3.0])
+    found = swept_mean(lines, even, ends, gears.base_pitch) / np.diff(ends)[:, None]
+    wanted = gears.contact_ratio * np.array([1.0, 3.0])
+    np.testing.assert_allclose(found, np.broadcast_to(wanted, found.shape), rtol=slack)
+
+
+def test_a_load_at_the_ends_of_the_lines_is_spread_over_what_they_sweep():
+    """A narrow peak at the tip end of every line passes each place of the face once a base pitch."""
+    gears = pair(20.0)
+    points = roll_points(gears, 16)
+    lines = contact_lines(gears, points.x, 1e-3, points.weights / points.period)
+    peak = np.where(lines.at_edge & lines.present & (lines.x > 0.0), 1.0 / np.maximum(lines.support, 1e-12), 0.0)
+    ends = np.linspace(0.7 * lines.low, 0.7 * lines.high, 9)
+    found = swept_mean(lines, peak[:, :, None], ends, gears.base_pitch)[:, 0]
+    # a unit force that moves along the face by a pitch over the slope while the gears turn by a pitch
+    wanted = np.diff(ends) * abs(gears.driver.twist * gears.driver.base_radius) / gears.base_pitch
+    np.testing.assert_allclose(found, wanted, rtol=0.015)
+
+
+def test_integrals_of_straight_pieces():
+    rng = np.random.default_rng(3)
+    z = np.sort(rng.uniform(-1.0, 1.0, 9))
+    load = rng.uniform(0.0, 1.0, (9, 3))
+    ends = np.array([-2.0, -0.3, 0.1, 0.77, 2.0])
+    x = np.linspace(z[0], z[-1], 200_001)
+    x = 0.5 * (x[1:] + x[:-1])
+    for i in range(3):
+        values = np.interp(x, z, load[:, i])
+        wanted = [(values * (x < end)).sum() * np.ptp(z) / 200_000 for end in ends]
+        np.testing.assert_allclose(load_below(z, load, ends)[:, i], wanted, atol=2e-5)
