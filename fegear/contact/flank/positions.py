@@ -53,16 +53,17 @@ def roll_points(pair: GearPair, count: int) -> Panels:
     if count < _FEWEST * len(pieces):
         x = pair.x_start + pitch * (np.arange(count) + 0.5) / count
         return Panels(x, np.full(count, pitch / count), pitch, ends)
-    x, weight = [], []
+    places: list[Array] = []
+    weight: list[Array] = []
     for (a, b), n in zip(pieces, _shared([b - a for a, b in pieces], count), strict=True):
         at, w = _lobatto(n)
         inside = 1.0 - 2.0 * _BESIDE * pitch / (b - a)
-        x.append(0.5 * (a + b) + 0.5 * (b - a) * inside * at)
+        places.append(0.5 * (a + b) + 0.5 * (b - a) * inside * at)
         weight.append(0.5 * (b - a) * w)
     for i, ((_, end), (start, _)) in enumerate(zip(pieces, [*pieces[1:], (pieces[0][0] + pitch, 0.0)], strict=True)):
         weight[i][-1] += 0.5 * (start - end)  # what lies between two pieces, by the trapezoidal rule
         weight[(i + 1) % len(pieces)][0] += 0.5 * (start - end)
-    return Panels(np.concatenate(x), np.concatenate(weight), pitch, ends)
+    return Panels(np.concatenate(places), np.concatenate(weight), pitch, ends)
 
 
 def _shared(lengths: list[float], count: int) -> list[int]:
