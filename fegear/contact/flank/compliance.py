@@ -7,14 +7,14 @@ are k = +1 seen from the driver's loaded tooth and k = -1 seen from the driven g
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.fem.solid.bands import hats, loads_of, overlap
-from fegear.fem.solid.contact import line_compliance
+from fegear.fem.solid.bands import bands
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
 from fegear.tally import tallied
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.contact.flank.lines import ContactLines
     from fegear.fem.solid.bands import Bands
-    from fegear.fem.solid.solution import SolidSolution
+    from fegear.fem.solid.flank_body import FlankBody, FlankLines
     from fegear.geometry.pair import GearPair, Member
 
 Hertz = Literal["load-dependent", "linear", "none"]
@@ -72,7 +72,7 @@ class FlankCompliance(ReadOnlyArrays):
 
 def flank_compliance(
     pair: GearPair,
-    gears: Mapping[Member, SolidSolution],
+    gears: Mapping[Member, FlankBody],
     lines: ContactLines,
     load: float,
     *,
@@ -84,7 +84,7 @@ def flank_compliance(
     Parameters
     ----------
     pair : GearPair
-    gears : mapping of {"driver", "driven"} to SolidSolution
+    gears : mapping of {"driver", "driven"} to FlankBody
     lines : ContactLines
     load : float
         About which the ends of the contacts are taken, and all of a linear contact [N].
@@ -105,55 +105,61 @@ def flank_compliance(
     factor = 4.0 * across * softness / math.pi
     mean = np.sqrt(factor * (load / lines.length)[:, None])
     b = np.full(lines.x.shape, _NOMINAL_HALF_WIDTH * module) if hertz == "none" else mean
-    positions, most = lines.x.shape
-    matrix = np.zeros((positions, most, most))
+    most = lines.x.shape[1]
+    matrix = np.zeros((*lines.x.shape, most))
     log_slope = 0.0
+    places, spans = _places(lines)
     for member in MEMBERS:
-        gear, solution = pair.gear(member), gears[member]
+        gear, body = pair.gear(member), gears[member]
         softer = 1.0 / (gear.material.young_modulus * module)
-        slope = (1.0 - solution.poisson_ratio**2) * solution.normal_length / math.pi
-        log_slope += slope / gear.material.young_modulus
-        forward = 1 if member == "driver" else -1
-        radius = np.clip(pair.radius(lines.x, member) / module, *_flank(solution))
-        for p in range(positions):
-            spans = lines.at(p)
-            bands = [_bands(solution, radius[p, s], lines.z[p, s] / module) for s in spans]
-            for s, line in zip(spans, bands, strict=True):
-                width = np.log(b[p, s] / module)
-                block = line_compliance(solution, line, b[p, s] / module)
-                block = block + slope * (width[:, None] + width + 2.0 * math.log(module)) * overlap(line)
-                matrix[p, s, s] += softer * block
-            if coupling and solution.reach and len(spans) > 1:
-                _couple(matrix[p], solution, [int(lines.pair[p, s.start]) * forward for s in spans], spans, bands,
-                        softer)  # fmt: skip
+        radius = np.clip(pair.radius(lines.x, member) / module, *_flank(body))[lines.present]
+        pressed = body.pressed(_bands(body, radius, lines.z[lines.present] / module, spans), spans)
+        log_slope += pressed.slope / gear.material.young_modulus
+        widened = pressed.widened(b[lines.present] / module)
+        for (p, s), own, wider, common in zip(places, pressed.own(), widened, pressed.common, strict=True):
+            matrix[p, s, s] += softer * (own + wider + 2.0 * math.log(module) * pressed.slope * common)
+        if coupling:
+            _couple(matrix, pressed, body.reach, 1 if member == "driver" else -1, lines, softer)
     index = np.arange(most)
     matrix[:, index, index] += np.where(lines.present, 0.0, 1.0)
     return FlankCompliance(lines, matrix, log_slope, factor, None if hertz == "load-dependent" else b)
 
 
+def _places(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]]:
+    """Roll position and stations of every contact line, and its stations among those of all lines in a row."""
+    places = [(p, s) for p in range(lines.roll.size) for s in lines.at(p)]
+    ends = np.cumsum([0, *(s.stop - s.start for _, s in places)]).tolist()
+    return places, [slice(a, b) for a, b in itertools.pairwise(ends)]
+
+
 @tallied("neighbours")
 def _couple(
-    matrix: Array, solution: SolidSolution, teeth: list[int], spans: list[slice], lines: list[Bands], softer: float
+    matrix: Array, pressed: FlankLines, reach: int, forward: int, lines: ContactLines, softer: float
 ) -> None:
-    """Add what the lines of one roll position do to each other, and its transpose (Maxwell)."""
-    loads = [loads_of(line, solution.flank, solution.face) for line in lines]
-    for a, first in enumerate(spans):
-        for b in range(a + 1, len(spans)):
-            k = teeth[a] - teeth[b]
-            if abs(k) > solution.reach:
-                continue
-            block = softer * (loads[a].T @ solution.compliance[k] @ loads[b])
-            matrix[first, spans[b]] += block
-            matrix[spans[b], first] += block.T
+    """Add what the lines of each roll position do to each other, and its transpose (Maxwell)."""
+    places, _ = _places(lines)
+    tooth = [forward * int(lines.pair[p, s.start]) for p, s in places]
+    found: dict[int, list[tuple[int, int]]] = {}
+    for a, b in itertools.combinations(range(len(places)), 2):
+        if places[a][0] == places[b][0] and abs(k := tooth[a] - tooth[b]) <= reach:
+            found.setdefault(k, []).append((a, b))
+    for k, pairs in found.items():
+        for (a, b), block in zip(pairs, pressed.between(k, pairs), strict=True):
+            (p, first), (_, second) = places[a], places[b]
+            matrix[p, first, second] += softer * block
+            matrix[p, second, first] += softer * block.T
 
 
-def _flank(solution: SolidSolution) -> tuple[float, float]:
-    return solution.flank.lowest_radius, solution.flank.highest_radius
+def _flank(body: FlankBody) -> tuple[float, float]:
+    return body.flank.lowest_radius, body.flank.highest_radius
 
 
-def _bands(solution: SolidSolution, radius: Array, stations: Array) -> Bands:
-    """Hats on the stations of a contact line, of few different half-widths that the section resolves."""
-    widest = solution.settings.band_half_width
-    room = solution.band_half_width(radius) / widest
+def _bands(body: FlankBody, radius: Array, stations: Array, spans: list[slice]) -> Bands:
+    """Hats on the stations of contact lines, of few different half-widths that the section resolves."""
+    widest = body.settings.band_half_width
+    room = body.band_half_width(radius) / widest
     snapped = widest * _WIDTH_STEP ** np.ceil(np.log(room) / math.log(_WIDTH_STEP) - 1e-9)
-    return hats(radius, stations, snapped, slope=solution.line_slope(radius))
+    before, after = np.zeros((2, stations.size))
+    for s in spans:
+        before[s][1:] = after[s][:-1] = np.diff(stations[s])
+    return bands(radius, stations, before, snapped, after=after, slope=body.line_slope(radius))

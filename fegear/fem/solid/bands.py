@@ -56,6 +56,13 @@ class Bands(ReadOnlyArrays):
         """Number of bands."""
         return int(self.radius.size)
 
+    def part(self, span: slice) -> Bands:
+        """Some of the bands."""
+        return Bands(
+            self.radius[span], self.zeta[span], self.before[span], self.after[span], self.half_width[span],
+            self.slope[span], self.profile,
+        )  # fmt: skip
+
 
 def bands(
     radius: ArrayLike,
@@ -114,7 +121,7 @@ def loads_of(pressed: Bands, flank: LoadedFlank, face: FaceFunctions) -> Array:
     _check(pressed, flank, face)
     arc = flank.arc_of_radius(pressed.radius)
     z, weight = _gauss(pressed, face)
-    shape = face.at(z.ravel())[0].reshape(face.count, *z.shape)
+    shape = face.values(z.ravel()).reshape(face.count, *z.shape)
     if not pressed.slope.any():
         along = np.einsum("kpq,pq->kp", shape, weight)
         up = flank.normal_patches(arc, pressed.half_width)
@@ -129,7 +136,7 @@ def loads_of(pressed: Bands, flank: LoadedFlank, face: FaceFunctions) -> Array:
 def profile_moments(pressed: Bands, face: FaceFunctions) -> Array:
     """Integrals of the bands' profiles times the functions along the face, shape (functions, P)."""
     z, weight = _gauss(pressed, face)
-    shape = face.at(z.ravel())[0].reshape(face.count, *z.shape)
+    shape = face.values(z.ravel()).reshape(face.count, *z.shape)
     return np.asarray(np.einsum("kpq,pq->kp", shape, weight))
 
 

@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.influence import curvature_slope
-from fegear.fem.solid.bands import check_half_width, overlap, profile_moments, profiles_at
+from fegear.fem.solid.bands import check_half_width, loads_of, overlap, profile_moments, profiles_at
 from fegear.fem.solid.end_slope import end_slope
 from fegear.fem.solid.half_space import band_cosines, function_cosines, galerkin_compliance
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
@@ -38,6 +40,93 @@ _END_POINTS = np.polynomial.legendre.leggauss(16)
 _ACUTE_SPREAD, _OBTUSE_SPREAD = 1.5, 2.5
 
 
+class PressedLines:
+    """Contact lines on one gear's flank, many at a time: what their stations do to each other.
+
+    Parameters
+    ----------
+    solution : SolidSolution
+    line : Bands
+        Bands of all lines, one line after the other, as wide as the section resolves
+        (`SolidSolution.band_half_width`), with their lines' own slope (`SolidSolution.line_slope`).
+    spans : sequence of slice
+        Where each line stands among them.
+
+    Attributes
+    ----------
+    common : list of ndarray, shape (P, P)
+        Of each line the integrals of products of its bands' profiles [1/module].
+    """
+
+    def __init__(self, solution: SolidSolution, line: Bands, spans: Sequence[slice]) -> None:
+        self._solution, self._line, self._spans = solution, line, spans
+        self._loads = loads_of(line, solution.flank, solution.face)
+        self.common = [overlap(line.part(span)) for span in spans]
+
+    @property
+    def slope(self) -> float:
+        """What of a line load's approach goes with -2 ln b, b its half-width: (1 - nu^2) / (pi cos(beta_b)), E = 1."""
+        return (1.0 - self._solution.poisson_ratio**2) * self._solution.normal_length / math.pi
+
+    def own(self) -> list[Array]:
+        """c_0 of each line under contacts of half-width 1, less what `widened` gives, (P, P) each [1/(E module)]."""
+        line, solution = self._line, self._solution
+        seen, moments = self._as_the_functions_see_them()
+        bend = _bend(solution, line) * line.half_width
+        logs = np.log(line.half_width) / solution.width
+        found = []
+        for span, common, answer in zip(self._spans, self.common, self._answered(0, self._spans), strict=True):
+            taken = seen[span] @ moments[:, span] - 2.0 * logs[span, None]
+            block = self._loads[:, span].T @ answer + self.slope * (_narrow(solution, line.part(span)) + 0.5 * common)
+            block -= 0.5 * (self.slope * (taken + taken.T) + (bend[span, None] + bend[span]) * common)
+            found.append(block)
+        return found
+
+    def widened(self, half_width: Array) -> list[Array]:
+        """What the contacts' half-widths, shape (P,), change beside their logarithm, (P, P) for each line."""
+        line, solution = self._line, self._solution
+        bend = _bend(solution, line) * half_width
+        found = []
+        for span, common in zip(self._spans, self.common, strict=True):
+            block = 0.5 * (bend[span, None] + bend[span]) * common
+            if not solution.plane_strain:
+                mean = float(np.exp(np.log(half_width[span]).mean()))
+                block += solution.normal_length * _at_the_faces(solution, line.part(span), mean)
+            found.append(block)
+        return found
+
+    def between(self, k: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
+        """c_k between lines on different teeth, by their numbers: seen on the first, pressed on the second."""
+        answers = self._answered(k, [self._spans[pressed] for _, pressed in pairs])
+        return [self._loads[:, self._spans[seen]].T @ answer
+                for (seen, _), answer in zip(pairs, answers, strict=True)]  # fmt: skip
+
+    def _answered(self, k: int, spans: Sequence[slice]) -> list[Array]:
+        """Deflections of tooth k's ports under each line's bands, solved for all lines together."""
+        if not spans:
+            return []
+        columns = np.concatenate([np.arange(span.start, span.stop) for span in spans])
+        found = self._solution.compliance[k] @ self._loads[:, columns]
+        ends = np.cumsum([span.stop - span.start for span in spans])
+        return np.split(found, ends[:-1], axis=1)
+
+    def _as_the_functions_see_them(self) -> tuple[Array, Array]:
+        """A half-space's answer to the wide bands as far as the functions resolve them, and the bands' moments.
+
+        Shape (P, functions) and (functions, P), their product half of what two bands do to each other but for logarithms.
+        """
+        solution, line = self._solution, self._line
+        face, width = solution.face, solution.width
+        count = max(_WAVES_TO_A_DEGREE * max(face.degrees), 4 * _FEWEST_WAVES)  # the same for every line: found once
+        _, plain = function_cosines(face, count)
+        moments = profile_moments(line, face) - plain[:, None] / width
+        seen = np.empty((line.count, face.count))
+        for a in np.unique(line.half_width).tolist():
+            here = line.half_width == a
+            seen[here] = moments[:, here].T @ galerkin_compliance(face, solution.normal_length, count, a)
+        return seen, moments
+
+
 def line_compliance(solution: SolidSolution, line: Bands, half_width: ArrayLike) -> Array:
     """c_0 between the contacts of one contact line, shape (P, P) [1/(E module)].
 
@@ -45,8 +134,7 @@ def line_compliance(solution: SolidSolution, line: Bands, half_width: ArrayLike)
     ----------
     solution : SolidSolution
     line : Bands
-        Bands of one contact line, as wide as the section resolves (`SolidSolution.band_half_width`), with the line's
-        own slope (`SolidSolution.line_slope`).
+        Bands of one contact line, as `PressedLines` takes them.
     half_width : array_like, shape (P,) or ()
         Of the contacts, across the contact line [modules]; narrow beside the bands' reach along the face.
 
@@ -63,19 +151,14 @@ def line_compliance(solution: SolidSolution, line: Bands, half_width: ArrayLike)
     """
     b = np.broadcast_to(np.asarray(half_width, dtype=float), (line.count,))
     check_half_width(b, solution.flank)
-    common = overlap(line)
-    slope = (1.0 - solution.poisson_ratio**2) * solution.normal_length / np.pi
-    found = solution.deflection(0, line, line)
-    found += slope * (_narrow(solution, line) + (0.5 - np.log(b)[:, None] - np.log(b)) * common)
-    bend = curvature_slope(solution.poisson_ratio, "strain") * _MEAN * solution.curvature(line.radius)
-    change = bend * (line.half_width - b)
-    found -= 0.5 * (change[:, None] + change) * common
-    for a in np.unique(line.half_width).tolist():
-        share = 0.5 * ((line.half_width == a)[:, None].astype(float) + (line.half_width == a))
-        found -= slope * share * _as_the_functions_see_it(solution, line, a)
-        if not solution.plane_strain:
-            found += solution.normal_length * share * _at_the_faces(solution, line, a, float(np.exp(np.log(b).mean())))
-    return np.asarray(found, dtype=float)
+    lines = PressedLines(solution, line, (slice(0, line.count),))
+    width = np.log(b)
+    return lines.own()[0] + lines.widened(b)[0] - lines.slope * (width[:, None] + width) * lines.common[0]
+
+
+def _bend(solution: SolidSolution, line: Bands) -> Array:
+    """What the flank's curvature adds to the deflection near a contact per half-width, shape (P,)."""
+    return curvature_slope(solution.poisson_ratio, "strain") * _MEAN * solution.curvature(line.radius)
 
 
 def _wave_numbers(solution: SolidSolution, line: Bands) -> Array:
@@ -93,17 +176,7 @@ def _narrow(solution: SolidSolution, line: Bands) -> Array:
     return np.asarray(2.0 / solution.width * (waves * spectrum) @ waves.T)
 
 
-def _as_the_functions_see_it(solution: SolidSolution, line: Bands, a: float) -> Array:
-    """The same for wide bands, as far as the functions along the face resolve them."""
-    face, width = solution.face, solution.width
-    count = max(_WAVES_TO_A_DEGREE * max(face.degrees), 4 * _FEWEST_WAVES)  # the same for every line: found once
-    _, plain = function_cosines(face, count)
-    moments = profile_moments(line, face) - plain[:, None] / width
-    answer = galerkin_compliance(face, solution.normal_length, count, a)
-    return np.asarray(moments.T @ answer @ moments - 2.0 / width * math.log(a))
-
-
-def _at_the_faces(solution: SolidSolution, line: Bands, a: float, b: float) -> Array:
+def _at_the_faces(solution: SolidSolution, line: Bands, b: float) -> Array:
     """What end faces without traction add to their mirrors, by a logarithm beside them, (P, P)."""
     half = 0.5 * solution.width
     x, w = 0.5 + 0.5 * _END_POINTS[0], 0.5 * _END_POINTS[1]
@@ -111,9 +184,14 @@ def _at_the_faces(solution: SolidSolution, line: Bands, a: float, b: float) -> A
     total = np.zeros((line.count, line.count))
     for side, angle in ((-1.0, lean), (1.0, -lean)):
         spread = _ACUTE_SPREAD if angle >= 0.0 else _OBTUSE_SPREAD
-        reach = min(spread * a, half)
+        reach = np.minimum(spread * line.half_width, half)
+        near = np.flatnonzero(half - reach < side * line.zeta + (line.after if side > 0.0 else line.before))
+        if not near.size:
+            continue
+        reach = reach[near, None]
         distance, weight = reach * x**3, 3.0 * reach * x**2 * w / spread
-        depth = weight * np.log(reach / np.maximum(distance, min(spread * b, reach)))
-        profile = profiles_at(line, side * (half - distance))
-        total += end_slope(angle, solution.poisson_ratio) * (profile * depth) @ profile.T
-    return np.asarray(total)
+        depth = weight * np.log(reach / np.maximum(distance, np.minimum(spread * b, reach)))
+        profile = profiles_at(line, (side * (half - distance)).ravel()).reshape(line.count, near.size, -1)
+        part = np.einsum("jiq,iq->ij", profile, profile[near, np.arange(near.size)] * depth)
+        total[near] += 0.5 * end_slope(angle, solution.poisson_ratio) * part
+    return total + total.T

@@ -9,7 +9,7 @@ between flank and face decide. It was found by solid teeth of two modules' width
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +30,7 @@ _VALUES = (
 )
 
 
+@lru_cache(maxsize=256)
 def end_slope(angle: float, poisson_ratio: float) -> float:
     """The number at an end face whose angle to the flank is 90 degrees less `angle` [rad], E = 1.
 

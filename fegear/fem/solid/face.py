@@ -11,10 +11,12 @@ import numpy as np
 from fegear.fem.elements import line_functions
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.arrays import Array, Index
 
-#: Points of a Gauss rule that integrates half a hat times a function along the face, beyond half its degree.
-_MORE_POINTS = 2
+#: Coefficients of a function's series that are smaller than this share of its largest are none.
+_NOISE = 1e-10
 
 
 @dataclass(frozen=True)
@@ -59,20 +61,44 @@ class FaceFunctions:
             numbers[i][n] = ends + place
         return numbers
 
+    @cached_property
+    def _series(self) -> list[Array]:
+        """Legendre series of each piece's own functions on (-1, 1), shape (degree + 1, degree + 1) each."""
+        series = []
+        for degree in self.degrees:
+            x, w = np.polynomial.legendre.leggauss(degree + 1)
+            values, _ = line_functions(degree, 0.5 + 0.5 * x)
+            found = (values * w) @ np.polynomial.legendre.legvander(x, degree) * (np.arange(degree + 1) + 0.5)
+            series.append(np.where(np.abs(found) > _NOISE * np.abs(found).max(axis=1, keepdims=True), found, 0.0))
+        return series
+
     def at(self, zeta: Array) -> tuple[Array, Array]:
         """Values and slopes of every function at places on the face, shape (count, P) each."""
+        slopes = np.zeros((self.count, zeta.size))
+        for i, here, x in self._pieces(zeta):
+            falling = np.polynomial.legendre.legder(self._series[i], axis=1)
+            found = falling @ np.polynomial.legendre.legvander(x, self.degrees[i] - 1).T
+            slopes[self._numbers[i][:, None], here] = found * (2.0 / (self.breaks[i + 1] - self.breaks[i]))
+        return self.values(zeta), slopes
+
+    def values(self, zeta: Array) -> Array:
+        """Values of every function at places on the face, shape (count, P)."""
+        values = np.zeros((self.count, zeta.size))
+        for i, here, x in self._pieces(zeta):
+            values[self._numbers[i][:, None], here] = self._series[i] @ np.polynomial.legendre.legvander(
+                x, self.degrees[i]
+            ).T
+        return values
+
+    def _pieces(self, zeta: Array) -> Iterator[tuple[int, Index, Array]]:
+        """Each piece with places on it: its number, which places, and where they lie on (-1, 1)."""
         breaks = np.asarray(self.breaks)
         piece = np.clip(np.searchsorted(breaks, zeta, side="right") - 1, 0, len(self.degrees) - 1)
-        values, slopes = np.zeros((2, self.count, zeta.size))
-        for i, degree in enumerate(self.degrees):
+        for i in range(len(self.degrees)):
             here = np.flatnonzero(piece == i)
-            if here.size == 0:
-                continue
-            length = breaks[i + 1] - breaks[i]
-            value, slope = line_functions(degree, (zeta[here] - breaks[i]) / length)
-            rows = self._numbers[i][:, None]
-            values[rows, here], slopes[rows, here] = value, slope / length
-        return values, slopes
+            if here.size:
+                low, high = breaks[i], breaks[i + 1]
+                yield i, here, (2.0 * zeta[here] - low - high) / (high - low)
 
     @cached_property
     def products(self) -> tuple[Array, Array, Array]:

@@ -81,7 +81,7 @@ def function_cosines(face: FaceFunctions, count: int) -> tuple[Array, Array]:
     k = np.pi * np.arange(1, count + 1) / face.width
     for low, high in itertools.pairwise(face.breaks):
         z, w = 0.5 * (low + high) + 0.5 * (high - low) * nodes, 0.5 * (high - low) * weights
-        values = face.at(z)[0] * w
+        values = face.values(z) * w
         total += values @ np.cos(np.multiply.outer(z - face.breaks[0], k))
         mean += values.sum(axis=1)
     return total, mean

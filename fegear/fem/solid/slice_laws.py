@@ -181,7 +181,7 @@ class Spread:
         # Points crowd at the end: a decay may be far shorter than the face is wide.
         away, weight = 2.0 * half * (0.5 + 0.5 * x) ** 3, 3.0 * half * (0.5 + 0.5 * x) ** 2 * w
         found = [
-            np.linalg.solve(self._mass, self._face.at(side * (half - away))[0] @ (weight * np.exp(-away / reach)))
+            np.linalg.solve(self._mass, self._face.values(side * (half - away)) @ (weight * np.exp(-away / reach)))
             for side in (-1.0, 1.0)
         ]
         return np.asarray(found[0], dtype=float), np.asarray(found[1], dtype=float)

@@ -14,6 +14,7 @@ from fegear.fem.ring import closed_ring
 from fegear.fem.root_stress import extreme
 from fegear.fem.sector import mesh_sector
 from fegear.fem.solid.bands import Bands, loads_of
+from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.face import FaceFunctions, face_functions
 from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
@@ -25,7 +26,7 @@ from fegear.one_thread import one_thread
 from fegear.tally import tallied
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -133,6 +134,10 @@ class SolidSolution:
         loads = loads_of(pressed, self.flank, self.face)
         own = loads if watched is pressed else loads_of(watched, self.flank, self.face)
         return np.asarray(own.T @ self.compliance[k] @ loads)
+
+    def pressed(self, line: Bands, spans: Sequence[slice]) -> PressedLines:
+        """Contact lines on the flank, one after the other: see `contact.PressedLines`."""
+        return PressedLines(self, line, spans)
 
     def _check_tooth(self, k: int) -> None:
         if k not in self.compliance:
