@@ -133,9 +133,7 @@ def _places(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]]:
 
 
 @tallied("neighbours")
-def _couple(
-    matrix: Array, pressed: FlankLines, reach: int, forward: int, lines: ContactLines, softer: float
-) -> None:
+def _couple(matrix: Array, pressed: FlankLines, reach: int, forward: int, lines: ContactLines, softer: float) -> None:
     """Add what the lines of each roll position do to each other, and its transpose (Maxwell)."""
     places, _ = _places(lines)
     tooth = [forward * int(lines.pair[p, s.start]) for p, s in places]

@@ -19,6 +19,7 @@ from fegear.contact.flank.swept import load_below, swept_mean
 from fegear.errors import InputError
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
+from fegear.one_thread import one_thread
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -217,7 +218,8 @@ class FlankPair:
         lines = contact_lines(
             self.pair, points.x, self.panel * self.pair.driver.module, points.weights / points.period
         )  # fmt: skip
-        return flank_compliance(self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz)
+        with one_thread():
+            return flank_compliance(self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz)
 
     def solve(
         self, load: ArrayLike, gaps: FlankGaps | None = None, known: FlankCompliance | None = None
@@ -247,6 +249,7 @@ class FlankPair:
             raise InputError("load", f"{loads.min()} N", "must be positive and finite")
         known = self.compliance(float(loads.max())) if known is None else known
         assembled = time.perf_counter()
-        contact = solve_contact(known, (gaps or FlankGaps()).at(self.pair, known.lines), loads)
+        with one_thread():
+            contact = solve_contact(known, (gaps or FlankGaps()).at(self.pair, known.lines), loads)
         seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
         return LoadedFlanks(self.pair, known, contact, loads, seconds)

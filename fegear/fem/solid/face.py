@@ -85,9 +85,9 @@ class FaceFunctions:
         """Values of every function at places on the face, shape (count, P)."""
         values = np.zeros((self.count, zeta.size))
         for i, here, x in self._pieces(zeta):
-            values[self._numbers[i][:, None], here] = self._series[i] @ np.polynomial.legendre.legvander(
-                x, self.degrees[i]
-            ).T
+            values[self._numbers[i][:, None], here] = (
+                self._series[i] @ np.polynomial.legendre.legvander(x, self.degrees[i]).T
+            )
         return values
 
     def _pieces(self, zeta: Array) -> Iterator[tuple[int, Index, Array]]:
