@@ -113,7 +113,7 @@ class PressedLines:
     def _as_the_functions_see_them(self) -> tuple[Array, Array]:
         """A half-space's answer to the wide bands as far as the functions resolve them, and the bands' moments.
 
-        Shape (P, functions) and (functions, P), their product half of what two bands do to each other but for logarithms.
+        Shape (P, functions) and (functions, P); their product is what two bands do to each other, but for logarithms.
         """
         solution, line = self._solution, self._line
         face, width = solution.face, solution.width
