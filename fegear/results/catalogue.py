@@ -13,6 +13,8 @@ from fegear.results import (
     dynamic_increments,
     dynamic_root_stress,
     flank_generation,
+    flank_load_sharing,
+    flank_transmission_error,
     followed_modes,
     gear_solution,
     gear_train,
@@ -68,6 +70,8 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             transmission_error.TRANSMISSION_ERROR,
             root_stress_history.ROOT_STRESS_HISTORY,
             loaded_flanks.LOADED_FLANKS,
+            flank_load_sharing.FLANK_LOAD_SHARING,
+            flank_transmission_error.FLANK_TRANSMISSION_ERROR,
             load_distribution.LOAD_DISTRIBUTION,
         ),
         "Profile relief": (

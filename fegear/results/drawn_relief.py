@@ -96,7 +96,7 @@ def _candidates_figure(name: str, data: ReliefData) -> Figure:
         size = f"{left:.3g} µm" if left > 1e-6 else "0"
         curves.append(Curve(curve.x * 1e3, te, f"{label}: {size} peak to peak", label, markers=False))
     load = f"{data.design.task.load:.5g} N"
-    marks = pitch_marks(data.pair, next(iter(data.design.curves.values())).x)
+    marks = pitch_marks(data.pair.engagement.pair, next(iter(data.design.curves.values())).x)
     caption = f"Pair {name}: what each relief leaves of the transmission error at the design load, {load}."
     if "diagonal only" in data.design.te:
         caption += (
@@ -118,7 +118,7 @@ def _harris_figure(name: str, data: ReliefData) -> Figure:
     order = sorted(data.design.curves, key=lambda label: places.index(label) if label in places else len(places))
     for label in order:
         curve = data.design.curves[label]
-        loads, marks = [float(w) for w in curve.load], pitch_marks(data.pair, curve.x)
+        loads, marks = [float(w) for w in curve.load], pitch_marks(data.pair.engagement.pair, curve.x)
         curves = tuple(
             Curve(
                 curve.x * 1e3,

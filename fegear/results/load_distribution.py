@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stage import Forecast, Stage, Subject
+from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
 from fegear.models.loaded_flanks import FLANK_EFFECTS
 from fegear.results import forecasts
@@ -20,6 +21,34 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.flank import LoadedFlanks
     from fegear.results.loaded_flanks import LoadedFlanksData
+
+
+#: Values that other results have too, and then they alone.
+_ALSO_OF = {
+    "transmission-error": ("te_mean", "te_peak_to_peak"),
+    "load-sharing": ("largest_share", "largest_hertz_pressure"),
+}
+
+
+@dataclass(frozen=True)
+class LoadDistributionInputs:
+    """What is read of the case beside the loaded flanks.
+
+    Parameters
+    ----------
+    name : str
+        Of the pair.
+    elsewhere : tuple of str
+        Values that another wanted result tells.
+    """
+
+    name: str = field(compare=False)
+    elsewhere: tuple[str, ...] = field(compare=False)
+
+
+def _inputs(scene: Scene, name: str) -> LoadDistributionInputs:
+    told = [value for result in scene.case.results for value in _ALSO_OF.get(result, ())]
+    return LoadDistributionInputs(name, tuple(told))
 
 
 def _stations(name: str, found: LoadedFlanks, i: int) -> Table:
@@ -91,7 +120,7 @@ def _loads(name: str, data: LoadedFlanksData) -> Table:
     return Table(f"load_distribution_loads_{name}", columns, f"Pair {name} under every load")
 
 
-def _present(data: LoadedFlanksData, inputs: Subject) -> Outcome:
+def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
     name, found, i = inputs.name, data.found, data.nominal
     te, lines = found.transmission_error[:, i], found.lines
     pressure, load = found.pressure[:, :, i], found.line_load[:, :, i]
@@ -100,7 +129,7 @@ def _present(data: LoadedFlanksData, inputs: Subject) -> Outcome:
     p, s = np.unravel_index(int(inner.argmax()), inner.shape)
     k_error = float(data.error.face_load_factor[i])
     where = f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
-    values = (
+    values: tuple[Value, ...] = (
         Value(f"{name}.te_mean", float(found.mean_transmission_error[i]), "um", float(data.error.mean[i]),
               "mean transmission error"),
         Value(f"{name}.te_peak_to_peak", float(np.ptp(te)), "um", float(data.error.peak_to_peak[i]),
@@ -115,6 +144,7 @@ def _present(data: LoadedFlanksData, inputs: Subject) -> Outcome:
               float(data.error.share[:, :, i].max()), "of one tooth pair"),
         Value(f"{name}.equilibrium", float(found.equilibrium.max()), "", 0.0, "sum of all forces less load, over load"),
     )  # fmt: skip
+    values = tuple(value for value in values if value.name.removeprefix(f"{name}.") not in inputs.elsewhere)
     tables = (_stations(name, found, i), _over_face(name, found, i), _positions(name, data), _loads(name, data))
     figures = load_distribution_figures(name, found, i)
     return Outcome(data, tables, values, remarks=tuple(_remarks(name, data)), figures=figures)
@@ -166,7 +196,7 @@ LOAD_DISTRIBUTION = Stage(
     results=("load-distribution",),
     about="line load and pressure over the flanks of a spur or helical pair with its width, K_Hbeta",
     subjects=_subjects,
-    inputs=Subject.of,
+    inputs=_inputs,
     compute=lambda inputs, upstream, _work: loaded_flanks(upstream, inputs.name),
     present=_present,
     needs=needs_flanks,

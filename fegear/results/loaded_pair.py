@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.contact.neglected_effects import Answer
     from fegear.engine.citation import Citation
     from fegear.engine.stage import Upstream, Work
+    from fegear.geometry import GearPair
     from fegear.models.pair_inputs import PairInputs
 
 #: Abscissa of figures over one base pitch.
@@ -67,21 +68,16 @@ def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tup
     )
 
 
-def under(pair: LoadedPair) -> str:
-    """The load that a figure holds for, where the pair has one only; else its legend names them."""
-    return f"{pair.nominal:.5g} N" if len(pair.loads) == 1 else ""
-
-
 def engagement_marks(pair: LoadedPair) -> tuple[Mark, ...]:
     """Marks of the points A to E, for an abscissa on the line of action; before A and after E only corners touch."""
     return path_marks(pair.engagement.pair)
 
 
-def pitch_marks(pair: LoadedPair, x: Array) -> tuple[Mark, ...]:
+def pitch_marks(pair: GearPair, x: Array) -> tuple[Mark, ...]:
     """Marks of those points that a roll over one base pitch passes, between the ends of x [m]."""
     low, high = float(x.min()) * 1e3, float(x.max()) * 1e3
     room = 1e-6 * (high - low)
-    return tuple(m for m in path_marks(pair.engagement.pair) if low - room <= m.at <= high + room)
+    return tuple(m for m in path_marks(pair) if low - room <= m.at <= high + room)
 
 
 def plane_pairs(scene: Scene) -> tuple[str, ...]:

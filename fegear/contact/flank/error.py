@@ -33,6 +33,8 @@ class FlankError:
     mean, peak_to_peak : ndarray, shape (L,)
         Of the transmission error [m].
     face_load_factor : ndarray, shape (L,)
+    coarse : LoadedFlanks
+        The coarser solution itself.
     """
 
     transmission_error: Array
@@ -40,6 +42,7 @@ class FlankError:
     mean: Array
     peak_to_peak: Array
     face_load_factor: Array
+    coarse: LoadedFlanks
 
 
 def flank_error(
@@ -68,6 +71,7 @@ def flank_error(
         np.abs(again - te), share, np.abs(other.mean_transmission_error - found.mean_transmission_error),
         np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)) + _between_positions(flanks.points, te),
         np.abs(factor - found.face_load_factor),
+        other,
     )  # fmt: skip
 
 

@@ -1,0 +1,175 @@
+"""Transmission error and mesh stiffness of loaded flanks over a base pitch, with their Fourier series."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import BarycentricInterpolator
+
+from fegear.contact.error_by_shift import TransmissionErrorShift
+from fegear.contact.flank.complementarity import tangent_compliance
+from fegear.contact.flank.mesh_matrix import stiffness_of
+from fegear.contact.fourier import effective_error, fourier_series
+from fegear.frozen import ReadOnlyArrays
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array, Index
+    from fegear.contact.flank.compliance import FlankCompliance
+    from fegear.contact.flank.loaded import LoadedFlanks
+    from fegear.contact.fourier import FourierSeries, Panels
+
+#: Roll positions to a wave of the highest harmonic: Lobatto's rule needs somewhat more than pi.
+_TO_A_WAVE = 3
+#: Harmonics in the effective error of TM-89901, where so many are known.
+_IN_EFFECTIVE_ERROR = 12
+
+
+@dataclass(frozen=True)
+class FlankTransmissionError(ReadOnlyArrays):
+    """Transmission error of a pair with a width under one load.
+
+    Parameters
+    ----------
+    load : float
+        Along the transverse line of action [N].
+    points : Panels
+        Roll positions over one base pitch and what each stands for [m].
+    values : ndarray, shape (P,)
+        Transmission error along the transverse line of action [m].
+    local : ndarray, shape (P,)
+        dW / dzeta, with the stations that touch [N/m].
+    secant : ndarray, shape (P,)
+        W / zeta of the stations that touch, without modifications and errors (Mark, A.11) [N/m].
+    series : FourierSeries
+        Of the transmission error, as far as the roll positions show it.
+    """
+
+    load: float
+    points: Panels
+    values: Array
+    local: Array
+    secant: Array
+    series: FourierSeries
+
+    @property
+    def mean(self) -> float:
+        """[m]."""
+        return float(self.series.mean)
+
+    @property
+    def peak_to_peak(self) -> float:
+        """Largest less smallest value [m]."""
+        return float(np.ptp(self.values))
+
+    @property
+    def effective_error(self) -> float:
+        """A_e of TM-89901 [m], of twelve harmonics or as many as are known."""
+        known = self.series.amplitude.size
+        return float(effective_error(self.series, min(known, _IN_EFFECTIVE_ERROR))) if known else 0.0
+
+    @property
+    def average_stiffness(self) -> float:
+        """Mean over the base pitch of the local mesh stiffness [N/m]."""
+        return float(self.local @ self.points.weights / self.points.period)
+
+    @property
+    def mean_secant(self) -> float:
+        """Mean over the base pitch of the secant mesh stiffness [N/m]."""
+        return float(self.secant @ self.points.weights / self.points.period)
+
+
+def flank_transmission_errors(found: LoadedFlanks, points: Panels) -> tuple[FlankTransmissionError, ...]:
+    """Transmission error under every load of loaded flanks.
+
+    Parameters
+    ----------
+    found : LoadedFlanks
+    points : Panels
+        Of its roll positions: `FlankPair.points`.
+    """
+    secant = secant_stiffness(found.known, found.contact.force)
+    return tuple(
+        _error(float(load), points, found.transmission_error[:, i], found.contact.stiffness[:, i], secant[:, i])
+        for i, load in enumerate(found.load)
+    )
+
+
+def _error(load: float, points: Panels, values: Array, local: Array, secant: Array) -> FlankTransmissionError:
+    series = fourier_series(points, values, points.x.size // _TO_A_WAVE)
+    return FlankTransmissionError(load, points, values, local, secant, series)
+
+
+def secant_stiffness(known: FlankCompliance, force: Array) -> Array:
+    """W / zeta of the stations that touch with the widths of their loads, without gaps, shape (P, L) [N/m].
+
+    Parameters
+    ----------
+    known : FlankCompliance
+    force : ndarray, shape (P, M, L)
+        [N], zero where apart.
+    """
+    place = np.arange(force.shape[0])
+    return np.stack([_secant(known, place, force[:, :, i]) for i in range(force.shape[2])], axis=1)
+
+
+def _secant(known: FlankCompliance, place: Index, force: Array) -> Array:
+    matrix, active = tangent_compliance(known, place, force), force > 0.0
+    if known.fixed_half_width is None:
+        # The tangent of -2 s f ln b(f) is less than its secant by s.
+        matrix = matrix + known.log_slope * _hat_products(known)
+    on = active[:, :, None].astype(float)
+    return np.asarray(stiffness_of(matrix, active, on)[:, :, 0].sum(axis=1))
+
+
+def _hat_products(known: FlankCompliance) -> Array:
+    """Integrals of products of two stations' hats of unit force along the face, shape (P, M, M) [1/m]."""
+    h, support = known.lines.panel, known.lines.support
+    density = np.divide(1.0, support, out=np.zeros_like(support), where=support > 0.0)
+    products = np.zeros((*support.shape, support.shape[1]))
+    at = np.arange(support.shape[1])
+    products[:, at[:-1], at[:-1]] += h / 3.0 * density[:, :-1] ** 2
+    products[:, at[1:], at[1:]] += h / 3.0 * density[:, 1:] ** 2
+    beside = h / 6.0 * density[:, :-1] * density[:, 1:]
+    products[:, at[:-1], at[1:]] += beside
+    products[:, at[1:], at[:-1]] += beside
+    return products
+
+
+def flank_transmission_error_shift(
+    te: FlankTransmissionError, again: FlankTransmissionError
+) -> TransmissionErrorShift:
+    """Estimated errors: the change by the coarser solution and that by half as many roll positions.
+
+    Parameters
+    ----------
+    te : FlankTransmissionError
+    again : FlankTransmissionError
+        The same with the gears' coarser solutions and longer panels.
+    """
+    fewer = _error(te.load, te.points, *(from_half(te.points, one) for one in (te.values, te.local, te.secant)))
+
+    def changed(key: str) -> float:
+        numbers = [float(getattr(one, key)) for one in (te, fewer, again)]
+        return abs(numbers[1] - numbers[0]) + abs(numbers[2] - numbers[0])
+
+    amplitudes = [one.series.amplitude for one in (te, fewer, again)]
+    off = sum(np.abs(other - amplitudes[0]) for other in amplitudes[1:])
+    return TransmissionErrorShift(
+        changed("mean"), changed("peak_to_peak"), changed("effective_error"), np.asarray(off), changed("mean_secant")
+    )
+
+
+def from_half(points: Panels, values: Array) -> Array:
+    """What half of the roll positions on each piece of the base pitch say at all of them, shape (P,).
+
+    Every second position of a piece and its last one, and the polynomial through them.
+    """
+    found, piece = values.copy(), np.searchsorted(points.breaks, points.x)
+    for one in np.unique(piece):
+        x, own = points.x[piece == one], values[piece == one]
+        kept = (np.arange(x.size) % 2 == 0) | (np.arange(x.size) == x.size - 1)
+        if not kept.all():
+            found[piece == one] = BarycentricInterpolator(x[kept], own[kept])(x)
+    return found

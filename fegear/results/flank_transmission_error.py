@@ -1,0 +1,122 @@
+"""Stage ``flank-transmission-error``: result ``transmission-error`` of pairs that are loaded with their width."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Column, Outcome
+from fegear.engine.stage import Stage, Subject
+from fegear.errors import InputError
+from fegear.models.loaded_flanks import FLANK_EFFECTS
+from fegear.results import forecasts
+from fegear.results.error_over_pitch import (
+    ErrorOverPitch,
+    error_figures,
+    error_tables,
+    error_values,
+    mesh_compliance_value,
+)
+from fegear.results.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.contact.error_by_shift import TransmissionErrorShift
+    from fegear.contact.flank.transmission_error import FlankTransmissionError
+    from fegear.engine.stage import Upstream, Work
+    from fegear.results.loaded_flanks import LoadedFlanksData
+
+#: Harmonics that the effective error counts.
+_IN_EFFECTIVE_ERROR = 12
+
+
+@dataclass(frozen=True)
+class FlankTransmissionErrorData:
+    """What the stage hands to tables and pictures.
+
+    Parameters
+    ----------
+    loaded : LoadedFlanksData
+    each : tuple of FlankTransmissionError
+        For every load.
+    shift : TransmissionErrorShift
+        Estimated errors at the nominal load.
+    mesh_compliance : float
+        Mean of 1/K_T of perfect flanks [m/N].
+    """
+
+    loaded: LoadedFlanksData
+    each: tuple[FlankTransmissionError, ...]
+    shift: TransmissionErrorShift
+    mesh_compliance: float
+
+
+def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankTransmissionErrorData:
+    from fegear.contact.flank.transmission_error import flank_transmission_error_shift, flank_transmission_errors
+
+    loaded = loaded_flanks(upstream, inputs.name)
+    points, i = loaded.flanks.points, loaded.nominal
+    each = flank_transmission_errors(loaded.found, points)
+    again = flank_transmission_errors(loaded.error.coarse, points)
+    perfect = loaded.flanks.solve([loaded.asked.nominal], None, loaded.known)
+    compliance = float(perfect.mean_transmission_error[0]) / loaded.asked.nominal
+    return FlankTransmissionErrorData(loaded, each, flank_transmission_error_shift(each[i], again[i]), compliance)
+
+
+def _present(data: FlankTransmissionErrorData, inputs: Subject) -> Outcome:
+    loaded, found, i = data.loaded, data.loaded.found, data.loaded.nominal
+    secant, local = (np.stack([getattr(te, key) for te in data.each], axis=1) for key in ("secant", "local"))
+    harmonics = data.each[i].series.amplitude.size
+    shown = ErrorOverPitch(
+        inputs.name, found.pair, loaded.asked.loads, i, data.each, found.lines.roll, found.transmission_error,
+        secant, local, (found.pair_load > 0.0).sum(axis=0), data.each[i].mean_secant, data.shift,
+        f"from {found.lines.roll.size} roll positions over the base pitch",
+    )  # fmt: skip
+    error = Column("te_error", loaded.error.transmission_error[:, i], "um", "estimated error of te")
+    remarks = []
+    if harmonics < _IN_EFFECTIVE_ERROR:
+        remarks.append(
+            f"Pair {inputs.name}: {found.lines.roll.size} roll positions show {harmonics} harmonics, and te_effective "
+            f"counts these instead of {_IN_EFFECTIVE_ERROR}; load_distribution.positions = "
+            f"{3 * _IN_EFFECTIVE_ERROR} or more shows them all."
+        )
+    return Outcome(
+        data,
+        tuple(error_tables(shown, (error,))),
+        (*error_values(shown), mesh_compliance_value(shown, data.mesh_compliance)),
+        {"harmonics": harmonics, "positions": found.lines.roll.size},
+        tuple(remarks),
+        error_figures(shown),
+    )
+
+
+def _check(scene: Scene, name: str) -> None:
+    if scene.case.transmission_error.method == "mark-series":
+        raise InputError(
+            "transmission_error.method", '"mark-series"',
+            f"is Mark's series of plane teeth, and pair {name} is loaded with its width", "remove it",
+        )  # fmt: skip
+
+
+FLANK_TRANSMISSION_ERROR = Stage(
+    name="flank-transmission-error",
+    title="Transmission error over the flanks",
+    results=("transmission-error",),
+    about="loaded transmission error, mesh stiffness, their harmonics, and both over load",
+    subjects=wide_pairs,
+    needs=needs_flanks,
+    inputs=Subject.of,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    effects=FLANK_EFFECTS,
+    cites=citing(
+        Citation("mark", "static transmission error and the mean compliance", "1.1 to 1.32, A.11"),
+        Citation("lin-townsend-oswald", "effective error A_e"),
+        Citation("harris", "transmission error over the mesh cycle for a family of loads"),
+    ),
+    forecast=lambda _scene, _name: forecasts.constant(0.1),
+)

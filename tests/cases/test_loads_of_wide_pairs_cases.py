@@ -1,0 +1,106 @@
+"""``transmission-error`` and ``load-sharing`` of pairs with a width: tables as in the plane, and their laws."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.case.reading import read_scene
+from fegear.contact.flank.transmission_error import flank_transmission_errors, from_half
+from fegear.contact.fourier import fourier_series
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.errors import InputError
+from fegear.results.catalogue import STAGES
+
+CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
+COARSE = (
+    "accuracy.tolerance=1e-1", "load_distribution.positions=13", "load_distribution.panels=8",
+    'gear.pinion.face_width="8 mm"', 'gear.wheel.face_width="8 mm"', 'pair.I.loads=["900 N", "7200 N"]',
+    'results=["load-distribution", "transmission-error", "load-sharing"]',
+    'pair.I.width="slices"',
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def results():
+    scene = read_scene(CASE, COARSE)
+    return run_plan(scene, make_plan(scene, STAGES))
+
+
+def columns(results, name):
+    return {column.head: np.asarray(column.values) for column in results.tables[name].columns}
+
+
+def test_the_flanks_are_loaded_once_for_all_results(results):
+    tasks = [str(task) for task in results.outcomes]
+    assert tasks.count("loaded-flanks of I") == 1
+    assert "loaded-pair of I" not in tasks
+
+
+def test_all_results_tell_the_same(results):
+    te, roll = columns(results, "transmission_error_I"), columns(results, "load_distribution_roll_I")
+    np.testing.assert_allclose(te["te [um]"], roll["te [um]"], rtol=1e-12)
+    np.testing.assert_allclose(te["local_stiffness [N/um]"], roll["mesh_stiffness [N/um]"], rtol=1e-12)
+    followed = columns(results, "load_sharing_I")
+    # one tooth pair over its path is all pairs over a base pitch
+    assert followed["load [N]"].sum() == pytest.approx(13 * 3600.0, rel=1e-9)
+    assert followed["share"].max() == pytest.approx(results.values["I.largest_share"].si)
+    summary = columns(results, "transmission_error_summary_I")
+    np.testing.assert_allclose(summary["te_mean [um]"], columns(results, "load_distribution_loads_I")["te_mean [um]"])
+    assert len(columns(results, "load_sharing_loads_I")["load [N]"]) == 3 * len(followed["load [N]"])
+    assert all(np.diff(followed["x [mm]"]) > 0.0)
+    assert {"transmission_error_I", "transmission_error_harmonics_I", "load_sharing_I"} <= set(results.figures.keys())
+    for name in ("te_mean", "te_peak_to_peak", "te_first_harmonic", "mesh_stiffness_mean"):
+        assert results.values[f"I.{name}"].error > 0.0
+
+
+def test_harmonics_and_means_are_those_of_the_curve(results):
+    loaded = results.outcomes[Task("loaded-flanks", "I")].data
+    points = loaded.flanks.points
+    for te in flank_transmission_errors(loaded.found, points):
+        assert te.mean == pytest.approx(np.sum(te.values * points.weights) / points.period, rel=1e-12)
+        assert te.series.amplitude.size == 4
+        assert 0.0 < te.series.amplitude[0] < te.peak_to_peak
+    # a wave that the positions know comes back
+    wave = np.cos(2.0 * np.pi * (points.x - points.x[0]) / points.period)
+    series = fourier_series(points, wave, 3)
+    np.testing.assert_allclose(series.amplitude, [1.0, 0.0, 0.0], atol=0.02)
+    # and half of them know what is straight on every piece
+    np.testing.assert_allclose(from_half(points, 2.0 * points.x + 1.0), 2.0 * points.x + 1.0, rtol=1e-12)
+    assert np.abs(from_half(points, wave) - wave).max() > 0.0
+
+
+def test_secant_stiffness_is_load_over_transmission_error_of_perfect_flanks(results):
+    loaded = results.outcomes[Task("loaded-flanks", "I")].data
+    for load in (900.0, 7200.0):
+        perfect = loaded.flanks.solve([load], None, loaded.known)
+        (te,) = flank_transmission_errors(perfect, loaded.flanks.points)
+        np.testing.assert_allclose(te.secant, load / te.values, rtol=1e-9)
+        assert (te.local > te.secant).all()  # a Hertzian contact stiffens under its load
+    # linear contacts have one stiffness
+    wide = loaded.known.half_width(perfect.line_load)[:, :, 0].max()
+    fixed = type(loaded.known)(
+        loaded.known.lines, loaded.known.matrix, loaded.known.log_slope, loaded.known.width_factor,
+        np.full(loaded.known.lines.x.shape, wide),
+    )  # fmt: skip
+    (te,) = flank_transmission_errors(loaded.flanks.solve([900.0], None, fixed), loaded.flanks.points)
+    np.testing.assert_allclose(te.local, te.secant, rtol=1e-9)
+    assert results.values["I.mesh_compliance_mean"].si > 0.0
+
+
+def test_what_has_no_meaning_over_the_face_is_refused():
+    with pytest.raises(InputError, match=r"transmission_error.method.*loaded with its width"):
+        make_plan(read_scene(CASE, [*COARSE, 'transmission_error.method="mark-series"']), STAGES)
+
+
+def test_a_spur_pair_takes_its_width_from_its_key():
+    straight = [f"gear.{gear}.{key}" for gear in ("pinion", "wheel") for key in ('helix_angle="0 deg"', 'hand="spur"')]
+    asked = [*COARSE[:-1], *straight, 'results=["transmission-error", "load-sharing"]', "effects.misalignment=false"]
+    plane = {str(step.task) for step in make_plan(read_scene(CASE, asked), STAGES).steps}
+    wide = {str(step.task) for step in make_plan(read_scene(CASE, [*asked, 'pair.I.width="solid"']), STAGES).steps}
+    assert {"transmission-error of I", "load-sharing of I"} <= plane
+    assert {"flank-transmission-error of I", "flank-load-sharing of I"} <= wide
+    assert not any("flank" in task for task in plane)
+    assert "loaded-pair of I" not in wide
