@@ -81,7 +81,7 @@ def _present(data: FlankTransmissionErrorData, inputs: Subject) -> Outcome:
         remarks.append(
             f"Pair {inputs.name}: {found.lines.roll.size} roll positions show {harmonics} harmonics, and te_effective "
             f"counts these instead of {_IN_EFFECTIVE_ERROR}; load_distribution.positions = "
-            f"{3 * _IN_EFFECTIVE_ERROR} or more shows them all."
+            f"{2 * _IN_EFFECTIVE_ERROR} or more shows them all."
         )
     return Outcome(
         data,

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from fegear.case.reading import read_scene
-from fegear.contact.flank.transmission_error import flank_transmission_errors, from_half
-from fegear.contact.fourier import fourier_series
+from fegear.contact.flank.positions import roll_points
+from fegear.contact.flank.transmission_error import curve_through, flank_transmission_errors, from_half
+from fegear.contact.fourier import fourier_series, panels
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
@@ -61,12 +62,19 @@ def test_harmonics_and_means_are_those_of_the_curve(results):
     points = loaded.flanks.points
     for te in flank_transmission_errors(loaded.found, points):
         assert te.mean == pytest.approx(np.sum(te.values * points.weights) / points.period, rel=1e-12)
-        assert te.series.amplitude.size == 4
+        assert te.series.amplitude.size == 6
         assert 0.0 < te.series.amplitude[0] < te.peak_to_peak
     # a wave that the positions know comes back
     wave = np.cos(2.0 * np.pi * (points.x - points.x[0]) / points.period)
-    series = fourier_series(points, wave, 3)
-    np.testing.assert_allclose(series.amplitude, [1.0, 0.0, 0.0], atol=0.02)
+    between = panels(points.breaks[0], points.period, points.breaks[1:-1], waves=6)
+    through = curve_through(points, wave, between.x)
+    np.testing.assert_allclose(fourier_series(between, through, 3).amplitude, [1.0, 0.0, 0.0], atol=0.02)
+    # too few for a polynomial on every piece: straight between them, which never overshoots
+    few = roll_points(loaded.found.pair, 4)
+    through = curve_through(
+        few, np.array([1.0, -1.0, 1.0, -1.0]), few.breaks[0] + few.period * np.linspace(0.0, 1.0, 50)
+    )
+    assert np.abs(through).max() <= 1.0 + 1e-12
     # and half of them know what is straight on every piece
     np.testing.assert_allclose(from_half(points, 2.0 * points.x + 1.0), 2.0 * points.x + 1.0, rtol=1e-12)
     assert np.abs(from_half(points, wave) - wave).max() > 0.0

@@ -11,7 +11,7 @@ from scipy.interpolate import BarycentricInterpolator
 from fegear.contact.error_by_shift import TransmissionErrorShift
 from fegear.contact.flank.complementarity import tangent_compliance
 from fegear.contact.flank.mesh_matrix import stiffness_of
-from fegear.contact.fourier import effective_error, fourier_series
+from fegear.contact.fourier import effective_error, fourier_series, panels
 from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from fegear.contact.flank.loaded import LoadedFlanks
     from fegear.contact.fourier import FourierSeries, Panels
 
-#: Roll positions to a wave of the highest harmonic: Lobatto's rule needs somewhat more than pi.
-_TO_A_WAVE = 3
+#: Roll positions to a wave of the highest harmonic.
+_TO_A_WAVE = 2
+#: Outermost positions of a piece this near to its ends stand on them, as a share of a base pitch.
+_ON_END = 1e-5
 #: Harmonics in the effective error of TM-89901, where so many are known.
 _IN_EFFECTIVE_ERROR = 12
 
@@ -56,7 +58,7 @@ class FlankTransmissionError(ReadOnlyArrays):
     @property
     def mean(self) -> float:
         """[m]."""
-        return float(self.series.mean)
+        return float(self.values @ self.points.weights / self.points.period)
 
     @property
     def peak_to_peak(self) -> float:
@@ -97,7 +99,9 @@ def flank_transmission_errors(found: LoadedFlanks, points: Panels) -> tuple[Flan
 
 
 def _error(load: float, points: Panels, values: Array, local: Array, secant: Array) -> FlankTransmissionError:
-    series = fourier_series(points, values, points.x.size // _TO_A_WAVE)
+    count = points.x.size // _TO_A_WAVE
+    between = panels(float(points.breaks[0]), points.period, points.breaks[1:-1], waves=max(count, 1))
+    series = fourier_series(between, curve_through(points, values, between.x), count)
     return FlankTransmissionError(load, points, values, local, secant, series)
 
 
@@ -137,9 +141,7 @@ def _hat_products(known: FlankCompliance) -> Array:
     return products
 
 
-def flank_transmission_error_shift(
-    te: FlankTransmissionError, again: FlankTransmissionError
-) -> TransmissionErrorShift:
+def flank_transmission_error_shift(te: FlankTransmissionError, again: FlankTransmissionError) -> TransmissionErrorShift:
     """Estimated errors: the change by the coarser solution and that by half as many roll positions.
 
     Parameters
@@ -159,6 +161,29 @@ def flank_transmission_error_shift(
     return TransmissionErrorShift(
         changed("mean"), changed("peak_to_peak"), changed("effective_error"), np.asarray(off), changed("mean_secant")
     )
+
+
+def curve_through(points: Panels, values: Array, x: Array) -> Array:
+    """What a curve known at the roll positions is between them, shape (Q,).
+
+    The polynomial through the positions on each piece of the base pitch where they reach its ends; straight from each
+    to the next where they are too few for that.
+
+    Parameters
+    ----------
+    points : Panels
+    values : ndarray, shape (P,)
+    x : ndarray, shape (Q,)
+        Within the base pitch from the first break on [m].
+    """
+    own, wanted = np.searchsorted(points.breaks, points.x), np.searchsorted(points.breaks, x)
+    found = np.interp(x, points.x, values, period=points.period)
+    for piece in np.unique(own):
+        at = points.x[own == piece]
+        ends = points.breaks[max(piece - 1, 0)], points.breaks[min(piece, points.breaks.size - 1)]
+        if max(at[0] - ends[0], ends[1] - at[-1]) < _ON_END * points.period:
+            found[wanted == piece] = BarycentricInterpolator(at, values[own == piece])(x[wanted == piece])
+    return np.asarray(found)
 
 
 def from_half(points: Panels, values: Array) -> Array:
