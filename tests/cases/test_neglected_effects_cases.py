@@ -93,16 +93,27 @@ def effects(**chosen: str) -> tuple[str, ...]:
     ("name", "effect", "among"),
     [
         ("calculix_pair", "corner_contact", {}),
-        ("calculix_pair", "neighbour_coupling", {"hertz": "load-dependent", "corner_contact": "true"}),
-        ("calculix_pair", "hertz", {"neighbour_coupling": "true", "corner_contact": "true"}),
-        ("calculix_pair", "corner_contact", {"hertz": "load-dependent", "neighbour_coupling": "true"}),
-        ("pinion_and_wheel", "corner_contact", {"hertz": "load-dependent"}),
-        ("pinion_and_wheel", "neighbour_coupling", {}),
+        pytest.param(
+            *("calculix_pair", "neighbour_coupling", {"hertz": "load-dependent", "corner_contact": "true"}),
+            marks=pytest.mark.long,
+        ),
+        pytest.param(
+            *("calculix_pair", "hertz", {"neighbour_coupling": "true", "corner_contact": "true"}),
+            marks=pytest.mark.long,
+        ),
+        pytest.param(
+            *("calculix_pair", "corner_contact", {"hertz": "load-dependent", "neighbour_coupling": "true"}),
+            marks=pytest.mark.long,
+        ),
+        pytest.param(*("pinion_and_wheel", "corner_contact", {"hertz": "load-dependent"}), marks=pytest.mark.long),
+        pytest.param(*("pinion_and_wheel", "neighbour_coupling", {}), marks=pytest.mark.long),
         ("pinion_and_wheel", "hertz", {}),
         ("high_contact_ratio", "corner_contact", {"hertz": "load-dependent"}),
-        ("high_contact_ratio", "neighbour_coupling", {"hertz": "load-dependent"}),
+        pytest.param(
+            *("high_contact_ratio", "neighbour_coupling", {"hertz": "load-dependent"}), marks=pytest.mark.long
+        ),
         ("lin_tip_relief", "corner_contact", {"relief": "true", "hertz": "load-dependent"}),
-        ("lin_tip_relief", "hertz", {"relief": "true"}),
+        pytest.param(*("lin_tip_relief", "hertz", {"relief": "true"}), marks=pytest.mark.long),
         ("lin_tip_relief", "relief", {"hertz": "load-dependent"}),
     ],
 )

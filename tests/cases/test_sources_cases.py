@@ -21,7 +21,7 @@ def _source_rows():
 
 rows = _source_rows()
 #: Cases that cost more than a second; the site is built with every case and does not stand when a number does not hold.
-COSTLY = {f"sources/lin_townsend_oswald_fig{n}" for n in (8, 9, 10)} | {"blankenship_singh"}
+COSTLY = {f"sources/lin_townsend_oswald_fig{n}" for n in ("8", "9", "10", "11c")} | {"blankenship_singh"}
 CASES = [pytest.param(case, marks=[pytest.mark.long] if case in COSTLY else []) for case in rows.cases()]
 
 

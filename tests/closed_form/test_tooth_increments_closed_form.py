@@ -157,6 +157,7 @@ def speed_at(rig, ratio):
     return ratio * math.sqrt(2.0 * mesh.stiffness * mesh.radius_a**2 / rig.inertia[0]) / mesh.teeth_a
 
 
+@pytest.mark.examples(15, 300)
 @given(st.floats(2e-6, 40e-6), st.floats(2e3, 2e4))
 def test_corners_touch_where_the_teeth_give_way_by_more_than_their_gap(amount, load):
     """Where corners are found not to bear, no gap off the path is smaller than what the teeth give way by without."""

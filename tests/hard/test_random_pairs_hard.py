@@ -68,6 +68,7 @@ def positions(e, n=9):
     return e.pair.x_start + e.pair.base_pitch * (np.arange(n) + 0.37) / n
 
 
+@pytest.mark.examples(25, 1000)
 @given(engagements(), st.floats(-3.0, 4.0))
 def test_loads_and_gaps_complement_each_other_and_add_up(e, log_line_load):
     load = 10.0**log_line_load * 1e3 * FACE
@@ -83,6 +84,7 @@ def test_loads_and_gaps_complement_each_other_and_add_up(e, log_line_load):
     assert (touching <= 1e-11 * scale).all()
 
 
+@pytest.mark.examples(25, 1000)
 @given(engagements(), st.floats(-2.0, 3.0), st.floats(1.01, 20.0))
 def test_more_load_brings_the_gears_closer_at_every_position(e, log_line_load, factor):
     load = 10.0**log_line_load * 1e3 * FACE
@@ -94,6 +96,7 @@ def test_more_load_brings_the_gears_closer_at_every_position(e, log_line_load, f
     assert (np.diff(got.loads, axis=2) >= -1e-9 * factor * load).all()
 
 
+@pytest.mark.examples(25, 1000)
 @given(engagements(), st.floats(-1.0, 3.0))
 def test_driver_and_driven_swapped_mirror_everything(e, log_line_load):
     load = 10.0**log_line_load * 1e3 * FACE

@@ -85,7 +85,9 @@ def test_the_field_is_the_influence_functions_own_solution():
     assert np.abs(field.displacement[8]).max() < 0.2 * np.abs(field.displacement[0]).max()
 
 
-@pytest.mark.parametrize(("plane", "face_width"), [("strain", 25.4e-3), ("stress", 1.5e-5)])
+@pytest.mark.parametrize(
+    ("plane", "face_width"), [("strain", 25.4e-3), pytest.param("stress", 1.5e-5, marks=pytest.mark.long)]
+)
 def test_calculix_solves_the_deck_to_the_same_displacements(plane, face_width, tmp_path, program):
     # CalculiX makes solid wedges of plane elements. In plane stress these bulge with the in-plane stress, and a thick
     # gear resists the slope of that bulge (4 % at 25 mm): only a thin slice is in plane stress there.

@@ -224,7 +224,7 @@ def test_a_drawing_carries_the_relief_and_a_mesh_says_that_it_does_not(tmp_path,
     thickness = [np.ptp(corners[np.hypot(*corners.T) > tip - 1e-6, 0]) for corners in (plain, ground)]
     assert thickness[0] - thickness[1] == pytest.approx(0.4, rel=0.3)  # both flanks, .2 mm each along their normals
     with pytest.warns(UserWarning, match="without the relief of the case"):
-        relieved.export(tmp_path / "mesh", "inp")
+        relieved.driver.export(tmp_path / "mesh", "inp")
 
 
 def test_gears_never_change(pair):

@@ -27,7 +27,9 @@ def folder(tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-@pytest.mark.parametrize("streams", ["2>&-", ">&-", "<&- >&- 2>&-", "2>/dev/full"])
+@pytest.mark.parametrize(
+    "streams", ["<&- >&- 2>&-", "2>/dev/full", *(pytest.param(one, marks=pytest.mark.long) for one in ("2>&-", ">&-"))]
+)
 def test_a_run_does_its_work_whatever_its_streams_are(streams, folder):
     done = shell(f"{FEGEAR} run one.toml --no-plots --out out {streams}", folder)
     assert done.returncode == 0
@@ -50,7 +52,7 @@ def test_output_that_nobody_takes_ends_without_a_traceback(folder):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are Linux's")
-@pytest.mark.parametrize("kilobytes", [150_000, 300_000])
+@pytest.mark.parametrize("kilobytes", [300_000, pytest.param(150_000, marks=pytest.mark.long)])
 def test_memory_that_ends_is_one_sentence_and_the_old_results_stay(kilobytes, folder):
     (folder / "out").mkdir()
     (folder / "out" / "mine.txt").write_text("mine")
