@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from fegear.contact.flank.gaps import FlankGaps
     from fegear.contact.flank.loaded import FlankPair, LoadedFlanks
     from fegear.contact.fourier import Panels
-    from fegear.fem.solid.solution import SolidSolution
+    from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member
 
 #: By how much panels are longer.
@@ -46,7 +46,7 @@ class FlankError:
 
 
 def flank_error(
-    flanks: FlankPair, found: LoadedFlanks, coarse: Mapping[Member, SolidSolution], gaps: FlankGaps
+    flanks: FlankPair, found: LoadedFlanks, coarse: Mapping[Member, FlankBody], gaps: FlankGaps
 ) -> FlankError:
     """Solve again with less of everything that leaves an error; the pressed width of the bands stays.
 
@@ -55,7 +55,7 @@ def flank_error(
     flanks : FlankPair
     found : LoadedFlanks
         What it gave.
-    coarse : mapping of {"driver", "driven"} to SolidSolution
+    coarse : mapping of {"driver", "driven"} to FlankBody
     gaps : FlankGaps
     """
     other = replace(flanks, gears=coarse, panel=_LONGER * flanks.panel).solve(found.load, gaps)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fegear.contact.flank.compliance import FlankCompliance, Hertz
     from fegear.contact.flank.lines import ContactLines
     from fegear.contact.fourier import Panels
-    from fegear.fem.solid.solution import SolidSolution
+    from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import GearPair, Member
 
 
@@ -182,7 +182,7 @@ class FlankPair:
     Parameters
     ----------
     pair : GearPair
-    gears : mapping of {"driver", "driven"} to SolidSolution
+    gears : mapping of {"driver", "driven"} to FlankBody
     coupling : bool
         Whether tooth pairs deflect each other.
     hertz : {"load-dependent", "linear", "none"}
@@ -193,7 +193,7 @@ class FlankPair:
     """
 
     pair: GearPair
-    gears: Mapping[Member, SolidSolution]
+    gears: Mapping[Member, FlankBody]
     coupling: bool = True
     hertz: Hertz = "load-dependent"
     panel: float = 0.5

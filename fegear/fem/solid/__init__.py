@@ -28,21 +28,28 @@
   circle is sqrt(r^2 - r_b^2) = rho_0 - tau r_b z.
 - Fillet stresses are of the free surface: up the fillet in the transverse section, across it, shear between both;
   `known.fine.fillets[side]` says where the points lie (`place` in the section at z = 0, `arc`, `tangent_angle`).
+- `solve_solid`, `solve_slices` (coupled along the face by laws) and `solve_thin_slices` (not coupled at all, to compare
+  with) take the same arguments; what each returns is a `flank_body.FlankBody`, ready for `fegear.contact.flank`.
 """
 
 from fegear.fem.solid.bands import Bands, bands, hats
 from fegear.fem.solid.influence import SolidInfluence, solid_influence
 from fegear.fem.solid.settings import SolidSettings, solid_settings
+from fegear.fem.solid.slices import solve_slices
 from fegear.fem.solid.solution import SolidSolution, solve_solid
+from fegear.fem.solid.thin_slices import ThinSlices, solve_thin_slices
 
 __all__ = [
     "Bands",
     "SolidInfluence",
     "SolidSettings",
     "SolidSolution",
+    "ThinSlices",
     "bands",
     "hats",
     "solid_influence",
     "solid_settings",
+    "solve_slices",
     "solve_solid",
+    "solve_thin_slices",
 ]

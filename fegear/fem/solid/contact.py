@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.influence import curvature_slope
 from fegear.fem.solid.bands import check_half_width, loads_of, overlap, profile_moments, profiles_at
 from fegear.fem.solid.end_slope import end_slope
 from fegear.fem.solid.half_space import band_cosines, function_cosines, galerkin_compliance
@@ -25,10 +24,9 @@ if TYPE_CHECKING:
 
     from fegear.arrays import Array
     from fegear.fem.solid.bands import Bands
+    from fegear.fem.solid.flank_body import TwistedFlank
     from fegear.fem.solid.solution import SolidSolution
 
-#: Mean distance of two points of a semi-elliptic pressure over its half-width.
-_MEAN = 256.0 / (45.0 * np.pi**2)
 #: Cosines along the face: so many to the shortest reach of a band. Those of a hat fall with the square of their number.
 _WAVES, _FEWEST_WAVES, _MOST_WAVES = 12.0, 64, 1500
 #: The same for the functions along the face, to each of their degrees.
@@ -65,14 +63,14 @@ class PressedLines:
 
     @property
     def slope(self) -> float:
-        """What of a line load's approach goes with -2 ln b, b its half-width: (1 - nu^2) / (pi cos(beta_b)), E = 1."""
-        return (1.0 - self._solution.poisson_ratio**2) * self._solution.normal_length / math.pi
+        """What of a line load's approach goes with -2 ln b, b its half-width: see `TwistedFlank`."""
+        return self._solution.contact_slope
 
     def own(self) -> list[Array]:
         """c_0 of each line under contacts of half-width 1, less what `widened` gives, (P, P) each [1/(E module)]."""
         line, solution = self._line, self._solution
         seen, moments = self._as_the_functions_see_them()
-        bend = _bend(solution, line) * line.half_width
+        bend = solution.bend(line.radius) * line.half_width
         logs = np.log(line.half_width) / solution.width
         found = []
         for span, common, answer in zip(self._spans, self.common, self._answered(0, self._spans), strict=True):
@@ -85,15 +83,12 @@ class PressedLines:
     def widened(self, half_width: Array) -> list[Array]:
         """What the contacts' half-widths, shape (P,), change beside their logarithm, (P, P) for each line."""
         line, solution = self._line, self._solution
-        bend = _bend(solution, line) * half_width
-        found = []
-        for span, common in zip(self._spans, self.common, strict=True):
-            block = 0.5 * (bend[span, None] + bend[span]) * common
-            if not solution.plane_strain:
-                mean = float(np.exp(np.log(half_width[span]).mean()))
-                block += solution.normal_length * _at_the_faces(solution, line.part(span), mean)
-            found.append(block)
-        return found
+        found = widened_by_curvature(solution, line, self._spans, self.common, half_width)
+        if solution.plane_strain:
+            return found
+        means = [float(np.exp(np.log(half_width[span]).mean())) for span in self._spans]
+        return [block + solution.normal_length * _at_the_faces(solution, line.part(span), mean)
+                for span, block, mean in zip(self._spans, found, means, strict=True)]  # fmt: skip
 
     def between(self, k: int, pairs: Sequence[tuple[int, int]]) -> list[Array]:
         """c_k between lines on different teeth, by their numbers: seen on the first, pressed on the second."""
@@ -156,9 +151,12 @@ def line_compliance(solution: SolidSolution, line: Bands, half_width: ArrayLike)
     return lines.own()[0] + lines.widened(b)[0] - lines.slope * (width[:, None] + width) * lines.common[0]
 
 
-def _bend(solution: SolidSolution, line: Bands) -> Array:
-    """What the flank's curvature adds to the deflection near a contact per half-width, shape (P,)."""
-    return curvature_slope(solution.poisson_ratio, "strain") * _MEAN * solution.curvature(line.radius)
+def widened_by_curvature(
+    body: TwistedFlank, line: Bands, spans: Sequence[slice], common: Sequence[Array], half_width: Array
+) -> list[Array]:
+    """What half-widths of contacts, shape (P,), change by the flank's curvature, (P, P) for each line."""
+    bend = body.bend(line.radius) * half_width
+    return [0.5 * (bend[span, None] + bend[span]) * own for span, own in zip(spans, common, strict=True)]
 
 
 def _wave_numbers(solution: SolidSolution, line: Bands) -> Array:

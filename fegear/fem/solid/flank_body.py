@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from fegear.fem.influence import curvature_slope
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -13,6 +18,14 @@ if TYPE_CHECKING:
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.settings import SolidSettings
     from fegear.fem.trace import LoadedFlank
+    from fegear.geometry.tooth import Tooth
+
+#: A pressure is at least this share of the flank wide, however little room there is to its end.
+_NARROWEST = 0.02
+#: Radius of curvature at least, beside the base circle, where an involute's vanishes [modules].
+_LEAST_RADIUS = 0.25
+#: Mean distance of two points of a semi-elliptic pressure over its half-width.
+_MEAN = 256.0 / (45.0 * np.pi**2)
 
 
 class FlankLines(Protocol):
@@ -62,3 +75,48 @@ class FlankBody(Protocol):
 
     def pressed(self, line: Bands, spans: Sequence[slice]) -> FlankLines:
         """Press contact lines on it."""
+
+
+class TwistedFlank:
+    """What the flank of a gear with a width is by its shape alone; lengths in modules."""
+
+    tooth: Tooth
+    tau: float
+    poisson_ratio: float
+    flank: LoadedFlank
+    settings: SolidSettings
+
+    def band_half_width(self, radius: ArrayLike) -> Array:
+        """Half-width of a pressure that the section resolves, shape (P,) [modules]: less beside the flank's ends."""
+        arc = self.flank.arc_of_radius(np.atleast_1d(np.asarray(radius, dtype=float)))
+        room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
+        length = self.flank.flank_end - self.flank.flank_start
+        return np.clip(self.settings.room_share * room, _NARROWEST * length, self.settings.band_half_width)
+
+    @property
+    def normal_length(self) -> float:
+        """1 / cos(beta_b): length of N, and of the contact line per length along the face."""
+        return math.hypot(1.0, self.tau * self.tooth.base_radius)
+
+    @property
+    def contact_slope(self) -> float:
+        """What of a line load's approach goes with -2 ln b, b its half-width: (1 - nu^2) / (pi cos(beta_b)), E = 1."""
+        return (1.0 - self.poisson_ratio**2) * self.normal_length / math.pi
+
+    def curvature(self, radius: Array) -> Array:
+        """Curvature of the flank in the transverse section, shape (P,) [1/module]."""
+        rb = self.tooth.base_radius
+        return np.asarray(1.0 / np.maximum(np.sqrt(np.maximum(radius**2 - rb**2, 0.0)), _LEAST_RADIUS))
+
+    def bend(self, radius: Array) -> Array:
+        """What the flank's curvature adds to the deflection near a contact per half-width, shape (P,) [1/module]."""
+        return curvature_slope(self.poisson_ratio, "strain") * _MEAN * self.curvature(radius)
+
+    def line_slope(self, radius: ArrayLike) -> Array:
+        """Arc up the flank per length along the face of the contact line through a radius, shape (P,).
+
+        The line is straight and stands square to the involute: its foot on the base circle turns with the helix.
+        """
+        rb = self.tooth.base_radius
+        r = np.atleast_1d(np.asarray(radius, dtype=float))
+        return np.asarray(-self.tau * np.sqrt(np.maximum(r**2 - rb**2, 0.0)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -18,6 +17,7 @@ from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.face import FaceFunctions, face_functions
 from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
+from fegear.fem.solid.flank_body import TwistedFlank
 from fegear.fem.solid.section import Section, make_section, upward
 from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.waves import solid_unknowns
@@ -37,15 +37,11 @@ if TYPE_CHECKING:
 
 #: How far below a contact's edge root tension begins [modules], or half of what of the fillet it leaves free.
 _FROM_CONTACT = 0.25
-#: A pressure is at least this share of the flank wide, however little room there is to its end.
-_NARROWEST = 0.02
-#: Radius of curvature at least, beside the base circle, where an involute's vanishes [modules].
-_LEAST_RADIUS = 0.25
 _FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
 @dataclass(frozen=True)
-class SolidSolution:
+class SolidSolution(TwistedFlank):
     """What one solid ring answers: deflections of the flank and of the fillets under forces on the flank.
 
     Parameters
@@ -92,32 +88,6 @@ class SolidSolution:
     unknowns: int
     settings: SolidSettings
     seconds: Mapping[str, float]
-
-    def band_half_width(self, radius: ArrayLike) -> Array:
-        """Half-width of a pressure that the section resolves, shape (P,) [modules]: less beside the flank's ends."""
-        arc = self.flank.arc_of_radius(np.atleast_1d(np.asarray(radius, dtype=float)))
-        room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
-        length = self.flank.flank_end - self.flank.flank_start
-        return np.clip(self.settings.room_share * room, _NARROWEST * length, self.settings.band_half_width)
-
-    @property
-    def normal_length(self) -> float:
-        """1 / cos(beta_b): length of N, and of the contact line per length along the face."""
-        return math.hypot(1.0, self.tau * self.tooth.base_radius)
-
-    def curvature(self, radius: Array) -> Array:
-        """Curvature of the flank in the transverse section, shape (P,) [1/module]."""
-        rb = self.tooth.base_radius
-        return np.asarray(1.0 / np.maximum(np.sqrt(np.maximum(radius**2 - rb**2, 0.0)), _LEAST_RADIUS))
-
-    def line_slope(self, radius: ArrayLike) -> Array:
-        """Arc up the flank per length along the face of the contact line through a radius, shape (P,).
-
-        The line is straight and stands square to the involute: its foot on the base circle turns with the helix.
-        """
-        rb = self.tooth.base_radius
-        r = np.atleast_1d(np.asarray(radius, dtype=float))
-        return np.asarray(-self.tau * np.sqrt(np.maximum(r**2 - rb**2, 0.0)))
 
     def deflection(self, k: int, watched: Bands, pressed: Bands) -> Array:
         """c_k: mean approach of bands on tooth k under a unit force on bands of tooth 0, shape (P, Q) [1/(E module)].
