@@ -14,6 +14,7 @@ from fegear.results import (
     dynamic_root_stress,
     flank_generation,
     flank_load_sharing,
+    flank_root_stress,
     flank_transmission_error,
     followed_modes,
     gear_solution,
@@ -72,6 +73,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             loaded_flanks.LOADED_FLANKS,
             flank_load_sharing.FLANK_LOAD_SHARING,
             flank_transmission_error.FLANK_TRANSMISSION_ERROR,
+            flank_root_stress.FLANK_ROOT_STRESS,
             load_distribution.LOAD_DISTRIBUTION,
         ),
         "Profile relief": (

@@ -32,11 +32,14 @@ class FlankLoadSharingData:
         Under every load of the case.
     load_error : ndarray, shape (P, L)
         Estimated error of its loads [N].
+    pressure_error : float
+        Of the largest pressure at the nominal load [Pa].
     """
 
     loaded: LoadedFlanksData
     history: PairHistory
     load_error: Array
+    pressure_error: float
 
 
 def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankLoadSharingData:
@@ -45,8 +48,9 @@ def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankLoadShari
     loaded = loaded_flanks(upstream, inputs.name)
     found, coarse, pair = loaded.found, loaded.error.coarse, loaded.found.pair
     history = flank_pair_history(found, loaded.gaps.at(pair, found.lines))
-    error = history_error(history, flank_pair_history(coarse, loaded.gaps.at(pair, coarse.lines)))
-    return FlankLoadSharingData(loaded, history, error)
+    again = flank_pair_history(coarse, loaded.gaps.at(pair, coarse.lines))
+    largest, other = (one.hertz_pressure[:, loaded.nominal].max() for one in (history, again))
+    return FlankLoadSharingData(loaded, history, history_error(history, again), float(abs(other - largest)))
 
 
 def _present(data: FlankLoadSharingData, inputs: Subject) -> Outcome:
@@ -60,6 +64,7 @@ def _present(data: FlankLoadSharingData, inputs: Subject) -> Outcome:
     shown = FollowedPair(
         inputs.name, pair, loaded.asked.loads, loaded.nominal, history, data.load_error, None,
         f"{about}Gears with their width, {'coupled slices' if loaded.asked.width == 'slices' else 'solid'}.",
+        data.pressure_error,
     )  # fmt: skip
     settings = {"positions": history.x.size}
     return Outcome(data, history_tables(shown), history_values(shown), settings, (), (history_figure(shown),))

@@ -38,6 +38,8 @@ class FollowedPair:
         1 where a tip corner touches off the path, whose pressure is not that of smooth flanks; None where none can.
     about : str
         What else its figure tells.
+    pressure_error : float or None
+        Estimated error of the largest pressure at the nominal load, where it is known by itself [Pa].
     """
 
     name: str
@@ -48,6 +50,7 @@ class FollowedPair:
     load_error: Array | None
     corner: Array | None
     about: str
+    pressure_error: float | None = None
 
 
 def _columns(h: PairHistory, i: int) -> tuple[Column, ...]:
@@ -86,13 +89,14 @@ def history_values(f: FollowedPair) -> tuple[Value, ...]:
     error = None if f.load_error is None else float(f.load_error[largest, i])
     relative = None if error is None else error / history.load[largest, i]
     where = f"at x = {history.x[hardest] * 1e3:.5g} mm"
+    by_load = 0.5 * relative * float(pressure[hardest]) if relative else None
     return (
         Value(f"{name}.largest_load", float(history.load[largest, i]), "N", error, "on one tooth pair"),
         Value(f"{name}.largest_share", float(history.share[largest, i]), "", relative, "of one tooth pair"),
         Value(
             f"{name}.largest_hertz_pressure", float(pressure[hardest]), "MPa",
             # Never exact: where the load has no error, what Hertz leaves out is still not estimated.
-            0.5 * relative * float(pressure[hardest]) if relative else None, f"smooth flanks, {where}",
+            by_load if f.pressure_error is None else f.pressure_error, f"smooth flanks, {where}",
         ),
     )  # fmt: skip
 

@@ -68,11 +68,6 @@ def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tup
     )
 
 
-def engagement_marks(pair: LoadedPair) -> tuple[Mark, ...]:
-    """Marks of the points A to E, for an abscissa on the line of action; before A and after E only corners touch."""
-    return path_marks(pair.engagement.pair)
-
-
 def pitch_marks(pair: GearPair, x: Array) -> tuple[Mark, ...]:
     """Marks of those points that a roll over one base pitch passes, between the ends of x [m]."""
     low, high = float(x.min()) * 1e3, float(x.max()) * 1e3

@@ -5,11 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fegear.engine.citation import Citation
-from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel
-from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
 from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_checks import check_relief
@@ -17,7 +14,7 @@ from fegear.models.pair_inputs import gear_name
 from fegear.models.root_stress_source import FINITE_ELEMENTS, check_formulas, root_stress_source
 from fegear.results import forecasts
 from fegear.results.gear_solution import solution_of
-from fegear.results.loaded_pair import EFFECTS, engagement_marks, loaded_pair, needs_pair, plane_pairs
+from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair, plane_pairs
 from fegear.results.root_stress_parts import (
     cited_sources,
     ending,
@@ -27,6 +24,7 @@ from fegear.results.root_stress_parts import (
     stress_sources,
     told,
 )
+from fegear.results.shown_root_stress import stress_figure, stress_table, stress_values
 from fegear.results.transmission_error import POSITIONS
 
 if TYPE_CHECKING:
@@ -55,33 +53,6 @@ def _check(scene: Scene, name: str) -> None:
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     return (*needs_pair(scene, name), *needs_sources(scene, name))
-
-
-def _table(
-    name: str, gear: str, found: Mapping[str, ToothStress], i: int, rate: float | None, loads: tuple[float, ...]
-) -> Table:
-    sources = tuple(found)
-    first = found[sources[0]]
-    columns = [Column("x", first.x, "mm", "position of the tooth's contact on the line of action")]
-    if rate is not None:
-        columns.insert(0, Column("t", (first.x - first.x[0]) / rate, "s", "from the first position"))
-    for k, (source, s) in enumerate(found.items()):
-        end = ending(sources, k)
-        meaning = f"largest tangential tension of the fillet below the loaded flank, by {told(source)}"
-        columns.append(Column(f"stress{end}", s.tension[:, i], "MPa", meaning))
-        if s.compression is not None:
-            columns.append(
-                Column(f"compression{end}", s.compression[:, i], "MPa", "most negative stress of the other fillet")
-            )
-        if not np.isnan(s.tension_error).any():
-            columns.append(
-                Column(f"stress_error{end}", s.tension_error[:, i], "MPa", f"estimated error of stress{end}")
-            )
-        for j, load in enumerate(loads):
-            if j != i:
-                head = f"stress{end} at {load:.6g} N"
-                columns.append(Column(head, s.tension[:, j], "MPa", f"as stress{end}, under this load"))
-    return Table(f"root_stress_history_{name}", tuple(columns), f"Root stress of a tooth of gear {gear} in the mesh")
 
 
 def table_names(scene: Scene, name: str) -> dict[Member, str]:
@@ -155,63 +126,14 @@ def _present(data: RootStressData, inputs: RootStressInputs) -> Outcome:
     tables, values = [], []
     for member, label in inputs.labels.items():
         gear = inputs.gears[member]
-        tables.append(_table(label, gear, data.stress[member], i, inputs.rate, pair.loads))
+        tables.append(stress_table(label, gear, data.stress[member], i, inputs.rate, pair.loads))
         for k, (source, s) in enumerate(data.stress[member].items()):
-            values += _values(f"{name}.{member}", ending(inputs.sources, k), f"gear {gear}, {told(source)}", s, i)
+            values += stress_values(f"{name}.{member}", ending(inputs.sources, k), f"gear {gear}, {told(source)}", s, i)
     settings: dict[str, object] = {"root_stress": list(inputs.sources)}
     notes = {inputs.gears[member]: found for member, found in data.notes.items()}
     remarks = formula_remarks(name, notes, coupled=inputs.coupled)
-    return Outcome(data, tuple(tables), tuple(values), settings, remarks, (_figure(name, data, inputs.gears),))
-
-
-def _values(of: str, end: str, by: str, s: ToothStress, i: int) -> list[Value]:
-    """Largest stresses by one source, under load `i`."""
-    worst = int(np.argmax(s.tension[:, i]))
-    error = float(s.tension_error[worst, i])
-    values = [
-        Value(
-            f"{of}.largest_root_tension{end}", float(s.tension[worst, i]), "MPa", None if np.isnan(error) else error,
-            f"{by}, contact at x = {s.x[worst] * 1e3:.5g} mm",
-        ),
-        Value(
-            f"{of}.root_stress_range{end}", float(np.ptp(s.tension[:, i])), "MPa", None,
-            "largest less smallest stress below the loaded flank over the mesh",
-        ),
-    ]  # fmt: skip
-    if s.compression is not None:
-        least = int(np.argmin(s.compression[:, i]))
-        place = f"{by}, contact at x = {s.x[least] * 1e3:.5g} mm"
-        values.insert(
-            1, Value(f"{of}.largest_root_compression{end}", float(s.compression[least, i]), "MPa", None, place)
-        )
-    return values
-
-
-def _figure(name: str, data: RootStressData, gears: Mapping[Member, str]) -> Figure:
-    pair = data.pair
-    i, curves, largest = pair.loads.index(pair.nominal), [], []
-    several = len(data.stress["driver"]) > 1
-    for g, (member, found) in enumerate(data.stress.items()):
-        for k, (source, s) in enumerate(found.items()):
-            label = f"{member} {gears[member]}" + (f", {told(source)}" if several else "")
-            tension, error = s.tension[:, i] * 1e-6, s.tension_error[:, i] * 1e-6
-            role = f"series:{g + 2 * k}" if k else member
-            curves.append(
-                Curve(s.x * 1e3, tension, f"{label}, tension", role, None if np.isnan(error).any() else error)
-            )
-            if s.compression is not None:
-                style = f"{member} compression"
-                curves.append(Curve(s.x * 1e3, s.compression[:, i] * 1e-6, f"{label}, compression", style, width=1.2))
-            largest.append(f"{tension.max():.4g} MPa ({member}{f', {told(source)}' if several else ''})")
-    x = Axis("position of the tooth's contact on the line of action", "mm")
-    return Figure(
-        f"root_stress_history_{name}",
-        f"Root stress through the mesh of pair {name}",
-        f"Pair {name} at {pair.nominal:.5g} N: fillet stress of one tooth; by finite elements its own load's and its "
-        f"neighbours' added. A to E: points of the path of contact. Largest tension {' and '.join(largest)}.",
-        (Panel(x, Axis("largest root stress", "MPa"), tuple(curves), (*engagement_marks(pair), Mark("y", 0.0))),),
-        under=f"{pair.nominal:.5g} N",
-    )
+    figure = stress_figure(name, pair.engagement.pair, pair.nominal, data.stress, i, inputs.gears)
+    return Outcome(data, tuple(tables), tuple(values), settings, remarks, (figure,))
 
 
 def _cites(scene: Scene, name: str) -> Iterator[Citation]:

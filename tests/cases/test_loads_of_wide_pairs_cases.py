@@ -19,7 +19,8 @@ CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
 COARSE = (
     "accuracy.tolerance=1e-1", "load_distribution.positions=13", "load_distribution.panels=8",
     'gear.pinion.face_width="8 mm"', 'gear.wheel.face_width="8 mm"', 'pair.I.loads=["900 N", "7200 N"]',
-    'results=["load-distribution", "transmission-error", "load-sharing"]',
+    'results=["load-distribution", "transmission-error", "load-sharing", "root-stress-history"]',
+    'pair.I.speed="600 rpm"',
     'pair.I.width="slices"',
 )  # fmt: skip
 
@@ -96,6 +97,27 @@ def test_secant_stiffness_is_load_over_transmission_error_of_perfect_flanks(resu
     (te,) = flank_transmission_errors(loaded.flanks.solve([900.0], None, fixed), loaded.flanks.points)
     np.testing.assert_allclose(te.local, te.secant, rtol=1e-9)
     assert results.values["I.mesh_compliance_mean"].si > 0.0
+
+
+def test_root_stress_over_the_face_and_its_largest_value_are_one(results):
+    rate = 20.0 * np.pi * read_scene(CASE, COARSE).pairs["I"].driver.base_radius  # 600 rpm
+    for gear, member in (("pinion", "driver"), ("wheel", "driven")):
+        way = columns(results, f"root_stress_history_I_{gear}")
+        face = columns(results, f"root_stress_over_face_I_{gear}")
+        shape = len(way["x [mm]"]), -1
+        over = face["stress [MPa]"].reshape(shape)
+        np.testing.assert_allclose(way["stress [MPa]"], over.max(axis=1), rtol=1e-12)
+        z = face["face_position [mm]"].reshape(shape)
+        np.testing.assert_allclose(way["stress_face_position [mm]"], z[np.arange(len(z)), over.argmax(axis=1)])
+        largest = results.values[f"I.{member}.largest_root_tension"]
+        assert largest.si == pytest.approx(1e6 * over.max(), rel=1e-9)
+        assert 0.0 < largest.error < largest.si
+        assert (way["stress at 7200 N [MPa]"].max() > over.max() > way["stress at 900 N [MPa]"].max()).all()
+        assert way["t [s]"][-1] == pytest.approx(
+            np.ptp(way["x [mm]"]) * 1e-3 / (20.0 * np.pi * base_radius()), rel=1e-6
+        )
+        # the gap opens toward +z, so the load and with it the stress are at -z
+        assert way["stress_face_position [mm]"][over.max(axis=1).argmax()] < 0.0
 
 
 def test_what_has_no_meaning_over_the_face_is_refused():

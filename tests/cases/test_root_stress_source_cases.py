@@ -145,7 +145,7 @@ def test_dynamic_root_stress_is_tooth_force_times_formula():
             "calculix_pair", (HISTORY, "gear.a.teeth=80", "gear.a.bore_radius='60 mm'", source("cornell")),
             "pair.I.root_stress.source = \"cornell\": does not hold .* no radial flank.*gear a.*choose",
         ),
-        ("litvin_lead", ('pair.I.root_stress={source="cornell"}',), "not computed for a helical pair"),
+        ("litvin_lead", ('pair.I.root_stress={source="cornell"}',), "is for plane teeth"),
     ],
 )  # fmt: skip
 def test_refusals_say_what_to_do(case, overrides, words):

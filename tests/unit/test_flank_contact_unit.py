@@ -12,10 +12,14 @@ from fegear.contact.flank.complementarity import hat_averages, solve_contact
 from fegear.contact.flank.compliance import FlankCompliance
 from fegear.contact.flank.error import flank_error
 from fegear.contact.flank.lines import ContactLines
+from fegear.contact.flank.root_stress import rooted_lines
+from fegear.contact.tooth_stress import tooth_stress
 from fegear.errors import InputError
 from fegear.fem import solve_gear
 from fegear.fem.solid import SolidSettings, solve_solid
+from fegear.fem.solid.bands import hats
 from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import tip_relief
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
@@ -82,6 +86,17 @@ def test_a_spur_pair_that_cannot_move_along_the_axis_is_the_plane_pair():
     pressure = engagement.compliance.pressure(wanted.loads[:, :, 1], radius).max()
     assert found.pressure[:, :, 1].max() == pytest.approx(pressure, rel=3e-3)
     np.testing.assert_allclose(found.face_load_factor, 1.0, atol=3e-3)
+    # root stress of the whole way through the mesh, neighbours' loads included, is that of the plane everywhere
+    for member in MEMBERS:
+        wanted_stress = tooth_stress(engagement, (), [2000.0], flanks.roll, member)
+        rooted = rooted_lines(pair, member, found.lines, solution, coupling=True)
+        for side, sign, plane_stress in (
+            ("tension", 1.0, wanted_stress.tension), ("compression", -1.0, wanted_stress.compression)
+        ):  # fmt: skip
+            stress = rooted.stress(side, found.contact.force[:, :, 1], np.array([-0.5, 0.0, 0.3]) * WIDTH)
+            np.testing.assert_allclose(stress.value, stress.value[:, :1] * np.ones(3), rtol=1e-3)
+            by_plane = np.interp(rooted.x, wanted_stress.x, plane_stress[:, 0])
+            np.testing.assert_allclose(stress.largest(sign)[0], by_plane, atol=1e-2 * np.abs(by_plane).max())
 
 
 def test_a_helix_that_goes_to_zero_is_a_spur_pair():
@@ -269,3 +284,45 @@ def test_loads_must_be_positive(known):
     for load in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(InputError, match="positive"):
             flanks.solve([load], None, matrix)
+
+
+def test_root_stress_is_the_sum_of_single_stations_over_own_and_neighbouring_teeth(solved, known):
+    flanks, matrix = known
+    found = flanks.solve([LOAD], MISALIGNED, matrix)
+    force, z = found.contact.force[:, :, 0], np.linspace(-0.5, 0.5, 5) * WIDTH
+    for member in MEMBERS:
+        solution, forward = flanks.gears[member], (1 if member == "driver" else -1)
+        rooted = rooted_lines(flanks.pair, member, found.lines, solution, coupling=True)
+        p, j = rooted.teeth[len(rooted.teeth) // 2].tolist()
+        # by brute force, station after station, through the solid's own function
+        whole = 0.0
+        for s in found.lines.at(p):
+            radius = flanks.pair.radius(found.lines.x[p, s], member) / MODULE
+            line = hats(radius, found.lines.z[p, s] / MODULE, solution.band_half_width(radius),
+                        slope=solution.line_slope(radius))  # fmt: skip
+            k = forward * (j - int(found.lines.pair[p, s.start]))
+            whole = whole + solution.fillet_stress(k, "compression", line, z / MODULE)[0] @ force[p, s]
+        stress = rooted.stress("compression", force, z)
+        row = len(rooted.teeth) // 2
+        # pressed bands come in few widths, which the fillet hardly feels
+        np.testing.assert_allclose(stress.value[row], whole.min(axis=0) / MODULE**2, rtol=1e-2)
+        twice = rooted.stress("compression", 2.0 * force, z)
+        np.testing.assert_allclose(twice.value, 2.0 * stress.value, rtol=1e-9)
+        # without coupling only the teeth that touch are stressed
+        alone = rooted_lines(flanks.pair, member, found.lines, solution, coupling=False)
+        assert len(alone.teeth) < len(rooted.teeth)
+        assert set(alone.sources) == {0}
+
+
+def test_mirrored_hands_mirror_the_root_stress(solved, known):
+    flanks, matrix = known
+    other = flank_pair(solved, "left")
+    mirrored = FlankGaps(face_position=MISALIGNED.face_position, line_gap=MISALIGNED.line_gap[::-1].copy())
+    z = np.linspace(-0.5, 0.5, 7) * WIDTH
+    one = rooted_lines(flanks.pair, "driver", matrix.lines, flanks.gears["driver"], coupling=True)
+    found = flanks.solve([LOAD], MISALIGNED, matrix)
+    stress = one.stress("tension", found.contact.force[:, :, 0], z)
+    again = other.solve([LOAD], mirrored)
+    two = rooted_lines(other.pair, "driver", again.lines, other.gears["driver"], coupling=True)
+    wanted = two.stress("tension", again.contact.force[:, :, 0], z)
+    np.testing.assert_allclose(stress.value, wanted.value[:, ::-1], rtol=1e-4, atol=1e-4 * stress.value.max())

@@ -108,12 +108,11 @@ def flank_compliance(
     most = lines.x.shape[1]
     matrix = np.zeros((*lines.x.shape, most))
     log_slope = 0.0
-    places, spans = _places(lines)
+    places, spans = places_of(lines)
     for member in MEMBERS:
         gear, body = pair.gear(member), gears[member]
         softer = 1.0 / (gear.material.young_modulus * module)
-        radius = np.clip(pair.radius(lines.x, member) / module, *_flank(body))[lines.present]
-        pressed = body.pressed(_bands(body, radius, lines.z[lines.present] / module, spans), spans)
+        pressed = body.pressed(line_bands(pair, member, body, lines), spans)
         log_slope += pressed.slope / gear.material.young_modulus
         widened = pressed.widened(b[lines.present] / module)
         for (p, s), own, wider, common in zip(places, pressed.own(), widened, pressed.common, strict=True):
@@ -125,7 +124,7 @@ def flank_compliance(
     return FlankCompliance(lines, matrix, log_slope, factor, None if hertz == "load-dependent" else b)
 
 
-def _places(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]]:
+def places_of(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]]:
     """Roll position and stations of every contact line, and its stations among those of all lines in a row."""
     places = [(p, s) for p in range(lines.roll.size) for s in lines.at(p)]
     ends = np.cumsum([0, *(s.stop - s.start for _, s in places)]).tolist()
@@ -135,7 +134,7 @@ def _places(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]]:
 @tallied("neighbours")
 def _couple(matrix: Array, pressed: FlankLines, reach: int, forward: int, lines: ContactLines, softer: float) -> None:
     """Add what the lines of each roll position do to each other, and its transpose (Maxwell)."""
-    places, _ = _places(lines)
+    places, _ = places_of(lines)
     tooth = [forward * int(lines.pair[p, s.start]) for p, s in places]
     found: dict[int, list[tuple[int, int]]] = {}
     for a, b in itertools.combinations(range(len(places)), 2):
@@ -146,6 +145,13 @@ def _couple(matrix: Array, pressed: FlankLines, reach: int, forward: int, lines:
             (p, first), (_, second) = places[a], places[b]
             matrix[p, first, second] += softer * block
             matrix[p, second, first] += softer * block.T
+
+
+def line_bands(pair: GearPair, member: Member, body: FlankBody, lines: ContactLines) -> Bands:
+    """Bands of all stations on a gear's flank, line by line as `places_of` has them."""
+    module = pair.driver.module
+    radius = np.clip(pair.radius(lines.x, member) / module, *_flank(body))[lines.present]
+    return _bands(body, radius, lines.z[lines.present] / module, places_of(lines)[1])
 
 
 def _flank(body: FlankBody) -> tuple[float, float]:

@@ -167,6 +167,16 @@ class SolidSolution(TwistedFlank):
         RangeError
             If tooth k is beyond reach, a place lies off the face, or a band off flank or face.
         """
+        return self.stress_under(k, side, loads_of(pressed, self.flank, self.face), zeta)
+
+    def stress_under(self, k: int, side: Side, loads: Array, zeta: ArrayLike) -> Array:
+        """The same under loads on the flank's ports, shape (n, P), as `loads_of` gives them for bands.
+
+        Raises
+        ------
+        RangeError
+            If tooth k is beyond reach, or a place lies off the face.
+        """
         self._check_tooth(k)
         z, half = np.atleast_1d(np.asarray(zeta, dtype=float)), 0.5 * self.width
         if (off := z[~(np.abs(z) <= half * (1.0 + 1e-9))]).size:
@@ -174,7 +184,7 @@ class SolidSolution(TwistedFlank):
                 "zeta", f"{off[0]:.6g} modules", f"lies off the face, which runs from {-half:.6g} to {half:.6g} modules"
             )
         values, slopes = self.face.at(z)
-        moved = self.displacement[k, side] @ loads_of(pressed, self.flank, self.face)
+        moved = self.displacement[k, side] @ loads
         return surface_stress(self.fillets[side], self.tau, self.poisson_ratio, moved, values, slopes)
 
 

@@ -1,0 +1,205 @@
+"""Stage ``flank-root-stress``: result ``root-stress-history`` of pairs with a width, with the stress along the face."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Column, Outcome, Table
+from fegear.engine.stage import Forecast, Stage
+from fegear.geometry.pair import MEMBERS
+from fegear.models.loaded_flanks import FLANK_EFFECTS
+from fegear.models.pair_inputs import gear_name
+from fegear.results import forecasts
+from fegear.results.drawn_flank_root_stress import root_stress_map
+from fegear.results.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
+from fegear.results.root_stress_history import table_names
+from fegear.results.shown_root_stress import stress_figure, stress_table, stress_values
+from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
+from fegear.results.sources import RING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.contact.flank.root_stress import StressOverFace
+    from fegear.contact.tooth_stress import ToothStress
+    from fegear.engine.stage import Task, Upstream, Work
+    from fegear.fem.influence import Side
+    from fegear.geometry.pair import Member
+    from fegear.results.loaded_flanks import LoadedFlanksData
+
+#: Places along the face per module, at which stress is looked for, and how many at least.
+_PER_MODULE, _FEWEST = 4.0, 17
+#: Seconds of a roll position, both gears and both solutions, for each load.
+_SECONDS = 0.05
+_SIDES: tuple[tuple[Side, float], ...] = (("tension", 1.0), ("compression", -1.0))
+
+
+@dataclass(frozen=True)
+class FlankRootStressInputs:
+    """What this stage reads.
+
+    Parameters
+    ----------
+    rate : float or None
+        Velocity of the contact along the line of action [m/s], where the case gives a speed.
+    name : str
+        Of the pair.
+    labels, gears : mapping of str to str
+        Names of the tables and of the gears by member.
+    """
+
+    rate: float | None
+    name: str = field(compare=False)
+    labels: Mapping[Member, str] = field(compare=False)
+    gears: Mapping[Member, str] = field(compare=False)
+
+
+@dataclass(frozen=True)
+class FlankRootStressData:
+    """What the stage hands to tables and pictures.
+
+    Parameters
+    ----------
+    loaded : LoadedFlanksData
+    stress : mapping of Member to ToothStress
+        Largest over the face, under every load.
+    over_face : mapping of Member to mapping of Side to StressOverFace
+        At the nominal load.
+    """
+
+    loaded: LoadedFlanksData
+    stress: Mapping[Member, ToothStress]
+    over_face: Mapping[Member, Mapping[Side, StressOverFace]]
+
+
+def places_along(loaded: LoadedFlanksData) -> Array:
+    """Places along the face at which root stress is looked for [m], both ends among them."""
+    lines, module = loaded.found.lines, loaded.found.pair.driver.module
+    count = max(_FEWEST, 2 * round(0.5 * _PER_MODULE * (lines.high - lines.low) / module) + 1)
+    return np.linspace(lines.low, lines.high, count)
+
+
+def _inputs(scene: Scene, name: str) -> FlankRootStressInputs:
+    speed = scene.case.pair[name].speed
+    rate = None if speed is None else speed * scene.pairs[name].driver.base_radius
+    gears = {member: gear_name(scene, name, member) for member in MEMBERS}
+    return FlankRootStressInputs(rate, name, table_names(scene, name), gears)
+
+
+def _compute(asked: FlankRootStressInputs, upstream: Upstream, work: Work) -> FlankRootStressData:
+    from fegear.contact.flank.root_stress import rooted_lines
+    from fegear.contact.tooth_stress import ToothStress
+    from fegear.fem.solid.influence import ENTRY_SHARES
+
+    loaded = loaded_flanks(upstream, asked.name)
+    found, coarse, z = loaded.found, loaded.error.coarse, places_along(loaded)
+    coupling = loaded.asked.effects.neighbour_coupling
+    stress: dict[Member, ToothStress] = {}
+    maps: dict[Member, dict[Side, StressOverFace]] = {}
+    for number, member in enumerate(MEMBERS):
+        influence = solid_solution_of(upstream, asked.gears[member])
+        rooted = rooted_lines(found.pair, member, found.lines, influence.fine, coupling=coupling)
+        again = influence.coarse and rooted_lines(found.pair, member, coarse.lines, influence.coarse, coupling=coupling)
+        largest: dict[Side, list[Array]] = {"tension": [], "compression": []}
+        off = []
+        for i in range(found.load.size):
+            for side, sign in _SIDES:
+                one = rooted.stress(side, found.contact.force[:, :, i], z)
+                largest[side].append(one.largest(sign)[0])
+                if i == loaded.nominal:
+                    maps.setdefault(member, {})[side] = one
+            if again:
+                other = again.stress("tension", coarse.contact.force[:, :, i], z)
+                by_coarse = np.interp(rooted.x, other.x, other.largest(1.0)[0])
+                off.append(ENTRY_SHARES["root_tension"] * np.abs(by_coarse - largest["tension"][-1]))
+            else:  # slices know how far they are off
+                off.append(influence.error.get("root_tension", np.nan) * np.abs(largest["tension"][-1]))
+        tension, compression, error = (np.stack(x, axis=1) for x in (largest["tension"], largest["compression"], off))
+        stress[member] = ToothStress(rooted.x, tension, compression, error)
+        work.progress((number + 1) / len(MEMBERS))
+    return FlankRootStressData(loaded, stress, maps)
+
+
+def _present(data: FlankRootStressData, inputs: FlankRootStressInputs) -> Outcome:
+    name, loaded, pair = inputs.name, data.loaded, data.loaded.found.pair
+    i, loads = loaded.nominal, loaded.asked.loads
+    tables, values = [], []
+    shown = {member: {"fe": one} for member, one in data.stress.items()}
+    for member, label in inputs.labels.items():
+        gear, over = inputs.gears[member], data.over_face[member]
+        more = _places(over)
+        tables.append(stress_table(label, gear, shown[member], i, inputs.rate, loads, more))
+        tables.append(_over_face(label, gear, over))
+        where = _where(data.stress[member], over, i)
+        values += stress_values(f"{name}.{member}", "", f"gear {gear}, {where}", data.stress[member], i)
+    figures = (
+        stress_figure(name, pair, loads[i], shown, i, inputs.gears),
+        root_stress_map(name, loads[i], data.over_face, inputs.gears),
+    )
+    settings = {"places_along_the_face": int(data.over_face["driver"]["tension"].z.size)}
+    return Outcome(data, tuple(tables), tuple(values), settings, figures=figures)
+
+
+def _places(over: Mapping[Side, StressOverFace]) -> tuple[Column, ...]:
+    pull, press = over["tension"].largest(1.0)[1], over["compression"].largest(-1.0)[1]
+    at = np.argmax(over["tension"].value, axis=1)
+    radius = over["tension"].radius[np.arange(at.size), at]
+    return (
+        Column("stress_face_position", pull, "mm", "where stress is largest along the face, from its middle"),
+        Column("stress_radius", radius, "mm", "and its distance from the axis"),
+        Column("compression_face_position", press, "mm", "where compression is largest along the face"),
+    )
+
+
+def _where(stress: ToothStress, over: Mapping[Side, StressOverFace], i: int) -> str:
+    worst = int(np.argmax(stress.tension[:, i]))
+    z = float(over["tension"].largest(1.0)[1][worst])
+    return f"largest tension at face position {z * 1e3:.4g} mm"
+
+
+def _over_face(label: str, gear: str, over: Mapping[Side, StressOverFace]) -> Table:
+    """Every place along the face at every position of the tooth, at the nominal load."""
+    pull, press = over["tension"], over["compression"]
+    columns = (
+        Column("x", np.repeat(pull.x, pull.z.size), "mm", "position of the tooth's contact in the middle of the face"),
+        Column("face_position", np.tile(pull.z, pull.x.size), "mm", "from the middle of the face"),
+        Column("stress", pull.value.ravel(), "MPa", "largest tension up the fillet below the loaded flank"),
+        Column("radius", pull.radius.ravel(), "mm", "where it sits, from the axis"),
+        Column("compression", press.value.ravel(), "MPa", "most negative stress up the other fillet"),
+        Column("compression_radius", press.radius.ravel(), "mm", "where it sits, from the axis"),
+    )
+    return Table(f"root_stress_over_face_{label}", columns, f"Root stress of gear {gear} along its face in the mesh")
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    part = scene.case.pair[name]
+    return (*needs_flanks(scene, name), *needs_solid_solution(part.driver, part.driven))
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    positions, loads = scene.case.load_distribution.positions, forecasts.loads(scene, name)
+    return Forecast({"positions": positions, "loads": loads}, 0.5 + _SECONDS * positions * loads)
+
+
+FLANK_ROOT_STRESS = Stage(
+    name="flank-root-stress",
+    title="Root stress over the face",
+    results=("root-stress-history",),
+    about="root stress of both gears as a tooth passes through the mesh",
+    subjects=wide_pairs,
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    effects=FLANK_EFFECTS,
+    cites=citing(
+        *RING, Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")
+    ),
+    forecast=_forecast,
+)
