@@ -14,9 +14,15 @@ Coordinate = Literal["y", "z", "theta_x", "theta_y", "theta_z"]
 
 
 class MeshErrorPart(Part):
-    """``transmission_error``: harmonics of a pair of the case, of a table, or one amplitude; along y unless told."""
+    """``transmission_error``: harmonics of a pair of the case, of a table, or one amplitude; along y unless told.
+
+    ``flanks`` says which of a pair with a width: rigid or loaded ones; loaded by default where the mesh is that pair's.
+    ``shuttling`` adds the moment about x of a force that wanders over the face.
+    """
 
     pair: str | None = None
+    flanks: Literal["rigid", "loaded"] | None = None
+    shuttling: bool = False
     file: str | None = None
     amplitude: Length | None = None
     harmonic: Annotated[int, Field(ge=1, le=20_000)] | None = None
@@ -33,6 +39,11 @@ class MeshErrorPart(Part):
             )  # fmt: skip
         if self.harmonic is not None and given != ["amplitude"]:
             raise refuse("belongs to amplitude", "leave it out", key="harmonic")
+        for key in ("flanks", "shuttling"):
+            if key in self.model_fields_set and given != ["pair"]:
+                raise refuse("belongs to pair", "leave it out", key=key)
+        if self.shuttling and self.along != "y":
+            raise refuse("goes with an error along y", "leave along out", key="shuttling")
         if self.harmonics is not None and given == ["amplitude"]:
             raise refuse("has no meaning with amplitude", "write harmonic for the one that it has", key="harmonics")
         return self

@@ -53,6 +53,7 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
         error = part.excitation.transmission_error if part.excitation else None
         key = f"transmissibility.{name}.excitation.transmission_error.pair"
         yield key, error.pair if error else None, "pair"
+        yield f"transmissibility.{name}.mesh.pair", part.mesh.pair, "pair"
     if case.train is not None:
         yield from _of_train(case.train)
         dynamics = case.dynamics

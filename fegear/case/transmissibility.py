@@ -29,6 +29,8 @@ from fegear.case.part import (
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel, RigidGear
@@ -39,8 +41,12 @@ Matrix = Annotated[list[Row], Field(min_length=5, max_length=5)]
 
 
 class MeshStiffnessPart(Part):
-    """``mesh = { stiffness, kappa, mu, base_helix_angle }``, or a load distribution over the face in a CSV file."""
+    """``mesh = { stiffness, kappa, mu, base_helix_angle }``, a load distribution over the face in a file, or a pair.
 
+    ``mesh = { pair = "I" }`` takes all of it from the loaded flanks of a pair of the case with its width.
+    """
+
+    pair: str | None = None
     stiffness: PositiveStiffness | None = None
     kappa: Number = 0.0
     mu: Number | None = None
@@ -50,8 +56,12 @@ class MeshStiffnessPart(Part):
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
+        if self.pair is not None:
+            for key in sorted(self.model_fields_set - {"pair"}):
+                raise refuse("comes from the teeth of the pair already", "leave it out", key=key)
+            return self
         if (self.stiffness is None) == (self.distribution is None):
-            raise refuse("must be given, or a distribution over the face instead", "give either", key="stiffness")
+            raise refuse("must be given, or a distribution over the face or a pair", "give one", key="stiffness")
         if self.distribution is not None and self.face_width is None:
             raise refuse("is missing, but the distribution needs it", 'write face_width = "25 mm"', key="face_width")
         return self
@@ -86,15 +96,19 @@ class BearingPart(Part):
         return np.diag([self.y, self.z, self.theta_x, self.theta_y, 0.0])
 
 
-class RigidGearPart(Part):
-    """One gear: mass, inertia, size and bearing."""
+#: What a gear of the case knows of itself.
+OF_THE_GEAR = ("mass", "inertia_x", "inertia_y", "inertia_z", "base_radius", "half_face_width")
 
-    mass: PositiveMass
-    inertia_x: PositiveInertia
-    inertia_y: PositiveInertia
-    inertia_z: PositiveInertia
-    base_radius: PositiveLength
-    half_face_width: PositiveLength
+
+class RigidGearPart(Part):
+    """One gear: mass, inertia, size and bearing; where the mesh is a pair's, what is left out is that of its gear."""
+
+    mass: PositiveMass | None = None
+    inertia_x: PositiveInertia | None = None
+    inertia_y: PositiveInertia | None = None
+    inertia_z: PositiveInertia | None = None
+    base_radius: PositiveLength | None = None
+    half_face_width: PositiveLength | None = None
     bearing: BearingPart = Field(default_factory=BearingPart)
     damping: Matrix | None = None
 
@@ -103,8 +117,12 @@ class RigidGearPart(Part):
         from fegear.dynamics.helical_pair import RigidGear
 
         damping = np.zeros((5, 5)) if self.damping is None else np.array(self.damping)
-        inertia = (self.inertia_x, self.inertia_y, self.inertia_z)
-        return RigidGear(self.mass, inertia, self.base_radius, self.half_face_width, self.bearing.build(), damping)
+        mass, *inertia, radius, half = (getattr(self, key) for key in OF_THE_GEAR)
+        return RigidGear(mass, (inertia[0], inertia[1], inertia[2]), radius, half, self.bearing.build(), damping)
+
+    def filled(self, known: Mapping[str, float]) -> RigidGearPart:
+        """The same with what was left out."""
+        return self.model_copy(update={key: v for key, v in known.items() if getattr(self, key) is None})
 
 
 class UnityRatioPart(Part):
@@ -138,8 +156,11 @@ class TransmissibilityPart(Part):
 
     @model_validator(mode="after")
     def _one_model(self) -> Self:
+        self._check_gears()
         general = self.driver is not None and self.driven is not None
-        if general == (self.unity_ratio is not None) or (self.driver is None) != (self.driven is None):
+        if self.mesh.pair is None and (
+            general == (self.unity_ratio is not None) or (self.driver is None) != (self.driven is None)
+        ):
             raise refuse("is not described", "give driver and driven, or unity_ratio", key="driver", value="(pair)")
         if self.lambda_to <= self.lambda_from:
             raise refuse("must be greater than lambda_from", key="lambda_to", value=self.lambda_to)
@@ -147,6 +168,27 @@ class TransmissibilityPart(Part):
             for key in _OF_UNITY_RATIO & set(self.follow.ranges):
                 raise refuse("belongs to unity_ratio", "follow bearing_stiffness instead", key=f"follow.{key}")
         return self
+
+    def _check_gears(self) -> None:
+        if self.mesh.pair is not None:
+            if self.unity_ratio is not None:
+                raise refuse(
+                    "describes gears that are not those of the mesh's pair", "give driver and driven, or leave it out",
+                    key="unity_ratio", value="(given)",
+                )  # fmt: skip
+            return
+        for role, gear in (("driver", self.driver), ("driven", self.driven)):
+            for key in OF_THE_GEAR if gear else ():
+                if getattr(gear, key) is None:
+                    raise refuse(
+                        "is missing", 'give it, or take the mesh from a pair: mesh = { pair = "I" }',
+                        key=f"{role}.{key}", value="(not given)",
+                    )  # fmt: skip
+
+    def with_gears(self, driver: Mapping[str, float], driven: Mapping[str, float]) -> TransmissibilityPart:
+        """The same with what the gears of the mesh's pair know of themselves."""
+        first, second = (given or RigidGearPart() for given in (self.driver, self.driven))
+        return self.model_copy(update={"driver": first.filled(driver), "driven": second.filled(driven)})
 
     def _both(self) -> tuple[RigidGearPart, RigidGearPart]:
         if self.driver is None or self.driven is None:

@@ -26,6 +26,7 @@ from fegear.results import (
     loaded_pair,
     loading_spectrum,
     mesh_force_spectrum,
+    mesh_stiffness_matrix,
     motion,
     natural_modes,
     pair_forces,
@@ -75,6 +76,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             flank_transmission_error.FLANK_TRANSMISSION_ERROR,
             flank_root_stress.FLANK_ROOT_STRESS,
             load_distribution.LOAD_DISTRIBUTION,
+            mesh_stiffness_matrix.MESH_STIFFNESS_MATRIX,
         ),
         "Profile relief": (
             relief.RELIEF,

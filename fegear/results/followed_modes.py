@@ -13,9 +13,9 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
-from fegear.models.helical_pair import mesh_of, model_at, own_value
+from fegear.models.helical_pair import helical_pair_inputs, model_at, own_value
 from fegear.results.drawn_followed_modes import INDICES, PARAMETERS, UNITS, modes_figure, response_figure
-from fegear.results.transmissibility import resolved_response
+from fegear.results.transmissibility import mesh_needs, own_mesh, resolved_response
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.mesh_parameters import MeshParameters
     from fegear.dynamics.mode_following import FollowedModes, Meeting
     from fegear.engine.stage import Upstream, Work
+    from fegear.models.helical_pair import HelicalPairInputs
 
     Model = HelicalPairModel | ReducedPairModel
 
@@ -81,14 +82,23 @@ class FollowedData:
 
 @dataclass(frozen=True, slots=True)
 class FollowedInputs:
-    """The pair as the case describes it, and its mesh."""
+    """The pair as the case describes it."""
 
-    part: TransmissibilityPart
-    mesh: MeshParameters
+    pair: HelicalPairInputs
     name: str = field(compare=False)
 
 
-def _compute(asked: FollowedInputs, _upstream: Upstream, work: Work) -> tuple[FollowedData, ...]:
+@dataclass(frozen=True, slots=True)
+class FollowedPair:
+    """The pair with its mesh."""
+
+    part: TransmissibilityPart
+    mesh: MeshParameters
+    name: str
+
+
+def _compute(inputs: FollowedInputs, upstream: Upstream, work: Work) -> tuple[FollowedData, ...]:
+    asked = FollowedPair(inputs.pair.part, own_mesh(inputs.pair, upstream)[0], inputs.name)
     follow = asked.part.follow
     ranges = follow.ranges if follow else {}
     found = []
@@ -98,7 +108,7 @@ def _compute(asked: FollowedInputs, _upstream: Upstream, work: Work) -> tuple[Fo
     return tuple(found)
 
 
-def _over(asked: FollowedInputs, parameter: str, values: NDArray[np.float64], responses: list[float]) -> FollowedData:
+def _over(asked: FollowedPair, parameter: str, values: NDArray[np.float64], responses: list[float]) -> FollowedData:
     from fegear.dynamics.mode_following import follow_modes
 
     def build(value: float) -> Model:
@@ -123,7 +133,7 @@ def _indices(model: Model, ratio: Array, shapes: Array) -> dict[str, Array]:
     return {"normal": over_largest(eta), "bending": over_largest(theta), "coupling": coupling(model, eta, theta)}
 
 
-def _response(asked: FollowedInputs, model: Model, value: float) -> Response:
+def _response(asked: FollowedPair, model: Model, value: float) -> Response:
     from fegear.results.drawn_transmissibility import mesh_forces
 
     found, undamped = resolved_response(model, asked.part.lambda_from, asked.part.lambda_to)
@@ -142,7 +152,7 @@ def _present(data: tuple[FollowedData, ...], asked: FollowedInputs) -> Outcome:
             tables.append(_response_table(asked.name, one))
             figures.append(response_figure(asked.name, one))
     least = min((one.modes.likeness for one in data), default=1.0)
-    settings: dict[str, object] = {"least_likeness": least, "damping_ratio": asked.part.damping_ratio}
+    settings: dict[str, object] = {"least_likeness": least, "damping_ratio": asked.pair.part.damping_ratio}
     return Outcome(data, tuple(tables), (), settings, tuple(remarks), tuple(figures))
 
 
@@ -221,7 +231,8 @@ FOLLOWED_MODES = Stage(
     results=("followed-modes",),
     about="modes of a helical pair followed over bearing stiffness, helix angle or mesh parameters",
     subjects=_pairs,
-    inputs=lambda scene, name: FollowedInputs(scene.case.transmissibility[name], mesh_of(scene, name), name),
+    needs=mesh_needs,
+    inputs=lambda scene, name: FollowedInputs(helical_pair_inputs(scene, name), name),
     compute=_compute,
     present=_present,
     check=_check,

@@ -16,16 +16,18 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.errors import InputError
-from fegear.models.helical_pair import mesh_of
+from fegear.models.helical_pair import helical_pair_inputs
 from fegear.results.drawn_pair_forces import COMPONENTS, forces_figure, spectrum_figure
+from fegear.results.mesh_stiffness_matrix import loaded_harmonics, mesh_stiffness_of
+from fegear.results.transmissibility import mesh_needs, own_mesh
 
 if TYPE_CHECKING:
     from fegear.arrays import Array, Complex
-    from fegear.case.pair_excitation import ExcitationPart
+    from fegear.case.pair_excitation import ExcitationPart, MeshErrorPart
     from fegear.case.reading import Scene
-    from fegear.dynamics.helical_pair import HelicalPairModel
     from fegear.dynamics.pair_forces import Line, PairForces
     from fegear.engine.stage import Upstream, Work
+    from fegear.models.helical_pair import HelicalPairInputs
 
 #: Harmonics of a pair or a table that are taken by default.
 _HARMONICS = 8
@@ -43,26 +45,26 @@ class PairForcesInputs:
 
     Parameters
     ----------
-    model : HelicalPairModel
+    pair : HelicalPairInputs
     excitation : ExcitationPart
     harmonics : ndarray of complex, shape (N,)
         Of the transmission error, 1 to N, where the case or a table gives them [m]; empty where a pair does.
     teeth : int
         Of the driver; zero without transmission error.
     arm : float
-        Base radius of the helical pair's gear, which turns its transmission error into a length; zero for a spur pair.
-    ratio : float
-        Speed of the driven gear over that of the driver.
+        Base radius of a rigid helical pair's gear, which turns its transmission error into a length; zero for others.
+    flanks : str
+        Name of the pair whose loaded flanks over the face excite; empty for others.
     name : str
         Of the pair.
     """
 
-    model: HelicalPairModel
+    pair: HelicalPairInputs
     excitation: ExcitationPart
     harmonics: Complex
     teeth: int
     arm: float
-    ratio: float
+    flanks: str
     name: str = field(compare=False)
 
 
@@ -92,22 +94,38 @@ class PairForcesData:
 def _inputs(scene: Scene, name: str) -> PairForcesInputs:
     part, prefix = scene.case.transmissibility[name], f"transmissibility.{name}"
     excitation = _excitation(scene, name)
-    model = part.build_both(mesh_of(scene, name), prefix)
-    error, teeth, arm = excitation.transmission_error, excitation.teeth or 0, 0.0
+    asked = helical_pair_inputs(scene, name)
+    if asked.mesh is not None:
+        part.build_both(asked.mesh, prefix)  # refuses what cannot be built before anything runs
+    error, teeth, arm, flanks = excitation.transmission_error, excitation.teeth or 0, 0.0, ""
     harmonics = np.zeros(0, dtype=complex)
     if error is not None and error.pair is not None:
         pair = scene.case.pair[error.pair]
         teeth = scene.case.gear[pair.driver].teeth
-        if error.pair not in scene.spur_pairs:
-            arm = scene.helical_pairs[error.pair].gear.base_radius
+        source = _source(scene, name, error)
+        arm = scene.helical_pairs[error.pair].gear.base_radius if source == "tooth-contact" else 0.0
+        flanks = error.pair if source == "loaded-flanks" else ""
     elif error is not None and error.amplitude is not None:
         harmonics = np.zeros(error.harmonic or 1, dtype=complex)
         harmonics[-1] = error.amplitude
     elif error is not None and error.file is not None:
         harmonics = _read_harmonics(scene, error.file, f"{prefix}.excitation.transmission_error.file")
         harmonics = harmonics[: error.harmonics or _HARMONICS]
-    ratio = model.driver.base_radius / model.driven.base_radius
-    return PairForcesInputs(model, excitation, harmonics, teeth if error else 0, arm, ratio, name)
+    return PairForcesInputs(asked, excitation, harmonics, teeth if error else 0, arm, flanks, name)
+
+
+def _source(scene: Scene, name: str, error: MeshErrorPart) -> str:
+    """Stage whose transmission error excites: of plane teeth, of rigid flanks, or of flanks loaded over the face."""
+    pair = error.pair or ""
+    if pair not in scene.wide_pairs:
+        if error.flanks == "rigid":
+            raise InputError(
+                f"transmissibility.{name}.excitation.transmission_error.flanks", '"rigid"',
+                f"knows helical gears only, and those of pair {pair} are spur", "leave it out",
+            )  # fmt: skip
+        return "transmission-error"
+    its_own = scene.case.transmissibility[name].mesh.pair == pair or pair not in scene.helical_pairs
+    return "tooth-contact" if (error.flanks or ("loaded" if its_own else "rigid")) == "rigid" else "loaded-flanks"
 
 
 def _read_harmonics(scene: Scene, file: str, key: str) -> Complex:
@@ -142,29 +160,41 @@ def _excitation(scene: Scene, name: str) -> ExcitationPart:
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    error = _excitation(scene, name).transmission_error
+    error, mesh = _excitation(scene, name).transmission_error, mesh_needs(scene, name)
     if error is None or error.pair is None:
-        return ()
-    return (Task("transmission-error" if error.pair in scene.spur_pairs else "tooth-contact", error.pair),)
+        return mesh
+    source = _source(scene, name, error)
+    return (*mesh, Task("mesh-stiffness-matrix" if source == "loaded-flanks" else source, error.pair))
 
 
 def _check(scene: Scene, name: str) -> None:
-    """Refuse a pair whose helix is not that of the mesh that it shakes."""
-    error = _excitation(scene, name).transmission_error
+    """Refuse a pair whose helix is not that of the mesh that it shakes, and more harmonics than its positions tell."""
+    error, prefix = _excitation(scene, name).transmission_error, f"transmissibility.{name}"
     if error is None or error.pair is None:
         return
-    own = scene.case.transmissibility[name].mesh.base_helix_angle
+    mesh = scene.case.transmissibility[name].mesh
+    own = mesh.base_helix_angle if mesh.pair is None else scene.pairs[mesh.pair].driver.base_helix_angle
     angle = scene.pairs[error.pair].driver.base_helix_angle
     if abs(abs(own) - abs(angle)) > _SAME_ANGLE:
         raise InputError(
-            f"transmissibility.{name}.mesh.base_helix_angle", f"{math.degrees(own):.6g} deg",
+            f"{prefix}.mesh.base_helix_angle", f"{math.degrees(own):.6g} deg",
             f"is not that of pair {error.pair}, {math.degrees(abs(angle)):.6g} deg",
             "give the pair's own, or the harmonics of the transmission error as a file",
         )  # fmt: skip
-    positions, count = scene.case.tooth_contact.positions, error.harmonics or _HARMONICS
-    if error.pair not in scene.spur_pairs and positions < _EACH * count:
+    source = _source(scene, name, error)
+    if error.shuttling and (source != "loaded-flanks" or mesh.pair != error.pair):
         raise InputError(
-            "tooth_contact.positions", positions, f"is too few for {count} harmonics",
+            f"{prefix}.excitation.transmission_error.shuttling", "true",
+            "is known of the loaded flanks that the mesh is taken from", f'write mesh = {{ pair = "{error.pair}" }}',
+        )  # fmt: skip
+    tables = {"tooth-contact": "tooth_contact", "loaded-flanks": "load_distribution"}
+    if source not in tables:
+        return
+    positions = getattr(scene.case, tables[source]).positions
+    count = error.harmonics or (_HARMONICS if source == "tooth-contact" else 0)
+    if positions < _EACH * count:
+        raise InputError(
+            f"{tables[source]}.positions", positions, f"is too few for {count} harmonics",
             f"give at least {_EACH * count} positions",
         )  # fmt: skip
 
@@ -172,12 +202,16 @@ def _check(scene: Scene, name: str) -> None:
 def _pair_harmonics(asked: PairForcesInputs, upstream: Upstream) -> tuple[Complex, Array | None]:
     """Harmonics of the transmission error of the case's own pair [m], positive for removed material; their errors.
 
+    Those of loaded flanks over the face are `loaded_harmonics`.
+
     Those of a spur pair are estimated with its compliances. Of a helical pair the harmonics come from positions over
     the cycle: the error is what every second one alone would change, aliasing at the kinks of rigid flanks.
     """
     error = asked.excitation.transmission_error
     count = (error.harmonics if error else None) or _HARMONICS
-    (found,) = upstream.values()
+    if asked.flanks:
+        return loaded_harmonics(mesh_stiffness_of(upstream, asked.flanks), count, error is not None and error.shuttling)
+    (found,) = (one for task, one in upstream.items() if task.stage in ("transmission-error", "tooth-contact"))
     if asked.arm == 0.0:
         series = found.exact[found.pair.loads.index(found.pair.nominal)].series
         errors = None if found.shift is None else np.asarray(found.shift.amplitude[:count])
@@ -197,21 +231,23 @@ def _harmonics(values: Array, step: int, count: int) -> Complex:
     return np.asarray(2.0 / values.size * np.exp(-2j * np.pi * turns) @ (weights * values[at]))
 
 
-def _lines(asked: PairForcesInputs, harmonics: Complex) -> list[Line]:
+def _lines(asked: PairForcesInputs, harmonics: Complex, ratio: float) -> list[Line]:
+    """Lines of harmonics (N,) along the case's coordinate, or (N, 5) over q; `ratio` driven speed over driver's."""
     from fegear.dynamics.helical_pair import COORDINATES
     from fegear.dynamics.pair_forces import Line
 
     part, lines = asked.excitation, []
     if part.transmission_error is not None:
         along = np.eye(5)[COORDINATES.index(part.transmission_error.along)]
+        each = harmonics if harmonics.ndim == 2 else harmonics[:, None] * along
         lines += [
-            Line((n + 1) * asked.teeth, error=tuple(size * along), source="transmission error")
-            for n, size in enumerate(harmonics)
-            if size != 0.0
+            Line((n + 1) * asked.teeth, error=tuple(size), source="transmission error")
+            for n, size in enumerate(each)
+            if np.any(size != 0.0)
         ]
     for number, force in enumerate(part.external, start=1):
         sizes = tuple(size * cmath.exp(1j * force.phase) for size in force.components)
-        turns = 1.0 if force.on == "driver" else asked.ratio
+        turns = 1.0 if force.on == "driver" else ratio
         order, frequency = (force.order or 0.0) * turns, 2.0 * math.pi * (force.frequency or 0.0)
         source = f"external {number}"
         if force.on == "driver":
@@ -225,9 +261,12 @@ def _compute(asked: PairForcesInputs, upstream: Upstream, _work: Work) -> PairFo
     from fegear.dynamics.pair_forces import pair_forces, resonant_speeds
     from fegear.dynamics.resolved_response import resolved_grid
 
-    model, part = asked.model, asked.excitation
-    harmonics, doubts = _pair_harmonics(asked, upstream) if upstream else (asked.harmonics, np.zeros(0))
-    lines = _lines(asked, harmonics)
+    part, error = asked.excitation, asked.excitation.transmission_error
+    model = asked.pair.part.build_both(own_mesh(asked.pair, upstream)[0], asked.pair.prefix)
+    ratio = model.driver.base_radius / model.driven.base_radius
+    of_pair = error is not None and error.pair is not None
+    harmonics, doubts = _pair_harmonics(asked, upstream) if of_pair else (asked.harmonics, np.zeros(0))
+    lines = _lines(asked, harmonics, ratio)
     if not lines:
         raise InputError(
             f"transmissibility.{asked.name}.excitation.transmission_error", "without harmonics", "excites nothing",
@@ -243,7 +282,7 @@ def _compute(asked: PairForcesInputs, upstream: Upstream, _work: Work) -> PairFo
                 lambda omega: _drawn_sizes(pair_forces(model, lines, omega)), start,
                 np.setdiff1d(resonant, undamped), undamped,
             )  # fmt: skip
-        off = [] if doubts is None else _lines(replace(asked, excitation=_alone(part)), doubts.astype(complex))
+        off = [] if doubts is None else _lines(replace(asked, excitation=_alone(part)), doubts.astype(complex), ratio)
         spectrum = part.speed or float(speeds[np.argmax(rms(found.normal))])
         return PairForcesData(
             found, pair_forces(model, lines, grid), pair_forces(model, lines, [spectrum]),

@@ -13,9 +13,10 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
-from fegear.models.helical_pair import mesh_of
+from fegear.models.helical_pair import full_matrix_frequencies, helical_pair_inputs, mesh_of_pair
 from fegear.results.drawn_mode_shapes import mode_shape_figures
 from fegear.results.drawn_transmissibility import LENGTHS, indices_figure, mesh_forces, response_figures
+from fegear.results.mesh_stiffness_matrix import mesh_stiffness_of, needs_mesh_stiffness, over_q
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
     from fegear.dynamics.mesh_parameters import MeshParameters
     from fegear.dynamics.modal_indices import ModeTable, RankedMode
     from fegear.dynamics.transmissibility import ReducedTransmissibility, Transmissibility
-    from fegear.engine.stage import Upstream, Work
+    from fegear.engine.stage import Task, Upstream, Work
+    from fegear.models.helical_pair import HelicalPairInputs
+    from fegear.results.mesh_stiffness_matrix import MeshStiffnessData
 
 #: Even points from which a drawn response starts; it is refined wherever it bends.
 _DRAWN = 241
@@ -46,6 +49,12 @@ class TransmissibilityData:
         At frequencies that show every peak and every zero.
     undamped : ndarray
         Lambda of the poles among them.
+    model : HelicalPairModel or ReducedPairModel
+    mesh_error : ndarray, shape (3,)
+        Estimated errors of K_M [N/m], kappa and mu; zero where the case gives them.
+    full : ndarray
+        Natural frequencies [rad/s] with the whole mesh stiffness matrix, each gear tilting about its own axis; empty
+        where the mesh is not a pair's.
     """
 
     mesh: MeshParameters
@@ -54,14 +63,19 @@ class TransmissibilityData:
     response: Transmissibility | ReducedTransmissibility
     drawn: Transmissibility | ReducedTransmissibility
     undamped: NDArray[np.float64]
+    model: HelicalPairModel | ReducedPairModel
+    mesh_error: NDArray[np.float64]
+    full: NDArray[np.float64]
 
 
-def _mode_table(name: str, modes: ModeTable, ranking: list[RankedMode]) -> Table:
+def _mode_table(name: str, modes: ModeTable, ranking: list[RankedMode], full: NDArray[np.float64]) -> Table:
     def ranked(excitation: str, field: str) -> NDArray[np.float64]:
         rows = sorted((row for row in ranking if row.excitation == excitation), key=lambda row: row.mode)
         return np.array([getattr(row, field) for row in rows])
 
     count = modes.ratio.size
+    what = "with the whole mesh stiffness matrix, each gear tilting about its own axis"
+    whole = (Column("frequency_full_matrix", full / (2.0 * math.pi), "Hz", what),) if full.size else ()
     return Table(
         f"helical_modes_{name}",
         (
@@ -75,6 +89,7 @@ def _mode_table(name: str, modes: ModeTable, ranking: list[RankedMode]) -> Table
             Column("weight_normal", ranked("normal", "weight"), "", "modal mesh force over the largest"),
             Column("rank_bending", ranked("bending", "rank"), "", "rank for bending error and moments"),
             Column("weight_bending", ranked("bending", "weight"), "", "modal mesh moment over the largest"),
+            *whole,
         ),
         f"Modes of pair {name}",
     )
@@ -131,40 +146,66 @@ class TransmissibilityInputs:
 
     Parameters
     ----------
-    model : HelicalPairModel or ReducedPairModel
-    mesh : MeshParameters
+    pair : HelicalPairInputs
     ratios : ndarray, shape (F,)
         Frequencies over sqrt(K_M/m_eq).
-    damping_ratio : float
     name : str
         Of the pair.
     """
 
-    model: HelicalPairModel | ReducedPairModel
-    mesh: MeshParameters
+    pair: HelicalPairInputs
     ratios: NDArray[np.float64]
-    damping_ratio: float
     name: str = field(compare=False)
 
 
 def _inputs(scene: Scene, name: str) -> TransmissibilityInputs:
     part = scene.case.transmissibility[name]
-    mesh = mesh_of(scene, name)
-    model = part.build(mesh, f"transmissibility.{name}")
     ratios = np.linspace(part.lambda_from, part.lambda_to, part.frequencies)
-    return TransmissibilityInputs(model, mesh, ratios, part.damping_ratio, name)
+    asked = helical_pair_inputs(scene, name)
+    if asked.mesh is not None:
+        asked.part.build(asked.mesh, asked.prefix)  # refuses what cannot be built before anything runs
+    return TransmissibilityInputs(asked, ratios, name)
 
 
-def _compute(asked: TransmissibilityInputs, _upstream: Upstream, _work: Work) -> TransmissibilityData:
+def mesh_needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    """The mesh of the pair that ``[transmissibility.NAME]`` takes its mesh from."""
+    pair = scene.case.transmissibility[name].mesh.pair
+    return () if pair is None else needs_mesh_stiffness(pair)
+
+
+def own_mesh(asked: HelicalPairInputs, upstream: Upstream) -> tuple[MeshParameters, NDArray[np.float64]]:
+    """The mesh of the model, and the estimated errors of K_M [N/m], kappa and mu."""
+    if asked.mesh is not None or asked.pair is None or asked.part.mesh.pair is None:
+        return asked.mesh or asked.part.mesh.build(), np.zeros(3)
+    found = mesh_stiffness_of(upstream, asked.part.mesh.pair)
+    stiffness, kappa, mu = (float(v) for v in found.mean)
+    return mesh_of_pair(asked.pair, stiffness, kappa, mu), found.mean_error
+
+
+def _compute(asked: TransmissibilityInputs, upstream: Upstream, _work: Work) -> TransmissibilityData:
     from fegear.dynamics.modal_indices import mode_table, rank_modes
 
-    model = asked.model
+    mesh, doubt = own_mesh(asked.pair, upstream)
+    model = asked.pair.part.build(mesh, asked.pair.prefix)
     try:
         response = frequency_response(model, model.natural_frequency * asked.ratios)
         drawn, undamped = resolved_response(model, float(asked.ratios[0]), float(asked.ratios[-1]))
     except InputError as error:
         raise at(f"transmissibility.{asked.name}", error) from None
-    return TransmissibilityData(asked.mesh, mode_table(model), rank_modes(model), response, drawn, undamped)
+    full = np.empty(0)
+    if asked.pair.part.mesh.pair is not None:
+        full = _with_full_matrix(model, mesh_stiffness_of(upstream, asked.pair.part.mesh.pair))
+    return TransmissibilityData(
+        mesh, mode_table(model), rank_modes(model), response, drawn, undamped, model, doubt, full
+    )  # fmt: skip
+
+
+def _with_full_matrix(model: HelicalPairModel | ReducedPairModel, found: MeshStiffnessData) -> NDArray[np.float64]:
+    from fegear.dynamics.helical_pair import HelicalPairModel
+
+    if not isinstance(model, HelicalPairModel):
+        return np.empty(0)
+    return full_matrix_frequencies(model, over_q(found.found, found.mean_matrix))
 
 
 def frequency_response(
@@ -201,24 +242,41 @@ def resolved_response(
 
 def _present(data: TransmissibilityData, asked: TransmissibilityInputs) -> Outcome:
     name, mesh = asked.name, data.mesh
-    omega = asked.model.natural_frequency / (2.0 * math.pi)
+    omega = data.model.natural_frequency / (2.0 * math.pi)
+    stiffness, kappa, mu = (float(v) for v in data.mesh_error)
     values = (
-        Value(f"{name}.omega", omega, "Hz", 0.0, "sqrt(K_M/m_eq)"),
-        Value(f"{name}.mesh_stiffness", mesh.stiffness, "N/um", 0.0, "K_M"),
-        Value(f"{name}.kappa", mesh.kappa, "", 0.0, "axial centre of the mesh stiffness over half the face"),
-        Value(f"{name}.mu", mesh.mu, "", 0.0, "rotary mesh stiffness"),
+        Value(f"{name}.omega", omega, "Hz", 0.5 * omega * stiffness / mesh.stiffness, "sqrt(K_M/m_eq)"),
+        Value(f"{name}.mesh_stiffness", mesh.stiffness, "N/um", stiffness, "K_M"),
+        Value(f"{name}.kappa", mesh.kappa, "", kappa, "axial centre of the mesh stiffness over half the face"),
+        Value(f"{name}.mu", mesh.mu, "", mu, "rotary mesh stiffness"),
     )
     tables = (
-        _mode_table(name, data.modes, data.ranking), _shapes_table(name, data.modes),
+        _mode_table(name, data.modes, data.ranking, data.full), _shapes_table(name, data.modes),
         _response_table(name, data.response),
     )  # fmt: skip
     figures = (
-        indices_figure(name, data.modes), *mode_shape_figures(name, asked.model, data.modes),
+        indices_figure(name, data.modes), *mode_shape_figures(name, data.model, data.modes),
         *response_figures(name, data.mesh.stiffness, data.drawn, data.undamped),
     )  # fmt: skip
-    settings = {"damping_ratio": asked.damping_ratio, "frequencies": asked.ratios.size}
+    settings = {"damping_ratio": asked.pair.part.damping_ratio, "frequencies": asked.ratios.size}
     remarks = tuple(f"Pair {name}: {remark}." for remark in data.modes.remarks)
-    return Outcome(data, tables, values, settings, remarks, figures)
+    return Outcome(data, tables, values, settings, (*remarks, *_two_parameters(name, data)), figures)
+
+
+def _two_parameters(name: str, data: TransmissibilityData) -> tuple[str, ...]:
+    """Say what the two-parameter form of the mesh does to the natural frequencies."""
+    own = data.modes.frequency
+    flexible = (own > 0.0) & (data.full > 0.0) if data.full.size else np.zeros(own.size, dtype=bool)
+    if not flexible.any():
+        return ()
+    change = np.where(flexible, data.full / np.where(flexible, own, 1.0) - 1.0, 0.0)
+    worst = int(np.argmax(np.abs(change)))
+    sentence = (
+        f"Pair {name}: one kappa for both gears lets them tilt about the pitch axis. With the whole mesh stiffness "
+        f"matrix, each tilting about its own axis, natural frequencies move by up to {change[worst]:+.2%} (mode "
+        f"{worst + 1}, {own[worst] / (2.0 * math.pi):.5g} Hz); the table has them."
+    )
+    return (sentence,)
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
@@ -233,6 +291,7 @@ TRANSMISSIBILITY = Stage(
     results=("transmissibility",),
     about="forces that a helical pair passes from its mesh to its bearings, over frequency",
     subjects=lambda scene: tuple(scene.case.transmissibility),
+    needs=mesh_needs,
     inputs=_inputs,
     compute=_compute,
     present=_present,

@@ -31,7 +31,7 @@ from fegear.contact.flank.lines import base_twist
 from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array, Mask
+    from fegear.arrays import Array, Complex, Mask
     from fegear.contact.flank.lines import ContactLines
     from fegear.contact.flank.loaded import LoadedFlanks
     from fegear.geometry.pair import GearPair
@@ -47,6 +47,10 @@ class MeshStiffness(ReadOnlyArrays):
     Parameters
     ----------
     pair : GearPair
+    roll, weight, straight : ndarray, shape (P,)
+        Roll positions [m], what part of a base pitch each stands for, and the same for straight lines between them.
+    load : ndarray, shape (L,)
+        W, along the transverse line of action [N].
     moments : ndarray, shape (3, P, L)
         k_0 [N/m], k_1 [N] and k_2 [N m], transverse.
     lever : ndarray, shape (P, L)
@@ -56,6 +60,10 @@ class MeshStiffness(ReadOnlyArrays):
     """
 
     pair: GearPair
+    roll: Array
+    weight: Array
+    straight: Array
+    load: Array
     moments: Array
     lever: Array
     stations: Array
@@ -67,8 +75,27 @@ class MeshStiffness(ReadOnlyArrays):
 
     @property
     def mean_moments(self) -> Array:
-        """Averages over the roll positions, shape (3, L)."""
-        return np.asarray(self.moments.mean(axis=1))
+        """Averages over a base pitch, shape (3, L)."""
+        return self.mean(np.moveaxis(self.moments, 1, 0))
+
+    def mean(self, values: Array) -> Array:
+        """Mean over a base pitch of values at the roll positions, shape (P, ...)."""
+        return np.asarray(np.tensordot(self.weight, values, axes=1))
+
+    def harmonics(self, values: Array, count: int, *, straight: bool = False) -> Complex:
+        """Complex amplitudes c_n of f = mean + Re sum c_n exp(2 pi i n x_0 / p_bt), n from 1, shape (count, ...).
+
+        Parameters
+        ----------
+        values : ndarray, shape (P, ...)
+        count : int
+            At most a quarter of the roll positions are given.
+        straight : bool
+            By the trapezoidal rule between the roll positions, which shows the error of the better one.
+        """
+        turns = np.outer(np.arange(1, min(count, self.roll.size // 4) + 1), self.roll / self.pair.base_pitch)
+        weight = self.straight if straight else self.weight
+        return np.asarray(2.0 * np.tensordot(np.exp(-2j * np.pi * turns) * weight, values, axes=1))
 
     @property
     def parameters(self) -> Array:
@@ -112,7 +139,22 @@ def mesh_stiffness(found: LoadedFlanks) -> MeshStiffness:
         moments[2, :, case] = np.einsum("pm,pm->p", ways[:, :, 1], moved[:, :, 1])
         stations[:, :, case] = moved[:, :, 0]
     arm = np.einsum("pml,pm->pl", force, lever) / found.load
-    return MeshStiffness(found.pair, moments, arm, stations)
+    roll, pitch = known.lines.roll, found.pair.base_pitch
+    weight = known.lines.weight if known.lines.weight.size else np.full(roll.size, 1.0 / roll.size)
+    return MeshStiffness(found.pair, roll, weight, _straight(roll, weight, pitch), found.load, moments, arm, stations)
+
+
+def _straight(roll: Array, weight: Array, pitch: float) -> Array:
+    """Weights of the trapezoidal rule around the base pitch; of every second position where they stand evenly."""
+    gap = np.diff(roll, append=roll[0] + pitch)
+    rule = 0.5 * (gap + np.roll(gap, 1)) / pitch
+    if np.abs(rule - weight).max() > 1e-9:
+        return np.asarray(rule)
+    at = np.arange(0, roll.size, 2)
+    apart = np.diff(roll[at], append=roll[0] + pitch)
+    rule = np.zeros(roll.size)
+    rule[at] = 0.5 * (apart + np.roll(apart, 1)) / pitch
+    return rule
 
 
 def tilt_lever(pair: GearPair, lines: ContactLines) -> Array:
@@ -149,7 +191,8 @@ def mesh_parameters_of(pair: GearPair, moments: Array) -> Array:
 
 def even_moments(pair: GearPair, lines: ContactLines) -> Array:
     """Moments over their first of contact lines that are everywhere equally stiff, averaged over all, shape (3,)."""
-    h, g = lines.panel, tilt_lever(pair, lines)
+    weight = lines.weight if lines.weight.size else np.ones(lines.roll.size)
+    h, g = weight[:, None] * lines.panel, tilt_lever(pair, lines)
     g0, g1 = g[:, :-1], g[:, 1:]
     total = float(h.sum())
     first, second = float((h * (g0 + g1)).sum()) / 2.0, float((h * (g0**2 + g0 * g1 + g1**2)).sum()) / 3.0
