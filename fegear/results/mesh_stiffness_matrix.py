@@ -147,13 +147,13 @@ def _harmonics(name: str, data: MeshStiffnessData) -> Table:
 
 def _loads(name: str, data: MeshStiffnessData) -> Table:
     mean = data.found.mean_parameters
+    lever = math.cos(data.found.pair.driver.base_helix_angle) * data.found.mean(data.found.lever)
     columns = (
         Column("load", data.flanks.found.load, "N", "along the transverse line of action"),
         Column("K_M", mean[0], "N/um", "of the mean matrix"),
         Column("kappa", mean[1], "", "of the mean matrix"),
         Column("mu", mean[2], "", "of the mean matrix"),
-        Column("force_lever", math.cos(data.found.pair.driver.base_helix_angle) * data.found.mean(data.found.lever), "mm",
-               "mean over the base pitch"),
+        Column("force_lever", lever, "mm", "mean over the base pitch"),
     )  # fmt: skip
     return Table(f"mesh_stiffness_loads_{name}", columns, f"Mean mesh stiffness of pair {name} under every load")
 

@@ -219,7 +219,7 @@ def test_parameters_are_those_of_the_paper(known):
     stiffness, kappa, mu = mesh_parameters_of(pair, ms.mean_moments)[:, 0]
     paper = MeshParameters(stiffness, kappa, mu, math.atan(slope)).matrix()
     # driver of the full matrix in q = (y, z, -b theta_x, -r theta_y, -r theta_z), tilting about the pitch axis
-    full = ms.matrix.mean(axis=0)[0][1:6, 1:6]
+    full = np.tensordot(ms.weight, ms.matrix[:, 0], axes=1)[1:6, 1:6]
     own = np.diag([1.0, 1.0, -1.0 / b, -1.0 / r, -1.0 / r])
     lift = np.eye(5)
     lift[1, 2] = r * math.tan(pair.working_pressure_angle) / b  # the axis stays where the pitch point is
