@@ -19,11 +19,9 @@ if TYPE_CHECKING:
     from fegear.arrays import Array, Complex
     from fegear.case.reading import Scene
     from fegear.contact.flank.mesh_matrix import MeshStiffness
+    from fegear.contact.fourier import Panels
     from fegear.engine.stage import Upstream, Work
     from fegear.results.loaded_flanks import LoadedFlanksData
-
-#: Harmonics of the mesh cycle in the table.
-_HARMONICS = 16
 
 
 @dataclass(frozen=True)
@@ -51,11 +49,13 @@ class MeshStiffnessData:
 
     @property
     def mean_error(self) -> Array:
-        """Their estimated errors: of the coarser solution, and of straight lines between the roll positions."""
+        """Their estimated errors: of the coarser solution, and of half as many roll positions."""
         from fegear.contact.flank.mesh_matrix import mesh_parameters_of
+        from fegear.contact.flank.transmission_error import from_half
 
         i, found = self.flanks.nominal, self.found
-        half = mesh_parameters_of(found.pair, found.moments[:, :, i] @ found.straight)
+        fewer = np.stack([from_half(found.points, moment) for moment in found.moments[:, :, i]], axis=1)
+        half = mesh_parameters_of(found.pair, found.mean(fewer))
         return np.asarray(np.abs(self.other.mean_parameters[:, i] - self.mean) + np.abs(half - self.mean))
 
     @property
@@ -85,8 +85,10 @@ def _compute(asked: MeshStiffnessInputs, upstream: Upstream, _work: Work) -> Mes
     from fegear.contact.flank.mesh_matrix import even_moments, mesh_parameters_of, mesh_stiffness
 
     flanks = loaded_flanks(upstream, asked.name)
+    points = flanks.flanks.points
     even = mesh_parameters_of(flanks.found.pair, even_moments(flanks.found.pair, flanks.found.lines))
-    return MeshStiffnessData(flanks, mesh_stiffness(flanks.found), mesh_stiffness(flanks.error.coarse), even)
+    found, other = (mesh_stiffness(one, points) for one in (flanks.found, flanks.error.coarse))
+    return MeshStiffnessData(flanks, found, other, even)
 
 
 def _over_roll(name: str, data: MeshStiffnessData) -> Table:
@@ -132,15 +134,17 @@ def _mean_matrix(name: str, data: MeshStiffnessData) -> Table:
 def _harmonics(name: str, data: MeshStiffnessData) -> Table:
     i, found = data.flanks.nominal, data.found
     c, b = math.cos(found.pair.driver.base_helix_angle), found.half_width
-    scale = np.array([1.0 / c**2, 1.0 / (c * b), 1.0 / b**2])
-    series = np.abs(found.harmonics((scale[:, None] * found.moments[:, :, i]).T, _HARMONICS))
-    lever = np.abs(found.harmonics(c * found.lever[:, i], _HARMONICS))
+    from fegear.contact.flank.transmission_error import series_over_pitch
+
+    scale = (1.0 / c**2, 1.0 / (c * b), 1.0 / b**2, c)
+    curves = (*found.moments[:, :, i], found.lever[:, i])
+    series = [series_over_pitch(found.points, k * curve).amplitude for k, curve in zip(scale, curves, strict=True)]
     columns = (
-        Column("n", np.arange(1, len(series) + 1), "", "harmonic of the mesh frequency"),
-        Column("K_M", series[:, 0], "N/um", "0-peak"),
-        Column("kappa_K_M", series[:, 1], "N/um", "0-peak, coupling of translation and tilt"),
-        Column("mu_K_M", series[:, 2], "N/um", "0-peak, rotary stiffness over b^2"),
-        Column("force_lever", lever, "mm", "0-peak: the force wanders over the face under a constant load"),
+        Column("n", np.arange(1, series[0].size + 1), "", "harmonic of the mesh frequency"),
+        Column("K_M", series[0], "N/um", "0-peak"),
+        Column("kappa_K_M", series[1], "N/um", "0-peak, coupling of translation and tilt"),
+        Column("mu_K_M", series[2], "N/um", "0-peak, rotary stiffness over b^2"),
+        Column("force_lever", series[3], "mm", "0-peak: the force wanders over the face under a constant load"),
     )
     return Table(f"mesh_stiffness_harmonics_{name}", columns, f"Harmonics of the mesh stiffness of pair {name}")
 
@@ -179,7 +183,7 @@ def loaded_harmonics(data: MeshStiffnessData, count: int, shuttling: bool) -> tu
     ----------
     data : MeshStiffnessData
     count : int
-        At most a quarter of the roll positions.
+        At most half as many as roll positions.
     shuttling : bool
 
     Returns
@@ -187,15 +191,26 @@ def loaded_harmonics(data: MeshStiffnessData, count: int, shuttling: bool) -> tu
     ndarray of complex, shape (N, 5)
         0-peak [m].
     ndarray, shape (N, 5)
-        Changes by the coarser solution and by straight lines between the roll positions.
+        Changes by the coarser solution and by half as many roll positions.
     """
+    from fegear.contact.flank.transmission_error import from_half
+
     flanks = data.flanks
     found, other = (_over_q(one, te, flanks.nominal, shuttling) for one, te in (
         (data.found, flanks.found.transmission_error), (data.other, flanks.error.coarse.transmission_error)
     ))  # fmt: skip
-    series, straight = (data.found.harmonics(found, count, straight=rule) for rule in (False, True))
-    coarse = data.other.harmonics(other, count)
-    return series, np.abs(series - coarse) + np.abs(series - straight)
+    points = data.found.points
+    fewer = np.stack([from_half(points, curve) for curve in found.T], axis=1)
+    series, half, coarse = (_series(points, curves, count) for curves in (found, fewer, other))
+    return series, np.abs(series - coarse) + np.abs(series - half)
+
+
+def _series(points: Panels, curves: Array, count: int) -> Complex:
+    """Complex 0-peak amplitudes of curves (P, k) over the base pitch, shape (N, k)."""
+    from fegear.contact.flank.transmission_error import series_over_pitch
+
+    found = [2.0 * series_over_pitch(points, curve).coefficients[1 : count + 1] for curve in curves.T]
+    return np.stack(found, axis=1)
 
 
 def _over_q(one: MeshStiffness, te: Array, case: int, shuttling: bool) -> Array:

@@ -17,6 +17,7 @@ from fegear.contact.flank.mesh_matrix import (
     rigid_motion_rows,
     tilt_lever,
 )
+from fegear.contact.flank.positions import roll_points
 from fegear.fem.solid import SolidSettings, solve_solid
 from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
 
@@ -75,7 +76,7 @@ def test_moments_are_the_slopes_of_the_loaded_solution(known, gaps):
     flanks, matrix = known
     found = flanks.solve([LOAD], gaps, matrix)
     lever = hat_averages(found.lines, tilt_lever(flanks.pair, found.lines))
-    ms = mesh_stiffness(found)
+    ms = mesh_stiffness(found, flanks.points)
     k, k1, k2 = ms.moments[:, :, 0]
     # the scalar stiffness of the contact itself, by another path
     np.testing.assert_allclose(k, found.contact.stiffness[:, 0], rtol=1e-12)
@@ -96,7 +97,7 @@ def test_moments_are_the_slopes_of_the_loaded_solution(known, gaps):
 
 def test_the_matrix_is_that_of_two_rigid_bodies(known):
     flanks, matrix = known
-    ms = mesh_stiffness(flanks.solve([LOAD, 2 * LOAD], MISALIGNED, matrix))
+    ms = mesh_stiffness(flanks.solve([LOAD, 2 * LOAD], MISALIGNED, matrix), flanks.points)
     k = ms.matrix
     assert k.shape == (4, 2, 12, 12)
     np.testing.assert_allclose(k, np.swapaxes(k, -1, -2), rtol=1e-12)
@@ -143,9 +144,10 @@ def test_a_rigid_motion_closes_each_station_by_its_own_normal(known):
 
 def test_mirrored_hands_change_the_sign_of_the_coupling(solved, known):
     flanks, matrix = known
-    first = mesh_stiffness(flanks.solve([LOAD], MISALIGNED, matrix))
+    first = mesh_stiffness(flanks.solve([LOAD], MISALIGNED, matrix), flanks.points)
     mirrored = FlankGaps(face_position=MISALIGNED.face_position, line_gap=MISALIGNED.line_gap[::-1].copy())
-    second = mesh_stiffness(flank_pair(solved, "left").solve([LOAD], mirrored))
+    other = flank_pair(solved, "left")
+    second = mesh_stiffness(other.solve([LOAD], mirrored), other.points)
     stiff, kappa, mu = first.parameters
     np.testing.assert_allclose(second.parameters[0], stiff, rtol=1e-6)
     np.testing.assert_allclose(second.parameters[1], -kappa, atol=1e-6)
@@ -172,11 +174,11 @@ def winkler(pair, lines):
 @pytest.mark.parametrize("beta", [0.0, 25.0])
 def test_a_bed_of_even_springs_has_the_moments_of_its_lines(beta):
     pair = GearPair(gear(beta), gear(beta, "left"))
-    roll = pair.x_start + pair.base_pitch * (np.arange(8) + 0.5) / 8
-    lines = contact_lines(pair, roll, 1e-3)
+    points = roll_points(pair, 16)
+    lines = contact_lines(pair, points.x, 1e-3, points.weights / points.period)
     known = winkler(pair, lines)
     contact = solve_contact(known, np.zeros(lines.x.shape), np.array([1.0]))
-    ms = mesh_stiffness(LoadedFlanks(pair, known, contact, np.ones(1), {}))
+    ms = mesh_stiffness(LoadedFlanks(pair, known, contact, np.ones(1), {}), points)
     np.testing.assert_allclose(ms.moments[0, :, 0], lines.length, rtol=1e-10)
     mean = ms.mean_moments[:, 0]
     even = even_moments(pair, lines)
@@ -197,11 +199,11 @@ def test_a_wide_spur_face_nears_even_springs():
     wide = gear(0.0, width=27e-3)
     one = solid(wide)
     flanks = FlankPair(GearPair(wide, wide), {"driver": one, "driven": one}, positions=1, panel=1.0)
-    ms = mesh_stiffness(flanks.solve([3 * LOAD]))
+    ms = mesh_stiffness(flanks.solve([3 * LOAD]), flanks.points)
     narrow = gear(0.0, width=4.5e-3)
     two = solid(narrow)
     other = FlankPair(GearPair(narrow, narrow), {"driver": two, "driven": two}, positions=1, panel=0.5)
-    beside = mesh_stiffness(other.solve([0.5 * LOAD]))
+    beside = mesh_stiffness(other.solve([0.5 * LOAD]), other.points)
     assert np.abs(ms.parameters[1]).max() < 1e-6
     assert np.all(ms.parameters[2] > 1.0 / 3.0)
     assert np.all(ms.parameters[2] < 0.6 * beside.parameters[2])
@@ -213,13 +215,13 @@ def test_parameters_are_those_of_the_paper(known):
     from fegear.dynamics.mesh_parameters import MeshParameters
 
     flanks, matrix = known
-    ms = mesh_stiffness(flanks.solve([LOAD], MISALIGNED, matrix))
+    ms = mesh_stiffness(flanks.solve([LOAD], MISALIGNED, matrix), flanks.points)
     pair = flanks.pair
     r, b, slope = pair.driver.base_radius, ms.half_width, pair.driver.twist * pair.driver.base_radius
     stiffness, kappa, mu = mesh_parameters_of(pair, ms.mean_moments)[:, 0]
     paper = MeshParameters(stiffness, kappa, mu, math.atan(slope)).matrix()
     # driver of the full matrix in q = (y, z, -b theta_x, -r theta_y, -r theta_z), tilting about the pitch axis
-    full = np.tensordot(ms.weight, ms.matrix[:, 0], axes=1)[1:6, 1:6]
+    full = ms.mean(ms.matrix[:, 0])[1:6, 1:6]
     own = np.diag([1.0, 1.0, -1.0 / b, -1.0 / r, -1.0 / r])
     lift = np.eye(5)
     lift[1, 2] = r * math.tan(pair.working_pressure_angle) / b  # the axis stays where the pitch point is

@@ -31,9 +31,10 @@ from fegear.contact.flank.lines import base_twist
 from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array, Complex, Mask
+    from fegear.arrays import Array, Mask
     from fegear.contact.flank.lines import ContactLines
     from fegear.contact.flank.loaded import LoadedFlanks
+    from fegear.contact.fourier import Panels
     from fegear.geometry.pair import GearPair
 
 #: Coordinates of a gear: translations, and rotations about axes through its own in the middle of the common face.
@@ -47,8 +48,8 @@ class MeshStiffness(ReadOnlyArrays):
     Parameters
     ----------
     pair : GearPair
-    roll, weight, straight : ndarray, shape (P,)
-        Roll positions [m], what part of a base pitch each stands for, and the same for straight lines between them.
+    points : Panels
+        Roll positions over one base pitch and what each stands for [m].
     load : ndarray, shape (L,)
         W, along the transverse line of action [N].
     moments : ndarray, shape (3, P, L)
@@ -60,9 +61,7 @@ class MeshStiffness(ReadOnlyArrays):
     """
 
     pair: GearPair
-    roll: Array
-    weight: Array
-    straight: Array
+    points: Panels
     load: Array
     moments: Array
     lever: Array
@@ -80,22 +79,7 @@ class MeshStiffness(ReadOnlyArrays):
 
     def mean(self, values: Array) -> Array:
         """Mean over a base pitch of values at the roll positions, shape (P, ...)."""
-        return np.asarray(np.tensordot(self.weight, values, axes=1))
-
-    def harmonics(self, values: Array, count: int, *, straight: bool = False) -> Complex:
-        """Complex amplitudes c_n of f = mean + Re sum c_n exp(2 pi i n x_0 / p_bt), n from 1, shape (count, ...).
-
-        Parameters
-        ----------
-        values : ndarray, shape (P, ...)
-        count : int
-            At most a quarter of the roll positions are given.
-        straight : bool
-            By the trapezoidal rule between the roll positions, which shows the error of the better one.
-        """
-        turns = np.outer(np.arange(1, min(count, self.roll.size // 4) + 1), self.roll / self.pair.base_pitch)
-        weight = self.straight if straight else self.weight
-        return np.asarray(2.0 * np.tensordot(np.exp(-2j * np.pi * turns) * weight, values, axes=1))
+        return np.asarray(np.tensordot(self.points.weights / self.points.period, values, axes=1))
 
     @property
     def parameters(self) -> Array:
@@ -113,12 +97,14 @@ class MeshStiffness(ReadOnlyArrays):
         return mesh_matrix(self.pair, self.moments)
 
 
-def mesh_stiffness(found: LoadedFlanks) -> MeshStiffness:
+def mesh_stiffness(found: LoadedFlanks, points: Panels) -> MeshStiffness:
     """Tangent stiffness of loaded flanks under small rigid motions.
 
     Parameters
     ----------
     found : LoadedFlanks
+    points : Panels
+        Of its roll positions: `FlankPair.points`.
 
     Returns
     -------
@@ -139,22 +125,7 @@ def mesh_stiffness(found: LoadedFlanks) -> MeshStiffness:
         moments[2, :, case] = np.einsum("pm,pm->p", ways[:, :, 1], moved[:, :, 1])
         stations[:, :, case] = moved[:, :, 0]
     arm = np.einsum("pml,pm->pl", force, lever) / found.load
-    roll, pitch = known.lines.roll, found.pair.base_pitch
-    weight = known.lines.weight if known.lines.weight.size else np.full(roll.size, 1.0 / roll.size)
-    return MeshStiffness(found.pair, roll, weight, _straight(roll, weight, pitch), found.load, moments, arm, stations)
-
-
-def _straight(roll: Array, weight: Array, pitch: float) -> Array:
-    """Weights of the trapezoidal rule around the base pitch; of every second position where they stand evenly."""
-    gap = np.diff(roll, append=roll[0] + pitch)
-    rule = 0.5 * (gap + np.roll(gap, 1)) / pitch
-    if np.abs(rule - weight).max() > 1e-9:
-        return np.asarray(rule)
-    at = np.arange(0, roll.size, 2)
-    apart = np.diff(roll[at], append=roll[0] + pitch)
-    rule = np.zeros(roll.size)
-    rule[at] = 0.5 * (apart + np.roll(apart, 1)) / pitch
-    return rule
+    return MeshStiffness(found.pair, points, found.load, moments, arm, stations)
 
 
 def tilt_lever(pair: GearPair, lines: ContactLines) -> Array:

@@ -99,10 +99,14 @@ def flank_transmission_errors(found: LoadedFlanks, points: Panels) -> tuple[Flan
 
 
 def _error(load: float, points: Panels, values: Array, local: Array, secant: Array) -> FlankTransmissionError:
+    return FlankTransmissionError(load, points, values, local, secant, series_over_pitch(points, values))
+
+
+def series_over_pitch(points: Panels, values: Array) -> FourierSeries:
+    """Fourier series of what is known at the roll positions, shape (P,), as far as they show it."""
     count = points.x.size // _TO_A_WAVE
     between = panels(float(points.breaks[0]), points.period, points.breaks[1:-1], waves=max(count, 1))
-    series = fourier_series(between, curve_through(points, values, between.x), count)
-    return FlankTransmissionError(load, points, values, local, secant, series)
+    return fourier_series(between, curve_through(points, values, between.x), count)
 
 
 def secant_stiffness(known: FlankCompliance, force: Array) -> Array:
