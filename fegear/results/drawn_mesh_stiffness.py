@@ -54,9 +54,7 @@ def _over_roll(name: str, data: MeshStiffnessData) -> Figure:
 
 
 def _as_map(name: str, data: MeshStiffnessData) -> Figure:
-    from fegear.results.mesh_stiffness_matrix import over_q
-
-    matrix = over_q(data.found, data.mean_matrix) * 1e-6
+    matrix = data.mean_over_q * 1e-6
     places = np.arange(10.0)
     names = tuple(f"{c} {gear}" for gear in (1, 2) for c in _COORDINATES)
     size = float(np.abs(matrix).max())

@@ -59,9 +59,11 @@ class MeshStiffnessData:
         return np.asarray(np.abs(self.other.mean_parameters[:, i] - self.mean) + np.abs(half - self.mean))
 
     @property
-    def mean_matrix(self) -> Array:
-        """Mean over the base pitch under the nominal load, over `DIRECTIONS` of both gears, shape (12, 12)."""
-        return self.found.mean(self.found.matrix[:, self.flanks.nominal])
+    def mean_over_q(self) -> Array:
+        """Mean matrix under the nominal load over q of both gears, shape (10, 10) [N/m]; see `over_q`."""
+        from fegear.contact.flank.mesh_matrix import over_q
+
+        return over_q(self.found.pair, self.found.mean(self.found.matrix[:, self.flanks.nominal]))
 
 
 @dataclass(frozen=True)
@@ -109,18 +111,9 @@ def _over_roll(name: str, data: MeshStiffnessData) -> Table:
     return Table(f"mesh_stiffness_matrix_{name}", columns, f"Stiffness of the mesh of pair {name} over a base pitch")
 
 
-def over_q(found: MeshStiffness, matrix: Array) -> Array:
-    """A matrix over `DIRECTIONS` of both gears in q = (y, z, b theta_x, r_b theta_y, r_b theta_z), shape (10, 10)."""
-    b = found.half_width
-    sizes = [[1.0, 1.0, b, g.base_radius, g.base_radius] for g in (found.pair.driver, found.pair.driven)]
-    scale = 1.0 / np.concatenate(sizes)
-    keep = [1, 2, 3, 4, 5, 7, 8, 9, 10, 11]
-    return np.asarray(scale[:, None] * matrix[np.ix_(keep, keep)] * scale)
-
-
 def _mean_matrix(name: str, data: MeshStiffnessData) -> Table:
     """The mean matrix, each gear turning about its own axis."""
-    matrix = over_q(data.found, data.mean_matrix)
+    matrix = data.mean_over_q
     names = [f"{coordinate}_{gear}" for gear in ("driver", "driven")
              for coordinate in ("y", "z", "b_theta_x", "r_theta_y", "r_theta_z")]  # fmt: skip
     meaning = "force on the coordinate of the row per motion of this one; rotations as arcs at b or the base radius"

@@ -16,7 +16,7 @@ from fegear.errors import InputError
 from fegear.models.helical_pair import full_matrix_frequencies, helical_pair_inputs, mesh_of_pair
 from fegear.results.drawn_mode_shapes import mode_shape_figures
 from fegear.results.drawn_transmissibility import LENGTHS, indices_figure, mesh_forces, response_figures
-from fegear.results.mesh_stiffness_matrix import mesh_stiffness_of, needs_mesh_stiffness, over_q
+from fegear.results.mesh_stiffness_matrix import mesh_stiffness_of, needs_mesh_stiffness
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -205,7 +205,7 @@ def _with_full_matrix(model: HelicalPairModel | ReducedPairModel, found: MeshSti
 
     if not isinstance(model, HelicalPairModel):
         return np.empty(0)
-    return full_matrix_frequencies(model, over_q(found.found, found.mean_matrix))
+    return full_matrix_frequencies(model, found.mean_over_q)
 
 
 def frequency_response(

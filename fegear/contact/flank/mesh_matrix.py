@@ -192,3 +192,12 @@ def mesh_matrix(pair: GearPair, moments: Array) -> Array:
     core = np.moveaxis(np.array([[k, k1], [k1, k2]]), (0, 1), (-2, -1))
     rows = rigid_motion_rows(pair)
     return np.asarray(rows.T @ core @ rows)
+
+
+def over_q(pair: GearPair, matrix: Array) -> Array:
+    """A matrix (12, 12) over `DIRECTIONS` in q = (y, z, b theta_x, r_b theta_y, r_b theta_z) of both gears, (10, 10)."""
+    b = 0.5 * pair.face_width
+    sizes = [[1.0, 1.0, b, g.base_radius, g.base_radius] for g in (pair.driver, pair.driven)]
+    scale = 1.0 / np.concatenate(sizes)
+    keep = [1, 2, 3, 4, 5, 7, 8, 9, 10, 11]
+    return np.asarray(scale[:, None] * matrix[np.ix_(keep, keep)] * scale)
