@@ -195,7 +195,7 @@ def mesh_matrix(pair: GearPair, moments: Array) -> Array:
 
 
 def over_q(pair: GearPair, matrix: Array) -> Array:
-    """A matrix (12, 12) over `DIRECTIONS` in q = (y, z, b theta_x, r_b theta_y, r_b theta_z) of both gears, (10, 10)."""
+    """A matrix over `DIRECTIONS` of both gears in q = (y, z, b theta_x, r_b theta_y, r_b theta_z), shape (10, 10)."""
     b = 0.5 * pair.face_width
     sizes = [[1.0, 1.0, b, g.base_radius, g.base_radius] for g in (pair.driver, pair.driven)]
     scale = 1.0 / np.concatenate(sizes)
