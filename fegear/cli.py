@@ -17,6 +17,7 @@ from fegear.commands.effects import effects
 from fegear.commands.export import export
 from fegear.commands.help import Command, Group, context_settings
 from fegear.commands.new import new
+from fegear.commands.open import open  # noqa: A004
 from fegear.commands.plan import plan
 from fegear.commands.results import results
 from fegear.commands.run import run
@@ -53,6 +54,7 @@ def _options(
 #: The commands in the order of ``fegear --help``, and what it says of each.
 COMMANDS = (
     (new, "Write a commented case to start from."),
+    (open, "The live workbench: change a case and see the gears answer."),
     (results, "What a case can ask for."),
     (run, "Compute a case: tables, pictures, report."),
     (plan, "What a run would compute, why, and how long it takes."),

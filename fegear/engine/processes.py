@@ -14,7 +14,8 @@ from fegear.engine.point_job import Reply, failed
 from fegear.errors import FegearError
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator, Mapping
+    from collections.abc import Callable, Generator, Iterator, Mapping
+    from multiprocessing.process import BaseProcess
 
     from fegear.engine.point_job import Job
 
@@ -62,7 +63,7 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _settle() -> None:
+def settle() -> None:
     """Begin a worker's life: Ctrl-C is the parent's business, and no worker outlives a parent that was killed."""
     import signal
     from multiprocessing import connection, parent_process
@@ -124,6 +125,16 @@ def _without_main() -> Iterator[None]:
         sys.modules["__main__"] = main
 
 
+def start_process(target: Callable[..., None], *args: object) -> BaseProcess:
+    """Start one process of one thread that Ctrl-C does not reach and that ends with its parent once it has settled."""
+    from multiprocessing import get_context
+
+    process = get_context("spawn").Process(target=target, args=args)
+    with _one_thread_each(), _deaf_to_ctrl_c(), _without_main():
+        process.start()
+    return process
+
+
 def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from multiprocessing import active_children, get_context
@@ -131,7 +142,7 @@ def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
     with _one_thread_each():
         # Spawned, not forked: a fork would share gmsh's, numba's and OpenBLAS's state with its parent.
         others = {child.pid for child in active_children()}
-        pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_settle)
+        pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=settle)
         try:
             with _deaf_to_ctrl_c(), contextlib.nullcontext() if _from_main(job) else _without_main():
                 futures = {pool.submit(job, point): i for i, point in todo.items()}

@@ -46,6 +46,7 @@ LAYERS = {
     "studies": 9,
     "output": 10,
     "terminal": 10,
+    "window": 10.2,
     "commands": 10.5,
     "workbench": 11,
     "cli": 11,
@@ -72,13 +73,14 @@ DOORS = {
     "ezdxf": ["fegear.output.*"],
     "pandas": ["fegear.engine.table"],
     "IPython": ["fegear.terminal", "fegear.workbench.plots"],  # there where a notebook runs
+    "nicegui": ["fegear.window.*"],
     "xarray": ["fegear.workbench.results"],  # a reader of what a run leaves behind
 }
 
 #: What `import fegear` may not load.
 HEAVY = (
     "gmsh", "pyvista", "matplotlib", "dask", "skfem", "pint", "meshio", "plotly", "numba", "xarray", "scipy",
-    "jinja2", "pandas", "IPython",
+    "jinja2", "pandas", "IPython", "nicegui",
 )  # fmt: skip
 
 
@@ -157,7 +159,9 @@ def test_there_are_no_import_cycles(imports):
 
 def test_results_know_no_pictures(imports):
     faults = [str(one) for one in imports if _package(one.imported) == "output" and _package(one.importer) != "output"]
-    assert [fault for fault in faults if not fault.startswith(("fegear.commands.", "fegear.workbench."))] == []
+    assert [
+        fault for fault in faults if not fault.startswith(("fegear.commands.", "fegear.workbench.", "fegear.window."))
+    ] == []
 
 
 @pytest.mark.parametrize(
@@ -217,3 +221,16 @@ def test_a_plan_needs_none_of_the_mechanics_libraries():
     )
     run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
     assert run.stdout.split() == []
+
+
+def test_the_window_computes_and_draws_nothing_of_its_own(imports):
+    """What it shows comes through the engine, the results and the output: no mechanics below the case, no plotting."""
+    below = ("geometry", "formulas", "fem", "contact", "design", "helical", "dynamics", "models")
+    reached = [one for one in imports if _package(one.importer) == "window" and _package(one.imported) in below]
+    warmed = {
+        "fegear.contact",
+        "fegear.design",
+        "fegear.fem",
+        "fegear.models.settings",
+    }  # loaded before they are asked for
+    assert [str(one) for one in reached if one.importer != "fegear.window.worker" or one.imported not in warmed] == []

@@ -42,7 +42,7 @@ def test_the_program_prints_what_the_readme_says(tmp_path):
 def test_the_commands_are_there_and_set_themselves_up():
     commands, _ = blocks("sh")
     scripts = [line.split()[0] for line in commands.splitlines()]
-    assert scripts == ["./run.sh", "./test.sh", "./docs.sh"]
+    assert scripts == ["./run.sh", "./open.sh", "./test.sh", "./docs.sh"]
     for script in scripts:
         path = ROOT / script
         assert os.access(path, os.X_OK)

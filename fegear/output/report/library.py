@@ -39,10 +39,21 @@ def compression() -> Future[str]:
 
 
 def _compressed() -> str:
+    return base64.b64encode(gzip.compress(plotly_file().read_bytes(), _LEVEL, mtime=0)).decode()
+
+
+def plotly_file() -> Path:
+    """Where plotly.js lies.
+
+    Raises
+    ------
+    MissingLibraryError
+        If plotly's wheel is not there or has no script.
+    """
     spec = find_spec("plotly")
     folders = (spec.submodule_search_locations or []) if spec else []
     for folder in folders:
         path = Path(folder) / "package_data" / "plotly.min.js"
         if path.is_file():
-            return base64.b64encode(gzip.compress(path.read_bytes(), _LEVEL, mtime=0)).decode()
+            return path
     raise MissingLibraryError("plotly.js is missing, so the report has no plots; run: pip install plotly")

@@ -116,54 +116,14 @@
   addEventListener("afterprint", () => opened.forEach((fold) => { fold.open = false; }));
 
   // ---- figures -----------------------------------------------------------------------------------------------------
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  const printing = matchMedia("print");
-  const theme = () => (dark.matches && !printing.matches ? "dark" : "light");
-  // Figures come as plotly's own JSON in the shades of light ground; `shades` says what stands for each on dark ground.
-  const shadesOf = (text, mode, darker) =>
-    JSON.parse(mode === "dark" ? text.replace(/#[0-9A-F]{6}/g, (shade) => darker[shade] ?? shade) : text);
-  function fitted(layout, look, width) { // on narrow screens every name of the legend has a line of its own
-    const { names, inner, beside } = layout.meta, narrow = width < 560;
-    const more = narrow && names > 1 ? 21 * (names - Math.ceil(names / beside)) : 0, below = narrow ? 16 : 0;
-    const made = { ...layout, template: look, dragmode: narrow ? false : "zoom", height: layout.height + more + below,
-      font: { family: getComputedStyle(document.body).fontFamily },
-      margin: { ...layout.margin, t: layout.margin.t + more, b: layout.margin.b + below, ...(narrow ? { l: 58, r: 12 } : {}) } };
-    if (layout.updatemenus) made.updatemenus = layout.updatemenus.map((menu) => ({ ...menu, y: menu.y + more / inner }));
-    if (narrow) for (const [name, axis] of Object.entries(layout)) {
-      if (name.startsWith("xaxis")) made[name] = { ...axis, title: { text: axis.title.text.replace(/(.{24,}?) /, "$1<br>") } };
-    }
-    return made;
-  }
-  function optionsOf(key) {
-    // The buttons are named one by one: plotly's own choice holds one that sends the data away.
-    return { responsive: true, displaylogo: false, showTips: false, displayModeBar: "hover", plotlyServerURL: "",
-      modeBarButtons: [["toImage"], ["zoom2d", "pan2d", "resetScale2d"]],
-      toImageButtonOptions: { format: "svg", filename: key } };
-  }
+  const { dark, printing, theme, shadesOf, draw } = fegearFigure;
   function shadedFigures() {
     const shades = JSON.parse($("shades").textContent), mode = theme();
     return [shadesOf($("figures").textContent, mode, shades.darker), shadesOf(JSON.stringify(shades.template), mode, shades.darker)];
   }
-  async function draw(spec, look, again) {
-    const place = $(`plot-${spec.key}`);
-    const layout = fitted(spec.layout, look, place.clientWidth);
-    if (again) { // what the reader has hidden or chosen stays so
-      const menu = place.layout.updatemenus?.[0];
-      spec.data.forEach((trace, i) => { if (place.data[i].visible !== undefined) trace.visible = place.data[i].visible; });
-      if (menu?.active) {
-        layout.updatemenus[0].active = menu.active;
-        for (const [path, value] of Object.entries(layout.updatemenus[0].buttons[menu.active].args[1])) {
-          const [name, part] = path.split(".");
-          if (part === "title") layout[name] = { ...layout[name], title: { text: value } };
-        }
-      }
-    } else place.replaceChildren();
-    place.style.height = `${layout.height}px`; // the room stays taken while plotly fits the plot to a new width
-    await (again ? Plotly.react : Plotly.newPlot)(place, spec.data, layout, optionsOf(spec.key));
-  }
   async function repaint() {
     const [specs, look] = shadedFigures();
-    for (const spec of specs) await draw(spec, look, true);
+    for (const spec of specs) await draw($(`plot-${spec.key}`), spec, look, true);
   }
 
   async function start() {
@@ -174,7 +134,7 @@
     script.textContent = new TextDecoder().decode(await unpack(bytes($("plotly").textContent), "gzip"));
     document.head.append(script);
     for (const spec of specs) {
-      await draw(spec, look, false);
+      await draw($(`plot-${spec.key}`), spec, look, false);
       await new Promise((done) => { setTimeout(done, 0); }); // the page stays alive between two plots
     }
     dark.addEventListener("change", repaint);

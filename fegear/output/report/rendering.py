@@ -13,6 +13,7 @@ from fegear.output.report.ahead import begun
 from fegear.output.report.blocks import Block, as_words, readable
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from concurrent.futures import Future
 
     from jinja2 import Environment
@@ -72,3 +73,9 @@ def render(template: str, **content: object) -> str:
         What the template names; a name that is missing is an error (`jinja2.UndefinedError`).
     """
     return templates().result().get_template(template).render(content)
+
+
+def fragment(blocks: Iterable[Block]) -> str:
+    """Some blocks of a page by themselves, as HTML."""
+    drawn = templates().result().filters["drawn"]
+    return "".join(str(drawn(block)) for block in blocks)

@@ -1,0 +1,29 @@
+"""``fegear open``: the live workbench."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fegear.commands.common import leave
+
+
+def open(  # noqa: A001 - it is the name of the command
+    case: Annotated[
+        Path | None, typer.Argument(metavar="CASE", help="Case file (TOML); without it, templates.")
+    ] = None,
+    port: Annotated[int | None, typer.Option("--port", help="Port to listen on; a free one by default.")] = None,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address, and open no browser.")] = False,
+) -> None:
+    """Open the live workbench in the browser: change a case and see the gears answer.
+
+    It listens on this machine alone, fetches nothing, and ends with Ctrl-C.
+    """
+    from fegear.window.server import serve
+
+    try:
+        serve(case, port, browser=not no_browser, say=typer.echo)
+    except KeyboardInterrupt:
+        leave("closed; what is not saved is kept for the next time.", 130)

@@ -1,0 +1,187 @@
+"""The bar at the head of the page: the case's name, undo and redo, saving, accuracy, variants, what is going on."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nicegui import ui
+
+from fegear.errors import FegearError, InputError
+from fegear.output.folder import default_folder
+from fegear.window.bench import LEVELS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.window.bench import Bench
+    from fegear.window.desk import Desk
+
+
+class Bar:
+    """The bar of one page."""
+
+    def __init__(self, bench: Bench) -> None:
+        self._bench = bench
+        with ui.element("div").classes("headbar").props('role=toolbar aria-label="Case"'):
+            self._name = ui.label().classes("name")
+            self._unsaved = ui.label().classes("unsaved")
+            self._undo = self._button("Undo", lambda: self._step("undo"))
+            self._redo = self._button("Redo", lambda: self._step("redo"))
+            self._button("Save", self._save)
+            self._button("Save as", lambda: self._ask_path("Save as", self._own_path(), self._save_as))
+            self._give_up = self._button("Give up changes", self._give_up_changes)
+            with ui.button("Export").props("flat dense no-caps"), ui.menu():
+                ui.menu_item("Report, tables, pictures", lambda: self._ask_folder("report", ""))
+                ui.menu_item("Drawings of the gears (DXF)", lambda: self._ask_folder("drawings", "_export"))
+            self._pin = self._button("Pin as A", self._pin_or_not)
+            self._button("Other case", lambda: bench.lay(None))
+            self._level = ui.toggle(list(LEVELS), value=bench.level, on_change=self._level_chosen)
+            self._level.props('dense no-caps unelevated aria-label="Accuracy against time"')
+            self._state = ui.label().classes("state").props("role=status")
+        self._told = ui.label().classes("told")
+        ui.on("save", self._save)
+        self.refresh()
+
+    @staticmethod
+    def _button(text: str, pressed: Callable[[], object]) -> ui.button:
+        return ui.button(text, on_click=pressed).props("flat dense no-caps")
+
+    @property
+    def _desk(self) -> Desk:
+        desk = self._bench.desk
+        if desk is None:
+            raise InputError("case", "(none)", "is on the desk", "choose a template")
+        return desk
+
+    def refresh(self) -> None:
+        """Show the state of the desk."""
+        desk = self._bench.desk
+        if desk is None:
+            return
+        self._name.set_text(desk.name)
+        self._unsaved.set_text(
+            "has no file yet" if desk.path is None else "changed, not saved" if desk.changed else "saved"
+        )
+        self._undo.set_enabled(desk.can_undo)
+        self._redo.set_enabled(desk.can_redo)
+        self._give_up.set_visibility(desk.path is not None and desk.changed)
+        self._pin.set_text("Unpin A" if self._bench.pinned else "Pin as A")
+        restored = f"Changes of {desk.restored} that were not saved are here again." if desk.restored else ""
+        self._told.set_text(desk.trouble or restored)
+
+    def hear(self, what: str, content: dict[str, Any]) -> None:
+        """Follow what goes on."""
+        if what in ("changed", "pinned", "unpinned"):
+            self.refresh()
+            self._level.set_value(self._bench.level)
+        elif what == "asked":
+            self._state.set_text("computing ...")
+        elif what == "begin":
+            self._state.set_text(f"{content['number']} of {content['count']}: {content['title']} ...")
+        elif what == "done":
+            level = "" if self._bench.level == "normal" else f" ({self._bench.level}, not the case's own)"
+            self._state.set_text(f"{content['seconds']:.2f} s at tolerance {content['tolerance']:.3g}{level}")
+        elif what == "refused":
+            self._state.set_text(content["sentence"])
+        elif what == "exported":
+            ui.notify("\n".join([f"Wrote {content['target']}", *content["remarks"]]), type="positive", multi_line=True)
+
+    def _step(self, way: str) -> None:
+        getattr(self._desk, way)()
+        self._bench.changed()
+
+    def _level_chosen(self, event: Any) -> None:
+        if event.value != self._bench.level:
+            self._bench.level = event.value
+            self._bench.changed()
+
+    def _give_up_changes(self) -> None:
+        self._desk.give_up()
+        self._bench.changed()
+
+    def _pin_or_not(self) -> None:
+        if self._bench.pinned:
+            self._bench.unpin()
+        elif self._desk.refusal is None:
+            self._bench.pin()
+        else:
+            ui.notify(str(self._desk.refusal), type="warning")
+
+    # ---- files ---------------------------------------------------------------------------------------------------
+
+    def _save(self) -> None:
+        desk = self._desk
+        if desk.path is None:
+            self._ask_path("Save as", self._own_path(), self._save_as)
+            return
+        try:
+            desk.save()
+        except FegearError as error:
+            self._confirm(str(error), "Replace it", partial(self._save_over, desk))
+            return
+        self._saved()
+
+    def _save_over(self, desk: Desk) -> None:
+        desk.save(over_others=True)
+        self._saved()
+
+    def _saved(self) -> None:
+        ui.notify(f"Saved {self._desk.path}", type="positive")
+        self._bench.changed()
+
+    def _save_as(self, text: str, *, replace: bool = False) -> None:
+        path = Path(text).expanduser()
+        try:
+            self._desk.save_as(path, replace=replace)
+        except InputError as error:
+            if not error.rule.startswith("is there"):
+                raise
+            self._confirm(str(error), "Replace it", partial(self._save_as, text, replace=True))
+            return
+        self._saved()
+
+    def _own_path(self) -> str:
+        desk = self._desk
+        return str(desk.path or Path.cwd() / f"{desk.name}.toml")
+
+    def _ask_folder(self, what: str, ending: str) -> None:
+        def chosen(text: str) -> None:
+            self._bench.export(what, str(Path(text).expanduser()))
+            ui.notify("Writing ...")
+
+        self._ask_path("Folder to write into", str(default_folder(self._desk.name, ending).resolve()), chosen)
+
+    @staticmethod
+    def _ask_path(title: str, value: str, chosen: Callable[[str], None]) -> None:
+        def take() -> None:
+            try:
+                chosen(path.value.strip())
+            except FegearError as error:
+                path.props["error"], path.props["error-message"] = True, str(error)
+                path.update()
+            else:
+                dialog.close()
+
+        with ui.dialog(value=True) as dialog, ui.card().style("min-width: min(40rem, 90vw)"):
+            path = (
+                ui.input(title, value=value).props("outlined autofocus").style("width: 100%").on("keydown.enter", take)
+            )
+            with ui.row():
+                ui.button("OK", on_click=take).props("no-caps unelevated")
+                ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
+        dialog.on("hide", dialog.delete)
+
+    @staticmethod
+    def _confirm(said: str, yes: str, do: Callable[[], None]) -> None:
+        def take() -> None:
+            dialog.close()
+            do()
+
+        with ui.dialog(value=True) as dialog, ui.card():
+            ui.label(said)
+            with ui.row():
+                ui.button(yes, on_click=take).props("no-caps unelevated")
+                ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
+        dialog.on("hide", dialog.delete)

@@ -1,0 +1,191 @@
+"""What all open pages share: the case on the desk, the computing process, and the results that are shown now."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fegear.drafts import KINDS, Answers, draft
+from fegear.errors import InputError
+from fegear.window.computing import Computing
+from fegear.window.desk import Desk
+from fegear.window.jobs import Asked, Compare, Compute, Export, Said
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: Accuracy against time: factor of the case's own tolerance.
+LEVELS = {"draft": 10.0, "normal": 1.0, "fine": 0.1}
+#: Figures and values of so many tasks are kept for pages that open later.
+_Content = dict[str, Any]
+
+
+def gallery() -> dict[str, Path]:
+    """The cases that come with the source tree, by name; none where fegear is installed without it."""
+    folder = Path(__file__).parents[2] / "cases"
+    return (
+        {path.stem: path for path in sorted(folder.glob("*.toml"))}
+        if (folder.parent / "pyproject.toml").is_file()
+        else {}
+    )
+
+
+class Bench:
+    """The state of ``fegear open``.
+
+    Parameters
+    ----------
+    case : Path, optional
+        The case to begin with.
+
+    Attributes
+    ----------
+    desk : Desk or None
+        None while a template is being chosen.
+    level : str
+        A key of `LEVELS`.
+    pinned : Asked or None
+        The variant A that is compared with.
+    """
+
+    def __init__(self, case: Path | None) -> None:
+        self.desk = Desk.of_file(case) if case is not None else None
+        self.level = "normal"
+        self.pinned: Asked | None = None
+        self._listeners: list[Callable[[str, _Content], None]] = []
+        self._numbers = itertools.count(1)
+        self._computing: Computing | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._number = 0
+        self._found: dict[str, _Content] = {}
+        self._last: dict[str, _Content] = {}
+
+    def begin(self) -> None:
+        """Start computing; called within the loop that the pages run in."""
+        self._loop = asyncio.get_running_loop()
+        self._computing = Computing(self._from_process)
+        self.compute()
+
+    def close(self) -> None:
+        """End the computing process."""
+        if self._computing is not None:
+            self._computing.close()
+
+    # ---- pages ---------------------------------------------------------------------------------------------------
+
+    def listen(self, listener: Callable[[str, _Content], None]) -> Callable[[], None]:
+        """Have a page hear of everything from now on; returns what ends that."""
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener) if listener in self._listeners else None
+
+    def tell(self, what: str, content: _Content | None = None) -> None:
+        """Tell every page."""
+        for listener in list(self._listeners):
+            listener(what, content or {})
+
+    def shown_now(self) -> list[tuple[str, _Content]]:
+        """What a page that opens now has to be told."""
+        told = [(what, self._last[what]) for what in ("plan",) if what in self._last]
+        for content in self._found.values():
+            told.append(("found", {key: value for key, value in content.items() if key != "pictures"}))
+            told += [("picture", picture) for picture in content.get("pictures", {}).values()]
+        return [*told, *((what, self._last[what]) for what in ("done", "compared") if what in self._last)]
+
+    # ---- the case ------------------------------------------------------------------------------------------------
+
+    def lay(self, desk: Desk | None) -> None:
+        """Lay another case on the desk, or clear it to choose one."""
+        self.desk, self.pinned = desk, None
+        self._found.clear()
+        self._last.clear()
+        self.tell("laid")
+        self.compute()
+
+    def from_template(self, kind: str) -> None:
+        """Begin with a draft of a kind."""
+        self.lay(Desk(draft(Answers(kind, {}), kind), kind, Path.cwd()))
+
+    def from_gallery(self, name: str) -> None:
+        """Begin with a copy of a case of the gallery."""
+        path = gallery()[name]
+        self.lay(Desk(path.read_text("utf-8"), name, path.parent))
+
+    def from_file(self, path: Path) -> None:
+        """Open a case file.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read.
+        """
+        self.lay(Desk.of_file(path))
+
+    def changed(self) -> None:
+        """Show the case as it is now everywhere, and compute it."""
+        self.tell("changed")
+        self.compute()
+
+    def asked(self) -> Asked:
+        """The case as it would be computed now."""
+        if self.desk is None:
+            raise InputError("case", "(none)", "is on the desk", "choose a template")
+        return Asked(self.desk.text, self.desk.name, str(self.desk.folder), LEVELS[self.level])
+
+    def compute(self) -> None:
+        """Ask for the case as it is now, unless it is refused already."""
+        if self.desk is None or self._computing is None or self.desk.refusal is not None:
+            return
+        self._number = next(self._numbers)
+        self.tell("asked")
+        self._computing.ask(Compute(self._number, self.asked()))
+
+    def export(self, what: str, target: str) -> None:
+        """Write the report or the drawings of the case as it is, at its own tolerance."""
+        if self._computing is not None:
+            self._computing.ask(Export(next(self._numbers), self.asked()._replace(loosened=1.0), what, target))
+
+    def pin(self) -> None:
+        """Keep the present state as variant A."""
+        self.pinned = self.asked()
+        self.tell("pinned")
+
+    def unpin(self) -> None:
+        """Compare no more."""
+        self.pinned = None
+        self._last.pop("compared", None)
+        self.tell("unpinned")
+
+    # ---- what the computing process says -------------------------------------------------------------------------
+
+    def _from_process(self, said: Said) -> None:
+        if self._loop is not None and not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._hear, said)
+
+    def _hear(self, said: Said) -> None:
+        what, content = said.what, said.content
+        if what in ("exported", "compared"):
+            self._last |= {what: content} if what == "compared" and self.pinned else {}
+            self.tell(what, content)
+            return
+        if what == "refused":
+            self.tell(what, content)
+            return
+        if said.number != self._number:  # of a case that has been changed since
+            return
+        if what == "plan":
+            self._found = {task: one for task, one in self._found.items() if task in content["tasks"]}
+        elif what == "found":
+            self._found[content["task"]] = {**content, "pictures": {}}
+        elif what == "picture":
+            self._found[content["task"]]["pictures"][content["key"]] = content
+        if what in ("plan", "done"):
+            self._last[what] = content
+        self.tell(what, content)
+        if what == "done" and self.pinned is not None and self._computing is not None:
+            self._computing.ask(Compare(next(self._numbers), self.pinned, self.asked()))
+
+
+#: What a template is for, by the name of its kind.
+TEMPLATES = {name: kind.about for name, kind in KINDS.items()}

@@ -1,0 +1,133 @@
+"""The computing process seen from the page: asked, listened to, stopped where it does not listen, started again."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import tempfile
+import threading
+import time
+from typing import TYPE_CHECKING
+
+from fegear.engine.processes import start_process
+from fegear.window.jobs import Compute, Said
+from fegear.window.worker import serve
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from multiprocessing.connection import Connection
+    from multiprocessing.process import BaseProcess
+
+    from fegear.window.jobs import Job
+
+#: A computation that is no longer wanted is stopped with its process if it has not noticed after this time [s].
+PATIENCE = 2.0
+#: A process that is asked to end is killed after this [s].
+_GRACE = 2.0
+
+
+class Computing:
+    """One computing process at a time.
+
+    Parameters
+    ----------
+    hear : callable
+        Receives every `Said`, in a thread of its own.
+    """
+
+    def __init__(self, hear: Callable[[Said], None]) -> None:
+        self._hear, self._folder = hear, tempfile.mkdtemp(prefix="fegear-open-")
+        self._lock = threading.Lock()
+        self._open: dict[int, Job] = {}
+        self._closed = False
+        self._process: BaseProcess
+        self._connection: Connection
+        self._start()
+
+    @property
+    def pid(self) -> int | None:
+        """Of the process that computes now."""
+        return self._process.pid
+
+    def _start(self) -> None:
+        from multiprocessing import Pipe
+
+        self._connection, theirs = Pipe()
+        self._process = start_process(serve, theirs, self._folder)
+        theirs.close()
+        threading.Thread(target=self._listen, args=(self._connection, self._process), daemon=True).start()
+
+    def ask(self, job: Job) -> None:
+        """Hand a job over; a computation before it is given up if this is one, too."""
+        with self._lock:
+            if self._closed:
+                return
+            if isinstance(job, Compute):
+                unwanted = [number for number, one in self._open.items() if isinstance(one, Compute)]
+                if unwanted:
+                    threading.Timer(PATIENCE, self._insist, (unwanted,)).start()
+            self._open[job.number] = job
+            with contextlib.suppress(OSError):
+                self._connection.send(job)
+
+    def _insist(self, unwanted: list[int]) -> None:
+        """Stop a process that still computes what nobody wants, and have another do what is."""
+        with self._lock:
+            if self._closed or not any(number in self._open for number in unwanted):
+                return
+            for number in unwanted:
+                self._open.pop(number, None)
+            self._again()
+
+    def _again(self) -> None:
+        end(self._process)
+        self._start()
+        for job in self._open.values():
+            with contextlib.suppress(OSError):
+                self._connection.send(job)
+
+    def _listen(self, connection: Connection, process: BaseProcess) -> None:
+        while True:
+            try:
+                said: Said = connection.recv()
+            except (EOFError, OSError):
+                break
+            if said.what in ("done", "refused", "dropped", "exported", "compared"):
+                with self._lock:
+                    self._open.pop(said.number, None)
+            self._hear(said)
+        with self._lock:
+            if self._closed or process is not self._process:
+                return
+            lost = list(self._open)  # it died by itself: what it was at would kill the next one, too
+            self._open.clear()
+            self._again()
+        for number in lost:
+            self._hear(Said(number, "refused", {"sentence": "It ended before it was done (out of memory?).",
+                                                "key": ""}))  # fmt: skip
+
+    def close(self) -> None:
+        """End the process and remove what it kept."""
+        with self._lock:
+            self._closed = True
+            end(self._process)
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+
+def end(process: BaseProcess) -> None:
+    """Ask a process to end, and see to it."""
+    process.terminate()
+    process.join(_GRACE)
+    if process.is_alive():
+        process.kill()
+        process.join(_GRACE)
+
+
+def wait_for(condition: Callable[[], bool], seconds: float) -> bool:
+    """Whether something comes true within a time."""
+    until = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.01)
+    return True

@@ -1,0 +1,235 @@
+"""The case as a form and as its text; each changes the other, and a refusal stands at its field."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from nicegui import ui
+
+from fegear.errors import InputError
+from fegear.window.form import Field, Section, fields, form, tables_to_add
+from fegear.window.stepped import stepped
+
+if TYPE_CHECKING:
+    from nicegui.element import Element
+
+    from fegear.window.bench import Bench
+    from fegear.window.case_text import Path
+
+#: How long nobody types before a text is read [ms].
+_PAUSE = 500
+
+
+class Inputs:
+    """Form and text of one page."""
+
+    def __init__(self, bench: Bench) -> None:
+        self._bench = bench
+        self._elements: dict[Path, Element] = {}
+        self._places: dict[Path, Element] = {}
+        self._held: dict[Path, Field] = {}
+        self._refused_at: Path | None = None
+        with ui.tabs().props("dense no-caps align=left inline-label") as tabs:
+            self._as_form, as_text = ui.tab("Form"), ui.tab("Text")
+        with ui.tab_panels(tabs, value=self._as_form).props("keep-alive").style("background: transparent"):
+            with ui.tab_panel(self._as_form).style("padding: .4rem 0"):
+                self._refusal = ui.label().classes("refusal").props("role=alert")
+                self._form = ui.element("div")
+            with ui.tab_panel(as_text).style("padding: .4rem 0"):
+                self._text = ui.textarea(value=self._desk.text).props(
+                    f'outlined autogrow spellcheck=false debounce={_PAUSE} aria-label="Text of the case (TOML)"'
+                )
+                self._text.style("width: 100%").on_value_change(self._text_typed)
+                self._text_refusal = ui.label().classes("refusal")
+        self._build()
+        self._judge()
+
+    @property
+    def _desk(self) -> Any:
+        return self._bench.desk
+
+    def hear(self, what: str, content: dict[str, Any]) -> None:
+        """Show the case as it has become, and what the computation says of it."""
+        if what == "changed":
+            self._refresh()
+        elif what == "refused" and self._desk is not None and self._desk.refusal is None:
+            self._say(content["sentence"], content["key"])
+
+    # ---- building ------------------------------------------------------------------------------------------------
+
+    def _build(self) -> None:
+        self._form.clear()
+        self._elements, self._places, self._held = {}, {}, {}
+        with self._form:
+            for section in form(self._desk.document):
+                self._section(section)
+            more = tables_to_add(self._desk.document)
+            if more:
+                ui.html("Add a table", tag="h3")
+                choice = ui.select(more_labels(more), label="What else the case may say", on_change=self._table_chosen)
+                choice.props("outlined dense options-dense").style("width: 100%")
+
+    def _section(self, section: Section) -> None:
+        with ui.element("div").classes("inner" if len(section.path) > 2 else ""):
+            if section.path:
+                ui.html(
+                    section.title if len(section.path) < 3 else section.path[-1].replace("_", " "),
+                    tag="h3",
+                    sanitize=_escaped,
+                )
+                if section.about and len(section.path) < 3:
+                    ui.html(section.about, tag="p", sanitize=_escaped).classes("about")
+            for field in section.given:
+                self._field(field)
+            for inner in section.sections:
+                self._section(inner)
+            left = section.left_out
+            if left:
+                with ui.expansion(f"{len(left)} more with their defaults").props("dense dense-toggle") as more:
+                    opened: list[bool] = []
+
+                    def fill(event: Any, more: Any = more, left: Any = left, opened: Any = opened) -> None:
+                        if event.value and not opened:  # not before somebody looks: most of a case is left out
+                            opened.append(True)
+                            with more:
+                                for field in left:
+                                    self._field(field)
+
+                    more.on_value_change(fill)
+                for field in left:
+                    self._places[field.path] = more
+                    self._held[field.path] = field
+
+    def _field(self, field: Field) -> None:
+        commit = partial(self._typed, field)
+        made: Any
+        if field.kind == "switch":
+            made = ui.switch(field.label, value=bool(field.value)).props("dense")
+            made.on_value_change(lambda event: self._set(field, "true" if event.value else "false"))
+        elif field.kind == "several":
+            made = ui.select(list(field.choices), value=known(field), multiple=True, label=field.label)
+            made.props("outlined dense options-dense use-chips").style("width: 100%")
+            made.on_value_change(lambda event: self._set(field, _listed(event.value)))
+        elif field.kind == "choice":
+            options = {"": f"({field.default or 'not given'})"} | {name: name for name in field.choices}
+            made = ui.select(options, value=field.shown if field.shown in options else "", label=field.label)
+            made.props("outlined dense options-dense").style("width: 100%")
+            made.on_value_change(lambda event: self._set(field, event.value or ""))
+        else:
+            made = ui.input(field.label, value=field.shown, placeholder=field.default or None)
+            made.props("outlined dense hide-hint hide-bottom-space autocomplete=off").style("width: 100%")
+            if field.default:
+                made.props("stack-label")
+            made.props["hint"] = field.hint
+            made.on("keydown.enter", commit).on("blur", commit)
+            for key, way in (("up", 1), ("down", -1)):
+                made.on(f"keydown.{key}.prevent", partial(self._step, field, way), args=["shiftKey"])
+        made.classes("given" if field.given else "absent").props["data-key"] = field.key
+        self._elements[field.path] = made
+        self._held[field.path] = field
+
+    # ---- changes -------------------------------------------------------------------------------------------------
+
+    def _typed(self, field: Field, _event: object = None) -> None:
+        element: Any = self._elements[field.path]
+        self._set(field, element.value or "")
+
+    def _step(self, field: Field, way: int, event: Any) -> None:
+        element: Any = self._elements[field.path]
+        text = stepped(element.value or field.default, way * (10 if event.args.get("shiftKey") else 1))
+        if text is not None:
+            element.set_value(text)
+            self._set(field, text)
+
+    def _set(self, field: Field, text: str) -> None:
+        now = self._held[field.path]
+        if text == now.shown or (not now.given and text == now.default and now.kind == "switch"):
+            return
+        try:
+            self._desk.set(field.path, now.written(text))
+        except InputError as error:
+            self._say(str(error), field.key)
+            return
+        self._bench.changed()
+
+    def _text_typed(self, event: Any) -> None:
+        if event.value != self._desk.text:
+            self._desk.change(event.value or "")
+            self._bench.changed()
+
+    def _table_chosen(self, event: Any) -> None:
+        if event.value:
+            self._desk.change(f"{self._desk.text.rstrip()}\n\n[{event.value}]\n")
+            self._bench.changed()
+
+    # ---- showing -------------------------------------------------------------------------------------------------
+
+    def _refresh(self) -> None:
+        if self._desk is None:
+            return
+        if self._text.value != self._desk.text:
+            self._text.set_value(self._desk.text)
+        now = {field.path: field for field in fields(form(self._desk.document))}
+        if set(now) != set(self._held) or any(now[path].kind != self._held[path].kind for path in now):
+            self._build()
+        else:
+            for path, field in now.items():
+                self._held[path] = field
+                element: Any = self._elements.get(path)
+                if element is None:
+                    continue
+                value: Any = field.shown
+                if field.kind == "switch":
+                    value = bool(field.value)
+                elif field.kind == "several":
+                    value = known(field)
+                if element.value != value and not (value == "" and element.value is None):
+                    element.set_value(value)
+                element.classes(add="given" if field.given else "absent", remove="absent" if field.given else "given")
+        self._judge()
+
+    def _judge(self) -> None:
+        refusal = self._desk.refusal
+        self._say(str(refusal) if refusal else "", refusal.key if isinstance(refusal, InputError) else "")
+
+    def _say(self, sentence: str, key: str) -> None:
+        if self._refused_at is not None and (old := self._elements.get(self._refused_at)) is not None:
+            old.props(remove="error error-message")
+        self._refused_at = self._nearest(key) if sentence else None
+        self._text_refusal.set_text(sentence)
+        element: Any = self._elements.get(self._refused_at) if self._refused_at else None
+        at_field = element is not None and hasattr(element, "value") and not isinstance(element, ui.switch)
+        self._refusal.set_text("" if at_field else sentence)
+        if at_field and element is not None:
+            element.props["error"], element.props["error-message"] = True, sentence
+            element.update()
+
+    def _nearest(self, key: str) -> Path | None:
+        """The field that a refusal is about: of its own key, or of the table around it."""
+        steps = key.split(".")
+        for depth in range(len(steps), 0, -1):
+            for path in self._elements:
+                if path == tuple(steps[:depth]):
+                    return path
+        return None
+
+
+def more_labels(tables: dict[str, str]) -> dict[str, str]:
+    """Tables to add with what each is, on one line."""
+    return {name: f"{name.replace('_', ' ')}: {about}" for name, about in tables.items()}
+
+
+def known(field: Field) -> list[str]:
+    """Names of a list that are among its choices."""
+    return [one for one in field.value or () if one in field.choices] if isinstance(field.value, list) else []
+
+
+def _listed(names: list[str]) -> str:
+    return "[" + ", ".join(f'"{name}"' for name in names) + "]" if names else ""
+
+
+def _escaped(text: str) -> str:
+    from html import escape
+
+    return escape(text)

@@ -1,0 +1,95 @@
+"""The page: what is changed on the left, what follows from it on the right."""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+from typing import TYPE_CHECKING, Any
+
+from nicegui import app, ui
+
+from fegear.output.draw_plotly import template
+from fegear.output.report.library import plotly_file
+from fegear.window.bar import Bar
+from fegear.window.inputs import Inputs
+from fegear.window.start import start_page
+
+if TYPE_CHECKING:
+    from fegear.window.bench import Bench
+
+#: Where the page's own files are served.
+_AT = "/fegear"
+
+
+def _serve_files() -> None:
+    """Offer plotly.js and the files of this package and of the report to the page."""
+    if any(getattr(route, "path", "").startswith(f"{_AT}/plotly") for route in app.routes):
+        return
+    own, report = resources.files("fegear.window"), resources.files("fegear.output.report")
+    app.add_static_file(local_file=str(plotly_file()), url_path=f"{_AT}/plotly.js")
+    for folder, name in ((report, "figure.js"), (report, "page.css"), (own, "window.js"), (own, "window.css")):
+        app.add_static_file(local_file=str(folder / name), url_path=f"{_AT}/{name}", max_cache_age=0)
+
+
+class Page:
+    """One open page.
+
+    Parameters
+    ----------
+    bench : Bench
+    """
+
+    def __init__(self, bench: Bench) -> None:
+        self._bench = bench
+        self._client = ui.context.client
+        with ui.element("div").style("width: 100%") as self._root:
+            pass
+        self._bar: Bar | None = None
+        self._inputs: Inputs | None = None
+        self._client.run_javascript(f"fegear.begin({json.dumps(template())})")
+        self._client.on_delete(bench.listen(self._hear))
+        self._lay()
+
+    def _lay(self) -> None:
+        """Show the case on the desk, or what one may begin with."""
+        self._root.clear()
+        self._bar = self._inputs = None
+        with self._root:
+            if self._bench.desk is None:
+                start_page(self._bench)
+                return
+            self._bar = Bar(self._bench)
+            with ui.element("div").classes("bench"):
+                with ui.element("div").classes("inputs").props('role=region aria-label="Case"'):
+                    self._inputs = Inputs(self._bench)
+                with ui.element("main").classes("outputs").props('aria-label="Results"'):
+                    ui.element("ul").props("id=remarks")
+                    ui.element("div").props("id=compared")
+                    ui.element("div").props("id=results")
+        for what, content in self._bench.shown_now():
+            self._send(what, content)
+
+    def _hear(self, what: str, content: dict[str, Any]) -> None:
+        with self._root:
+            if what == "laid":
+                self._send(what, {})
+                self._lay()
+                return
+            if self._bar is not None:
+                self._bar.hear(what, content)
+            if self._inputs is not None:
+                self._inputs.hear(what, content)
+        self._send(what, content)
+
+    def _send(self, what: str, content: dict[str, Any]) -> None:
+        self._client.run_javascript(f"fegear.hear({json.dumps(what)}, {json.dumps(content)})")
+
+
+def show(bench: Bench) -> None:
+    """Build the page for who has just opened it."""
+    _serve_files()
+    for name in ("page.css", "window.css"):
+        ui.add_head_html(f'<link rel="stylesheet" href="{_AT}/{name}">')
+    for name in ("plotly.js", "figure.js", "window.js"):
+        ui.add_head_html(f'<script src="{_AT}/{name}"></script>')
+    Page(bench)

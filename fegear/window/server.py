@@ -1,0 +1,91 @@
+"""The server of the page: on this machine alone, for one case at a time, until it is told to end."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import threading
+import webbrowser
+from typing import TYPE_CHECKING
+
+from fegear.errors import InputError, MissingLibraryError
+from fegear.window.bench import Bench
+from fegear.window.doorkeeper import Doorkeeper
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+HOST = "127.0.0.1"
+#: What `fegear open` needs beside fegear.
+EXTRA = "fegear open needs NiceGUI; install it with: pip install 'fegear[workbench]'"
+
+
+def free_port(wanted: int | None) -> int:
+    """A port that nobody listens on: the wanted one, or any.
+
+    Raises
+    ------
+    InputError
+        If the wanted one is taken or is none.
+    """
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((HOST, wanted or 0))
+        except (OSError, OverflowError) as error:
+            raise InputError(
+                "--port", wanted, f"cannot be listened on ({error})", "leave it out to have a free one chosen"
+            ) from None
+        return int(probe.getsockname()[1])
+
+
+def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[str], None]) -> None:
+    """Serve the page until the process is told to end.
+
+    Parameters
+    ----------
+    case : Path, optional
+        The case to begin with; without one the page offers templates.
+    port : int, optional
+    browser : bool
+        Whether to open the page.
+    say : callable
+        Receives the address.
+
+    Raises
+    ------
+    InputError
+        If the port cannot be listened on, or the case cannot be read.
+    MissingLibraryError
+        If NiceGUI is not installed.
+    """
+    port, secret = free_port(port), secrets.token_urlsafe(24)
+    address = f"http://{HOST}:{port}/?key={secret}"
+    bench = Bench(case)
+    try:
+        import nicegui
+    except ImportError:
+        raise MissingLibraryError(EXTRA) from None
+    from nicegui import ui
+
+    from fegear.window.page import show
+
+    def opened() -> None:
+        bench.begin()
+        say(f"Open {address}")
+        say("It ends with Ctrl-C; what is not saved is kept for the next time.")
+        if browser:
+            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+
+    nicegui.app.on_startup(opened)
+    nicegui.app.on_shutdown(bench.close)
+    nicegui.app.add_middleware(Doorkeeper, port=port, secret=secret)
+    try:
+        ui.run(
+            lambda: show(bench), host=HOST, port=port, title="fegear", dark=None, reload=False, show=False,
+            show_welcome_message=False, favicon="data:,", reconnect_timeout=30.0, tailwind=False,
+            gzip_middleware_factory=None,  # nothing is far away
+        )  # fmt: skip
+    finally:
+        bench.close()

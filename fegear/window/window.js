@@ -1,0 +1,141 @@
+"use strict";
+// The results side of the page: keeps each task's section, and changes of it what has changed.
+const fegear = (() => {
+  const $ = (id) => document.getElementById(id);
+  const sections = new Map(); // task -> { element, specs, shades }
+  const { dark, shadesOf, draw } = fegearFigure;
+  let template = null;
+  const made = (tag, cls, text) => {
+    const one = document.createElement(tag);
+    if (cls) one.className = cls;
+    if (text !== undefined) one.textContent = text;
+    return one;
+  };
+
+  function section(task) {
+    if (!sections.has(task)) {
+      const element = made("section", "task");
+      element.dataset.task = task;
+      element.append(made("h2"), made("div", "figures"), made("div", "stills"), made("div", "numbers"));
+      element.hidden = true;
+      $("results").append(element);
+      sections.set(task, { element, specs: new Map(), shown: new Map(), darker: {} });
+    }
+    return sections.get(task);
+  }
+
+  async function paint(kept, key) { // one figure, in the shades of the ground
+    const spec = kept.specs.get(key), mode = fegearFigure.theme();
+    const host = kept.element.querySelector(".figures");
+    let figure = [...host.children].find((one) => one.dataset.key === key);
+    if (!figure) {
+      figure = made("figure", "plot-figure");
+      figure.dataset.key = key;
+      const plot = made("div", "plot");
+      plot.id = `plot-${key}`;
+      plot.setAttribute("role", "img");
+      figure.append(made("div", "plot-title"), plot, made("figcaption"));
+      host.append(figure);
+    }
+    figure.querySelector(".plot-title").textContent = spec.heading;
+    figure.querySelector("figcaption").textContent = spec.caption;
+    const place = figure.querySelector(".plot");
+    place.setAttribute("aria-label", `${spec.heading}. ${spec.caption}`);
+    const shaded = shadesOf(JSON.stringify({ data: spec.data, layout: spec.layout }), mode, kept.darker);
+    const look = shadesOf(JSON.stringify(template), mode, kept.darker);
+    shaded.layout.uirevision = key; // what the reader has zoomed into stays
+    await draw(place, { key, ...shaded }, look, place.classList.contains("js-plotly-plot"));
+    place.dataset.count = Number(place.dataset.count || 0) + 1;
+  }
+
+  const heard = {
+    asked() { document.body.classList.add("computing"); },
+    plan({ tasks }) {
+      for (const [task, kept] of sections) {
+        if (task !== "compared" && !tasks.includes(task)) { kept.element.remove(); sections.delete(task); }
+      }
+      const host = $("results");
+      for (const task of tasks) {
+        const { element } = section(task);
+        element.classList.add("stale");
+        host.append(element);
+      }
+    },
+    async found({ task, title, values, figures, darker }) {
+      const kept = section(task);
+      kept.darker = darker;
+      kept.element.querySelector("h2").textContent = title;
+      kept.element.querySelector(".numbers").innerHTML = values; // made and escaped by the report's own templates
+      kept.element.hidden = !values && !figures.length;
+      const keys = figures.map((one) => one.key);
+      for (const figure of [...kept.element.querySelectorAll(".figures figure")]) {
+        if (!keys.includes(figure.dataset.key)) { figure.remove(); kept.specs.delete(figure.dataset.key); }
+      }
+      for (const spec of figures) {
+        const text = JSON.stringify([spec.data, spec.layout, spec.heading, spec.caption]);
+        if (kept.shown.get(spec.key) === text && kept.specs.has(spec.key)) continue;
+        kept.shown.set(spec.key, text);
+        kept.specs.set(spec.key, spec);
+        await paint(kept, spec.key);
+      }
+      kept.element.classList.remove("stale");
+    },
+    picture({ task, key, heading, caption, data }) {
+      const kept = section(task), host = kept.element.querySelector(".stills");
+      let figure = [...host.children].find((one) => one.dataset.key === key);
+      if (!figure) {
+        figure = made("figure");
+        figure.dataset.key = key;
+        figure.append(made("div", "plot-title"), made("img"), made("figcaption"));
+        host.append(figure);
+      }
+      figure.querySelector(".plot-title").textContent = heading;
+      figure.querySelector("figcaption").textContent = caption;
+      figure.querySelector("img").src = `data:image/png;base64,${data}`;
+      figure.querySelector("img").alt = `${heading}. ${caption}`;
+      kept.element.hidden = false;
+      kept.element.classList.remove("stale");
+    },
+    done({ remarks }) {
+      document.body.classList.remove("computing");
+      for (const { element } of sections.values()) element.classList.remove("stale");
+      $("remarks").replaceChildren(...remarks.map((one) => made("li", "", one)));
+    },
+    refused() { document.body.classList.remove("computing"); },
+    async compared({ sections: parts, figures, darker }) {
+      const host = $("compared");
+      const kept = sections.get("compared") ?? { element: made("section", "task"), specs: new Map(), shown: new Map() };
+      if (!kept.element.isConnected) {
+        kept.element.append(made("h2", "", "A, pinned, and B, as it is now"), made("div", "numbers"), made("div", "figures"));
+        host.replaceChildren(kept.element);
+        sections.set("compared", kept);
+      }
+      kept.darker = darker;
+      kept.element.querySelector(".numbers").innerHTML = parts.map(([title, html]) => `<h3>${title}</h3>${html}`).join("");
+      for (const figure of [...kept.element.querySelectorAll(".figures figure")]) {
+        if (!figures.some((one) => one.key === figure.dataset.key)) figure.remove();
+      }
+      for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
+    },
+    unpinned() { sections.get("compared")?.element.remove(); sections.delete("compared"); },
+    laid() {
+      sections.clear();
+      document.querySelectorAll("#results, #remarks, #compared").forEach((one) => one.replaceChildren());
+    },
+  };
+
+  let line = Promise.resolve(); // one after the other: a figure is not painted twice at a time
+  function hear(what, content) {
+    if (heard[what]) line = line.then(() => heard[what](content)).catch((problem) => console.error(problem));
+    return line;
+  }
+  dark.addEventListener("change", () => {
+    line = line.then(async () => {
+      for (const kept of sections.values()) for (const key of kept.specs.keys()) await paint(kept, key);
+    });
+  });
+  addEventListener("keydown", (event) => {
+    if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); emitEvent("save"); }
+  });
+  return { hear, begin(look) { template = look; document.documentElement.dataset.ready = "yes"; } };
+})();

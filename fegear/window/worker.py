@@ -1,0 +1,245 @@
+"""The computing process: one case at a time, given up where a later one is wanted, with all it has solved kept."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fegear.engine.processes import settle
+from fegear.errors import FegearError, InputError
+from fegear.solution_cache import SolutionCache
+from fegear.store import Store
+from fegear.window.jobs import Compare, Compute, Export, Said
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+    from fegear.case.reading import Scene
+    from fegear.engine.outcome import Outcome
+    from fegear.engine.plan import Plan
+    from fegear.engine.run import Results
+    from fegear.engine.stage import Task
+    from fegear.window.jobs import Asked, Job
+
+
+class Unwanted(BaseException):
+    """The case that is being computed is no longer wanted; nothing on the way takes this for a failure of its own."""
+
+
+class Worker:
+    """Reads jobs from a connection and answers them.
+
+    Parameters
+    ----------
+    connection : Connection
+    folder : Path
+        Where tooth shapes are kept, so that they outlive this process where it has to be stopped.
+    """
+
+    def __init__(self, connection: Connection, folder: Path) -> None:
+        self._connection, self._cache = connection, SolutionCache(Store(folder))
+        self._waiting: deque[Job] = deque()
+        self._number, self._may_drop = 0, False
+
+    def serve(self) -> None:
+        """Answer jobs until nobody is there to ask."""
+        _load()
+        while True:
+            try:
+                self._listen(wait=not self._waiting)
+                self._answer(self._waiting.popleft())
+            except (EOFError, OSError):
+                return
+
+    def _listen(self, *, wait: bool = False) -> None:
+        while wait or self._connection.poll():
+            wait = False
+            job = self._connection.recv()
+            if isinstance(job, Compute):
+                self._waiting = deque(one for one in self._waiting if not isinstance(one, Compute))
+            self._waiting.append(job)
+
+    def _say(self, what: str, **content: object) -> None:
+        self._connection.send(Said(self._number, what, content))
+
+    def _answer(self, job: Job) -> None:
+        self._number, self._may_drop = job.number, isinstance(job, Compute)
+        try:
+            if isinstance(job, Compute):
+                self._compute(job.asked)
+            elif isinstance(job, Export):
+                self._export(job)
+            else:
+                self._compare(job)
+        except Unwanted:
+            self._say("dropped")
+        except InputError as error:
+            self._say("refused", sentence=str(error), key=error.key)
+        except FegearError as error:
+            self._say("refused", sentence=str(error), key="")
+        except MemoryError:
+            self._say("refused", sentence="Out of memory: ask for less at once, or allow more.", key="")
+
+    # ---- as a watcher of a run: every report of progress is an occasion to notice that another case is wanted ----
+
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Tell that a task begins."""
+        self._still_wanted()
+        self._say("begin", title=title, number=number, count=count)
+
+    def advance(self, _fraction: float) -> None:
+        """Look whether another case is wanted."""
+        self._still_wanted()
+
+    def end(self, _seconds: float) -> None:
+        """Look whether another case is wanted."""
+        self._still_wanted()
+
+    def _still_wanted(self) -> None:
+        self._listen()
+        if self._may_drop and any(isinstance(job, Compute) for job in self._waiting):
+            raise Unwanted
+
+    # ---- jobs ----------------------------------------------------------------------------------------------------
+
+    def _results(self, asked: Asked, *, told: bool = False) -> Results:
+        from fegear.engine.plan import make_plan
+        from fegear.engine.run import run_plan
+        from fegear.results.catalogue import STAGES
+
+        scene = scene_of(asked)
+        plan = make_plan(scene, STAGES)
+        if told:
+            self._say("plan", tasks=[str(step.task) for step in plan.steps])
+        return run_plan(
+            scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
+            if told else None,
+        )  # fmt: skip
+
+    def _compute(self, asked: Asked) -> None:
+        started = time.perf_counter()
+        results = self._results(asked, told=True)
+        seconds = {str(task): (one.seconds, one.origin) for task, one in results.timings.items()}
+        tolerance = results.scene.case.accuracy.tolerance
+        self._say(
+            "done", remarks=list(results.remarks), seconds=time.perf_counter() - started, timings=seconds,
+            tolerance=tolerance,
+        )  # fmt: skip
+        self._pictures(results)
+
+    def _found(self, scene: Scene, plan: Plan, task: Task, outcome: Outcome) -> None:
+        from fegear.engine.figure import Figure
+        from fegear.output.draw_plotly import darker, plotly_json
+        from fegear.output.report.blocks import Values
+        from fegear.output.report.rendering import fragment
+
+        title = next(step.stage.title for step in plan.steps if step.task == task)
+        figures = [one for one in outcome.figures if isinstance(one, Figure) and one.drawable_in_page]
+        values = Values(outcome.values, scene.case.accuracy.tolerance)
+        self._say(
+            "found",
+            task=str(task),
+            title=f"{title}: {task.subject}" if task.subject else title,
+            values=fragment([values]) if outcome.values else "",
+            figures=[
+                {"key": one.key, "heading": one.heading, "caption": one.caption, **plotly_json(one)} for one in figures
+            ],
+            darker=darker(figures),
+        )
+
+    def _pictures(self, results: Results) -> None:
+        """Draw what a page cannot draw itself, after all numbers are there."""
+        import base64
+        import tempfile
+
+        from fegear.output.draw_png import draw_pictures
+
+        for task, outcome in results.outcomes.items():
+            for one in outcome.figures:
+                self._still_wanted()
+                figure = one.made()
+                if figure.drawable_in_page and figure is one:
+                    continue
+                with tempfile.TemporaryDirectory() as folder:
+                    for number, picture in enumerate(draw_pictures(figure, Path(folder))):
+                        self._say(
+                            "picture", task=str(task), key=f"{figure.key}-{number}", heading=picture.title,
+                            caption=picture.caption, data=base64.b64encode(picture.path.read_bytes()).decode(),
+                        )  # fmt: skip
+
+    def _export(self, job: Export) -> None:
+        from fegear.engine.run import Silence
+        from fegear.output.export import export_gears
+        from fegear.output.folder import whole_or_nothing
+        from fegear.output.write import write_results
+
+        target = Path(job.target)
+        with whole_or_nothing(target) as scratch:
+            if job.what == "report":
+                remarks = write_results(self._results(job.asked), scratch, Silence())
+            else:
+                remarks = list(export_gears(scene_of(job.asked), scratch, (), "dxf").remarks)
+        self._say("exported", target=str(target.resolve()), remarks=remarks)
+
+    def _compare(self, job: Compare) -> None:
+        from fegear.output.comparison import comparison_page
+        from fegear.output.draw_plotly import darker, plotly_json
+        from fegear.output.report.blocks import DataTable, Plot
+        from fegear.output.report.rendering import fragment
+        from fegear.studies.comparison import compare, comparison_figures, side_of
+
+        found = compare(
+            side_of(self._results(job.first), "A, pinned"), side_of(self._results(job.second), "B, now"), 1e-9
+        )
+        figures = comparison_figures(found)
+        page = comparison_page(found)
+        sections = [
+            (section.title, fragment(block for block in section.blocks if not isinstance(block, (Plot, DataTable))))
+            for section in page.sections
+        ]
+        self._say(
+            "compared",
+            sections=[(title, html) for title, html in sections if html],
+            figures=[
+                {"key": f"compared-{one.key}", "heading": one.heading, "caption": one.caption, **plotly_json(one)}
+                for one in figures
+            ],
+            darker=darker(figures),
+        )
+
+
+def scene_of(asked: Asked) -> Scene:
+    """The scene of a case that is asked for, with its tolerance loosened or tightened where the page says so."""
+    from dataclasses import replace
+
+    from fegear.case.reading import build_scene, parse_document
+
+    document = parse_document(asked.text, f'"{asked.name}.toml"')
+    scene = build_scene(document, asked.name, Path(asked.folder))
+    if asked.loosened != 1.0:
+        tolerance = min(max(scene.case.accuracy.tolerance * asked.loosened, 1e-6), 0.5)
+        accuracy = {**dict(document.get("accuracy", {})), "tolerance": tolerance}
+        scene = build_scene({**document, "accuracy": accuracy}, asked.name, Path(asked.folder))
+    return replace(scene, text=asked.text)
+
+
+def _load() -> None:
+    """Load what every case needs, while the page opens."""
+    import fegear.engine.run
+    import fegear.models.settings
+    import fegear.output.draw_plotly
+    import fegear.results.catalogue
+    from fegear.output.report.rendering import templates
+
+    templates()
+    import fegear.contact
+    import fegear.design
+    import fegear.fem  # noqa: F401
+
+
+def serve(connection: Connection, folder: str) -> None:
+    """Entry of the process."""
+    settle()
+    Worker(connection, Path(folder)).serve()

@@ -1,0 +1,170 @@
+"""The window in a real browser: changed by keyboard, refused, undone, saved, compared; nothing leaves the machine."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import signal
+import subprocess
+import sys
+import tomllib
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("nicegui", reason="nicegui is missing; pip install 'fegear[workbench]'")
+
+_spec = importlib.util.spec_from_file_location("chromium", Path(__file__).with_name("chromium.py"))
+assert _spec is not None
+assert _spec.loader is not None
+chromium = importlib.util.module_from_spec(_spec)
+sys.modules["chromium"] = chromium
+_spec.loader.exec_module(chromium)
+
+TEXT = """title = "a pair"     # kept
+results = ["load-sharing"]
+[gear.a]
+teeth = 28
+module = "3 mm"
+face_width = "20 mm"
+[pair.I]
+driver = "a"
+driven = "a"
+load = "5 kN"
+compliance = { source = "weber-banaschek" }
+"""
+IDLE = "!document.body.classList.contains('computing')"
+DRAWN = f"{IDLE} && document.querySelector('#plot-load_sharing_I .main-svg') !== null"
+
+
+def outside_of_tests() -> dict[str, str]:
+    """NiceGUI behaves otherwise within pytest."""
+    return {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
+
+
+class Served:
+    """`fegear open` in a process of its own."""
+
+    def __init__(self, folder: Path, *arguments: str):
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "fegear", "open", "--no-browser", *arguments], stdout=subprocess.PIPE, text=True,
+            cwd=folder, env=outside_of_tests() | {"FEGEAR_STATE": str(folder / "state"), "PYTHONUNBUFFERED": "1"},
+        )  # fmt: skip
+        self.address = self.process.stdout.readline().split()[-1]
+
+    def end(self, number: int = signal.SIGTERM) -> int:
+        self.process.send_signal(number)
+        self.process.stdout.close()
+        return self.process.wait(20)
+
+
+def field(key: str) -> str:
+    found = f"document.querySelector('[data-key=\"{key}\"]')"
+    return f"(one => one?.tagName === 'INPUT' ? one : one?.querySelector('input'))({found})"
+
+
+def press(browser, key: str, code: int) -> None:
+    for kind in ("rawKeyDown", "keyUp"):
+        browser("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=code)
+
+
+def button(words: str) -> str:
+    return f"[...document.querySelectorAll('button')].find(one => one.textContent.trim() === '{words}')"
+
+
+def go(browser, address: str) -> None:
+    browser("Page.navigate", url=address)
+    browser.until("document.documentElement?.dataset.ready !== undefined")
+
+
+def largest_load(browser) -> str:
+    return browser.run("document.querySelector('.values td.number b').textContent")
+
+
+@pytest.fixture(scope="module")
+def browser(program):
+    with chromium.Browser(program("chromium")) as opened:
+        yield opened
+
+
+def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server(browser, tmp_path):
+    path = tmp_path / "drive.toml"
+    path.write_text(TEXT)
+    served = Served(tmp_path, str(path))
+    go(browser, served.address)
+    browser.until(f"{DRAWN} && {field('pair.I.load')} !== null")
+    before = largest_load(browser)
+
+    # By keyboard alone: an arrow key steps, the values follow; the text has it, with its comments.
+    browser.run(f"{field('pair.I.load')}.focus()")
+    press(browser, "ArrowUp", 38)
+    browser.until(f"{field('pair.I.load')}.value === '6 kN'")
+    browser.until(f"{IDLE} && document.querySelector('.values td.number b').textContent !== '{before}'")
+    assert largest_load(browser) != before
+
+    # Refused at its field, in the words of the command line; the results stay; undone.
+    shown = largest_load(browser)
+    browser.run(f"{field('gear.a.module')}.select()")
+    browser("Input.insertText", text="3 kg")
+    press(browser, "Enter", 13)
+    browser.until("[...document.querySelectorAll('[role=alert]')].some(one => one.textContent.startsWith("
+                  "'gear.a.module = \"3 kg\": is not a length'))")  # fmt: skip
+    assert largest_load(browser) == shown
+    browser.click(button("Undo"))
+    browser.until(f"{field('gear.a.module')}.value === '3 mm'")
+
+    # The other way round: the text changes the form.
+    browser.click("[...document.querySelectorAll('.q-tab')].find(one => one.textContent === 'Text')")
+    browser.until("document.querySelector('textarea')?.value.includes('load = \"6 kN\"')")
+    assert "# kept" in browser.run("document.querySelector('textarea').value")
+    browser.click(button("Pin as A"))
+    browser.until(f"{button('Unpin A')} !== undefined")
+    browser.run("document.querySelector('textarea').select()")
+    browser("Input.insertText", text=TEXT.replace("5 kN", "7 kN"))
+    browser.until("document.querySelector('#compared h2') !== null")
+    assert "pair.I.load" in browser.run("document.querySelector('#compared').textContent")
+
+    # Narrow, dark: nothing sticks out, the figure is redrawn.
+    browser.size(800, 900)
+    browser.media(prefers_color_scheme="dark")
+    browser.until("document.documentElement.scrollWidth <= innerWidth")
+    browser.media(prefers_color_scheme="light")
+    browser.size(1300, 900)
+
+    # The server is killed; its successor has what was not saved, and writes it where it belongs.
+    served.end(signal.SIGKILL)
+    assert path.read_text() == TEXT
+    served = Served(tmp_path, str(path))
+    go(browser, served.address)
+    browser.until(f"{field('pair.I.load')}?.value === '7 kN'")
+    assert "were not saved are here again" in browser.run("document.querySelector('.told').textContent")
+    browser.click(button("Save"))
+    browser.until("document.querySelector('.unsaved').textContent === 'saved'")
+    assert tomllib.loads(path.read_text())["pair"]["I"]["load"] == "7 kN"
+    assert "# kept" in path.read_text()
+
+    # Nobody else is let in, and nothing has been asked of any other machine.
+    bare = served.address.partition("?")[0]
+    for request in (
+        urllib.request.Request(bare),  # noqa: S310 - an address of this test's own server
+        urllib.request.Request(served.address, headers={"Origin": "http://evil.example"}),  # noqa: S310
+        urllib.request.Request(served.address, headers={"Host": "evil.example"}),  # noqa: S310
+    ):
+        with pytest.raises(urllib.error.HTTPError, match="403"):
+            urllib.request.urlopen(request)  # noqa: S310
+    assert [
+        one for one in browser.requests if not one.startswith(("http://127.0.0.1:", "data:", "blob:", "about:"))
+    ] == []
+
+    # A template, without a file.
+    browser.click(button("Other case"))
+    browser.until("document.querySelector('.start') !== null")
+    browser.click("[...document.querySelectorAll('.offer')].find(one => one.textContent.startsWith('pair'))")
+    browser.until(f"{field('gear.pinion.teeth')}?.value === '21'")
+    assert browser.run("document.querySelector('.unsaved').textContent") == "has no file yet"
+    assert [
+        one for one in browser.complaints if "favicon" not in one and "WebSocket" not in one and "ERR_" not in one
+    ] == []
+    assert served.end() in (0, 130, 143)

@@ -1,0 +1,312 @@
+"""The window without a browser: form, desk, journal, doorkeeper, computing process."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import queue
+import socket
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from fegear.case.keys import flat
+from fegear.case.reading import read_scene
+from fegear.drafts import KINDS, Answers, draft
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.errors import InputError
+from fegear.output.report.blocks import Values
+from fegear.output.report.rendering import fragment
+from fegear.results.catalogue import STAGES
+from fegear.window.computing import Computing
+from fegear.window.desk import Desk
+from fegear.window.doorkeeper import Doorkeeper
+from fegear.window.form import fields, form, tables_to_add
+from fegear.window.jobs import Asked, Compute, Export
+from fegear.window.journal import journal_folder
+from fegear.window.server import free_port, serve
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+TEXT = """title = "x"
+results = ["load-sharing"]
+[gear.a]
+teeth = 28     # z
+module = "3 mm"
+face_width = "20 mm"
+[pair.I]
+driver = "a"
+driven = "a"
+load = "5 kN"
+compliance = { source = "weber-banaschek" }
+"""
+
+
+@pytest.fixture(autouse=True)
+def state(tmp_path, monkeypatch):
+    monkeypatch.setenv("FEGEAR_STATE", str(tmp_path / "state"))
+
+
+# ---- form ------------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_the_form_shows_every_key_of_a_case_once(path):
+    document = tomllib.loads(path.read_text("utf-8"))
+    shown = [field.key for field in fields(form(document))]
+    assert len(shown) == len(set(shown))
+    for key in flat(document):
+        assert any(key.startswith(one) for one in shown), key
+
+
+def test_a_field_says_what_may_be_typed_and_what_holds_without_it():
+    found = {field.key: field for field in fields(form(tomllib.loads(TEXT)))}
+    assert found["gear.a.teeth"].shown == "28"
+    assert found["gear.a.teeth"].required
+    assert found["gear.a.pressure_angle"].default == "20 deg"
+    assert not found["gear.a.pressure_angle"].given
+    assert "length with its unit: mm" in found["gear.a.module"].hint
+    assert list(found["gear.a.plane"].choices) == ["strain", "stress", "auto"]
+    assert found["results"].kind == "several"
+    assert "transmission-error" in found["results"].choices
+    assert {"effects", "accuracy"} < set(tables_to_add(tomllib.loads(TEXT)))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_a_form_shows_is_what_it_writes(kind):
+    """Every shown value, typed again, leaves the case as it is."""
+    desk = Desk(draft(Answers(kind, {}), kind), kind, Path.cwd())
+    before = desk.text
+    for field in fields(form(desk.document)):
+        if field.given and field.kind != "switch":
+            desk.set(field.path, field.written(field.shown))
+    assert desk.text == before
+    assert desk.refusal is None
+
+
+# ---- desk ------------------------------------------------------------------------------------------------------------
+def test_a_refused_value_is_the_sentence_of_the_command_line_and_can_be_undone(tmp_path):
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    desk = Desk.of_file(path)
+    assert (desk.refusal, desk.changed, desk.can_undo) == (None, False, False)
+    desk.set(("gear", "a", "module"), '"3 kg"')
+    with pytest.raises(InputError) as told:
+        read_scene(path, ['gear.a.module="3 kg"'])
+    assert str(desk.refusal) == str(told.value)
+    desk.undo()
+    assert (desk.refusal, desk.text, desk.can_redo) == (None, TEXT, True)
+    desk.redo()
+    assert 'module = "3 kg"' in desk.text
+    assert "teeth = 28     # z" in desk.text
+
+
+def test_unsaved_changes_outlive_the_process_until_they_are_saved_or_given_up(tmp_path):
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    Desk.of_file(path).set(("gear", "a", "teeth"), "30")  # and nothing more is heard of it
+    again = Desk.of_file(path)
+    assert (again.changed, again.document["gear"]["a"]["teeth"]) == (True, 30)
+    assert again.restored
+    assert path.read_text() == TEXT
+    assert all(one.stat().st_mode & 0o077 == 0 for one in journal_folder().iterdir())
+    again.save()
+    assert tomllib.loads(path.read_text())["gear"]["a"]["teeth"] == 30
+    assert (Desk.of_file(path).changed, list(journal_folder().iterdir())) == (False, [])
+    last = Desk.of_file(path)
+    last.set(("gear", "a", "teeth"), "31")
+    last.give_up()
+    assert Desk.of_file(path).document["gear"]["a"]["teeth"] == 30
+
+
+def test_a_damaged_journal_is_none(tmp_path):
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    Desk.of_file(path).set(("gear", "a", "teeth"), "30")
+    (journal,) = journal_folder().iterdir()
+    for content in ("", "{", "[]", '{"text": 1}'):
+        journal.write_text(content)
+        assert Desk.of_file(path).text == TEXT
+
+
+def test_a_file_that_somebody_else_changed_is_not_written_over_unasked(tmp_path):
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    path.chmod(0o640)
+    desk = Desk.of_file(path)
+    desk.set(("gear", "a", "teeth"), "30")
+    path.write_text(TEXT.replace("28", "29"))
+    with pytest.raises(InputError, match="somebody else"):
+        desk.save()
+    assert "29" in path.read_text()
+    desk.save(over_others=True)
+    assert "30" in path.read_text()
+    assert path.stat().st_mode & 0o777 == 0o640
+    with pytest.raises(InputError, match="is there already"):
+        desk.save_as(path)
+    desk.save_as(tmp_path / "d")
+    assert (desk.name, (tmp_path / "d.toml").read_text()) == ("d", desk.text)
+    assert sorted(one.name for one in tmp_path.iterdir() if one.is_file()) == ["c.toml", "d.toml"]
+
+
+def test_a_folder_that_takes_no_journal_is_told_and_loses_nothing_else(tmp_path, monkeypatch):
+    monkeypatch.setenv("FEGEAR_STATE", str(tmp_path / "file" / "below"))
+    (tmp_path / "file").write_text("")
+    desk = Desk(TEXT, "c", tmp_path)
+    desk.set(("gear", "a", "teeth"), "30")
+    assert "not kept" in desk.trouble
+    assert desk.document["gear"]["a"]["teeth"] == 30
+
+
+# ---- doorkeeper ------------------------------------------------------------------------------------------------------
+HOST = {"host": "127.0.0.1:5000"}
+KEY = {"cookie": "other=1; fegear-5000=secret"}
+
+
+@pytest.mark.parametrize(
+    ("heads", "query", "let_in"),
+    [
+        (HOST, "key=secret", True),
+        (HOST | KEY, "", True),
+        ({"host": "localhost:5000"} | KEY, "", True),
+        (HOST | KEY | {"origin": "http://127.0.0.1:5000", "sec-fetch-site": "same-origin"}, "", True),
+        (HOST, "", False),
+        (HOST, "key=Secret", False),
+        (HOST, "key=", False),
+        (HOST | {"cookie": "fegear-5001=secret"}, "", False),
+        (HOST | {"cookie": "fegear-5000="}, "", False),
+        ({"host": "evil.example:5000"} | KEY, "", False),
+        ({"host": "127.0.0.1"} | KEY, "", False),
+        (KEY, "", False),
+        (HOST | KEY | {"origin": "http://evil.example"}, "", False),
+        (HOST | KEY | {"origin": "http://127.0.0.1:5001"}, "", False),
+        (HOST | KEY | {"origin": "https://127.0.0.1:5000"}, "", False),
+        (HOST | KEY | {"origin": "null"}, "", False),
+        (HOST | KEY | {"sec-fetch-site": "cross-site"}, "key=secret", False),
+    ],
+)
+@pytest.mark.parametrize("kind", ["http", "websocket"])
+def test_only_the_page_that_was_opened_is_let_in(heads, query, let_in, kind):
+    seen, sent = [], []
+
+    async def app(scope, receive, send):
+        seen.append(scope)
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    async def send(message):
+        sent.append(message)
+
+    scope = {
+        "type": kind,
+        "query_string": query.encode(),
+        "headers": [(k.encode(), v.encode()) for k, v in heads.items()],
+    }
+    asyncio.run(Doorkeeper(app, 5000, "secret")(scope, None, send))
+    assert bool(seen) is let_in
+    if not let_in:
+        assert sent[0].get("status", sent[0].get("code")) in (403, 1008)
+        assert b"secret" not in json.dumps(sent, default=str).encode()
+    elif query and kind == "http":
+        cookie = dict(sent[0]["headers"])[b"set-cookie"].decode()
+        assert "HttpOnly" in cookie
+        assert "SameSite=Strict" in cookie
+
+
+def test_a_port_that_cannot_be_had_and_a_case_that_is_not_there_are_refused(tmp_path):
+    with pytest.raises(InputError, match="--port = 70000"):
+        serve(None, 70000, browser=False, say=print)
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        with pytest.raises(InputError, match="cannot be listened on"):
+            free_port(taken.getsockname()[1])
+    with pytest.raises(InputError, match="does not exist"):
+        serve(tmp_path / "missing.toml", None, browser=False, say=print)
+
+
+# ---- computing process -----------------------------------------------------------------------------------------------
+class Heard:
+    """Everything that a computing process says, job by job."""
+
+    def __init__(self):
+        self._queue = queue.Queue()
+        self.all = []
+
+    def __call__(self, said):
+        self._queue.put(said)
+
+    def until(self, number, *what):
+        while True:
+            said = self._queue.get(timeout=60)
+            self.all.append(said)
+            if said.number == number and said.what in what:
+                return said
+
+
+@pytest.fixture(scope="module")
+def computing():
+    heard = Heard()
+    made = Computing(heard)
+    yield made, heard
+    pid = made.pid
+    made.close()
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+
+
+def test_the_page_is_told_the_numbers_of_a_run_and_only_what_depends_is_computed_again(computing, tmp_path):
+    made, heard = computing
+    made.ask(Compute(1, Asked(TEXT, "c", str(tmp_path))))
+    first = heard.until(1, "done")
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    scene = read_scene(path)
+    run = run_plan(scene, make_plan(scene, STAGES))
+    told = "".join(said.content["values"] for said in heard.all if said.what == "found")
+    tolerance = scene.case.accuracy.tolerance
+    expected = "".join(fragment([Values(o.values, tolerance)]) for o in run.outcomes.values() if o.values)
+    assert told == expected
+    assert first.content["remarks"] == list(run.remarks)
+    figures = [one["key"] for said in heard.all if said.what == "found" for one in said.content["figures"]]
+    assert figures == [figure.name for figure in run.figures]
+    made.ask(Compute(2, Asked(TEXT + 'speed = "100 rpm"\n', "c", str(tmp_path))))
+    assert {origin for _, origin in heard.until(2, "done").content["timings"].values()} == {"recalled"}
+
+
+def test_of_many_changes_the_last_is_computed_and_those_before_are_given_up(computing, tmp_path):
+    made, heard = computing
+    for number in range(10, 18):
+        made.ask(Compute(number, Asked(TEXT.replace("28", str(number + 10)), "c", str(tmp_path))))
+    heard.until(17, "done")
+    finished = [said.number for said in heard.all if said.what == "done" and said.number >= 10]
+    assert finished[-1] == 17
+    assert len(finished) <= 2
+
+
+def test_a_case_that_is_refused_while_it_computes_says_where(computing, tmp_path):
+    made, heard = computing
+    made.ask(Compute(20, Asked(TEXT.replace("28", "4"), "c", str(tmp_path))))
+    said = heard.until(20, "refused", "done")
+    assert (said.what, said.content["key"]) == ("refused", "gear.a.teeth")
+
+
+@pytest.mark.long
+def test_an_export_is_finished_whatever_is_asked_meanwhile(computing, tmp_path):
+    made, heard = computing
+    made.ask(Export(30, Asked(TEXT, "c", str(tmp_path)), "drawings", str(tmp_path / "out")))
+    made.ask(Compute(31, Asked(TEXT, "c", str(tmp_path))))
+    assert heard.until(30, "exported", "dropped", "refused").what == "exported"
+    heard.until(31, "done")
+    assert any(one.suffix == ".dxf" for one in (tmp_path / "out").iterdir())
+
+
+def test_a_process_that_dies_is_replaced_and_says_so(computing, tmp_path):
+    made, heard = computing
+    made.ask(Compute(40, Asked(TEXT.replace("weber-banaschek", "fe"), "c", str(tmp_path))))
+    heard.until(40, "begin")
+    pid = made.pid
+    os.kill(pid, 9)
+    assert "ended before" in heard.until(40, "refused").content["sentence"]
+    made.ask(Compute(41, Asked(TEXT, "c", str(tmp_path))))
+    heard.until(41, "done")
+    assert made.pid != pid
