@@ -7,5 +7,8 @@ root=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 fegear_setup "${FEGEAR_VENV:-$root/.venv}" test
 cd "$root"
 # Each worker is one process of one thread: the solves are too small for threads to help. Tests of one file stay together, so that
-# what they share is made once.
+# what they share is made once. Many tests start the program: its bytecode is kept, away from the tree.
+unset PYTHONDONTWRITEBYTECODE
+PYTHONPYCACHEPREFIX="${FEGEAR_VENV:-$root/.venv}/bytecode"
+export PYTHONPYCACHEPREFIX
 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 exec "${FEGEAR_VENV:-$root/.venv}/bin/python" -m pytest -n 2 --dist worksteal "$@"
