@@ -77,7 +77,7 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedFlanksData:
     return cast("LoadedFlanksData", upstream[Task("loaded-flanks", name)])
 
 
-def _compute(asked: FlanksToLoad, upstream: Upstream, _work: Work) -> LoadedFlanksData:
+def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlanksData:
     from fegear.contact.flank import FlankPair
     from fegear.contact.flank.error import flank_error
 
@@ -86,7 +86,8 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, _work: Work) -> LoadedFlan
     fine = {member: one.fine for member, one in zip(MEMBERS, solved, strict=True)}
     coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
     flanks = FlankPair(
-        asked.pair, fine, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions
+        asked.pair, fine, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions,
+        work.cache,
     )  # fmt: skip
     gaps = asked.gaps(relief=effects.relief, misalignment=effects.misalignment)
     known = flanks.compliance(asked.nominal)

@@ -1,13 +1,14 @@
 """Loaded flanks of gears with a width: limits, laws and brute force."""
 
 import math
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 
 from fegear.contact import Engagement, PairCompliance, finite_element_compliance
-from fegear.contact.flank import FlankGaps, FlankPair, contact_lines, flank_compliance
+from fegear.contact.flank import FlankGaps, FlankPair, compliance, contact_lines, flank_compliance
 from fegear.contact.flank.complementarity import hat_averages, solve_contact
 from fegear.contact.flank.compliance import FlankCompliance
 from fegear.contact.flank.error import flank_error
@@ -21,6 +22,7 @@ from fegear.fem.solid.bands import hats
 from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import tip_relief
+from fegear.solution_cache import SolutionCache, cache_on_disk
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 COARSE = SolidSettings().scaled(1.7)
@@ -326,3 +328,33 @@ def test_mirrored_hands_mirror_the_root_stress(solved, known):
     two = rooted_lines(other.pair, "driver", again.lines, other.gears["driver"], coupling=True)
     wanted = two.stress("tension", again.contact.force[:, :, 0], z)
     np.testing.assert_allclose(stress.value, wanted.value[:, ::-1], rtol=1e-4, atol=1e-4 * stress.value.max())
+
+
+def test_what_load_and_gaps_do_not_change_is_recalled_bit_for_bit(solved, known, tmp_path):
+    flanks, matrix = known
+    on_disk = [cache_on_disk(tmp_path) for _ in range(2)]
+    first, again = (replace(flanks, cache=cache).compliance(LOAD) for cache in on_disk)
+    np.testing.assert_array_equal(first.matrix, matrix.matrix)
+    np.testing.assert_array_equal(again.matrix, matrix.matrix)
+    assert [(cache.shapes.computed, cache.shapes.from_disk) for cache in on_disk] == [(2, 0), (0, 2)]
+    # another load: no more to compute, and the ends of the lines follow it
+    third = replace(flanks, cache=on_disk[1]).compliance(3.0 * LOAD)
+    assert on_disk[1].shapes.computed == 0
+    np.testing.assert_allclose(third.matrix, flank_pair(solved).compliance(3.0 * LOAD).matrix, rtol=1e-14)
+    assert np.abs(third.matrix - matrix.matrix).max() > 0.0
+    # other gears, other lines: nothing is taken for what it is not
+    for other in (flank_pair(solved, "left"), replace(flanks, panel=0.7), replace(flanks, positions=5)):
+        cache = cache_on_disk(tmp_path)
+        replace(other, cache=cache).compliance(LOAD)
+        assert (cache.shapes.computed, cache.shapes.from_disk) == (2, 0)
+    damaged = next(path for path in tmp_path.rglob("*.entry"))
+    damaged.write_bytes(damaged.read_bytes()[:-8])
+    mended = replace(flanks, cache=cache_on_disk(tmp_path)).compliance(LOAD)
+    np.testing.assert_array_equal(mended.matrix, matrix.matrix)
+
+
+def test_many_roll_positions_are_taken_in_parts(known, monkeypatch):
+    flanks, matrix = known
+    monkeypatch.setattr(compliance, "_STATIONS_AT_ONCE", 30)
+    again = replace(flanks, cache=SolutionCache()).compliance(LOAD)
+    np.testing.assert_allclose(again.matrix, matrix.matrix, rtol=1e-12, atol=1e-12 * np.abs(matrix.matrix[0, 0, 0]))

@@ -17,10 +17,12 @@ import numpy as np
 from fegear.fem.solid.bands import bands
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
+from fegear.plain import code_version, content_key, pack, unpack
+from fegear.solution_cache import Codec, SolutionCache
 from fegear.tally import tallied
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from fegear.arrays import Array
     from fegear.contact.flank.lines import ContactLines
@@ -34,6 +36,17 @@ Hertz = Literal["load-dependent", "linear", "none"]
 _NOMINAL_HALF_WIDTH = 0.08
 #: Pressed half-widths go in steps of this ratio, so that few of them occur.
 _WIDTH_STEP = 0.8
+#: Stations whose loads are held in memory at once.
+_STATIONS_AT_ONCE = 4000
+
+
+def _matrix(data: bytes) -> Array | None:
+    found = unpack(data)
+    return found if isinstance(found, np.ndarray) and found.ndim == 3 else None
+
+
+#: Matrices as they are kept on disk.
+_PLAIN: Codec[Array] = Codec(pack, _matrix)
 
 
 @dataclass(frozen=True)
@@ -78,6 +91,7 @@ def flank_compliance(
     *,
     coupling: bool = True,
     hertz: Hertz = "load-dependent",
+    cache: SolutionCache | None = None,
 ) -> FlankCompliance:
     """Assemble the compliance of all stations at all roll positions.
 
@@ -92,6 +106,8 @@ def flank_compliance(
         Whether pairs deflect each other, as far as the solutions reach.
     hertz : {"load-dependent", "linear", "none"}
         The half-width follows each station's own line load; is that of the mean line load at `load`; or 0.08 modules.
+    cache : SolutionCache, optional
+        Where what does not depend on the load is recalled from and kept.
 
     Returns
     -------
@@ -105,22 +121,16 @@ def flank_compliance(
     factor = 4.0 * across * softness / math.pi
     mean = np.sqrt(factor * (load / lines.length)[:, None])
     b = np.full(lines.x.shape, _NOMINAL_HALF_WIDTH * module) if hertz == "none" else mean
-    most = lines.x.shape[1]
-    matrix = np.zeros((*lines.x.shape, most))
-    log_slope = 0.0
-    places, spans = places_of(lines)
-    for member in MEMBERS:
-        gear, body = pair.gear(member), gears[member]
-        softer = 1.0 / (gear.material.young_modulus * module)
-        pressed = body.pressed(line_bands(pair, member, body, lines), spans)
-        log_slope += pressed.slope / gear.material.young_modulus
-        widened = pressed.widened(b[lines.present] / module)
-        for (p, s), own, wider, common in zip(places, pressed.own(), widened, pressed.common, strict=True):
-            matrix[p, s, s] += softer * (own + wider + 2.0 * math.log(module) * pressed.slope * common)
-        if coupling:
-            _couple(matrix, pressed, body.reach, 1 if member == "driver" else -1, lines, softer)
-    index = np.arange(most)
+
+    known = cache or SolutionCache()
+    made_of = code_version("contact", "fem", "geometry"), pair, lines, [gears[member].identity for member in MEMBERS]
+    matrix = known.solve(content_key("own", *made_of), lambda: _own(pair, gears, lines), _PLAIN).value
+    matrix = matrix + _widened(pair, gears, lines, b)
+    if coupling:
+        matrix += known.solve(content_key("beside", *made_of), lambda: _beside(pair, gears, lines), _PLAIN).value
+    index = np.arange(lines.x.shape[1])
     matrix[:, index, index] += np.where(lines.present, 0.0, 1.0)
+    log_slope = sum(gears[m].contact_slope / pair.gear(m).material.young_modulus for m in MEMBERS)
     return FlankCompliance(lines, matrix, log_slope, factor, None if hertz == "load-dependent" else b)
 
 
@@ -131,20 +141,69 @@ def places_of(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]
     return places, [slice(a, b) for a, b in itertools.pairwise(ends)]
 
 
+def _own(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines) -> Array:
+    """What each line does to itself under contacts of half-width one metre, less what `_widened` adds, (P, M, M)."""
+    module = pair.driver.module
+    matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
+    for member in MEMBERS:
+        softer, log = _softer(pair, member), 2.0 * math.log(module) * gears[member].contact_slope
+        for places, pressed in _pressed(pair, gears, member, lines):
+            for (p, s), own, common in zip(places, pressed.own(), pressed.common, strict=True):
+                matrix[p, s, s] += softer * (own + log * common)
+    return matrix
+
+
+def _widened(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, half_width: Array) -> Array:
+    """What half-widths of shape (P, M) [m] change, but for their logarithm; cheap, shape (P, M, M)."""
+    matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
+    for member in MEMBERS:
+        softer = _softer(pair, member)
+        for places, pressed in _pressed(pair, gears, member, lines):
+            width = np.concatenate([half_width[p, s] for p, s in places]) / pair.driver.module
+            for (p, s), wider in zip(places, pressed.widened(width), strict=True):
+                matrix[p, s, s] += softer * wider
+    return matrix
+
+
 @tallied("neighbours")
-def _couple(matrix: Array, pressed: FlankLines, reach: int, forward: int, lines: ContactLines, softer: float) -> None:
-    """Add what the lines of each roll position do to each other, and its transpose (Maxwell)."""
-    places, _ = places_of(lines)
-    tooth = [forward * int(lines.pair[p, s.start]) for p, s in places]
-    found: dict[int, list[tuple[int, int]]] = {}
-    for a, b in itertools.combinations(range(len(places)), 2):
-        if places[a][0] == places[b][0] and abs(k := tooth[a] - tooth[b]) <= reach:
-            found.setdefault(k, []).append((a, b))
-    for k, pairs in found.items():
-        for (a, b), block in zip(pairs, pressed.between(k, pairs), strict=True):
-            (p, first), (_, second) = places[a], places[b]
-            matrix[p, first, second] += softer * block
-            matrix[p, second, first] += softer * block.T
+def _beside(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines) -> Array:
+    """What the lines of each roll position do to each other, shape (P, M, M); its transpose by Maxwell."""
+    matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
+    for member in MEMBERS:
+        softer, forward, reach = _softer(pair, member), 1 if member == "driver" else -1, gears[member].reach
+        for places, pressed in _pressed(pair, gears, member, lines):
+            tooth = [forward * int(lines.pair[p, s.start]) for p, s in places]
+            found: dict[int, list[tuple[int, int]]] = {}
+            for _, group in itertools.groupby(range(len(places)), key=lambda line: places[line][0]):
+                for a, b in itertools.combinations(group, 2):
+                    if abs(tooth[a] - tooth[b]) <= reach:
+                        found.setdefault(tooth[a] - tooth[b], []).append((a, b))
+            for k, pairs in found.items():
+                for (a, b), block in zip(pairs, pressed.between(k, pairs), strict=True):
+                    (p, first), (_, second) = places[a], places[b]
+                    matrix[p, first, second] += softer * block
+                    matrix[p, second, first] += softer * block.T
+    return matrix
+
+
+def _softer(pair: GearPair, member: Member) -> float:
+    """Metres per newton of a gear's dimensionless compliances."""
+    return 1.0 / (pair.gear(member).material.young_modulus * pair.driver.module)
+
+
+def _pressed(
+    pair: GearPair, gears: Mapping[Member, FlankBody], member: Member, lines: ContactLines
+) -> Iterator[tuple[list[tuple[int, slice]], FlankLines]]:
+    """Press the lines on one gear, those of some roll positions at a time: where they stand, and what they answer."""
+    body = gears[member]
+    line, (places, spans) = line_bands(pair, member, body, lines), places_of(lines)
+    # Whole roll positions, for what their lines do to each other.
+    chunk = np.cumsum(lines.present.sum(axis=1)) // _STATIONS_AT_ONCE
+    for _, group in itertools.groupby(range(len(places)), key=lambda i: int(chunk[places[i][0]])):
+        some = list(group)
+        start, stop = spans[some[0]].start, spans[some[-1]].stop
+        moved = [slice(spans[i].start - start, spans[i].stop - start) for i in some]
+        yield [places[i] for i in some], body.pressed(line.part(slice(start, stop)), moved)
 
 
 def line_bands(pair: GearPair, member: Member, body: FlankBody, lines: ContactLines) -> Bands:

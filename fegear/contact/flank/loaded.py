@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,7 @@ from fegear.errors import InputError
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
 from fegear.one_thread import one_thread
+from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -175,6 +176,10 @@ class LoadedFlanks(ReadOnlyArrays):
         return found
 
 
+#: Matrices that a pair keeps: two for itself, two for its error, as many for other effects.
+_KEPT = 8
+
+
 @dataclass(frozen=True)
 class FlankPair:
     """A pair of gears with a width, ready to be loaded.
@@ -190,6 +195,8 @@ class FlankPair:
         Length of a panel along the face, at most [modules].
     positions : int
         Roll positions over one base pitch.
+    cache : SolutionCache
+        Where what gaps and loads do not change is recalled from and kept; by default a memory of this pair's own.
     """
 
     pair: GearPair
@@ -198,6 +205,7 @@ class FlankPair:
     hertz: Hertz = "load-dependent"
     panel: float = 0.5
     positions: int = 16
+    cache: SolutionCache = field(default_factory=partial(SolutionCache, most=_KEPT), compare=False, repr=False)
 
     @property
     def points(self) -> Panels:
@@ -219,7 +227,9 @@ class FlankPair:
             self.pair, points.x, self.panel * self.pair.driver.module, points.weights / points.period
         )  # fmt: skip
         with one_thread():
-            return flank_compliance(self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz)
+            return flank_compliance(
+                self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz, cache=self.cache
+            )
 
     def solve(
         self, load: ArrayLike, gaps: FlankGaps | None = None, known: FlankCompliance | None = None

@@ -154,6 +154,8 @@ def profiles_at(pressed: Bands, zeta: Array) -> Array:
 
 def overlap(pressed: Bands) -> Array:
     """Integrals of products of two bands' profiles along the face, shape (P, P) [1/module]."""
+    if _is_chain(pressed):
+        return _overlap_of_chain(pressed)
     ends = np.unique(np.concatenate([pressed.zeta - pressed.before, pressed.zeta, pressed.zeta + pressed.after]))
     half = 0.5 * np.diff(ends)
     z = (0.5 * (ends[1:] + ends[:-1])[:, None] + half[:, None] * np.array([-1.0, 1.0]) / math.sqrt(3.0)).ravel()
@@ -161,14 +163,33 @@ def overlap(pressed: Bands) -> Array:
     return np.asarray((values * np.repeat(half, 2)) @ values.T)
 
 
+def _is_chain(pressed: Bands) -> bool:
+    """Whether each band falls to the next ones, as those of `hats`."""
+    step = np.diff(pressed.zeta)
+    return pressed.profile == "hat" and bool((pressed.after[:-1] == step).all() and (pressed.before[1:] == step).all())
+
+
+def _overlap_of_chain(pressed: Bands) -> Array:
+    """The same of hats on a chain of stations: the mass matrix of linear elements."""
+    height = 2.0 / (pressed.before + pressed.after)
+    found = np.diag(height**2 * (pressed.before + pressed.after) / 3.0)
+    beside = height[1:] * height[:-1] * pressed.after[:-1] / 6.0
+    at = np.arange(beside.size)
+    found[at, at + 1] = found[at + 1, at] = beside
+    return found
+
+
 def _gauss(pressed: Bands, face: FaceFunctions) -> tuple[Array, Array]:
     """Points along the face and shares of each band's load there, shape (P, q) each."""
     low, high = pressed.zeta - pressed.before, pressed.zeta + pressed.after
     cuts = [low, pressed.zeta, high, *(np.clip(x, low, high) for x in face.breaks[1:-1])]
     ends = np.sort(np.stack(cuts), axis=0)
-    # A straight profile and, along a sloping line, a pressure that moves up the flank: some points more than for these.
-    x, w = np.polynomial.legendre.leggauss(max(face.degrees) // 2 + 4)
     half = 0.5 * np.diff(ends, axis=0)[:, :, None]
+    # A straight profile and, along a sloping line, a pressure that moves up the flank: some points more than for these.
+    # On a short part of the face a function is nearly a polynomial of as low a degree as its part of the waves.
+    degree = max(face.degrees)
+    waves = math.ceil(degree * 2.0 * float(half.max()) / face.width) if half.size else 0
+    x, w = np.polynomial.legendre.leggauss(min(degree // 2 + 4, waves + 5))
     z = (0.5 * (ends[1:] + ends[:-1])[:, :, None] + half * x).transpose(1, 0, 2).reshape(pressed.count, -1)
     weight = (half * w).transpose(1, 0, 2).reshape(pressed.count, -1)
     if pressed.profile == "hat":

@@ -9,6 +9,7 @@ faces, which the half-space has only as mirrors, and the square of the pressed w
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,25 +59,26 @@ class PressedLines:
 
     def __init__(self, solution: SolidSolution, line: Bands, spans: Sequence[slice]) -> None:
         self._solution, self._line, self._spans = solution, line, spans
-        self._loads = loads_of(line, solution.flank, solution.face)
         self.common = [overlap(line.part(span)) for span in spans]
 
-    @property
-    def slope(self) -> float:
-        """What of a line load's approach goes with -2 ln b, b its half-width: see `TwistedFlank`."""
-        return self._solution.contact_slope
+    @cached_property
+    def _loads(self) -> Array:
+        """Loads on the flank's ports, shape (n, all P)."""
+        return loads_of(self._line, self._solution.flank, self._solution.face)
 
     def own(self) -> list[Array]:
         """c_0 of each line under contacts of half-width 1, less what `widened` gives, (P, P) each [1/(E module)]."""
-        line, solution = self._line, self._solution
+        line, solution, slope = self._line, self._solution, self._solution.contact_slope
         seen, moments = self._as_the_functions_see_them()
         bend = solution.bend(line.radius) * line.half_width
         logs = np.log(line.half_width) / solution.width
         found = []
         for span, common, answer in zip(self._spans, self.common, self._answered(0, self._spans), strict=True):
             taken = seen[span] @ moments[:, span] - 2.0 * logs[span, None]
-            block = self._loads[:, span].T @ answer + self.slope * (_narrow(solution, line.part(span)) + 0.5 * common)
-            block -= 0.5 * (self.slope * (taken + taken.T) + (bend[span, None] + bend[span]) * common)
+            block = self._loads[:, span].T @ answer + solution.contact_slope * (
+                _narrow(solution, line.part(span)) + 0.5 * common
+            )
+            block -= 0.5 * (slope * (taken + taken.T) + (bend[span, None] + bend[span]) * common)
             found.append(block)
         return found
 
@@ -148,7 +150,7 @@ def line_compliance(solution: SolidSolution, line: Bands, half_width: ArrayLike)
     check_half_width(b, solution.flank)
     lines = PressedLines(solution, line, (slice(0, line.count),))
     width = np.log(b)
-    return lines.own()[0] + lines.widened(b)[0] - lines.slope * (width[:, None] + width) * lines.common[0]
+    return lines.own()[0] + lines.widened(b)[0] - solution.contact_slope * (width[:, None] + width) * lines.common[0]
 
 
 def widened_by_curvature(

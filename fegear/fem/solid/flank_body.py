@@ -10,7 +10,7 @@ import numpy as np
 from fegear.fem.influence import curvature_slope
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -38,10 +38,6 @@ class FlankLines(Protocol):
     def common(self) -> Sequence[Array]:
         """Of each line the integrals of products of its bands' profiles, (P, P) [1/module]."""
 
-    @property
-    def slope(self) -> float:
-        """What of a line load's approach goes with -2 ln b, b its half-width."""
-
     def own(self) -> list[Array]:
         """c_0 of each line under contacts of half-width 1, less what `widened` gives, (P, P) [1/(E module)]."""
 
@@ -67,6 +63,14 @@ class FlankBody(Protocol):
     def reach(self) -> int:
         """K: neighbours -K..K are known."""
 
+    @property
+    def contact_slope(self) -> float:
+        """What of a line load's approach goes with -2 ln b, b its half-width."""
+
+    @property
+    def identity(self) -> tuple[object, ...]:
+        """All that its answers depend on, for keys of what is made of them."""
+
     def band_half_width(self, radius: ArrayLike) -> Array:
         """Half-width of a pressure that the section resolves, shape (P,) [modules]."""
 
@@ -82,9 +86,24 @@ class TwistedFlank:
 
     tooth: Tooth
     tau: float
+    width: float
     poisson_ratio: float
     flank: LoadedFlank
+    compliance: Mapping[int, Array]
+    reach: int
     settings: SolidSettings
+
+    @property
+    def identity(self) -> tuple[object, ...]:
+        """All that its answers depend on, for keys of what is made of them.
+
+        What a bore, a held part of it or a mesh of one's own change shows in the answer to the first node's force.
+        """
+        kind, flank = type(self).__name__, self.flank
+        return (
+            kind, self.tooth, self.tau, self.width, self.poisson_ratio, self.reach, self.settings, flank.arc,
+            self.compliance[0][0],
+        )  # fmt: skip
 
     def band_half_width(self, radius: ArrayLike) -> Array:
         """Half-width of a pressure that the section resolves, shape (P,) [modules]: less beside the flank's ends."""

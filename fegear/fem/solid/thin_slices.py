@@ -76,11 +76,6 @@ class ThinLines:
         self._body, self._line, self._spans = body, line, spans
         self.common = [overlap(line.part(span)) for span in spans]
 
-    @property
-    def slope(self) -> float:
-        """What of a line load's approach goes with -2 ln b: as a solid gear's."""
-        return self._body.contact_slope
-
     def own(self) -> list[Array]:
         """c_0 of each line under contacts of half-width 1, less what `widened` gives, (P, P) [1/(E module)]."""
         return self._products(0, [(i, i) for i in range(len(self._spans))])
