@@ -13,6 +13,7 @@ from fegear.results import (
     dynamic_increments,
     dynamic_root_stress,
     flank_generation,
+    flank_load_factors,
     flank_load_sharing,
     flank_root_stress,
     flank_transmission_error,
@@ -76,6 +77,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             flank_transmission_error.FLANK_TRANSMISSION_ERROR,
             flank_root_stress.FLANK_ROOT_STRESS,
             load_distribution.LOAD_DISTRIBUTION,
+            flank_load_factors.FLANK_LOAD_FACTORS,
             mesh_stiffness_matrix.MESH_STIFFNESS_MATRIX,
         ),
         "Profile relief": (

@@ -172,7 +172,7 @@ def _remarks(name: str, data: LoadedFlanksData) -> list[str]:
     return remarks
 
 
-def _subjects(scene: Scene) -> tuple[str, ...]:
+def distributed_pairs(scene: Scene) -> tuple[str, ...]:
     """All pairs that carry a load and are not plane by their key; all where none is, so that it is reported."""
     loaded = [name for name, pair in scene.pairs.items() if scene.case.pair[name].normal_load(pair) is not None]
     return tuple(name for name in loaded if scene.case.pair[name].width != "plane") or tuple(loaded or scene.pairs)
@@ -194,8 +194,8 @@ LOAD_DISTRIBUTION = Stage(
     name="load-distribution",
     title="Load over the flanks",
     results=("load-distribution",),
-    about="line load and pressure over the flanks of a spur or helical pair with its width, K_Hbeta",
-    subjects=_subjects,
+    about="line load and pressure over the flanks of a spur or helical pair with its width, load factors K",
+    subjects=distributed_pairs,
     inputs=_inputs,
     compute=lambda inputs, upstream, _work: loaded_flanks(upstream, inputs.name),
     present=_present,

@@ -1,18 +1,29 @@
 """``transmission-error`` and ``load-sharing`` of pairs with a width: tables as in the plane, and their laws."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fegear.case.reading import read_scene
+from fegear.contact.flank import FlankGaps
+from fegear.contact.flank.load_factors import (
+    even_along_the_lines,
+    iso_face_load_factor,
+    root_factors,
+    straight_gap,
+    transverse_load_factor,
+)
 from fegear.contact.flank.positions import roll_points
+from fegear.contact.flank.root_stress import rooted_lines
 from fegear.contact.flank.transmission_error import curve_through, flank_transmission_errors, from_half
 from fegear.contact.fourier import fourier_series, panels
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
@@ -116,6 +127,44 @@ def test_root_stress_over_the_face_and_its_largest_value_are_one(results):
         assert way["t [s]"][-1] == pytest.approx(np.ptp(way["x [mm]"]) * 1e-3 / rate, rel=1e-6)
         # the gap opens toward +z, so the load and with it the stress are at -z
         assert way["stress_face_position [mm]"][over.max(axis=1).argmax()] < 0.0
+
+
+def test_load_factors(results):
+    rows = columns(results, "load_factors_I")
+    np.testing.assert_allclose(rows["K_Hbeta"], columns(results, "load_distribution_loads_I")["K_Hbeta"])
+    # less and less as the load closes the gap, by ISO 6336-1 as well
+    assert (np.diff(rows["K_Hbeta"]) < 0.0).all()
+    assert (np.diff(rows["K_Hbeta_iso"]) < 0.0).all()
+    assert (rows["K_Fbeta_iso"] < rows["K_Hbeta"]).all()
+    for member in MEMBERS:
+        assert 1.0 < results.values[f"I.{member}.K_Fbeta"].si < rows["K_Hbeta"][1]
+    data = results.outcomes[Task("flank-load-factors", "I")].data
+    root = results.outcomes[Task("flank-root-stress", "I")].data
+    assert data.root["driver"].largest == pytest.approx(root.stress["driver"].tension[:, 1].max(), rel=1e-9)
+    # 10 um over the face, straight; crowning has no straight part
+    assert data.gap == pytest.approx(10e-6, rel=1e-9)
+    pair = data.loaded.found.pair
+    z = np.linspace(-4e-3, 4e-3, 801)
+    assert straight_gap(pair, FlankGaps(face_position=z, line_gap=8e-6 * (z / 4e-3) ** 2)) == pytest.approx(
+        0.0, abs=1e-9
+    )
+
+
+def test_factors_are_one_where_nothing_is_uneven(results):
+    loaded = results.outcomes[Task("loaded-flanks", "I")].data
+    perfect = loaded.flanks.solve([3600.0], None, loaded.known)
+    np.testing.assert_array_equal(transverse_load_factor(perfect, perfect), 1.0)
+    even = even_along_the_lines(perfect.lines, perfect.contact.force[:, :, 0])
+    for p in range(perfect.lines.roll.size):
+        for s in perfect.lines.at(p):
+            assert even[p, s].sum() == pytest.approx(perfect.contact.force[p, s, 0].sum(), rel=1e-12)
+            line_load = even[p, s] / perfect.lines.support[p, s]
+            np.testing.assert_allclose(line_load, line_load[0], rtol=1e-12)
+    spread = replace(perfect, contact=replace(perfect.contact, force=even[:, :, None]))
+    rooted = rooted_lines(perfect.pair, "driver", perfect.lines, loaded.flanks.gears["driver"], coupling=True)
+    factors = root_factors(spread, perfect, rooted, np.linspace(-4e-3, 4e-3, 9), 0)
+    assert (factors.face, factors.transverse) == pytest.approx((1.0, 1.0), rel=1e-12)
+    assert iso_face_load_factor(perfect.pair, FlankGaps(), 3600.0) == 1.0
 
 
 def test_what_has_no_meaning_over_the_face_is_refused():

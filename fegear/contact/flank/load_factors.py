@@ -1,0 +1,107 @@
+"""Load factors of solved flanks: what uneven load along the face and between the pairs adds to load and root stress.
+
+K_Hbeta is with the loads (`LoadedFlanks.face_load_factor`). For the root, three loads are compared, each over a whole
+mesh cycle: the solved one; the same with the share of every pair spread evenly along its contact line; and the shares
+of perfect flanks spread so. Their largest root tensions s_1, s_2, s_3 give K_Fbeta = s_1 / s_2, K_Falpha = s_2 / s_3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.flank.lines import ContactLines
+from fegear.formulas.iso6336_face_load import face_load_factor, root_exponent
+from fegear.formulas.iso6336_stiffness import pair_stiffness
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array
+    from fegear.contact.flank.gaps import FlankGaps
+    from fegear.contact.flank.loaded import LoadedFlanks
+    from fegear.contact.flank.root_stress import RootedLines
+    from fegear.geometry.pair import GearPair
+
+#: Places along the face at which the gap is read for its straight part.
+_READ = 101
+
+
+@dataclass(frozen=True)
+class RootFactors:
+    """K_Fbeta and K_Falpha of one gear, and the largest root tension of the solved load [Pa]."""
+
+    face: float
+    transverse: float
+    largest: float
+
+
+def transverse_load_factor(found: LoadedFlanks, perfect: LoadedFlanks) -> Array:
+    """K_Halpha, shape (L,): largest load on a pair over the mesh cycle, over the largest of perfect flanks."""
+    return np.asarray(found.pair_load.max(axis=(0, 1)) / perfect.pair_load.max(axis=(0, 1)))
+
+
+def even_along_the_lines(lines: ContactLines, force: Array) -> Array:
+    """The force of every contact line spread evenly along it, shape (P, M) [N]."""
+    even, support = np.zeros(force.shape), lines.support
+    for p in range(lines.roll.size):
+        for s in lines.at(p):
+            even[p, s] = force[p, s].sum() * support[p, s] / support[p, s].sum()
+    return even
+
+
+def root_factors(found: LoadedFlanks, perfect: LoadedFlanks, rooted: RootedLines, z: Array, case: int) -> RootFactors:
+    """K_Fbeta and K_Falpha of a gear.
+
+    Parameters
+    ----------
+    found, perfect : LoadedFlanks
+        As loaded, and without anything that keeps the flanks apart; on the lines of `rooted`.
+    rooted : RootedLines
+        Of the gear.
+    z : ndarray
+        Places along the face at which stress is looked for [m].
+    case : int
+        Number of the load.
+    """
+    solved, ideal = found.contact.force[:, :, case], perfect.contact.force[:, :, case]
+    loads = solved, even_along_the_lines(found.lines, solved), even_along_the_lines(found.lines, ideal)
+    largest, even, best = (float(rooted.stress("tension", force, z).value.max()) for force in loads)
+    return RootFactors(largest / even, even / best, largest)
+
+
+def straight_gap(pair: GearPair, gaps: FlankGaps) -> float:
+    """F_betay: straight part of the gap over the face at the pitch point, from end to end, by least squares [m]."""
+    half = 0.5 * pair.face_width
+    z = np.linspace(-half, half, _READ)[None]
+    on = np.ones(z.shape, dtype=bool)
+    lines = ContactLines(np.zeros(1), np.zeros(z.shape, dtype=np.int64), on, np.zeros(z.shape), z, -half, half, ~on)
+    gap = gaps.at(pair, lines)
+    return float(2.0 * half * (z * gap).sum() / (z * z).sum())
+
+
+def iso_face_load_factor(pair: GearPair, gaps: FlankGaps, load: float) -> float:
+    """K_Hbeta by the closed formula of ISO 6336-1, from the straight part of the gap, not run in.
+
+    Parameters
+    ----------
+    pair : GearPair
+    gaps : FlankGaps
+    load : float
+        Along the transverse line of action [N].
+
+    Raises
+    ------
+    RangeError
+        If the pair lies outside the range of the standard's mesh stiffness.
+    """
+    tangential = load * pair.driver.base_radius / pair.driver.pitch_radius / pair.face_width
+    stiffness = pair_stiffness(pair, tangential).mesh_beta
+    return face_load_factor(straight_gap(pair, gaps), stiffness, tangential)
+
+
+def iso_root_exponent(pair: GearPair) -> float:
+    """N_F of ISO 6336-1 for both gears of a pair."""
+    gears = pair.driver, pair.driven
+    depths = [gear.module * (gear.tooth.tip_radius - gear.tooth.root_radius) for gear in gears]
+    return root_exponent((gears[0].face_width, gears[1].face_width), (depths[0], depths[1]))
