@@ -14,13 +14,16 @@ import numpy as np
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import UNMODIFIED, Relief
+from fegear.geometry.shaft_tilt import ShaftTilt
 from fegear.tally import note
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fegear.arrays import Array
     from fegear.contact.flank.lines import ContactLines
     from fegear.geometry.flank_modification import FlankModification
-    from fegear.geometry.pair import GearPair
+    from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,13 @@ class FlankGaps(ReadOnlyArrays):
         Gap over the face position from the middle of the common face [m], straight between: deflected shafts and
         whatever else belongs to no single gear. Empty for none.
     driver_flank, driven_flank : tuple of FlankModification
-        Of each gear over its own face: lead modifications, bias, topography. They add up.
+        Of each gear over its own face: lead modifications, bias, topography, errors of its cutter. They add up.
+    tilt : ShaftTilt
+        Deviation of the axes.
+    driver_spacing, driven_spacing : ndarray
+        Spacing error of each tooth in the order of meshing [m]; empty for none.
+    base_pitch : int
+        Which teeth meet: pair j is on teeth base_pitch - j.
     """
 
     driver_relief: Relief = UNMODIFIED
@@ -44,17 +53,38 @@ class FlankGaps(ReadOnlyArrays):
     line_gap: Array = field(default_factory=lambda: np.empty(0))
     driver_flank: tuple[FlankModification, ...] = ()
     driven_flank: tuple[FlankModification, ...] = ()
+    tilt: ShaftTilt = ShaftTilt()
+    driver_spacing: Array = field(default_factory=lambda: np.empty(0))
+    driven_spacing: Array = field(default_factory=lambda: np.empty(0))
+    base_pitch: int = 0
 
     def at(self, pair: GearPair, lines: ContactLines) -> Array:
-        """Gap at the stations, shape (P, M) [m]."""
-        gap = np.zeros(lines.x.shape)
-        reliefs, flanks = (self.driver_relief, self.driven_relief), (self.driver_flank, self.driven_flank)
-        for member, relief, parts in zip(MEMBERS, reliefs, flanks, strict=True):
-            roll = pair.roll_angle(lines.x, member)
-            gap += relief.removal(roll)
-            note("reliefs", len(parts))
-            for part in parts:
-                gap += part.removal(roll, lines.z)
+        """Gap at the stations, shape (P, M) [m]: the sum of all, where unmodified flanks touch."""
+        gap = self.of_pair(lines.pair, lines.z)
+        for member in MEMBERS:
+            gap = gap + self.removed(member, pair.roll_angle(lines.x, member), lines.z)
+        if self.tilt != ShaftTilt():
+            note("misaligned flanks")
+            gap = gap + self.tilt.gap(pair, lines.x, lines.z)
+        return np.asarray(gap)
+
+    def removed(self, member: Member, roll: Array, z: Array) -> Array:
+        """What is missing from a gear's flank at roll angles [rad] and heights [m], of one shape [m]."""
+        driver = member == "driver"
+        total = (self.driver_relief if driver else self.driven_relief).removal(roll)
+        parts = self.driver_flank if driver else self.driven_flank
+        note("reliefs", len(parts))
+        for part in parts:
+            total = total + part.removal(roll, z)
+        return np.asarray(total)
+
+    def of_pair(self, pair: NDArray[np.int64], z: Array) -> Array:
+        """What tooth pairs j have at heights [m] whatever their flanks are: `line_gap` and spacing errors [m]."""
+        total = np.zeros(z.shape)
+        for errors in (self.driver_spacing, self.driven_spacing):
+            if errors.size:
+                note("spacing errors")
+                total += errors[np.mod(self.base_pitch - pair, errors.size)]
         if self.line_gap.size:
-            gap += np.interp(lines.z, self.face_position, self.line_gap)
-        return gap
+            total += np.interp(z, self.face_position, self.line_gap)
+        return total
