@@ -152,7 +152,7 @@ class GearPart(Part):
         for key in ("module", "diametral_pitch"):
             if key in self.model_fields_set:
                 raise refuse("is that of a spur gear", f"write normal_{key} for a gear with a helix_angle", key=key)
-        for key in ("plane", "spacing_errors", "tooth_mesh", "tooth_mesh_fillet"):
+        for key in ("plane", "tooth_mesh", "tooth_mesh_fillet"):
             if self.has_helix and key in self.model_fields_set:
                 raise refuse(
                     "is not computed for a gear with a helix_angle yet", f"remove {key}: results do without it", key=key

@@ -7,17 +7,29 @@ from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Angle, InverseLength, Length, LengthOrZero, Part, PositiveForce, refuse
+from fegear.case.part import Angle, InverseLength, Length, LengthOrZero, Part, PositiveForce, PositiveLength, refuse
 
 if TYPE_CHECKING:
     from fegear.geometry import Gear, GearPair
     from fegear.helical.pair import HelicalPair, Misalignment
 
 
+class ShaftPart(Part):
+    """``{ in_plane, out_of_plane, over }``: f_Sigma_delta and f_Sigma_beta of a shaft (ISO/TR 10064-3).
+
+    Measured over the distance of its bearings, or over the face of its gear; positive opens the flanks toward end II.
+    """
+
+    in_plane: Length = 0.0
+    out_of_plane: Length = 0.0
+    over: PositiveLength | None = None
+
+
 class MisalignmentPart(Part):
-    """``misalignment = { shaft_angle, lead_angle or lead, profile_angle, centre_distance }``: errors of a helical pair.
+    """``misalignment = { shaft_angle, lead_angle or lead, profile_angle, centre_distance, driver, driven }``.
 
     ``lead`` is the error of the pinion's lead itself, which the cutting machine leaves: Delta H_1 of TM-107451, Eq. 18.
+    ``driver`` and ``driven`` are deviations of their shafts from parallel, which add to ``shaft_angle``.
     """
 
     shaft_angle: Angle = 0.0
@@ -25,6 +37,8 @@ class MisalignmentPart(Part):
     lead: Length | None = None
     profile_angle: Angle = 0.0
     centre_distance: Length = 0.0
+    driver: ShaftPart | None = None
+    driven: ShaftPart | None = None
 
     @model_validator(mode="after")
     def _one_lead(self) -> Self:
@@ -32,13 +46,27 @@ class MisalignmentPart(Part):
             raise refuse("contradicts lead_angle", "give either the error of the lead or that of its angle", key="lead")
         return self
 
-    def build(self, pinion: Gear) -> Misalignment:
-        """Make the errors."""
+    def deviation(self, pair: GearPair) -> tuple[float, float]:
+        """Of both shafts together from parallel, in and out of their plane [rad]."""
+        inside, across = 0.0, self.shaft_angle
+        for part, gear in ((self.driver, pair.driver), (self.driven, pair.driven)):
+            if part is not None:
+                inside += part.in_plane / (part.over or gear.face_width)
+                across += part.out_of_plane / (part.over or gear.face_width)
+        return inside, across
+
+    def angle_of_lead(self, pinion: Gear) -> float:
+        """Error of the lead angle [rad], as given or as that of the lead."""
         from fegear.helical.lead_error import lead_angle_error
+
+        return self.lead_angle if self.lead is None else lead_angle_error(pinion, self.lead)
+
+    def build(self, pair: GearPair) -> Misalignment:
+        """Make the errors that rigid tooth contact analysis knows."""
         from fegear.helical.pair import Misalignment
 
-        lead_angle = self.lead_angle if self.lead is None else lead_angle_error(pinion, self.lead)
-        return Misalignment(self.shaft_angle, lead_angle, self.profile_angle, self.centre_distance)
+        _, across = self.deviation(pair)
+        return Misalignment(across, self.angle_of_lead(pair.driver), self.profile_angle, self.centre_distance)
 
 
 class ModificationPart(Part):
@@ -78,7 +106,7 @@ def build_pair(
     return HelicalPair(
         design.driver,
         design.driven,
-        Misalignment() if errors is None else errors.build(design.driver),
+        Misalignment() if errors is None else errors.build(design),
         parabola=change.parabola,
         crown=change.crown_coefficient(design.driver),
         axial_offset=axial_offset,

@@ -10,10 +10,14 @@ from fegear.case.part import Length, LengthOrZero, Part, refuse
 
 
 class LoadDistributionPart(Part):
-    """Roll positions over a base pitch, and panels over the face; without ``panels`` one to a quarter of a module."""
+    """Roll positions over a base pitch, and panels over the face; without ``panels`` one to a quarter of a module.
+
+    ``base_pitch`` says which teeth meet, where they have spacing errors: pair 0 is on the teeth of that number.
+    """
 
     positions: Annotated[int, Field(ge=2, le=256)] = 16
     panels: Annotated[int, Field(ge=2, le=200)] | None = None
+    base_pitch: Annotated[int, Field(ge=0, le=1_000_000)] = 0
 
 
 class LineErrorPart(Part):

@@ -151,12 +151,7 @@ class PairPart(Part):
     def build_helical(self, design: GearPair, prefix: str, *, misaligned: bool) -> HelicalPair:
         """Make the rigid flanks of a pair; their errors count only where the scene calls for misalignment."""
         try:
-            return build_pair(
-                design,
-                self.misalignment if misaligned else None,
-                self.modification,
-                self.axial_offset,
-            )
+            return self.rigid(design, misaligned)
         except InputError as error:
             names = {key: f"misalignment.{key}" for key in ("shaft_angle", "lead_angle", "lead", "profile_angle")}
             if self.misalignment is not None and self.misalignment.lead is not None:
@@ -165,6 +160,10 @@ class PairPart(Part):
             if error.key == "crown" and self.modification is not None:  # below, it is a turn of the section
                 error = type(error)("crown", f"{self.modification.crown * 1e3:.6g} mm", error.rule, error.remedy)
             raise at(prefix, error, names) from None
+
+    def rigid(self, design: GearPair, misaligned: bool) -> HelicalPair:
+        """The same, errors in the words of the flanks."""
+        return build_pair(design, self.misalignment if misaligned else None, self.modification, self.axial_offset)
 
     def normal_load(self, pair: GearPair) -> float | None:
         """Load along the line of action [N]: the load, the driver's torque, or the largest of loads; None without."""

@@ -72,3 +72,7 @@ class ShaftTilt:
         lean = pair.driver.twist * pair.driver.base_radius
         along = np.asarray(z, dtype=float) - lean * np.asarray(x, dtype=float)
         return np.asarray(self.in_plane_of_action(pair) * along)
+
+
+#: Parallel axes.
+PARALLEL = ShaftTilt()

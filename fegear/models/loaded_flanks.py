@@ -6,31 +6,30 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
-from fegear.case.csv_columns import read_columns
 from fegear.case.effects import EffectsPart
 from fegear.case.part import at
 from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import refuse_load
+from fegear.models.flank_errors import cutter_modification, flank_errors
 from fegear.models.flank_modifications import gear_face
 from fegear.models.loaded_pair import build_relief
 from fegear.models.pair_inputs import gear_flanks, gear_name
 from fegear.models.solid_influence import check_solid_gear
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.flank import FlankGaps
     from fegear.geometry import GearPair
+    from fegear.geometry.flank_modification import FlankModification
+    from fegear.models.flank_errors import FlankErrors
     from fegear.models.flank_modifications import FaceModifications
     from fegear.models.pair_inputs import Flanks
 
 #: Effects that loaded flanks know.
-FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "misalignment")
-#: Panels per module of face, and points of a crowned line error.
-_PANELS_PER_MODULE, _POINTS = 4.0, 65
+FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "misalignment")
+#: Panels per module of face.
+_PANELS_PER_MODULE = 4.0
 
 
 @dataclass(frozen=True)
@@ -46,13 +45,14 @@ class FlanksToLoad:
         Of driver and driven.
     faces : tuple of (FaceModifications, FaceModifications)
         The same over the face.
-    face_position, line_gap : ndarray, shape (n,)
-        [m]; empty for none.
+    cutter : tuple of FlankModification
+        `modification` of the pair, which its pinion's cutter leaves.
+    errors : FlankErrors
     loads : tuple of float
         [N], ascending.
     nominal : float
         [N].
-    positions, panels : int
+    positions, panels, base_pitch : int
     width : {"solid", "slices"}
         What the gears are solved as.
     name : str
@@ -63,13 +63,14 @@ class FlanksToLoad:
     effects: EffectsPart
     flanks: tuple[Flanks, Flanks]
     faces: tuple[FaceModifications, FaceModifications]
-    face_position: Array
-    line_gap: Array
+    cutter: tuple[FlankModification, ...]
+    errors: FlankErrors
     loads: tuple[float, ...]
     nominal: float
     positions: int
     panels: int
     width: Literal["solid", "slices"] = "solid"
+    base_pitch: int = 0
     name: str = field(default="", compare=False)
 
     @property
@@ -82,14 +83,22 @@ class FlanksToLoad:
         """Length of a panel [modules]."""
         return self.pair.face_width / self.panels / self.pair.driver.module
 
+    @property
+    def misaligned(self) -> GearPair:
+        """The pair at the centre distance that its error leaves, whether or not the effect is on."""
+        return self.pair if self.effects.misalignment else _placed(self.pair, self.errors.apart, self.name)
+
     def has_data(self, effect: str) -> bool:
-        """Whether the case says what an effect needs; of others than relief and misalignment it does."""
+        """Whether the case says what an effect needs; of others than these three it does."""
         if effect == "relief":
             relieved = any(flank.relief for flank in self.flanks) or any(face.given for face in self.faces)
+            relieved = relieved or bool(self.cutter)
             return relieved and not any(flank.wants_delta for flank in self.flanks)
-        return effect != "misalignment" or self.line_gap.size > 0
+        if effect == "spacing_errors":
+            return any(flank.spacing.size for flank in self.flanks)
+        return effect != "misalignment" or self.errors.given
 
-    def gaps(self, *, relief: bool, misalignment: bool) -> FlankGaps:
+    def gaps(self, *, relief: bool, misalignment: bool, spacing_errors: bool = False) -> FlankGaps:
         """What keeps the flanks apart."""
         from fegear.contact.flank import FlankGaps
 
@@ -100,9 +109,16 @@ class FlanksToLoad:
                 for member, flank in zip(MEMBERS, self.flanks, strict=True)
             )
             first, second = (face.built(self.pair, m) for m, face in zip(MEMBERS, self.faces, strict=True))
-            apart = replace(apart, driver_relief=driver, driven_relief=driven, driver_flank=first, driven_flank=second)
+            apart = FlankGaps(driver, driven, driver_flank=(*first, *self.cutter), driven_flank=second)
         if misalignment:
-            apart = replace(apart, face_position=self.face_position, line_gap=self.line_gap)
+            off = self.errors
+            apart = replace(
+                apart, face_position=off.face_position, line_gap=off.line_gap, tilt=off.tilt,
+                driver_flank=(*apart.driver_flank, *off.cutting),
+            )  # fmt: skip
+        if spacing_errors:
+            one, other = (flank.spacing for flank in self.flanks)
+            apart = replace(apart, driver_spacing=one, driven_spacing=other, base_pitch=self.base_pitch)
         return apart
 
 
@@ -118,35 +134,25 @@ def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
     first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
     own = EffectsPart(**{effect: getattr(effects, effect) for effect in FLANK_EFFECTS})
     faces = gear_face(scene, first.gear), gear_face(scene, second.gear)
-    z, gap = _line_gap(scene, name)
+    errors = flank_errors(scene, name)
     nominal = part.normal_load(pair) or math.nan
     asked = scene.case.load_distribution
     panels = asked.panels or max(4, math.ceil(_PANELS_PER_MODULE * pair.face_width / pair.driver.module - 1e-9))
     width: Literal["solid", "slices"] = "slices" if part.width == "slices" else "solid"
+    if effects.misalignment:
+        pair = _placed(pair, errors.apart, name)
     return FlanksToLoad(
-        pair, own, (first, second), faces, z, gap, part.all_loads(pair), nominal, asked.positions, panels, width, name
-    )
+        pair, own, (first, second), faces, cutter_modification(scene, name), errors, part.all_loads(pair), nominal,
+        asked.positions, panels, width, asked.base_pitch, name,
+    )  # fmt: skip
 
 
-def _line_gap(scene: Scene, name: str) -> tuple[Array, Array]:
-    """Gap over the face of a pair, from its keys and its file."""
-    part, half = scene.case.pair[name].line_error, 0.5 * scene.pairs[name].face_width
-    if part is None:
-        return np.empty(0), np.empty(0)
-    z = np.linspace(-half, half, _POINTS if part.crowning or part.file else 2)
-    gap = 0.5 * part.over_face * (1.0 + z / half) + part.crowning * (z / half) ** 2
-    if part.file is not None:
-        key = f"pair.{name}.line_error.file"
-        columns = read_columns(scene.file(part.file, key), key, {"z": "length", "gap": "length"})
-        if not {"z", "gap"} <= columns.keys() or not (np.diff(columns["z"]) > 0.0).all():
-            raise InputError(key, f'"{part.file}"', "needs the columns z [mm], ascending, and gap [um]")
-        if columns["z"][0] > -half * (1.0 - 1e-6) or columns["z"][-1] < half * (1.0 - 1e-6):
-            raise InputError(
-                key, f'"{part.file}"', f"must cover the face, from {-half * 1e3:.6g} to {half * 1e3:.6g} mm"
-            )
-        z, old = np.union1d(z, columns["z"]), z
-        gap = np.interp(z, old, gap) + np.interp(z, columns["z"], columns["gap"])
-    return z, gap
+def _placed(pair: GearPair, apart: float, name: str) -> GearPair:
+    """The pair at a centre distance that is off by `apart` [m]."""
+    try:
+        return replace(pair, centre_distance=pair.centre_distance + apart) if apart else pair
+    except InputError as error:
+        raise at(f"pair.{name}.misalignment", error) from None
 
 
 def check_flanks_to_load(scene: Scene, name: str) -> None:
@@ -181,10 +187,10 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
             f"pair.{name}", f"contact ratio {pair.contact_ratio:.4f}", "is below 1",
             "lengthen the teeth or raise the number of teeth",
         )  # fmt: skip
-    if effects.misalignment and part.line_error is None:
+    if effects.misalignment and part.line_error is None and part.misalignment is None:
         raise InputError(
-            "effects.misalignment", "true", f"finds no gap over the face of pair {name}",
-            f'give pair.{name}.line_error = {{ over_face = "10 um" }}, or leave the effect out',
+            "effects.misalignment", "true", f"finds no misalignment and no gap over the face of pair {name}",
+            f'give pair.{name}.misalignment = {{ driven = {{ out_of_plane = "10 um" }} }}, or leave the effect out',
         )  # fmt: skip
     asked = flanks_to_load(scene, name)
     for member, flank in zip(MEMBERS, asked.flanks, strict=True):

@@ -93,6 +93,7 @@ def _positions(name: str, data: LoadedFlanksData) -> Table:
         Column("roll", found.lines.roll, "mm", "roll position: x of pair 0 in the middle of the face"),
         Column("te", found.transmission_error[:, i], "um", "loaded transmission error along the line of action"),
         Column("te_error", data.error.transmission_error[:, i], "um", "estimated error of te"),
+        Column("te_unloaded", data.unloaded, "um", "of rigid flanks: what is left of te as the load goes to zero"),
         Column("mesh_stiffness", found.contact.stiffness[:, i], "N/um", "of the stations that touch: tangent"),
     ]
     for j, share, error in zip(found.pair_numbers.tolist(), found.share[:, :, i], data.error.share[:, :, i],

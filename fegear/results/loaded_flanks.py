@@ -18,12 +18,17 @@ from fegear.results.sources import HERTZ, INVOLUTE, RING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.flank import FlankCompliance, FlankGaps, FlankPair, LoadedFlanks
     from fegear.contact.flank.error import FlankError
     from fegear.engine.stage import Upstream, Work
     from fegear.models.loaded_flanks import FlanksToLoad
 
+#: Effects that keep flanks apart.
+_OF_GAPS = ("relief", "spacing_errors", "misalignment")
+#: Share of the mean transmission error that gaps may be off by without a remark.
+_UNREMARKED = 0.02
 #: Seconds of one contact line on one gear, and of the contact at one roll position.
 _LINE, _CONTACT = 0.03, 0.004
 
@@ -50,6 +55,10 @@ class LoadedFlanksData:
         Number of the nominal load among them.
     neglected : mapping of str to (float, float)
         By the effects that are off: mean transmission error [m] and K_Hbeta at the nominal load with each of them on.
+    unloaded : ndarray, shape (P,)
+        Transmission error of the rigid flanks at the roll positions of `found` [m].
+    beside : float
+        By how much gaps are off because modified flanks touch beside the contact lines of unmodified ones [m].
     """
 
     asked: FlanksToLoad
@@ -60,6 +69,8 @@ class LoadedFlanksData:
     error: FlankError
     nominal: int
     neglected: Mapping[str, tuple[float, float]]
+    unloaded: Array
+    beside: float
 
 
 def wide_pairs(scene: Scene) -> tuple[str, ...]:
@@ -80,6 +91,7 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedFlanksData:
 def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlanksData:
     from fegear.contact.flank import FlankPair
     from fegear.contact.flank.error import flank_error
+    from fegear.contact.flank.touching import beside_the_lines, unloaded_error
 
     effects = asked.effects
     solved = [solid_solution_of(upstream, gear) for gear in asked.gears]
@@ -89,7 +101,7 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlank
         asked.pair, fine, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions,
         work.cache,
     )  # fmt: skip
-    gaps = asked.gaps(relief=effects.relief, misalignment=effects.misalignment)
+    gaps = asked.gaps(**{effect: effects.is_on(effect) for effect in _OF_GAPS})
     known = flanks.compliance(asked.nominal)
     found = flanks.solve(asked.loads, gaps, known)
     error = flank_error(flanks, found, coarse, gaps)
@@ -98,7 +110,10 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlank
         for effect in FLANK_EFFECTS
         if not effects.is_on(effect) and asked.has_data(effect)
     }
-    return LoadedFlanksData(asked, flanks, known, gaps, found, error, asked.loads.index(asked.nominal), neglected)
+    unloaded = unloaded_error(asked.pair, gaps, found.lines.roll)
+    beside = beside_the_lines(asked.pair, gaps, found.lines)
+    nominal = asked.loads.index(asked.nominal)
+    return LoadedFlanksData(asked, flanks, known, gaps, found, error, nominal, neglected, unloaded, beside)
 
 
 def _with(
@@ -111,8 +126,10 @@ def _with(
     elif effect == "hertz":
         known = replace(known, fixed_half_width=None)
     else:
-        on = {"relief": asked.effects.relief, "misalignment": asked.effects.misalignment, effect: True}
-        gaps = asked.gaps(**on)
+        gaps = asked.gaps(**{one: asked.effects.is_on(one) or one == effect for one in _OF_GAPS})
+        if effect == "misalignment" and asked.misaligned != flanks.pair:
+            flanks = replace(flanks, pair=asked.misaligned)
+            known = flanks.compliance(asked.nominal)
     found = flanks.solve([asked.nominal], gaps, known)
     return float(found.mean_transmission_error[0]), float(found.face_load_factor[0])
 
@@ -126,7 +143,20 @@ def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
         "nominal_load": asked.nominal, "loads": list(asked.loads),
         "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
     }  # fmt: skip
-    return Outcome(data, settings=settings, remarks=_neglected(data))
+    return Outcome(data, settings=settings, remarks=(*_neglected(data), *_beside(data)))
+
+
+def _beside(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say where modifications or errors are too steep for the contact lines of unmodified flanks."""
+    mean = float(data.found.mean_transmission_error[data.nominal])
+    if data.beside <= _UNREMARKED * mean:
+        return ()
+    remark = (
+        f"Pair {data.asked.name}: where modifications or errors are steep the flanks touch beside the contact lines of "
+        f"unmodified ones, which moves gaps by up to {data.beside * 1e6:.3g} um; the mean transmission error is "
+        f"{mean * 1e6:.4g} um. Column te_unloaded of load_distribution_roll_{data.asked.name} knows it, loads do not."
+    )
+    return (remark,)
 
 
 def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
@@ -135,7 +165,8 @@ def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
         "neighbour_coupling": "what pairs do to each other is left out",
         "hertz": "contacts do not widen with their load",
         "relief": "gears have a relief or lead modifications that are left out",
-        "misalignment": "the pair has a line_error that is left out",
+        "spacing_errors": "gears have spacing_errors that are left out",
+        "misalignment": "the pair has a misalignment or line_error that is left out",
     }
     found, i = data.found, data.nominal
     mean, factor = float(found.mean_transmission_error[i]), float(found.face_load_factor[i])

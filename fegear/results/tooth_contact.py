@@ -92,8 +92,17 @@ def _pairs(scene: Scene) -> tuple[str, ...]:
 
 
 def check_misalignment(scene: Scene, name: str) -> None:
-    """Refuse errors of a pair without the effect, and the effect without errors."""
+    """Refuse errors of a pair without the effect, the effect without errors, and what rigid flanks do not know."""
     part = scene.case.pair[name]
+    shafts = () if part.misalignment is None else ("driver", "driven")
+    for member in shafts:
+        shaft = getattr(part.misalignment, member)
+        if shaft is not None and shaft.in_plane:
+            raise InputError(
+                f"pair.{name}.misalignment.{member}.in_plane", f"{shaft.in_plane * 1e6:.6g} um",
+                "is known to a pair with a width, not to rigid tooth contact analysis",
+                "give out_of_plane, or ask for load-distribution in a case of its own",
+            )  # fmt: skip
     if part.misalignment is not None and not scene.case.effects.misalignment:
         raise InputError(
             f"pair.{name}.misalignment", "(a table)", "is given, but the effect is off",

@@ -14,7 +14,7 @@ import numpy as np
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import UNMODIFIED, Relief
-from fegear.geometry.shaft_tilt import ShaftTilt
+from fegear.geometry.shaft_tilt import PARALLEL
 from fegear.tally import note
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from fegear.contact.flank.lines import ContactLines
     from fegear.geometry.flank_modification import FlankModification
     from fegear.geometry.pair import GearPair, Member
+    from fegear.geometry.shaft_tilt import ShaftTilt
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class FlankGaps(ReadOnlyArrays):
     line_gap: Array = field(default_factory=lambda: np.empty(0))
     driver_flank: tuple[FlankModification, ...] = ()
     driven_flank: tuple[FlankModification, ...] = ()
-    tilt: ShaftTilt = ShaftTilt()
+    tilt: ShaftTilt = PARALLEL
     driver_spacing: Array = field(default_factory=lambda: np.empty(0))
     driven_spacing: Array = field(default_factory=lambda: np.empty(0))
     base_pitch: int = 0
@@ -63,7 +64,7 @@ class FlankGaps(ReadOnlyArrays):
         gap = self.of_pair(lines.pair, lines.z)
         for member in MEMBERS:
             gap = gap + self.removed(member, pair.roll_angle(lines.x, member), lines.z)
-        if self.tilt != ShaftTilt():
+        if self.tilt != PARALLEL:
             note("misaligned flanks")
             gap = gap + self.tilt.gap(pair, lines.x, lines.z)
         return np.asarray(gap)

@@ -15,7 +15,7 @@ import numpy as np
 from fegear.contact.flank.lines import base_twist
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from fegear.arrays import Array
     from fegear.contact.flank.gaps import FlankGaps
@@ -36,7 +36,7 @@ class _Places(NamedTuple):
 
     x: Array
     z: Array
-    pair: Array
+    pair: NDArray[np.int64]
 
 
 def touching_gaps(pair: GearPair, gaps: FlankGaps, lines: ContactLines) -> Array:
@@ -52,6 +52,14 @@ def touching_gaps(pair: GearPair, gaps: FlankGaps, lines: ContactLines) -> Array
     lines : ContactLines
     """
     return _least(pair, gaps, _Places(lines.x, lines.z, lines.pair))
+
+
+def beside_the_lines(pair: GearPair, gaps: FlankGaps, lines: ContactLines) -> float:
+    """Largest difference of `FlankGaps.at` from the least gaps up the flanks, but for a shift of all [m]."""
+    found = np.where(lines.present, touching_gaps(pair, gaps, lines), np.inf)
+    on = np.isfinite(found)
+    change = gaps.at(pair, lines)[on] - found[on]
+    return float(np.abs(change - np.median(change)).max()) if change.size else 0.0
 
 
 def _least(pair: GearPair, gaps: FlankGaps, at: _Places) -> Array:
@@ -107,6 +115,9 @@ def _helicoids(pair: GearPair, gaps: FlankGaps, at: _Places, roll: Array) -> tup
     length = np.sqrt(np.maximum((radius - rb2) * (radius + rb2), 0.0))
     turned = np.angle(seen / ((-1j * rb2 - length) * u)) - (length - rho2) / rb2
     apart = -rb2 * turned - base_twist(pair) * (height - at.z)
+    apart -= (
+        base_twist(pair) * pitch2 * gaps.tilt.in_plane
+    )  # of the whole gear along its axis: `ShaftTilt.gap` has it not
     form, tip = _limits(pair, "driven")
     on &= (length <= tip * rb2) & (length >= form * rb2)
     return np.where(on, apart, np.inf), length / rb2
@@ -115,7 +126,9 @@ def _helicoids(pair: GearPair, gaps: FlankGaps, at: _Places, roll: Array) -> tup
 def _limits(pair: GearPair, member: Member) -> tuple[float, float]:
     """Roll angles of form and tip circle, with a hair of room."""
     gear = pair.gear(member)
-    ends = [math.sqrt(max((r / gear.base_radius) ** 2 - 1.0, 0.0)) for r in (gear.form_radius, gear.involute_tip_radius)]
+    ends = [
+        math.sqrt(max((r / gear.base_radius) ** 2 - 1.0, 0.0)) for r in (gear.form_radius, gear.involute_tip_radius)
+    ]
     return max(ends[0] - 1e-12, 0.0), ends[1] + 1e-12
 
 
