@@ -3,10 +3,11 @@
 The line load f(z) is piecewise linear between the stations of a contact line, W_i the forces of its hats. They obey
 
     u_i + e_i = zeta   where W_i > 0,      u_i + e_i >= zeta   where W_i = 0,      sum_i W_i = W,
-    u_i = sum_j C_ij W_j - 2 s int phi_i f ln b(f) dz,      b(f) = sqrt(q f),
+    u_i = sum_j C_ij W_j - 2 s int <phi_i> <f> ln (b / b_0) dz,      b = sqrt(q <f>),
 
-phi_i the hat of unit force, e_i the gap averaged over it. These are the conditions of a minimum, strictly convex while
-b stays below .6 of the unit it is counted in, so the solution is unique. It is found by active sets with Newton's
+phi_i the hat of unit force, e_i the gap averaged over it, b_0 the half-width that stands for the line in C, and < > an
+average along the line over about that width (`fegear.contact.flank.averages`). These are the conditions of a minimum,
+strictly convex while C is stiffer against long waves than s (1 + 2 ln b / b_0), so the solution is unique. It is found by active sets with Newton's
 method, as in `fegear.contact.load_sharing`; sets that cycle go on by one station at a time (Murty, Linear
 Complementarity, 1988, 3.2: the least index).
 """
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.flank.averages import GAUSS, LocalMatrix
 from fegear.errors import ConvergenceError
 from fegear.frozen import ReadOnlyArrays
 from fegear.tally import note, tallied
@@ -31,7 +33,6 @@ if TYPE_CHECKING:
 _MANY_AT_ONCE, _MOST_STEPS = 15, 400
 #: Share of the mean line load below which the logarithm is continued by its tangent.
 _SMALLEST = 1e-9
-_GAUSS = np.polynomial.legendre.leggauss(4)
 
 
 @dataclass(frozen=True)
@@ -150,33 +151,26 @@ def _tangent(known: FlankCompliance, place: Index, force: Array) -> tuple[Array,
     density = np.divide(1.0, support, out=np.zeros_like(support), where=support > 0.0)
     f = force * density
     least = _SMALLEST * force.sum(axis=1, keepdims=True) / lines.length[place][:, None]
-    constant = np.zeros_like(force)
-    diagonal, beside = np.zeros_like(force), np.zeros_like(h)
+    unit = np.ones_like(f) if known.line_half_width is None else known.line_half_width[place]
+    local = LocalMatrix(force.shape, known.averages.reach)
     follows = known.fixed_half_width is None
     if follows:
         note("nonlinear steps")
-    for x, weight in zip(*_GAUSS, strict=True):
-        b, a = 0.5 + 0.5 * x, 0.5 - 0.5 * x
-        part = 0.5 * weight * h
+    for x, weight, rows in zip(*GAUSS, known.averages.rows, strict=True):
+        b, a = x, 1.0 - x
+        near = rows[place]
+        part = weight * h
         if known.fixed_half_width is None:
-            load = np.maximum(a * f[:, :-1] + b * f[:, 1:], least)
+            load = np.maximum(local.read(near, f), least)
             q = known.width_factor[place]
-            slope = -s * (np.log((a * q[:, :-1] + b * q[:, 1:]) * load) + 1.0)
-            free = part * s * load
-            constant[:, :-1] += free * a * density[:, :-1]
-            constant[:, 1:] += free * b * density[:, 1:]
+            slope = -s * (np.log((a * q[:, :-1] + b * q[:, 1:]) * load / unit[:, :-1] ** 2) + 1.0)
+            local.add(near, part * slope, part * s * load)
         else:
             width = known.fixed_half_width[place]
-            slope = -2.0 * s * np.log(a * width[:, :-1] + b * width[:, 1:])
-        slope = part * slope
-        diagonal[:, :-1] += a * a * slope * density[:, :-1] ** 2
-        diagonal[:, 1:] += b * b * slope * density[:, 1:] ** 2
-        beside += a * b * slope * density[:, :-1] * density[:, 1:]
-    at = np.arange(force.shape[1])
-    matrix[:, at, at] += diagonal
-    matrix[:, at[:-1], at[1:]] += beside
-    matrix[:, at[1:], at[:-1]] += beside
-    return matrix, constant
+            relative = (a * width[:, :-1] + b * width[:, 1:]) / unit[:, :-1]
+            local.add(near, -2.0 * s * part * np.log(relative), np.zeros_like(part))
+    local.into(matrix, density)
+    return matrix, local.constant[:, local.inside] * density
 
 
 def _bordered(matrix: Array, gap: Array, active: Mask, total: Array) -> tuple[Array, Array, Array]:

@@ -10,10 +10,12 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fegear.contact.flank.averages import Averages, averages
 from fegear.fem.solid.bands import bands
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
@@ -34,6 +36,8 @@ Hertz = Literal["load-dependent", "linear", "none"]
 
 #: Half-width of a contact that does not know its load [modules], as in the plane.
 _NOMINAL_HALF_WIDTH = 0.08
+#: The load that a contact's width follows is averaged to either side over this many half-widths.
+_WINDOW = 2.0
 #: Pressed half-widths go in steps of this ratio, so that few of them occur.
 _WIDTH_STEP = 0.8
 #: Stations whose loads are held in memory at once.
@@ -58,13 +62,16 @@ class FlankCompliance(ReadOnlyArrays):
     lines : ContactLines
     matrix : ndarray, shape (P, M, M)
         Approach of station i along the transverse line of action per unit force on station j, both gears, contacts of
-        half-width one metre [m/N]; identity where no station is. What the Hertzian width does is in `log_slope`.
+        `line_half_width` [m/N]; identity where no station is. What other widths change is in `log_slope`.
     log_slope : float
-        A line load f [N/m] approaches by -2 log_slope f ln b more, b its half-width [m] over 1 m [m^2/N].
+        A line load f [N/m] approaches by -2 log_slope f ln b more, b its half-width over `line_half_width` [m^2/N].
     width_factor : ndarray, shape (P, M)
         b^2 = width_factor f: 4 R / (pi E*) [m^3/N], R across the contact line.
     fixed_half_width : ndarray, shape (P, M), or None
         Half-width of contacts that do not follow their load [m]; None where they do.
+    line_half_width : ndarray, shape (P, M), or None
+        The half-width that stands for each contact line in `matrix` [m]; None for one metre, and for contacts whose
+        width follows the load of a single place (see `averages`).
     """
 
     lines: ContactLines
@@ -72,6 +79,14 @@ class FlankCompliance(ReadOnlyArrays):
     log_slope: float
     width_factor: Array
     fixed_half_width: Array | None
+    line_half_width: Array | None = None
+
+    @cached_property
+    def averages(self) -> Averages:
+        """How the load that a contact's width follows is averaged along its line."""
+        if self.line_half_width is None or self.fixed_half_width is not None:
+            return averages(self.lines, None)
+        return averages(self.lines, _WINDOW * self.line_half_width)
 
     def half_width(self, line_load: Array) -> Array:
         """Hertzian half-width b under line loads of shape (P, M, L) [m]."""
@@ -119,19 +134,19 @@ def flank_compliance(
     moduli = [pair.gear(m).material for m in MEMBERS]
     softness = sum((1.0 - m.poisson_ratio**2) / m.young_modulus for m in moduli)
     factor = 4.0 * across * softness / math.pi
-    mean = np.sqrt(factor * (load / lines.length)[:, None])
-    b = np.full(lines.x.shape, _NOMINAL_HALF_WIDTH * module) if hertz == "none" else mean
-
+    b = np.sqrt(factor * (load / lines.length)[:, None])
+    b = np.full(lines.x.shape, _NOMINAL_HALF_WIDTH * module) if hertz == "none" else b
+    mean = _line_means(lines, b)
     known = cache or SolutionCache()
     made_of = code_version("contact", "fem", "geometry"), pair, lines, [gears[member].identity for member in MEMBERS]
     matrix = known.solve(content_key("own", *made_of), lambda: _own(pair, gears, lines), _PLAIN).value
-    matrix = matrix + _widened(pair, gears, lines, b)
+    matrix = matrix + _widened(pair, gears, lines, b, mean)
     if coupling:
         matrix += known.solve(content_key("beside", *made_of), lambda: _beside(pair, gears, lines), _PLAIN).value
     index = np.arange(lines.x.shape[1])
     matrix[:, index, index] += np.where(lines.present, 0.0, 1.0)
     log_slope = sum(gears[m].contact_slope / pair.gear(m).material.young_modulus for m in MEMBERS)
-    return FlankCompliance(lines, matrix, log_slope, factor, None if hertz == "load-dependent" else b)
+    return FlankCompliance(lines, matrix, log_slope, factor, None if hertz == "load-dependent" else b, mean)
 
 
 def places_of(lines: ContactLines) -> tuple[list[tuple[int, slice]], list[slice]]:
@@ -153,15 +168,17 @@ def _own(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines)
     return matrix
 
 
-def _widened(pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, half_width: Array) -> Array:
-    """What half-widths of shape (P, M) [m] change, but for their logarithm; cheap, shape (P, M, M)."""
+def _widened(
+    pair: GearPair, gears: Mapping[Member, FlankBody], lines: ContactLines, half_width: Array, mean: Array
+) -> Array:
+    """What half-widths change, those of the stations and of their lines, (P, M) [m]; cheap, shape (P, M, M)."""
     matrix = np.zeros((*lines.x.shape, lines.x.shape[1]))
     for member in MEMBERS:
-        softer = _softer(pair, member)
+        softer, slope = _softer(pair, member), gears[member].contact_slope
         for places, pressed in _pressed(pair, gears, member, lines):
             width = np.concatenate([half_width[p, s] for p, s in places]) / pair.driver.module
-            for (p, s), wider in zip(places, pressed.widened(width), strict=True):
-                matrix[p, s, s] += softer * wider
+            for (p, s), wider, common in zip(places, pressed.widened(width), pressed.common, strict=True):
+                matrix[p, s, s] += softer * (wider - 2.0 * math.log(mean[p, s.start]) * slope * common)
     return matrix
 
 
@@ -211,6 +228,14 @@ def line_bands(pair: GearPair, member: Member, body: FlankBody, lines: ContactLi
     module = pair.driver.module
     radius = np.clip(pair.radius(lines.x, member) / module, *_flank(body))[lines.present]
     return _bands(body, radius, lines.z[lines.present] / module, places_of(lines)[1])
+
+
+def _line_means(lines: ContactLines, values: Array) -> Array:
+    """Geometric mean of each contact line, at all of its stations, shape (P, M)."""
+    found = values.copy()
+    for p, s in places_of(lines)[0]:
+        found[p, s] = np.exp(np.log(values[p, s]).mean())
+    return found
 
 
 def _flank(body: FlankBody) -> tuple[float, float]:

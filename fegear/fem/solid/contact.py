@@ -16,7 +16,7 @@ import numpy as np
 
 from fegear.fem.solid.bands import check_half_width, loads_of, overlap, profile_moments, profiles_at
 from fegear.fem.solid.end_slope import end_slope
-from fegear.fem.solid.half_space import band_cosines, function_cosines, galerkin_compliance
+from fegear.fem.solid.half_space import band_cosines, function_cosines, galerkin_compliance, quick_band_spectrum
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,9 +86,11 @@ class PressedLines:
         """What the contacts' half-widths, shape (P,), change beside their logarithm, (P, P) for each line."""
         line, solution = self._line, self._solution
         found = widened_by_curvature(solution, line, self._spans, self.common, half_width)
+        means = [float(np.exp(np.log(half_width[span]).mean())) for span in self._spans]
+        found = [block + self.slope * _short_waves(solution, line.part(span), mean)
+                 for span, block, mean in zip(self._spans, found, means, strict=True)]  # fmt: skip
         if solution.plane_strain:
             return found
-        means = [float(np.exp(np.log(half_width[span]).mean())) for span in self._spans]
         return [block + solution.normal_length * _at_the_faces(solution, line.part(span), mean)
                 for span, block, mean in zip(self._spans, found, means, strict=True)]  # fmt: skip
 
@@ -166,6 +168,14 @@ def _wave_numbers(solution: SolidSolution, line: Bands) -> Array:
     shortest = float(np.maximum(line.before, line.after).min())
     count = int(np.clip(_WAVES * solution.width / shortest, _FEWEST_WAVES, _MOST_WAVES))
     return np.asarray(np.pi * np.arange(1, count + 1) / solution.width / solution.normal_length)
+
+
+def _short_waves(solution: SolidSolution, line: Bands, b: float) -> Array:
+    """What waves as short as the contact is wide change of `_narrow`: its logarithm would turn negative, (P, P)."""
+    k = _wave_numbers(solution, line)
+    waves = band_cosines(line, solution.width, k.size)[:, 1:]
+    spectrum = quick_band_spectrum(k * b) - 2.0 * (np.log(4.0 / (k * b)) - np.euler_gamma + 0.25)
+    return np.asarray(2.0 / solution.width * (waves * spectrum) @ waves.T)
 
 
 def _narrow(solution: SolidSolution, line: Bands) -> Array:
