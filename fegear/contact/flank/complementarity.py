@@ -7,9 +7,9 @@ The line load f(z) is piecewise linear between the stations of a contact line, W
 
 phi_i the hat of unit force, e_i the gap averaged over it, b_0 the half-width that stands for the line in C, and < > an
 average along the line over about that width (`fegear.contact.flank.averages`). These are the conditions of a minimum,
-strictly convex while C is stiffer against long waves than s (1 + 2 ln b / b_0), so the solution is unique. It is found by active sets with Newton's
-method, as in `fegear.contact.load_sharing`; sets that cycle go on by one station at a time (Murty, Linear
-Complementarity, 1988, 3.2: the least index).
+strictly convex while C against long waves is more than s (1 + 2 ln b / b_0), so the solution is unique. It is found by
+active sets with Newton's method, as in `fegear.contact.load_sharing`; sets that cycle go on by one station at a time
+(Murty, Linear Complementarity, 1988, 3.2: the least index).
 """
 
 from __future__ import annotations
