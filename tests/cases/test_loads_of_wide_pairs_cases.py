@@ -101,10 +101,7 @@ def test_secant_stiffness_is_load_over_transmission_error_of_perfect_flanks(resu
         assert (te.local > te.secant).all()  # a Hertzian contact stiffens under its load
     # linear contacts have one stiffness
     wide = loaded.known.half_width(perfect.line_load)[:, :, 0].max()
-    fixed = type(loaded.known)(
-        loaded.known.lines, loaded.known.matrix, loaded.known.log_slope, loaded.known.width_factor,
-        np.full(loaded.known.lines.x.shape, wide),
-    )  # fmt: skip
+    fixed = replace(loaded.known, fixed_half_width=np.full(loaded.known.lines.x.shape, wide))
     (te,) = flank_transmission_errors(loaded.flanks.solve([900.0], None, fixed), loaded.flanks.points)
     np.testing.assert_allclose(te.local, te.secant, rtol=1e-9)
     assert results.values["I.mesh_compliance_mean"].si > 0.0

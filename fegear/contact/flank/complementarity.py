@@ -143,8 +143,16 @@ def tangent_compliance(known: FlankCompliance, place: Index, force: Array) -> Ar
     return _tangent(known, place, force)[0]
 
 
-def _tangent(known: FlankCompliance, place: Index, force: Array) -> tuple[Array, Array]:
-    """Tangent compliances at forces of shape (B, M), and what the tangent leaves at zero force."""
+def secant_compliance(known: FlankCompliance, place: Index, force: Array) -> Array:
+    """Approach per force under forces (B, M) at roll positions `place`, shape (B, M, M) [m/N]."""
+    return _tangent(known, place, force, own=0.0)[0]
+
+
+def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.0) -> tuple[Array, Array]:
+    """Tangent compliances at forces of shape (B, M), and what the tangent leaves at zero force.
+
+    With `own` zero those of a secant, without what a load changes of its own contact's width.
+    """
     lines, s = known.lines, known.log_slope
     matrix = known.matrix[place]
     h, support = lines.panel[place], lines.support[place]
@@ -163,7 +171,7 @@ def _tangent(known: FlankCompliance, place: Index, force: Array) -> tuple[Array,
         if known.fixed_half_width is None:
             load = np.maximum(local.read(near, f), least)
             q = known.width_factor[place]
-            slope = -s * (np.log((a * q[:, :-1] + b * q[:, 1:]) * load / unit[:, :-1] ** 2) + 1.0)
+            slope = -s * (np.log((a * q[:, :-1] + b * q[:, 1:]) * load / unit[:, :-1] ** 2) + own)
             local.add(near, part * slope, part * s * load)
         else:
             width = known.fixed_half_width[place]

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
 from fegear.contact.error_by_shift import TransmissionErrorShift
-from fegear.contact.flank.complementarity import tangent_compliance
+from fegear.contact.flank.complementarity import secant_compliance
 from fegear.contact.flank.mesh_matrix import stiffness_of
 from fegear.contact.fourier import effective_error, fourier_series, panels
 from fegear.frozen import ReadOnlyArrays
@@ -123,26 +123,9 @@ def secant_stiffness(known: FlankCompliance, force: Array) -> Array:
 
 
 def _secant(known: FlankCompliance, place: Index, force: Array) -> Array:
-    matrix, active = tangent_compliance(known, place, force), force > 0.0
-    if known.fixed_half_width is None:
-        # The tangent of -2 s f ln b(f) is less than its secant by s.
-        matrix = matrix + known.log_slope * _hat_products(known)
+    matrix, active = secant_compliance(known, place, force), force > 0.0
     on = active[:, :, None].astype(float)
     return np.asarray(stiffness_of(matrix, active, on)[:, :, 0].sum(axis=1))
-
-
-def _hat_products(known: FlankCompliance) -> Array:
-    """Integrals of products of two stations' hats of unit force along the face, shape (P, M, M) [1/m]."""
-    h, support = known.lines.panel, known.lines.support
-    density = np.divide(1.0, support, out=np.zeros_like(support), where=support > 0.0)
-    products = np.zeros((*support.shape, support.shape[1]))
-    at = np.arange(support.shape[1])
-    products[:, at[:-1], at[:-1]] += h / 3.0 * density[:, :-1] ** 2
-    products[:, at[1:], at[1:]] += h / 3.0 * density[:, 1:] ** 2
-    beside = h / 6.0 * density[:, :-1] * density[:, 1:]
-    products[:, at[:-1], at[1:]] += beside
-    products[:, at[1:], at[:-1]] += beside
-    return products
 
 
 def flank_transmission_error_shift(te: FlankTransmissionError, again: FlankTransmissionError) -> TransmissionErrorShift:
