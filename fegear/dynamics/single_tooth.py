@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.flank.lines import life_of_contact
 from fegear.dynamics.mesh_excitation import tooth_pair_at
 from fegear.dynamics.tooth_force import tooth_force
 
@@ -42,10 +43,11 @@ def heaviest_pair(data: GearTrain, i: int) -> int:
 
 
 def positions(data: GearTrain, i: int, count: int, number: int = 0) -> Array:
-    """Places of one tooth pair: evenly over its path, and on either side of every jump [m]."""
+    """Places of one tooth pair, of its middle for a helical one: evenly over its path, and beside every jump [m]."""
     pair, found = data.meshes[i].pair, data.meshes[i].excitation
     pitch = pair.base_pitch
-    low, high = pair.x_start + _INSIDE * pitch, pair.x_end - _INSIDE * pitch
+    start, end = life_of_contact(pair)
+    low, high = start + _INSIDE * pitch, end - _INSIDE * pitch
     functions = (data.meshes[i].error, *found.stiffness)
     cuts = np.concatenate([(f.breaks + j) * f.pitches - number % f.pitches for f in functions for j in range(-4, 5)])
     near = np.unique(cuts[(cuts * pitch > low) & (cuts * pitch < high)])

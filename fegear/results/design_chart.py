@@ -24,7 +24,7 @@ from fegear.results.drawn_design_chart import design_chart_figures
 from fegear.results.gear_train import gear_train, the_train
 from fegear.results.loaded_pair import loaded_pair
 from fegear.results.motion import check_motion
-from fegear.results.train_parts import needs_speeds, own_meshes
+from fegear.results.train_parts import needs_plane_teeth, needs_speeds, own_meshes
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
@@ -232,6 +232,7 @@ def _mesh(scene: Scene) -> str:
 def _check(scene: Scene, subject: str) -> None:
     needs_speeds(scene, subject)
     check_motion(scene)
+    needs_plane_teeth(scene, _mesh(scene), "results", '"design-chart"')
     pair = train_part(scene).pair_of(_mesh(scene))
     ratio = scene.pairs[pair].contact_ratio
     if not 1.0 <= ratio < 2.0:

@@ -30,7 +30,7 @@ from fegear.results.root_stress_parts import (
     told,
 )
 from fegear.results.tooth_force import over_time
-from fegear.results.train_parts import RPM, needs_one_speed, own_meshes
+from fegear.results.train_parts import RPM, needs_one_speed, needs_plane_teeth, own_meshes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -54,6 +54,7 @@ class DynamicRootStress:
 
 def _check(scene: Scene, name: str) -> None:
     needs_one_speed(scene, name)
+    needs_plane_teeth(scene, name, "results", '"dynamic-root-stress"')
     if "root-stress-history" in scene.case.results:
         raise InputError(
             "results", '"root-stress-history"', "and dynamic-root-stress would write the same tables",

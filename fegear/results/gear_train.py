@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
@@ -12,9 +13,11 @@ from fegear.dynamics.train_mesh import a_drives
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
+from fegear.errors import InputError
 from fegear.models.pair_checks import check_relief
 from fegear.models.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
 from fegear.results import forecasts
+from fegear.results.loaded_flanks import loaded_flanks
 from fegear.results.loaded_pair import EFFECTS, loaded_pair
 
 if TYPE_CHECKING:
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.excitation import MeshExcitation
     from fegear.dynamics.gear_train import GearTrain
     from fegear.engine.stage import Upstream, Work
+    from fegear.results.loaded_flanks import LoadedFlanksData
 
 
 #: One mesh as springs [s]: tooth pairs that stand alone, and pairs that share.
@@ -47,12 +51,19 @@ def gear_train(upstream: Mapping[Task, object]) -> GearTrain:
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     part = train_part(scene)
-    return tuple(Task("loaded-pair", name) for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh))
+    names = dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh)
+    return tuple(Task("loaded-flanks" if name in scene.wide_pairs else "loaded-pair", name) for name in names)
 
 
 def _check(scene: Scene, _subject: str) -> None:
     check_train(scene)
     part = train_part(scene)
+    for name, mesh in part.mesh.items():
+        if mesh.like and part.loaded_pair_of(name) in scene.wide_pairs:
+            raise InputError(
+                f"train.mesh.{name}.like.pair", f'"{mesh.like.pair}"',
+                "is loaded over its face, and teeth of another width bear in another way", "describe a pair of its own",
+            )  # fmt: skip
     for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh):
         check_relief(scene, name)
 
@@ -65,16 +76,27 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
     forces, forward = static_forces(train), a_drives(train)
     excitations: dict[str, MeshExcitation] = {}
     for number, (name, mesh) in enumerate(part.mesh.items()):
-        loaded = loaded_pair(upstream, part.loaded_pair_of(name))
+        pair, force = part.loaded_pair_of(name), abs(float(forces[number]))
         width = mesh.like.width_ratio if mesh.like else 1.0
-        engagement = loaded.engagement.unmodified() if mesh.like else loaded.engagement
-        found = mesh_excitation(
-            engagement if forward[number] else engagement.reversed(),
-            abs(float(forces[number])) / width or loaded.nominal,
-        )
+        if Task("loaded-flanks", pair) in upstream:
+            found = _of_flanks(loaded_flanks(upstream, pair), force, forward=forward[number])
+        else:
+            loaded = loaded_pair(upstream, pair)
+            engagement = loaded.engagement.unmodified() if mesh.like else loaded.engagement
+            found = mesh_excitation(
+                engagement if forward[number] else engagement.reversed(), force / width or loaded.nominal
+            )
         excitations[name] = replace(found.widened(width), phase=mesh.phase)
         work.progress((number + 1) / len(part.mesh))
     return assemble(asked, excitations)
+
+
+def _of_flanks(data: LoadedFlanksData, force: float, *, forward: bool) -> MeshExcitation:
+    """Springs of a pair with a width under a mean force [N]; under its nominal load where it idles."""
+    from fegear.dynamics.flank_excitation import flank_excitation
+
+    found = data.flanks.solve([force or data.asked.nominal], data.gaps, data.known)
+    return flank_excitation(data.flanks, found, forward=forward)
 
 
 def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
@@ -92,6 +114,14 @@ def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
             remarks.append(
                 f"Mesh {name}: its excitation repeats after {one.error.pitches} base pitches (spacing errors)."
             )
+        helix = one.pair.driver.base_helix_angle
+        if helix:
+            axial = one.force * math.tan(helix)
+            remarks.append(
+                f"Mesh {name}: its axial force of {axial:.5g} N is carried by bearings taken as rigid; the train turns "
+                "only. Ask for transmissibility with mesh.pair for motion along the axis and tilting."
+            )
+            values.append(Value(f"{name}.axial_force", axial, "N", None, "mean force along the axes, by the helix"))
         s = np.linspace(0.0, 1.0, 2001)
         values += [
             Value(f"{name}.mean_force", one.force, "N", None, "along the line of action, from the torques"),

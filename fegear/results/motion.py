@@ -14,6 +14,7 @@ from fegear.models.motion import MotionInputs, motion_inputs, steady_motions
 from fegear.models.neglected_in_motion import NeglectedInMotion, motion_remarks, neglected_in_motion
 from fegear.results import forecasts
 from fegear.results.gear_train import gear_train, needs_train, the_train
+from fegear.results.train_parts import needs_plane_teeth
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -65,6 +66,9 @@ def check_friction(scene: Scene, _subject: str = "") -> None:
             "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
             "switch neighbour_coupling and corner_contact off",
         )  # fmt: skip
+    if effects.friction and scene.case.train is not None:
+        for mesh in scene.case.train.mesh:
+            needs_plane_teeth(scene, mesh, "effects.friction", "true")
 
 
 def check_motion(scene: Scene, subject: str = "") -> None:

@@ -15,7 +15,7 @@ from fegear.models.motion import friction_coefficient
 from fegear.results.drawn_pair import roll_marks
 from fegear.results.gear_train import gear_train, needs_train
 from fegear.results.motion import check_friction
-from fegear.results.train_parts import RPM, carries_nothing, meshes, needs_speeds
+from fegear.results.train_parts import RPM, carries_nothing, meshes, needs_plane_teeth, needs_speeds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -75,6 +75,7 @@ class FrictionData:
 def _check(scene: Scene, subject: str) -> None:
     needs_speeds(scene, subject)
     check_friction(scene)
+    needs_plane_teeth(scene, subject, "results", '"tooth-friction"')
 
 
 def _inputs(scene: Scene, name: str) -> FrictionInputs:

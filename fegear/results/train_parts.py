@@ -36,6 +36,22 @@ def carries_nothing(data: GearTrain, mesh: int) -> bool:
     return bool(data.forces[mesh] <= _NO_SHARE * float(np.max(np.abs(data.forces))))
 
 
+def needs_plane_teeth(scene: Scene, mesh: str, key: str, value: str) -> None:
+    """Refuse what follows one place of contact on the path where the teeth of a mesh touch along lines over the face.
+
+    Raises
+    ------
+    InputError
+    """
+    pair = train_part(scene).loaded_pair_of(mesh)
+    if pair in scene.wide_pairs:
+        helical = scene.pairs[pair].driver.helix_angle != 0.0
+        raise InputError(
+            key, value, f"follows one place of contact on the path, and the teeth of mesh {mesh} touch along the face",
+            "leave it out" if helical else f'leave it out, or write pair.{pair}.width = "plane"',
+        )  # fmt: skip
+
+
 def needs_one_speed(scene: Scene, _subject: str) -> None:
     """Refuse histories without a speed."""
     if math.isnan(scene.case.dynamics.one_speed):

@@ -102,6 +102,12 @@ def shortest_line(pair: GearPair) -> float:
     return min(SHORTEST_LINE * pair.driver.module, 0.5 * pair.face_width)
 
 
+def life_of_contact(pair: GearPair) -> tuple[float, float]:
+    """First and last place of a contact line's middle while it touches the plane of action: x_0 + j p_bt [m]."""
+    reach = abs(base_twist(pair)) * 0.5 * pair.face_width
+    return pair.x_start - reach, pair.x_end + reach
+
+
 def contact_lines(pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLike = ()) -> ContactLines:
     """Divide the contact lines of all pairs in reach.
 
