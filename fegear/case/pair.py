@@ -117,8 +117,11 @@ class PairPart(Part):
         """Make the pair from the scene's gears."""
         distance = math.nan if self.centre_distance is None else self.centre_distance
         try:
-            pair = GearPair(gears[self.driver], gears[self.driven], distance)
+            # Heights on loaded flanks run against those of TM-107451, in which a case counts the offset.
+            pair = GearPair(gears[self.driver], gears[self.driven], distance, -self.axial_offset)
         except InputError as error:
+            if error.key == "axial_offset":
+                error = type(error)(error.key, f"{self.axial_offset * 1e3:.6g} mm", error.rule, error.remedy)
             raise at(prefix, error, {"pair": ""}) from None
         self._check_width(pair, prefix)
         return pair

@@ -107,7 +107,7 @@ class PairCompliance:
     @property
     def face_width(self) -> float:
         """Common face width [m]."""
-        return min(self.pair.driver.face_width, self.pair.driven.face_width)
+        return self.pair.face_width
 
     @property
     def log_slope(self) -> float:

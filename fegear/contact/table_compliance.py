@@ -169,7 +169,7 @@ def table_sources(
     if of not in ("tooth", "pair"):
         raise InputError("compliance.of", f'"{of}"', 'must be "tooth" or "pair"')
     table = fit_compliance(x, compliance, fit)
-    face = min(pair.driver.face_width, pair.driven.face_width)
+    face = pair.face_width
     knots = tuple(float(k) for k in table.knots)
 
     def source(member: Member) -> TableCompliance:

@@ -99,7 +99,7 @@ def _kernels(
     source: RootStressInfluence, pair: GearPair, member: Member, around: dict[int, ToothForce]
 ) -> dict[int, Array]:
     """Stress along the fillet of the tooth looked at per unit force on each tooth around it, (points, n) [Pa/N]."""
-    width = min(pair.driver.face_width, pair.driven.face_width)
+    width = pair.face_width
     ahead = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
     found = {}
     for k, force in around.items():
@@ -111,6 +111,6 @@ def _kernels(
 def _own_error(source: RootStressInfluence, pair: GearPair, member: Member, force: ToothForce) -> Array:
     """What the source leaves in the stress of the tooth's own load [Pa]."""
     x = np.linspace(pair.x_start, pair.x_end, _FEW)
-    width = min(pair.driver.face_width, pair.driven.face_width)
+    width = pair.face_width
     usual = source.root_stress_error(pair.radius(x, member)) / width
     return np.asarray(np.interp(force.x, x, usual) * np.abs(force.total))

@@ -38,16 +38,21 @@ class GearPair:
     centre_distance : float
         Working centre distance [m]; NaN, the default, is replaced by the one that the nominal profile shifts give
         without backlash.
+    axial_offset : float
+        Height of the driven gear's mid face above the driver's, toward the end from which the driver turns clockwise
+        [m].
 
     Raises
     ------
     GeometryError
-        If hands, helix angles or base pitches do not go together, or the teeth jam or never meet.
+        If hands, helix angles or base pitches do not go together, the teeth jam or never meet, or the faces stand
+        beside each other.
     """
 
     driver: Gear
     driven: Gear
     centre_distance: float = math.nan
+    axial_offset: float = 0.0
 
     def __post_init__(self) -> None:
         """Fill in the centre distance and refuse pairs that cannot run."""
@@ -86,6 +91,11 @@ class GearPair:
             raise GeometryError(
                 "centre_distance", f"{distance * 1e3:.6g} mm", "is so large that the flanks never meet", "lower it"
             )
+        if not self.face_width > 1e-3 * min(a.face_width, b.face_width):
+            raise GeometryError(
+                "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces beside each other",
+                f"keep it under {0.5e3 * (a.face_width + b.face_width):.6g} mm",
+            )  # fmt: skip
 
     def _check_helix(self) -> None:
         """Refuse helical gears that are cut by different racks."""
@@ -206,8 +216,20 @@ class GearPair:
 
     @property
     def face_width(self) -> float:
-        """Common face width of gears that stand middle to middle [m]."""
-        return min(self.driver.face_width, self.driven.face_width)
+        """Common face width, where both faces overlap [m]."""
+        low, high = self._common_face
+        return high - low
+
+    @property
+    def _common_face(self) -> tuple[float, float]:
+        """Its ends above the middle of the driver's face [m]."""
+        one, other, up = 0.5 * self.driver.face_width, 0.5 * self.driven.face_width, self.axial_offset
+        return max(-one, up - other), min(one, up + other)
+
+    def face_height(self, member: Member) -> float:
+        """Height of the middle of the common face above that of a gear's own face [m]."""
+        low, high = self._common_face
+        return 0.5 * (low + high) - (0.0 if member == "driver" else self.axial_offset)
 
     @property
     def overlap_ratio(self) -> float:
@@ -236,4 +258,4 @@ class GearPair:
 
     def reversed(self) -> GearPair:
         """The same gears with driver and driven exchanged; x changes sign."""
-        return GearPair(self.driven, self.driver, self.centre_distance)
+        return GearPair(self.driven, self.driver, self.centre_distance, -self.axial_offset)

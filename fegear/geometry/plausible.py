@@ -154,11 +154,7 @@ def refuse_spacing_errors(errors: ArrayLike, module: float) -> None:
 def _load_share(pair: GearPair, load: float) -> float:
     """Line load over module and Young's modulus of the softer gear."""
     stiff = min(gear.material.young_modulus for gear in (pair.driver, pair.driven))
-    return load / (_face_width(pair) * pair.driver.module * stiff)
-
-
-def _face_width(pair: GearPair) -> float:
-    return min(pair.driver.face_width, pair.driven.face_width)
+    return load / (pair.face_width * pair.driver.module * stiff)
 
 
 def refuse_load(pair: GearPair, load: float) -> None:
@@ -168,7 +164,7 @@ def refuse_load(pair: GearPair, load: float) -> None:
     ------
     InputError
     """
-    share, width = _load_share(pair, load), _face_width(pair)
+    share, width = _load_share(pair, load), pair.face_width
     if share > _ABSURD_LOAD:
         raise InputError(
             "load", f"{load:.6g} N on a face of {width * 1e3:.6g} mm",
@@ -182,7 +178,7 @@ def heavy_load(pair: GearPair, load: float) -> str:
     metal = min(gear.material.young_modulus for gear in (pair.driver, pair.driven)) > _METAL
     if not metal or _load_share(pair, load) <= _HEAVY_LOAD:
         return ""
-    line_load = load / _face_width(pair)
+    line_load = load / pair.face_width
     return (
         f"{line_load * 1e-3:.4g} N/mm are {line_load / pair.driver.module * 1e-6:.4g} MPa of load over face width and "
         "module, some three times that at the root: no metal carries it. Check load and face_width."

@@ -167,17 +167,6 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
         check_solid_gear(scene, gear)
     if part.normal_load(pair) is None:
         raise InputError(f"pair.{name}.load", "(not given)", "is needed to load the flanks", "give load or torque")
-    if abs(pair.driver.face_width - pair.driven.face_width) > 1e-9 * pair.face_width:
-        raise InputError(
-            f"gear.{part.driven}.face_width", f"{pair.driven.face_width * 1e3:.6g} mm",
-            f"differs from its mate's, {pair.driver.face_width * 1e3:.6g} mm, and contact that ends inside a face is "
-            "not computed yet", "give both gears one face width",
-        )  # fmt: skip
-    if part.axial_offset:
-        raise InputError(
-            f"pair.{name}.axial_offset", f"{part.axial_offset * 1e3:.6g} mm", "is not known to a pair with a width yet",
-            "leave it out",
-        )  # fmt: skip
     try:
         refuse_load(pair, max(part.all_loads(pair)))
     except InputError as error:

@@ -77,7 +77,7 @@ def friction_coefficient(part: FrictionPart, pair: GearPair) -> Callable[[Array,
         return lambda sliding, _rolling, _force: buckingham(sliding)
     if part.law == "constant":
         return lambda sliding, _rolling, _force: np.full(np.shape(sliding), part.coefficient or 0.0)
-    viscosity, width = part.viscosity or 0.0, min(pair.driver.face_width, pair.driven.face_width)
+    viscosity, width = part.viscosity or 0.0, pair.face_width
     return lambda sliding, rolling, force: benedict_kelley(np.asarray(force) / width, viscosity, sliding, rolling)
 
 

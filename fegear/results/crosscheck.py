@@ -74,7 +74,7 @@ def _pair_check(scene: Scene, name: str) -> PairCheck:
     line_load, chosen = stiffness.load, False
     if line_load is None:
         chosen = force is None
-        width = min(pair.driver.face_width, pair.driven.face_width)
+        width = pair.face_width
         line_load = USUAL_LINE_LOAD if force is None else force / width
     return PairCheck(pair, (part.driver, part.driven), stiffness.positions, line_load, chosen)
 

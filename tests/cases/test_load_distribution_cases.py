@@ -138,8 +138,7 @@ def test_the_pictures_are_drawn(outcome, tmp_path):
 @pytest.mark.parametrize(
     ("override", "word"),
     [
-        ('gear.wheel.face_width="10 mm"', "face_width"),
-        ('pair.I.axial_offset="1 mm"', "axial_offset"),
+        ('pair.I.axial_offset="8 mm"', "axial_offset = 8 mm: puts the faces beside each other"),
         ("pair.I.line_error={}", "line_error"),
         ('pair.I.line_error={file="nowhere.csv"}', "nowhere.csv"),
         ("load_distribution.positions=1", "positions"),

@@ -1,6 +1,7 @@
 """Loaded flanks without load: rigid tooth contact analysis, found by other means (NASA TM-107451)."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -145,3 +146,22 @@ def test_shafts_tilted_in_and_out_of_their_plane_against_whole_helicoids(beta, t
     arm = pair.driven.base_radius / math.cos(pair.working_pressure_angle)
     shift = pair.driver.twist * pair.driver.base_radius * arm * tilt.in_plane
     np.testing.assert_allclose(found - wanted, -shift, atol=1e-3 * ARCSEC * pair.driven.base_radius)
+
+
+@pytest.mark.parametrize("offset", [-6e-3, 5e-3])
+def test_faces_that_stand_apart_touch_as_rigid_flanks_do(offset):
+    """Unequal faces, one beyond the other; the offset of TM-107451 counts against the heights of loaded flanks."""
+    one, other = gear(23, 20.0, "right"), replace(gear(41, 20.0, "left"), face_width=15e-3)
+    drive = HelicalPair(one, other, Misalignment(shaft_angle=1e-4), crown=3.0, axial_offset=-offset)
+    cycle = mesh_cycle(drive, 12)
+    pair = GearPair(one, other, axial_offset=offset)
+    assert pair.face_width == pytest.approx(drive.overlap[1] - drive.overlap[0])
+    assert pair.overlap_ratio == pytest.approx(drive.overlap_ratio)
+    # z counts from the middle of the common face, and x of pair 0 there; there the shaft tilts, too, which is a shift.
+    lean, up = pair.driver.twist * pair.driver.base_radius, pair.face_height("driver")
+    angle = cycle.phi_1 + pair.working_pressure_angle - one.half_base_space_angle
+    roll = pair.driver.base_radius * (angle - math.tan(pair.working_pressure_angle)) - lean * up
+    gaps = FlankGaps(tilt=ShaftTilt(out_of_plane=1e-4), driver_flank=(CutRemoval(one, crown=3.0),))
+    apart = -unloaded_error(pair, gaps, roll) / other.base_radius - cycle.error
+    assert np.ptp(cycle.error) > 0.1 * ARCSEC
+    assert np.ptp(apart) < 1e-3 * ARCSEC

@@ -15,14 +15,17 @@ from fegear.contact.flank.compliance import FlankCompliance
 from fegear.contact.flank.error import flank_error
 from fegear.contact.flank.lines import ContactLines
 from fegear.contact.flank.root_stress import rooted_lines
+from fegear.contact.flank.touching import unloaded_error
 from fegear.contact.tooth_stress import tooth_stress
 from fegear.errors import InputError
 from fegear.fem import solve_gear
 from fegear.fem.solid import SolidSettings, solve_solid
 from fegear.fem.solid.bands import hats
 from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.geometry.flank_modification import LeadCrowning
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import tip_relief
+from fegear.geometry.shaft_tilt import ShaftTilt
 from fegear.solution_cache import SolutionCache, cache_on_disk
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
@@ -413,3 +416,73 @@ def test_many_roll_positions_are_taken_in_parts(known, monkeypatch):
     monkeypatch.setattr(compliance, "_STATIONS_AT_ONCE", 30)
     again = replace(flanks, cache=SolutionCache()).compliance(LOAD)
     np.testing.assert_allclose(again.matrix, matrix.matrix, rtol=1e-12, atol=1e-12 * np.abs(matrix.matrix[0, 0, 0]))
+
+
+def test_faces_that_overlap_in_part_bear_where_both_are(solved):
+    """A wider mate, and mates beside each other: what is common bears, mirrored offsets mirror, nothing else jumps."""
+    spur = gear(0.0)
+    wide = replace(spur, face_width=4.0 / 3.0 * WIDTH)
+    bodies = {"narrow": solid(spur), "wide": solid(wide)}
+    at = {"positions": 2, "panel": 0.5}
+    gears = {"driver": bodies["narrow"], "driven": bodies["wide"]}
+    up, down = (
+        FlankPair(GearPair(spur, wide, axial_offset=offset), gears, **at).solve([LOAD]) for offset in (4e-3, -4e-3)
+    )
+    low, high = up.lines.low, up.lines.high
+    assert high - low == pytest.approx(0.5 * (WIDTH + wide.face_width) - 4e-3)
+    np.testing.assert_allclose(up.transmission_error, down.transmission_error, rtol=1e-9)
+    np.testing.assert_allclose(up.over_face, down.over_face[:, ::-1], rtol=1e-7)
+    assert up.equilibrium.max() < 1e-12
+    # both reach beyond one end of the common face, and what goes on there holds the flanks apart: that end bears more
+    middle = FlankPair(GearPair(spur, wide), gears, **at).solve([LOAD])
+    alone = FlankPair(GearPair(spur, spur), {"driver": gears["driver"], "driven": gears["driver"]}, **at).solve([LOAD])
+    ends = [found.mean_over_face[[0, -1], 0].mean() / found.mean_over_face[:, 0].mean() for found in (middle, alone)]
+    assert ends[0] > 1.02 * ends[1]
+    assert (middle.transmission_error < alone.transmission_error).all()
+    assert (middle.transmission_error < up.transmission_error).all()
+    assert GearPair(spur, wide, axial_offset=4e-3).reversed().axial_offset == -4e-3
+
+
+@pytest.mark.long
+def test_a_face_that_is_wider_by_a_hair_changes_nothing_by_more_than_a_hair():
+    """The law of the end of a face is that of the gear whose face ends."""
+    spur = gear(0.0)
+    hair = replace(spur, face_width=(1.0 + 1e-6) * WIDTH)
+    one, other = solid(spur), solid(hair)
+    alone = FlankPair(GearPair(spur, spur), {"driver": one, "driven": one}, positions=2).solve([LOAD])
+    close = FlankPair(GearPair(spur, hair), {"driver": one, "driven": other}, positions=2).solve([LOAD])
+    np.testing.assert_allclose(close.transmission_error, alone.transmission_error, rtol=1e-4)
+    np.testing.assert_allclose(close.over_face, alone.over_face, rtol=1e-3)
+
+
+def test_spacing_errors_move_load_to_the_other_pairs(known):
+    flanks, matrix = known
+    late = np.zeros(20)
+    late[3] = 6e-6
+    loads = [0.2 * LOAD, LOAD]
+    plain = flanks.solve(loads, None, matrix)
+    found = flanks.solve(loads, FlankGaps(driver_spacing=late, base_pitch=3), matrix)
+    other = flanks.solve(loads, FlankGaps(driven_spacing=late, base_pitch=3), matrix)
+    even = flanks.solve(loads, FlankGaps(driver_spacing=late, base_pitch=10), matrix)
+    numbers = found.pair_numbers.tolist()
+    assert (found.share[numbers.index(0)] <= plain.share[numbers.index(0)] + 1e-12).all()
+    assert (found.share[numbers.index(0)] < 0.9 * plain.share[numbers.index(0)]).any()
+    np.testing.assert_array_equal(found.share, other.share)
+    np.testing.assert_array_equal(even.share, plain.share)  # the late tooth is far away
+    # all teeth late by as much: a shift
+    shifted = flanks.solve(loads, FlankGaps(driver_spacing=np.full(20, 6e-6)), matrix)
+    np.testing.assert_allclose(shifted.transmission_error - 6e-6, plain.transmission_error, rtol=1e-9)
+
+
+def test_light_loads_stand_where_rigid_flanks_touch(known):
+    """A crowned pair's approach under a vanishing load is the least gap; shorter panels come nearer to it."""
+    flanks, _ = known
+    gaps = FlankGaps(driver_flank=(LeadCrowning(20e-6, WIDTH),), tilt=ShaftTilt(2e-4, 3e-4))
+    rigid = unloaded_error(flanks.pair, gaps, flanks.roll)
+    off = []
+    for panel in (0.5, 0.25):
+        found = replace(flanks, panel=panel, positions=4).solve([1e-3], gaps)
+        off.append(found.transmission_error[:, 0] - rigid)
+    # The gap of a hat is the mean of what it spans: C h^2/b^2 above the least one, a quarter of it for half the panel.
+    assert (np.abs(off[0]) < 4.0 * 20e-6 * (0.5 * MODULE / (0.5 * WIDTH)) ** 2).all()
+    assert np.abs(off[1]).max() < 0.5 * np.abs(off[0]).max()

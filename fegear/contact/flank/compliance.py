@@ -227,7 +227,8 @@ def line_bands(pair: GearPair, member: Member, body: FlankBody, lines: ContactLi
     """Bands of all stations on a gear's flank, line by line as `places_of` has them."""
     module = pair.driver.module
     radius = np.clip(pair.radius(lines.x, member) / module, *_flank(body))[lines.present]
-    return _bands(body, radius, lines.z[lines.present] / module, places_of(lines)[1])
+    heights = (lines.z[lines.present] + pair.face_height(member)) / module
+    return _bands(body, radius, heights, places_of(lines)[1])
 
 
 def _line_means(lines: ContactLines, values: Array) -> Array:

@@ -63,14 +63,14 @@ class FlankGaps(ReadOnlyArrays):
         """Gap at the stations, shape (P, M) [m]: the sum of all, where unmodified flanks touch."""
         gap = self.of_pair(lines.pair, lines.z)
         for member in MEMBERS:
-            gap = gap + self.removed(member, pair.roll_angle(lines.x, member), lines.z)
+            gap = gap + self.removed(member, pair.roll_angle(lines.x, member), lines.z + pair.face_height(member))
         if self.tilt != PARALLEL:
             note("misaligned flanks")
             gap = gap + self.tilt.gap(pair, lines.x, lines.z)
         return np.asarray(gap)
 
     def removed(self, member: Member, roll: Array, z: Array) -> Array:
-        """What is missing from a gear's flank at roll angles [rad] and heights [m], of one shape [m]."""
+        """What is missing from a gear's flank at roll angles [rad] and heights on its own face [m]."""
         driver = member == "driver"
         total = (self.driver_relief if driver else self.driven_relief).removal(roll)
         parts = self.driver_flank if driver else self.driven_flank

@@ -104,9 +104,10 @@ class RootedLines:
         force : ndarray, shape (P, M)
             [N].
         z : array_like, shape (Z,)
-            Along the face [m].
+            Along the face, from the middle of the common one [m].
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
+        zeta = (places + self.pair.face_height(self.member)) / m
         solution, fillet = self.solution, self.solution.fillets[side]
         _, spans = places_of(self.lines)
         on = force[self.lines.present]
@@ -114,9 +115,9 @@ class RootedLines:
         total = np.zeros((fillet.arc.size, places.size, len(self.teeth)))
         for k, felt in self.sources.items():
             used, column = np.unique(felt[:, 1], return_inverse=True)
-            stress = solution.stress_under(k, side, loads[:, used], places / m)[0]
+            stress = solution.stress_under(k, side, loads[:, used], zeta)[0]
             total[:, :, felt[:, 0]] += stress[:, :, column]  # at most one line is k teeth away
-        end = self._ends(side, places / m)
+        end = self._ends(side, zeta)
         sign = 1.0 if side == "tension" else -1.0
         value, arc = extreme(total.reshape(fillet.arc.size, -1), fillet.arc, sign, end.ravel())
         radius = np.interp(arc, fillet.arc, np.hypot(*fillet.place)) * m

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.contact.flank.lines import base_twist
+from fegear.geometry.shaft_tilt import PARALLEL
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -66,11 +67,11 @@ def _least(pair: GearPair, gaps: FlankGaps, at: _Places) -> Array:
     rb, form, tip = pair.driver.base_radius, *_limits(pair, "driver")
     middle = np.clip(pair.roll_angle(at.x, "driver"), form, tip)
     room = _REACH * pair.driver.module / np.maximum(middle * rb, _REACH * pair.driver.module)
-    of_pair = gaps.of_pair(at.pair, at.z)
+    of_pair, up = gaps.of_pair(at.pair, at.z), pair.face_height("driven")
 
     def gap(roll: Array) -> Array:
         apart, driven_roll = _helicoids(pair, gaps, at, roll)
-        return np.asarray(apart + gaps.removed("driven", driven_roll, at.z) + of_pair)
+        return np.asarray(apart + gaps.removed("driven", driven_roll, at.z + up) + of_pair)
 
     least = gap(middle)
     low, high = np.maximum(middle - room, form), np.minimum(middle + room, tip)
@@ -99,17 +100,18 @@ def _helicoids(pair: GearPair, gaps: FlankGaps, at: _Places, roll: Array) -> tup
     rb1, rb2 = pair.driver.base_radius, pair.driven.base_radius
     rho1, rho2 = (pair.flank_curvature_radius(at.x, member) for member in ("driver", "driven"))
     pitch1, pitch2 = (rb / math.cos(pair.working_pressure_angle) for rb in (rb1, rb2))
-    behind = gaps.removed("driver", roll, at.z) / rb1
+    behind = gaps.removed("driver", roll, at.z + pair.face_height("driver")) / rb1
     point = -1j * pitch1 + np.exp(1j * (roll - rho1 / rb1 + behind)) * (1j * rb1 + roll * rb1) * u
     place = np.stack([point.real, point.imag - pitch2, at.z], axis=-1)
     on = np.ones(at.z.shape, dtype=bool)
-    if gaps.tilt.in_plane or gaps.tilt.out_of_plane:
+    if gaps.tilt != PARALLEL:
         from scipy.spatial.transform import Rotation
 
         # Into the frame of the driven gear, turned about the middle of the common face by (-in plane, out of plane).
         turn = Rotation.from_rotvec([gaps.tilt.in_plane, -gaps.tilt.out_of_plane, 0.0]).as_matrix()
         place = place @ turn.T
-        on &= np.abs(place[..., 2]) <= 0.5 * pair.face_width * (1.0 + 1e-12)
+        own = np.abs(place[..., 2] + pair.face_height("driven"))
+        on &= own <= 0.5 * pair.driven.face_width * (1.0 + 1e-12)
     seen, height = place[..., 0] + 1j * place[..., 1], place[..., 2]
     radius = np.abs(seen)
     length = np.sqrt(np.maximum((radius - rb2) * (radius + rb2), 0.0))
@@ -146,7 +148,13 @@ def unloaded_error(pair: GearPair, gaps: FlankGaps, roll: ArrayLike) -> Array:
         Roll positions [m].
     """
     start = np.atleast_1d(np.asarray(roll, dtype=float))[:, None]
-    lean, half, past = base_twist(pair), 0.5 * pair.face_width, _PAST * pair.driver.module
+    lean, past = base_twist(pair), _PAST * pair.driver.module
+    # The face of a tilted mate ends a little before or after the common one of gears that are not.
+    more = past if gaps.tilt != PARALLEL else 0.0
+    up, own = pair.face_height("driver"), 0.5 * pair.driver.face_width
+    bottom = max(-0.5 * pair.face_width - more, -own - up)
+    top = min(0.5 * pair.face_width + more, own - up)
+    half = max(-bottom, top)
     first, last = pair.x_start - past - abs(lean) * half, pair.x_end + past + abs(lean) * half
     number = np.arange(
         math.floor((first - start.max()) / pair.base_pitch), math.ceil((last - start.min()) / pair.base_pitch) + 1
@@ -154,10 +162,10 @@ def unloaded_error(pair: GearPair, gaps: FlankGaps, roll: ArrayLike) -> Array:
     middle = start + number * pair.base_pitch
     if lean:
         ends = np.sort([(middle - pair.x_end - past) / lean, (middle - pair.x_start + past) / lean], axis=0)
-        low, high = np.maximum(ends[0], -half), np.minimum(ends[1], half)
+        low, high = np.maximum(ends[0], bottom), np.minimum(ends[1], top)
     else:
         inside = (middle >= pair.x_start - past) & (middle <= pair.x_end + past)
-        low, high = np.where(inside, -half, half), np.where(inside, half, -half)
+        low, high = np.where(inside, bottom, top), np.where(inside, top, bottom)
     position, j = np.nonzero(high > low)
     low, high = low[position, j][:, None], high[position, j][:, None]
     least = np.full(position.size, np.inf)

@@ -196,7 +196,7 @@ def asked(scene: Scene) -> Asked:
     line_load = scene.case.stiffness.load
     if line_load is None and pair:
         p = scene.pairs[pair]
-        line_load = (scene.case.pair[pair].normal_load(p) or 0.0) / min(p.driver.face_width, p.driven.face_width)
+        line_load = (scene.case.pair[pair].normal_load(p) or 0.0) / p.face_width
     quantities = tuple(_quantity(name, gear, pair, mesh, scene) for name in names)
     return Asked(scene, quantities, gear, pair, mesh, radii, width, line_load or _USUAL_LINE_LOAD)
 
