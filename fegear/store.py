@@ -37,7 +37,9 @@ def cache_folder() -> Path:
 
 def _head(key: str, payload: bytes) -> bytes:
     """What an entry begins with: it binds what is kept to its key, wherever the file is moved."""
-    return _MAGIC + hashlib.sha256(key.encode() + b"\n" + payload).digest()
+    digest = hashlib.sha256(key.encode() + b"\n")
+    digest.update(payload)  # which may be large: not copied
+    return _MAGIC + digest.digest()
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Literal
 from fegear.case.part import at
 from fegear.errors import InputError, RangeError
 from fegear.models.settings import given_settings
+from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
     from fegear.case.accuracy import AccuracyPart
     from fegear.case.reading import Scene
     from fegear.fem.solid import SolidInfluence, SolidSettings
     from fegear.geometry import Gear
-    from fegear.solution_cache import SolutionCache
 
 #: Tolerance that the usual settings are for, how edges and wavelengths follow another and how far; from the last on
 #: elements of order 4 are taken, as fine as a case asks for.
@@ -145,11 +145,11 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
     RangeError
         If it cannot be meshed, under the key of the case.
     """
-    from fegear.fem.solid import solid_influence
+    from fegear.fem.solid.influence import solid_influence
 
-    gear = asked.gear
+    gear, cache = asked.gear, cache or SolutionCache()
     try:
-        return solid_influence(
+        found = solid_influence(
             gear.tooth,
             gear.twist * gear.module,
             gear.face_width / gear.module,
@@ -161,6 +161,7 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
         )
     except RangeError as error:
         raise at(f"gear.{asked.name}", error, {"poisson_ratio": "material.poisson_ratio"}) from None
+    return found.with_error(cache)
 
 
 def seconds_of_solid_gear(settings: SolidSettings, width: float) -> float:

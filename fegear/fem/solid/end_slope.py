@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from fegear.arrays import Array
 
 #: Acute ends are positive: base helix angle [deg], and the values there for each of Poisson's ratios.
@@ -37,14 +35,23 @@ def end_slope(angle: float, poisson_ratio: float) -> float:
     Times 1 / cos(beta_b) it is the transverse approach per transverse force and length. Angles beyond 40 degrees take
     the value there; Poisson's ratios are interpolated by a cubic.
     """
-    values = _by_angle()(float(np.clip(np.degrees(angle), _ANGLES[0], _ANGLES[-1])))
-    ratios = np.array(_RATIOS)
+    step, ratios = _ANGLES[1] - _ANGLES[0], np.array(_RATIOS)
+    place = (float(np.clip(np.degrees(angle), _ANGLES[0], _ANGLES[-1])) - _ANGLES[0]) / step
+    i = min(int(place), len(_ANGLES) - 2)
+    known, bent, x = np.array(_VALUES), _second_derivatives(), place - i
+    y = 1.0 - x
+    values = y * known[:, i] + x * known[:, i + 1] + ((y**3 - y) * bent[:, i] + (x**3 - x) * bent[:, i + 1]) / 6.0
     return float(np.polynomial.polynomial.polyfit(ratios, values, 3) @ float(poisson_ratio) ** np.arange(4))
 
 
 @cache
-def _by_angle() -> Callable[[float], Array]:
-    from scipy.interpolate import CubicSpline
+def _second_derivatives() -> Array:
+    """Of the cubic spline over the angles, in steps of these, shape (ratios, angles); its ends have no knot.
 
-    spline = CubicSpline(_ANGLES, np.array(_VALUES).T)
-    return lambda angle: np.asarray(spline(angle))
+    By hand: the library's spline takes longer to load than all else of a recalled pair.
+    """
+    count = len(_ANGLES)
+    system, right = 4.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1), np.zeros((count, len(_RATIOS)))
+    right[1:-1] = 6.0 * np.diff(np.array(_VALUES).T, 2, axis=0)
+    system[0, :3], system[-1, -3:] = (1.0, -2.0, 1.0), (1.0, -2.0, 1.0)
+    return np.asarray(np.linalg.solve(system, right).T)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -24,7 +24,8 @@ from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
 from fegear.fem.solid.solution import SolidSolution
 from fegear.fem.trace import LoadedFlank
-from fegear.solution_cache import SolutionCache
+from fegear.plain import code_version, content_key, pack, unpack
+from fegear.solution_cache import Codec, SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -50,6 +51,15 @@ ENTRY_SHARES = {"contact": 1.5, "neighbour": 4.0, "root_tension": 2.9, "root_com
 _STATION, _MOST_STATIONS = 0.5, 24
 
 
+def _errors(data: bytes) -> dict[str, float] | None:
+    found = unpack(data)
+    return found if isinstance(found, dict) else None
+
+
+#: Errors as they are kept on disk.
+_ERRORS: Codec[dict[str, float]] = Codec(pack, _errors)
+
+
 @dataclass(frozen=True)
 class SolidInfluence:
     """c_k(s, z; s', z') and fillet stress of a solid gear; lengths in modules, E = 1.
@@ -65,11 +75,14 @@ class SolidInfluence:
     coarse : SolidSolution or None
         A cheaper one whose difference shows the error of `fine`.
     seconds : mapping of str to float
+    known_error : mapping of str to float or None
+        What `error` found before, for the same solutions.
     """
 
     fine: SolidSolution
     coarse: SolidSolution | None
     seconds: Mapping[str, float]
+    known_error: Mapping[str, float] | None = None
 
     @property
     def settings(self) -> SolidSettings:
@@ -157,6 +170,8 @@ class SolidInfluence:
             (of the pressed bands, over the same), root_tension and root_compression (the largest of each hat; tension
             of those above 35 % of the flank).
         """
+        if self.known_error is not None:
+            return MappingProxyType(dict(self.known_error))
         if self.settings.source == "slices":
             return missed_by_slices(self.fine.tau)
         if self.coarse is None:
@@ -183,6 +198,12 @@ class SolidInfluence:
                     worst[f"root_{side}"] = float(apart.max())
             found = {key: max(value, worst.get(key, 0.0)) for key, value in found.items()}
         return MappingProxyType({key: _SHARES[key] * value for key, value in found.items()})
+
+    def with_error(self, cache: SolutionCache) -> SolidInfluence:
+        """The same with `error` found now, or recalled: all contact lines of the flank are solved for it."""
+        both = [one.identity for one in (self.fine, self.coarse) if one is not None]
+        key = content_key(code_version("fem", "geometry"), "errors of a solid gear", both)
+        return replace(self, known_error=cache.solve(key, lambda: dict(self.error), _ERRORS).value)
 
 
 def contact_line(solution: SolidSolution, radius: ArrayLike, stations: ArrayLike) -> Bands:
