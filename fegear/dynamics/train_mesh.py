@@ -35,6 +35,8 @@ class TrainMesh:
         Mean mesh force [N].
     a_drives : bool
         Whether the train's body `a` of this mesh drives, and not body `b`.
+    doubt : (float, float), optional
+        Estimated errors of its mean stiffness [N/m] and of the peak-to-peak static transmission error [m].
     """
 
     pair: GearPair
@@ -42,6 +44,7 @@ class TrainMesh:
     error: Periodic
     force: float
     a_drives: bool = True
+    doubt: tuple[float, float] | None = None
 
     @classmethod
     def under(cls, pair: GearPair, excitation: MeshExcitation, force: float, *, a_drives: bool = True) -> TrainMesh:

@@ -64,8 +64,21 @@ def _check(scene: Scene, _subject: str) -> None:
                 f"train.mesh.{name}.like.pair", f'"{mesh.like.pair}"',
                 "is loaded over its face, and teeth of another width bear in another way", "describe a pair of its own",
             )  # fmt: skip
+        _check_spacing(scene, part.loaded_pair_of(name))
     for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh):
         check_relief(scene, name)
+
+
+def _check_spacing(scene: Scene, name: str) -> None:
+    """Refuse spacing errors of teeth with a width: their flanks are loaded in one base pitch of all that differ."""
+    pair = scene.case.pair[name]
+    uneven = [gear for gear in (pair.driver, pair.driven) if scene.case.gear[gear].spacing_errors is not None]
+    if scene.case.effects.spacing_errors and name in scene.wide_pairs and uneven:
+        raise InputError(
+            f"gear.{uneven[0]}.spacing_errors", "(given)",
+            f"is not known to a train with the loaded flanks of pair {name}, which are solved in one base pitch",
+            "leave it out, or the effect spacing_errors",
+        )  # fmt: skip
 
 
 def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTrain:
@@ -88,7 +101,13 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
             )
         excitations[name] = replace(found.widened(width), phase=mesh.phase)
         work.progress((number + 1) / len(part.mesh))
-    return assemble(asked, excitations)
+    made = assemble(asked, excitations)
+    flanks = {mesh: Task("loaded-flanks", part.loaded_pair_of(mesh)) for mesh in part.mesh}
+    meshes = tuple(
+        replace(one, doubt=_doubt(loaded_flanks(upstream, flanks[name].subject))) if flanks[name] in upstream else one
+        for name, one in zip(part.mesh, made.meshes, strict=True)
+    )
+    return replace(made, meshes=meshes)
 
 
 def _of_flanks(data: LoadedFlanksData, force: float, *, forward: bool) -> MeshExcitation:
@@ -97,6 +116,13 @@ def _of_flanks(data: LoadedFlanksData, force: float, *, forward: bool) -> MeshEx
 
     found = data.flanks.solve([force or data.asked.nominal], data.gaps, data.known)
     return flank_excitation(data.flanks, found, forward=forward)
+
+
+def _doubt(data: LoadedFlanksData) -> tuple[float, float]:
+    """Estimated errors of mean stiffness [N/m] and peak-to-peak transmission error [m] under the nominal load."""
+    i, found, coarse = data.nominal, data.found, data.error.coarse
+    fine, other = (1.0 / float(one.lines.mean(1.0 / one.contact.stiffness[:, i])) for one in (found, coarse))
+    return abs(other - fine), float(data.error.peak_to_peak[i])
 
 
 def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
@@ -123,10 +149,11 @@ def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
             )
             values.append(Value(f"{name}.axial_force", axial, "N", None, "mean force along the axes, by the helix"))
         s = np.linspace(0.0, 1.0, 2001)
+        stiffness, swing = one.doubt or (None, None)
         values += [
             Value(f"{name}.mean_force", one.force, "N", None, "along the line of action, from the torques"),
-            Value(f"{name}.mean_stiffness", mesh.stiffness, "N/um", None, "1 over the mean compliance"),
-            Value(f"{name}.static_te_peak_to_peak", float(np.ptp(one.error(s))), "um", None, "under the mean force"),
+            Value(f"{name}.mean_stiffness", mesh.stiffness, "N/um", stiffness, "1 over the mean compliance"),
+            Value(f"{name}.static_te_peak_to_peak", float(np.ptp(one.error(s))), "um", swing, "under the mean force"),
         ]
     settings: dict[str, object] = {body.name: body.inertia for body in data.train.bodies}
     return Outcome(data, (), tuple(values), {"inertia": settings}, tuple(remarks))
