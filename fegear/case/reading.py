@@ -50,6 +50,9 @@ class Scene:
         never a file.
     document : mapping
         The same as plain tables, ``--set`` options included.
+    estimates : bool
+        Whether errors and the sizes of neglected effects are estimated beside the numbers of loaded pairs, which do not
+        depend on that: a first answer while a value is being moved does without.
     """
 
     case: Case
@@ -60,6 +63,7 @@ class Scene:
     helical_pairs: dict[str, HelicalPair] = field(default_factory=dict)
     text: str = ""
     document: Mapping[str, object] = field(default_factory=dict)
+    estimates: bool = True
 
     @property
     def spur_gears(self) -> dict[str, Gear]:

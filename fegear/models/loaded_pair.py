@@ -55,7 +55,7 @@ class LoadedPair:
 
 
 def compliance_sources(
-    asked: PairInputs, influences: Mapping[str, GearInfluence]
+    asked: PairInputs, influences: Mapping[str, GearInfluence], *, estimates: bool = True
 ) -> tuple[Sources, tuple[Sources, ...]]:
     """The sources of driver and driven, and the pairs of sources that are off by their estimated errors.
 
@@ -64,6 +64,8 @@ def compliance_sources(
     asked : PairInputs
     influences : mapping of str to GearInfluence
         By the gears' names; needed for ``source = "fe"``.
+    estimates : bool
+        Whether the second are wanted.
     """
     part, pair = asked.compliance, asked.pair
     try:
@@ -83,6 +85,8 @@ def compliance_sources(
 
     solved = {gear: finite_element_compliance(influences[gear]) for gear in dict.fromkeys(asked.gears)}
     first, second = (solved[gear] for gear in asked.gears)
+    if not estimates:
+        return (first, second), ()
     own1 = shifted_by_error(first)
     own2 = own1 if second is first else shifted_by_error(second)
     shifted: list[Sources] = [(own1, second), (first, own2)]

@@ -115,6 +115,8 @@ class LoadedPairInputs:
         That they are held against.
     effects : EffectsPart
         All of the case, for the remedies.
+    estimates : bool
+        Whether errors and neglected effects are estimated.
     """
 
     asked: PairInputs
@@ -122,6 +124,7 @@ class LoadedPairInputs:
     loads: tuple[float, ...]
     tolerance: float = field(compare=False)
     effects: EffectsPart = field(compare=False)
+    estimates: bool = True
 
 
 def _inputs(scene: Scene, name: str) -> LoadedPairInputs:
@@ -132,7 +135,8 @@ def _inputs(scene: Scene, name: str) -> LoadedPairInputs:
     loads = tuple(sorted({asked.loads[0], asked.nominal, asked.loads[-1]}))
     if not _FOR_ALL_LOADS & set(wanted):
         loads = (asked.nominal,)
-    return LoadedPairInputs(asked, answers, loads, scene.case.accuracy.tolerance, scene.case.effects)
+    tolerance, effects = scene.case.accuracy.tolerance, scene.case.effects
+    return LoadedPairInputs(asked, answers, loads, tolerance, effects, scene.estimates)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -143,7 +147,10 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 def _compute(inputs: LoadedPairInputs, upstream: Upstream, _work: Work) -> LoadedPairData:
     asked = inputs.asked
     influences = {gear: solution_of(upstream, gear) for gear in asked.gears} if upstream else {}
-    pair = build_loaded_pair(asked, *compliance_sources(asked, influences))
+    sources, shifted = compliance_sources(asked, influences, estimates=inputs.estimates)
+    pair = build_loaded_pair(asked, sources, shifted)
+    if not inputs.estimates:
+        return LoadedPairData(pair, Neglected({}, {}))
     return LoadedPairData(pair, neglected_effects(asked, pair, inputs.answers, inputs.loads))
 
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from fegear.drafts import KINDS, Answers, draft
 from fegear.errors import InputError
+from fegear.window.case_text import literal, with_value
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
-from fegear.window.jobs import Asked, Compare, Compute, Export, Said
+from fegear.window.jobs import Asked, Compare, Compute, Design, Export, Said
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -87,7 +88,9 @@ class Bench:
 
     def shown_now(self) -> list[tuple[str, _Content]]:
         """What a page that opens now has to be told."""
-        told = [(what, self._last[what]) for what in ("plan",) if what in self._last]
+        told: list[tuple[str, _Content]] = [
+            (what, self._last[what]) for what in ("plan", "hands") if what in self._last
+        ]
         for content in self._found.values():
             told.append(("found", {key: value for key, value in content.items() if key != "pictures"}))
             told += [("picture", picture) for picture in content.get("pictures", {}).values()]
@@ -122,29 +125,33 @@ class Bench:
         """
         self.lay(Desk.of_file(path))
 
-    def changed(self) -> None:
-        """Show the case as it is now everywhere, and compute it."""
+    def changed(self, *, moving: bool = False) -> None:
+        """Show the case as it is now everywhere, and compute it; a value that is moved has its errors later."""
         self.tell("changed")
-        self.compute()
+        self.compute(moving=moving)
 
     def asked(self) -> Asked:
         """The case as it would be computed now."""
-        if self.desk is None:
-            raise InputError("case", "(none)", "is on the desk", "choose a template")
-        return Asked(self.desk.text, self.desk.name, str(self.desk.folder), LEVELS[self.level])
+        desk = self._on_desk()
+        return Asked(desk.text, desk.name, str(desk.folder), LEVELS[self.level])
 
-    def compute(self) -> None:
+    def compute(self, *, moving: bool = False) -> None:
         """Ask for the case as it is now, unless it is refused already."""
         if self.desk is None or self._computing is None or self.desk.refusal is not None:
             return
         self._number = next(self._numbers)
         self.tell("asked")
-        self._computing.ask(Compute(self._number, self.asked()))
+        self._computing.ask(Compute(self._number, self.asked()._replace(moving=moving)))
 
     def export(self, what: str, target: str) -> None:
         """Write the report or the drawings of the case as it is, at its own tolerance."""
         if self._computing is not None:
             self._computing.ask(Export(next(self._numbers), self.asked()._replace(loosened=1.0), what, target))
+
+    def design(self, pair: str) -> None:
+        """Ask for the reliefs that remove the transmission error of a pair."""
+        if self._computing is not None:
+            self._computing.ask(Design(next(self._numbers), self.asked(), pair))
 
     def pin(self) -> None:
         """Keep the present state as variant A."""
@@ -157,6 +164,51 @@ class Bench:
         self._last.pop("compared", None)
         self.tell("unpinned")
 
+    def move_relief(self, gear: str, end: str, start: float, amount: float, *, moving: bool) -> None:
+        """Have a tip or root relief start at a roll angle [deg] with an amount [um]; the others stay.
+
+        Raises
+        ------
+        InputError
+            If the text cannot be changed there.
+        """
+        desk = self._on_desk()
+        text, table = desk.text, ("gear", gear, "relief", end)
+        for key in ("start_radius", "length", "normalised_length", "amount_over_delta"):
+            text = with_value(text, (*table, key), None)
+        text = with_value(text, (*table, "amount"), f'"{amount:.2f} um"')
+        text = with_value(text, (*table, "start_roll_angle"), f'"{start:.3f} deg"')
+        self._put(with_value(text, ("effects", "relief"), "true"), moving=moving)
+
+    def move_load(self, pair: str, key: str, text: str, *, moving: bool) -> None:
+        """Give a pair another load or torque, a quantity with its unit."""
+        self._put(with_value(self._on_desk().text, ("pair", pair, key), literal(text)), moving=moving)
+
+    def drop_relief(self, gear: str) -> None:
+        """Leave a gear without relief."""
+        self._put(with_value(self._on_desk().text, ("gear", gear, "relief"), None), moving=False)
+
+    def _take_reliefs(self, reliefs: dict[str, Any]) -> None:
+        text = self._on_desk().text
+        for gear, found in reliefs.items():
+            table = {"roll_angles": [f"{one:g} deg" for one in found["roll"]],
+                     "removals": [f"{one:g} um" for one in found["removal"]]}  # fmt: skip
+            text = with_value(text, ("gear", gear, "relief"), None)
+            text = with_value(text, ("gear", gear, "relief"), literal({"table": table}))
+        self._put(with_value(text, ("effects", "relief"), "true"), moving=False)
+
+    def _on_desk(self) -> Desk:
+        if self.desk is None:
+            raise InputError("case", "(none)", "is on the desk", "choose a template")
+        return self.desk
+
+    def _put(self, text: str, *, moving: bool) -> None:
+        desk = self._on_desk()
+        desk.change(text, stroke=True)
+        if not moving:
+            desk.end_stroke()
+        self.changed(moving=moving)
+
     # ---- what the computing process says -------------------------------------------------------------------------
 
     def _from_process(self, said: Said) -> None:
@@ -165,6 +217,9 @@ class Bench:
 
     def _hear(self, said: Said) -> None:
         what, content = said.what, said.content
+        if what == "designed":
+            self._take_reliefs(content["reliefs"])
+            return
         if what in ("exported", "compared"):
             self._last |= {what: content} if what == "compared" and self.pinned else {}
             self.tell(what, content)
@@ -180,10 +235,10 @@ class Bench:
             self._found[content["task"]] = {**content, "pictures": {}}
         elif what == "picture":
             self._found[content["task"]]["pictures"][content["key"]] = content
-        if what in ("plan", "done"):
+        if what in ("plan", "hands", "done"):
             self._last[what] = content
         self.tell(what, content)
-        if what == "done" and self.pinned is not None and self._computing is not None:
+        if what == "done" and not content["moving"] and self.pinned is not None and self._computing is not None:
             self._computing.ask(Compare(next(self._numbers), self.pinned, self.asked()))
 
 

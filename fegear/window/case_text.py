@@ -187,6 +187,11 @@ def _removed(text: str, path: Path, wanted: Mapping[str, Any]) -> Iterator[str]:
             if before.endswith(","):
                 yield f"{before[:-1]} {behind}"
             yield f"{before} {behind.removeprefix(',').lstrip()}"
+    made = text
+    for head in reversed(heads):  # a table that stands under heads of its own, with the tables in it
+        if head.path[: len(path)] == path:
+            made = made[: head.begin] + made[head.end :]
+    yield made
     for head in heads:
         if head.path == path[: len(head.path)] and len(head.path) >= gone:
             yield text[: head.begin] + text[head.end :]

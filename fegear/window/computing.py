@@ -92,7 +92,7 @@ class Computing:
                 said: Said = connection.recv()
             except (EOFError, OSError):
                 break
-            if said.what in ("done", "refused", "dropped", "exported", "compared"):
+            if said.what in ("done", "refused", "dropped", "exported", "compared", "designed"):
                 with self._lock:
                     self._open.pop(said.number, None)
             self._hear(said)

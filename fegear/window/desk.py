@@ -57,6 +57,7 @@ class Desk:
         self.refusal: FegearError | None = None
         self._saved = text if path else ""
         self._states, self._at = [text], 0
+        self._stroke = False
         self.judge()
 
     @classmethod
@@ -114,13 +115,26 @@ class Desk:
         except FegearError as error:
             self.refusal = error
 
-    def change(self, text: str) -> None:
-        """Take another text; a state that is the same as now is none."""
+    def change(self, text: str, *, stroke: bool = False) -> None:
+        """Take another text; a state that is the same as now is none.
+
+        Parameters
+        ----------
+        text : str
+        stroke : bool
+            Whether a value is being moved: the states of one stroke are undone together.
+        """
         if text == self.text:
             return
-        self._states = [*self._states[: self._at + 1], text][-_STATES:]
+        kept = self._at + 1 - (stroke and self._stroke)
+        self._states = [*self._states[:kept], text][-_STATES:]
         self._at = len(self._states) - 1
+        self._stroke = stroke
         self._moved()
+
+    def end_stroke(self) -> None:
+        """Let go of what was moved."""
+        self._stroke = False
 
     def set(self, path: tuple[str, ...], value: str | None) -> None:
         """Change one key; `value` as TOML writes it, None to leave the key out.
@@ -140,12 +154,14 @@ class Desk:
     def undo(self) -> None:
         """Go back to the state before."""
         if self.can_undo:
+            self._stroke = False
             self._at -= 1
             self._moved()
 
     def redo(self) -> None:
         """Go forward again."""
         if self.can_redo:
+            self._stroke = False
             self._at += 1
             self._moved()
 

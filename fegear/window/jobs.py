@@ -15,12 +15,15 @@ class Asked(NamedTuple):
         Its text, its name, and where relative file names in it start.
     loosened : float
         Factor of its tolerance: 1 computes it as it is written.
+    moving : bool
+        Whether a value of it is being moved: its numbers are wanted at once, their errors when it stands still.
     """
 
     text: str
     name: str
     folder: str
     loosened: float = 1.0
+    moving: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +53,16 @@ class Compare:
     second: Asked
 
 
-Job = Compute | Export | Compare
+@dataclass(frozen=True, slots=True)
+class Design:
+    """Find the reliefs of a pair that remove its transmission error (Mark, Eq. 4.6), as the result ``relief`` does."""
+
+    number: int
+    asked: Asked
+    pair: str
+
+
+Job = Compute | Export | Compare | Design
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +74,9 @@ class Said:
     number : int
         The job's.
     what : str
-        ``plan`` (tasks and their titles, in order), ``begin`` (a task), ``found`` (a task's results), ``done``,
-        ``refused``, ``exported``, ``compared`` or ``dropped`` (another is wanted).
+        ``plan`` (tasks, in order), ``hands`` (gears in mesh, reliefs and loads that are changed by hand), ``begin`` (a
+        task), ``found`` (a task's results), ``picture``, ``done``, ``refused``, ``exported``, ``compared``,
+        ``designed`` or ``dropped`` (another is wanted).
     content : dict
         Plain data for the page.
     """

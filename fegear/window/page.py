@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from nicegui import app, ui
 
+from fegear.errors import FegearError
 from fegear.output.draw_plotly import template
 from fegear.output.report.library import plotly_file
 from fegear.window.bar import Bar
@@ -15,6 +16,8 @@ from fegear.window.inputs import Inputs
 from fegear.window.start import start_page
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fegear.window.bench import Bench
 
 #: Where the page's own files are served.
@@ -27,7 +30,13 @@ def _serve_files() -> None:
         return
     own, report = resources.files("fegear.window"), resources.files("fegear.output.report")
     app.add_static_file(local_file=str(plotly_file()), url_path=f"{_AT}/plotly.js")
-    for folder, name in ((report, "figure.js"), (report, "page.css"), (own, "window.js"), (own, "window.css")):
+    for folder, name in (
+        (report, "figure.js"),
+        (report, "page.css"),
+        (own, "window.js"),
+        (own, "hands.js"),
+        (own, "window.css"),
+    ):
         app.add_static_file(local_file=str(folder / name), url_path=f"{_AT}/{name}", max_cache_age=0)
 
 
@@ -46,6 +55,10 @@ class Page:
             pass
         self._bar: Bar | None = None
         self._inputs: Inputs | None = None
+        ui.on("relief", lambda event: self._by_hand(lambda: bench.move_relief(**event.args)))
+        ui.on("load", lambda event: self._by_hand(lambda: bench.move_load(**event.args)))
+        ui.on("drop", lambda event: self._by_hand(lambda: bench.drop_relief(**event.args)))
+        ui.on("design", lambda event: self._by_hand(lambda: bench.design(**event.args)))
         self._client.run_javascript(f"fegear.begin({json.dumps(template())})")
         self._client.on_delete(bench.listen(self._hear))
         self._lay()
@@ -64,10 +77,19 @@ class Page:
                     self._inputs = Inputs(self._bench)
                 with ui.element("main").classes("outputs").props('aria-label="Results"'):
                     ui.element("ul").props("id=remarks")
+                    ui.element("div").props("id=hands")
                     ui.element("div").props("id=compared")
                     ui.element("div").props("id=results")
         for what, content in self._bench.shown_now():
             self._send(what, content)
+
+    @staticmethod
+    def _by_hand(do: Callable[[], None]) -> None:
+        """Change the case as the hand on the page says; what cannot be changed so is told."""
+        try:
+            do()
+        except FegearError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
 
     def _hear(self, what: str, content: dict[str, Any]) -> None:
         with self._root:
@@ -90,6 +112,6 @@ def show(bench: Bench) -> None:
     _serve_files()
     for name in ("page.css", "window.css"):
         ui.add_head_html(f'<link rel="stylesheet" href="{_AT}/{name}">')
-    for name in ("plotly.js", "figure.js", "window.js"):
+    for name in ("plotly.js", "figure.js", "window.js", "hands.js"):
         ui.add_head_html(f'<script src="{_AT}/{name}"></script>')
     Page(bench)

@@ -49,10 +49,11 @@ const fegear = (() => {
   }
 
   const heard = {
+    hands(content) { return fegearHands.show(content, { made, paint, sections }); },
     asked() { document.body.classList.add("computing"); },
     plan({ tasks }) {
       for (const [task, kept] of sections) {
-        if (task !== "compared" && !tasks.includes(task)) { kept.element.remove(); sections.delete(task); }
+        if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { kept.element.remove(); sections.delete(task); }
       }
       const host = $("results");
       for (const task of tasks) {
@@ -61,8 +62,9 @@ const fegear = (() => {
         host.append(element);
       }
     },
-    async found({ task, title, values, figures, darker }) {
+    async found({ task, title, values, figures, darker, loads }) {
       const kept = section(task);
+      if (loads) fegearHands.loads(loads);
       kept.darker = darker;
       kept.element.querySelector("h2").textContent = title;
       kept.element.querySelector(".numbers").innerHTML = values; // made and escaped by the report's own templates
@@ -96,7 +98,8 @@ const fegear = (() => {
       kept.element.hidden = false;
       kept.element.classList.remove("stale");
     },
-    done({ remarks }) {
+    done({ remarks, moving }) {
+      if (moving) return; // remarks and errors come when it stands still
       document.body.classList.remove("computing");
       for (const { element } of sections.values()) element.classList.remove("stale");
       $("remarks").replaceChildren(...remarks.map((one) => made("li", "", one)));
@@ -120,7 +123,7 @@ const fegear = (() => {
     unpinned() { sections.get("compared")?.element.remove(); sections.delete("compared"); },
     laid() {
       sections.clear();
-      document.querySelectorAll("#results, #remarks, #compared").forEach((one) => one.replaceChildren());
+      document.querySelectorAll("#results, #remarks, #compared, #hands").forEach((one) => one.replaceChildren());
     },
   };
 

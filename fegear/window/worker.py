@@ -11,7 +11,9 @@ from fegear.engine.processes import settle
 from fegear.errors import FegearError, InputError
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
-from fegear.window.jobs import Compare, Compute, Export, Said
+from fegear.window.case_text import literal, with_value
+from fegear.window.hands import designed_reliefs, hands_of
+from fegear.window.jobs import Compare, Compute, Design, Export, Said
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
     from fegear.window.jobs import Asked, Job
+
+
+#: For so long a computation goes on while a value is being moved [s].
+_STROKE = 1.5
 
 
 class Unwanted(BaseException):
@@ -41,7 +47,7 @@ class Worker:
     def __init__(self, connection: Connection, folder: Path) -> None:
         self._connection, self._cache = connection, SolutionCache(Store(folder))
         self._waiting: deque[Job] = deque()
-        self._number, self._may_drop = 0, False
+        self._number, self._may_drop, self._begun = 0, False, 0.0
 
     def serve(self) -> None:
         """Answer jobs until nobody is there to ask."""
@@ -65,12 +71,14 @@ class Worker:
         self._connection.send(Said(self._number, what, content))
 
     def _answer(self, job: Job) -> None:
-        self._number, self._may_drop = job.number, isinstance(job, Compute)
+        self._number, self._may_drop, self._begun = job.number, isinstance(job, Compute), time.monotonic()
         try:
             if isinstance(job, Compute):
                 self._compute(job.asked)
             elif isinstance(job, Export):
                 self._export(job)
+            elif isinstance(job, Design):
+                self._design(job)
             else:
                 self._compare(job)
         except Unwanted:
@@ -99,8 +107,10 @@ class Worker:
 
     def _still_wanted(self) -> None:
         self._listen()
-        if self._may_drop and any(isinstance(job, Compute) for job in self._waiting):
-            raise Unwanted
+        for job in self._waiting if self._may_drop else ():
+            # While a value is being moved every answer is soon followed by another question: it is finished first.
+            if isinstance(job, Compute) and not (job.asked.moving and time.monotonic() - self._begun < _STROKE):
+                raise Unwanted
 
     # ---- jobs ----------------------------------------------------------------------------------------------------
 
@@ -113,6 +123,7 @@ class Worker:
         plan = make_plan(scene, STAGES)
         if told:
             self._say("plan", tasks=[str(step.task) for step in plan.steps])
+            self._say("hands", pairs=hands_of(scene))
         return run_plan(
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,
@@ -125,9 +136,10 @@ class Worker:
         tolerance = results.scene.case.accuracy.tolerance
         self._say(
             "done", remarks=list(results.remarks), seconds=time.perf_counter() - started, timings=seconds,
-            tolerance=tolerance,
+            tolerance=tolerance, moving=asked.moving,
         )  # fmt: skip
-        self._pictures(results)
+        if not asked.moving:
+            self._pictures(results)
 
     def _found(self, scene: Scene, plan: Plan, task: Task, outcome: Outcome) -> None:
         from fegear.engine.figure import Figure
@@ -138,6 +150,7 @@ class Worker:
         title = next(step.stage.title for step in plan.steps if step.task == task)
         figures = [one for one in outcome.figures if isinstance(one, Figure) and one.drawable_in_page]
         values = Values(outcome.values, scene.case.accuracy.tolerance)
+        loads = outcome.tables[0] if task.stage == "load-sharing" else None
         self._say(
             "found",
             task=str(task),
@@ -147,7 +160,10 @@ class Worker:
                 {"key": one.key, "heading": one.heading, "caption": one.caption, **plotly_json(one)} for one in figures
             ],
             darker=darker(figures),
-        )
+            loads=None if loads is None else {
+                "pair": task.subject, "x": loads.column("x").si.tolist(), "load": loads.column("load").si.tolist(),
+            },
+        )  # fmt: skip
 
     def _pictures(self, results: Results) -> None:
         """Draw what a page cannot draw itself, after all numbers are there."""
@@ -209,6 +225,12 @@ class Worker:
             darker=darker(figures),
         )
 
+    def _design(self, job: Design) -> None:
+        text = with_value(job.asked.text, ("results",), '["relief"]')
+        text = with_value(text, ("design", "pair"), literal(job.pair))
+        results = self._results(job.asked._replace(text=text))
+        self._say("designed", reliefs=designed_reliefs(results, job.pair))
+
 
 def scene_of(asked: Asked) -> Scene:
     """The scene of a case that is asked for, with its tolerance loosened or tightened where the page says so."""
@@ -222,7 +244,7 @@ def scene_of(asked: Asked) -> Scene:
         tolerance = min(max(scene.case.accuracy.tolerance * asked.loosened, 1e-6), 0.5)
         accuracy = {**dict(document.get("accuracy", {})), "tolerance": tolerance}
         scene = build_scene({**document, "accuracy": accuracy}, asked.name, Path(asked.folder))
-    return replace(scene, text=asked.text)
+    return replace(scene, text=asked.text, estimates=not asked.moving)
 
 
 def _load() -> None:

@@ -133,6 +133,26 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.media(prefers_color_scheme="light")
     browser.size(1300, 900)
 
+    # By hand: a point of a relief is dragged, the slider moved; one stroke is one step back.
+    browser.click(button("Add tip relief"))
+    point = "document.querySelector('[data-handle=\"a tip amount\"]')"
+    browser.until(f"{point} !== null && {IDLE}")
+    browser.run(f"{point}.scrollIntoView({{block: 'center', behavior: 'instant'}})")
+    x, y = browser.run(f"(b => [b.x + b.width / 2, b.y + b.height / 2])({point}.getBoundingClientRect())")
+    for kind, lower in (("mousePressed", 0), ("mouseMoved", 10), ("mouseMoved", 30), ("mouseReleased", 30)):
+        browser("Input.dispatchMouseEvent", type=kind, x=x, y=y + lower, button="left", clickCount=1)
+    amount = "document.querySelector('textarea').value.match(/amount = \"([\\d.]+) um\"/)?.[1]"
+    browser.until(f"Number({amount}) > 0 && Number({amount}) < 9.5 && {IDLE}")
+    browser.click(button("Undo"))
+    browser.until(f"Number({amount}) === 10")
+    browser.click(button("Undo"))
+    browser.until(f"{amount} === undefined && {IDLE}")
+    browser.run("document.querySelector('[data-slider]').focus()")
+    press(browser, "ArrowRight", 39)
+    browser.until("document.querySelector('textarea').value.includes('load = \"7.05 kN\"')")
+    browser.click(button("Undo"))
+    browser.until("document.querySelector('textarea').value.includes('load = \"7 kN\"')")
+
     # The server is killed; its successor has what was not saved, and writes it where it belongs.
     served.end(signal.SIGKILL)
     assert path.read_text() == TEXT

@@ -107,3 +107,11 @@ def test_what_is_typed_is_toml_or_a_text(typed, written):
 )
 def test_arrow_keys_step_by_the_last_digit_and_keep_the_unit(text, steps, made):
     assert stepped(text, steps) == made
+
+
+def test_a_table_under_heads_of_its_own_goes_with_the_tables_in_it():
+    text = '[gear.a]\nteeth = 3 # kept\n\n[gear.a.relief.tip]\namount = "1 um"\n\n[gear.b]\nteeth = 4\n'
+    assert with_value(text, ("gear", "a", "relief"), None) == "[gear.a]\nteeth = 3 # kept\n\n[gear.b]\nteeth = 4\n"
+    assert with_value(text, ("gear", "a", "relief", "tip", "amount"), None) == with_value(
+        text, ("gear", "a", "relief"), None
+    )

@@ -8,8 +8,10 @@ import os
 import queue
 import socket
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fegear.case.keys import flat
@@ -21,13 +23,18 @@ from fegear.errors import InputError
 from fegear.output.report.blocks import Values
 from fegear.output.report.rendering import fragment
 from fegear.results.catalogue import STAGES
+from fegear.results.relief_handles import handled_relief
+from fegear.solution_cache import SolutionCache
+from fegear.window.bench import Bench
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.doorkeeper import Doorkeeper
 from fegear.window.form import fields, form, tables_to_add
-from fegear.window.jobs import Asked, Compute, Export
+from fegear.window.hands import hands_of
+from fegear.window.jobs import Asked, Compute, Design, Export
 from fegear.window.journal import journal_folder
 from fegear.window.server import free_port, serve
+from fegear.window.worker import scene_of
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 TEXT = """title = "x"
@@ -158,6 +165,68 @@ def test_a_folder_that_takes_no_journal_is_told_and_loses_nothing_else(tmp_path,
     assert desk.document["gear"]["a"]["teeth"] == 30
 
 
+def test_a_stroke_is_undone_in_one_step(tmp_path):
+    desk = Desk(TEXT, "c", tmp_path)
+    for teeth in (29, 30, 31):
+        desk.change(TEXT.replace("28", str(teeth)), stroke=True)
+    desk.end_stroke()
+    desk.change(TEXT.replace("28", "40"), stroke=True)
+    desk.undo()
+    assert "teeth = 31" in desk.text
+    desk.undo()
+    assert desk.text == TEXT
+
+
+# ---- by hand ---------------------------------------------------------------------------------------------------------
+TWO = (
+    TEXT.replace('driven = "a"', 'driven = "b"')
+    + """[gear.b]
+teeth = 41
+module = "3 mm"
+face_width = "20 mm"
+[effects]
+hertz = "load-dependent"
+"""
+)
+
+
+def test_a_relief_moved_by_hand_is_the_relief_of_the_case(tmp_path):
+    bench = Bench(None)
+    bench.lay(Desk(TWO, "c", tmp_path))
+    first = handled_relief(scene_of(bench.asked()), "I", "driver")
+    assert first.handles == ()
+    bench.move_relief("a", "tip", first.usual["tip"], 12.5, moving=True)
+    bench.move_relief("a", "tip", first.usual["tip"] + 1.0, 15.25, moving=False)
+    scene = scene_of(bench.asked())
+    relief = handled_relief(scene, "I", "driver")
+    (handle,) = relief.handles
+    assert (handle.end, handle.amount) == ("tip", pytest.approx(15.25))
+    assert handle.start == pytest.approx(first.usual["tip"] + 1.0, abs=6e-4)
+    curve = relief.figure.panels[0].items[0]
+    assert np.interp(handle.at, curve.x, curve.y) == pytest.approx(15.25, abs=0.05)
+    assert np.abs(curve.y[curve.x <= handle.start]).max() == 0.0
+    assert scene.case.effects.relief
+    bench.desk.undo()
+    assert bench.desk.text == TWO
+    bench.desk.redo()
+    bench.drop_relief("a")
+    assert scene_of(bench.asked()).case.gear["a"].relief is None
+
+
+def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
+    for path in CASES:
+        asked = Asked(path.read_text("utf-8"), path.stem, str(path.parent))
+        pairs = hands_of(scene_of(asked))
+        json.dumps(pairs, allow_nan=False)
+        for one in (relief for pair in pairs.values() for relief in pair["reliefs"]):
+            assert one["low"] < one["usual"]["root"] <= one["usual"]["tip"] < one["high"], path.stem
+            for handle in one["handles"]:
+                bench = Bench(None)
+                bench.desk = Desk(asked.text, asked.name, Path(asked.folder))
+                bench.move_relief(one["gear"], handle["end"], handle["start"], handle["amount"], moving=False)
+                assert bench.desk.refusal is None, path.stem
+
+
 # ---- doorkeeper ------------------------------------------------------------------------------------------------------
 HOST = {"host": "127.0.0.1:5000"}
 KEY = {"cookie": "other=1; fegear-5000=secret"}
@@ -271,6 +340,39 @@ def test_the_page_is_told_the_numbers_of_a_run_and_only_what_depends_is_computed
     assert figures == [figure.name for figure in run.figures]
     made.ask(Compute(2, Asked(TEXT + 'speed = "100 rpm"\n', "c", str(tmp_path))))
     assert {origin for _, origin in heard.until(2, "done").content["timings"].values()} == {"recalled"}
+
+
+def test_numbers_without_estimates_are_the_numbers(tmp_path):
+    text = TWO.replace('"load-sharing"', '"transmission-error"').replace(
+        'compliance = { source = "weber-banaschek" }\n', ""
+    )
+    scene = scene_of(Asked(text + "[accuracy]\ntolerance = 0.05\n", "c", str(tmp_path)))
+    plan = make_plan(scene, STAGES)
+    cache = SolutionCache()
+    whole = run_plan(scene, plan, cache=cache)
+    quick = run_plan(replace(scene, estimates=False), plan, cache=cache)
+    assert [(one.name, one.si) for one in quick.values] == [(one.name, one.si) for one in whole.values]
+    assert any(one.si_error for one in whole.values)
+    assert not any(one.si_error for one in quick.values)
+
+
+def test_designed_reliefs_remove_the_transmission_error(computing, tmp_path):
+    made, heard = computing
+    text = TWO.replace('"load-sharing"', '"transmission-error"')
+    made.ask(Design(50, Asked(text, "c", str(tmp_path)), "I"))
+    reliefs = heard.until(50, "designed", "refused").content["reliefs"]
+    assert sorted(reliefs) == ["a", "b"]
+    bench = Bench(None)
+    bench.desk = Desk(text, "c", tmp_path)
+    bench._take_reliefs(reliefs)
+    assert bench.desk.refusal is None
+    swing = []
+    for one in (text, bench.desk.text):
+        scene = scene_of(Asked(one, "c", str(tmp_path)))
+        swing.append(run_plan(scene, make_plan(scene, STAGES)).values["I.te_peak_to_peak"].si)
+    assert swing[1] < 0.03 * swing[0]
+    made.ask(Design(51, Asked(TEXT, "c", str(tmp_path)), "I"))
+    assert "is the driver as well" in heard.until(51, "designed", "refused").content["sentence"]
 
 
 def test_of_many_changes_the_last_is_computed_and_those_before_are_given_up(computing, tmp_path):

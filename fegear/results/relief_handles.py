@@ -1,0 +1,123 @@
+"""The relief of a gear as it is changed by hand: its curve over the roll angle, and the points that can be moved."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.engine.figure import Axis, Curve, Figure, Panel, Points
+from fegear.errors import InputError
+from fegear.geometry.path_of_contact import active_profile
+from fegear.geometry.relief import CombinedRelief, EndRelief
+from fegear.models.described_relief import described_relief
+from fegear.models.pair_inputs import gear_name
+from fegear.results.drawn_pair import roll_marks
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.geometry.pair import Member
+
+#: Places at which the curve is drawn, and the least height of its axis [um].
+_PLACES, _LEAST = 201, 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Handle:
+    """An end relief that can be moved: where it starts [deg], its amount [um] and where that is measured [deg]."""
+
+    end: Literal["tip", "root"]
+    start: float
+    amount: float
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class HandledRelief:
+    """The relief of one gear of a pair.
+
+    Parameters
+    ----------
+    gear : str
+    low, high : float
+        Roll angles of the active profile [deg].
+    usual : dict
+        For each end, where a relief usually starts: the highest or lowest point of single contact [deg].
+    handles : tuple of Handle
+        Tip and root relief, where each is one table of the case with an amount of its own.
+    figure : Figure
+    """
+
+    gear: str
+    low: float
+    high: float
+    usual: dict[str, float]
+    handles: tuple[Handle, ...]
+    figure: Figure
+
+
+def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
+    """The relief of a gear of a pair, ready to be changed by hand.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Of the pair.
+    member : {"driver", "driven"}
+    """
+    pair, gear = scene.pairs[name], gear_name(scene, name, member)
+    ends = sorted(math.degrees(float(pair.roll_angle(x, member))) for x in (pair.x_start, pair.x_end))
+    try:
+        relief = described_relief(scene, gear).relief
+    except InputError:  # refused where it counts; the case's own sentence is told then
+        relief = None
+    roll = np.linspace(ends[0], ends[1], _PLACES)
+    removal = np.zeros(_PLACES) if relief is None else relief.removal(np.radians(roll)) * 1e6
+    handles = tuple(_handles(scene, gear, relief))
+    points = [(handle.start, 0.0) for handle in handles] + [(handle.at, handle.amount) for handle in handles]
+    items: list[Curve | Points] = [Curve(roll, removal, "", "designed", markers=False)]
+    if points:
+        x, y = np.array(points).T
+        items.append(Points(x, y, "", "ink", symbol="circle", size=9.0))
+    top = max(_LEAST, 1.25 * float(removal.max()), *(1.25 * y for _, y in points)) if points else _LEAST
+    room = 0.06 * (ends[1] - ends[0])
+    axis = Axis("roll angle", "deg", limits=(ends[0] - room, ends[1] + room))
+    figure = Figure(
+        f"relief_of_{name}_{member}",
+        f"Relief of gear {gear}",
+        f"Material that is removed from the {member}'s flanks over its active profile; A to E: points of the path of "
+        "contact. The points can be moved.",
+        (Panel(axis, Axis("removal", "um", limits=(-0.06 * top, top)), tuple(items), roll_marks(pair, member)),),
+    )
+    alone = active_profile(pair, member)
+    usual = {
+        end: math.degrees(float(_roll(scene, gear, radius)))
+        for end, radius in (("tip", alone.highest_single), ("root", alone.lowest_single))
+        if math.isfinite(radius)
+    }
+    middle = 0.5 * (ends[0] + ends[1])
+    return HandledRelief(gear, ends[0], ends[1], {"tip": middle, "root": middle} | usual, handles, figure)
+
+
+def _roll(scene: Scene, gear: str, radius: float) -> float:
+    base = scene.gears[gear].base_radius
+    return math.sqrt(max((radius / base) ** 2 - 1.0, 0.0))
+
+
+def _handles(scene: Scene, gear: str, relief: object) -> list[Handle]:
+    part = scene.case.gear[gear].relief
+    if part is None or not isinstance(relief, CombinedRelief):
+        return []
+    found = [one for one in relief.parts if isinstance(one, EndRelief)]
+    ends: list[Literal["tip", "root"]] = []
+    ends += ["tip"] * len(part.tip)
+    ends += ["root"] * len(part.root)
+    several = {"tip": len(part.tip) > 1, "root": len(part.root) > 1}
+    return [
+        Handle(end, math.degrees(one.start), one.amount * 1e6, math.degrees(one.end))
+        for end, one in zip(ends, found, strict=False)
+        if not several[end]
+    ]

@@ -1,0 +1,105 @@
+"""What of a case is changed by hand beside its form: gears in mesh, reliefs over the roll angle, loads."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.errors import InputError
+from fegear.output.draw_plotly import darker, plotly_json
+from fegear.results.moving_pair import moving_pair
+from fegear.results.relief_handles import handled_relief
+from fegear.window.case_text import value_at
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.engine.run import Results
+    from fegear.geometry.pair import Member
+
+_MEMBERS: tuple[Member, Member] = ("driver", "driven")
+#: Points of a designed relief that a case is given: straight lines between them stay within its own error.
+_POINTS = 61
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return np.round(value, 9).tolist()  # to a nanometre
+    return value
+
+
+def hands_of(scene: Scene) -> dict[str, Any]:
+    """For every pair: its gears in mesh, and for spur pairs the reliefs and the load.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    dict
+        By the pair's name: ``mesh``, ``reliefs`` and ``load``.
+    """
+    found: dict[str, Any] = {}
+    for name, pair in scene.pairs.items():
+        mesh = {key: _plain(value) for key, value in asdict(moving_pair(pair)).items()}
+        reliefs = _reliefs(scene, name) if name in scene.spur_pairs else []
+        found[name] = {"mesh": mesh, "reliefs": reliefs, "load": _load(scene.document, name)}
+    return found
+
+
+def _reliefs(scene: Scene, name: str) -> list[dict[str, Any]]:
+    made: list[dict[str, Any]] = []
+    for member in _MEMBERS:
+        relief = handled_relief(scene, name, member)
+        if any(relief.gear == other["gear"] for other in made):  # a gear that meets its like has one relief
+            continue
+        document = value_at(scene.document, ("gear", relief.gear, "relief")) or {}
+        figure = relief.figure
+        made.append({
+            "gear": relief.gear, "low": relief.low, "high": relief.high, "usual": relief.usual,
+            "handles": [asdict(handle) for handle in relief.handles if isinstance(document.get(handle.end), dict)],
+            "given": sorted(document), "on": scene.case.effects.relief,
+            "figure": {"key": figure.key, "heading": figure.heading, "caption": figure.caption, **plotly_json(figure)},
+            "darker": darker([figure]),
+        })  # fmt: skip
+    return made
+
+
+def _load(document: Mapping[str, Any], name: str) -> dict[str, str] | None:
+    """The key of a pair's load that the case gives, and what it has."""
+    for key in ("torque", "load"):
+        given = value_at(document, ("pair", name, key))
+        if isinstance(given, str):
+            return {"key": key, "text": given}
+    return None
+
+
+def designed_reliefs(results: Results, pair: str) -> dict[str, dict[str, list[float]]]:
+    """Designed reliefs by gear: roll angles [deg] and removals [um], for a table of the case.
+
+    Raises
+    ------
+    InputError
+        If driver and driven are one gear, which cannot have two reliefs.
+    """
+    part = results.scene.case.pair[pair]
+    if part.driver == part.driven:
+        raise InputError(
+            f"pair.{pair}.driven", f'"{part.driven}"', "is the driver as well, and a design gives each its own relief",
+            "give the driven gear a name of its own",
+        )  # fmt: skip
+    found = {}
+    for gear in (part.driver, part.driven):
+        table = results.tables[f"relief_{pair}_{gear}"]
+        roll, removal = (np.asarray(table[name], dtype=float) for name in ("roll_angle", "relief"))
+        order = np.argsort(roll)
+        places = np.linspace(roll.min(), roll.max(), _POINTS)
+        found[gear] = {
+            "roll": [float(f"{one:.6g}") for one in places],
+            "removal": [float(f"{one:.4g}") for one in np.interp(places, roll[order], removal[order])],
+        }
+    return found
