@@ -179,8 +179,8 @@ def _removed(text: str, path: Path, wanted: Mapping[str, Any]) -> Iterator[str]:
             start = text.rfind("\n", 0, entry.begin) + 1
             behind = text[line.end() if line else entry.end :]
             for head in heads:  # the table that held nothing else
-                if head.path == path[:gone] and gone < len(path):
-                    yield text[: head.begin] + behind
+                if gone <= len(head.path) < len(path) and head.path == path[: len(head.path)]:
+                    yield _without(text, head.begin, len(text) - len(behind))
             yield text[:start] + behind
         else:
             before, behind = text[: entry.begin].rstrip(), text[entry.end :].lstrip()
@@ -190,11 +190,19 @@ def _removed(text: str, path: Path, wanted: Mapping[str, Any]) -> Iterator[str]:
     made = text
     for head in reversed(heads):  # a table that stands under heads of its own, with the tables in it
         if head.path[: len(path)] == path:
-            made = made[: head.begin] + made[head.end :]
+            made = _without(made, head.begin, head.end)
     yield made
     for head in heads:
         if head.path == path[: len(head.path)] and len(head.path) >= gone:
-            yield text[: head.begin] + text[head.end :]
+            yield _without(text, head.begin, head.end)
+
+
+def _without(text: str, begin: int, end: int) -> str:
+    """The text without some whole lines, and without one of two blank lines that then follow each other."""
+    before, behind = text[:begin], text[end:]
+    if before.endswith("\n\n") and (behind.startswith("\n") or not behind):
+        before = before[:-1]
+    return before + behind
 
 
 def statements(text: str) -> tuple[list[Entry], list[Head]]:

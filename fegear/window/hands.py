@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.engine.run import Results
-    from fegear.geometry.pair import Member
 
-_MEMBERS: tuple[Member, Member] = ("driver", "driven")
+_MEMBERS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
 #: Points of a designed relief that a case is given: straight lines between them stay within its own error.
 _POINTS = 61
 
