@@ -6,7 +6,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Length, LengthOrZero, Part, refuse
+from fegear.case.part import Length, LengthOrZero, Part, PositiveLength, refuse
 
 
 class LoadDistributionPart(Part):
@@ -17,6 +17,7 @@ class LoadDistributionPart(Part):
 
     positions: Annotated[int, Field(ge=2, le=256)] = 16
     panels: Annotated[int, Field(ge=2, le=200)] | None = None
+    coat: PositiveLength = 6e-6
     base_pitch: Annotated[int, Field(ge=0, le=1_000_000)] = 0
 
 

@@ -23,6 +23,8 @@ _SIZE = (1400, 900)
 _ROOM_FOR_SCALE = 0.17
 #: How much closer the camera stands than where a sphere around everything would fit: with axes, without.
 _ZOOM, _ZOOM_BARE = 1.0, 1.15
+#: Margin of a body alone [pixels], and from where on a colour is white.
+_MARGIN, _WHITE = 24, 250
 
 
 def offscreen_pyvista() -> Any:
@@ -58,6 +60,7 @@ def _add_skin(pv: Any, plotter: Any, item: Skin) -> None:
            "height": 0.6, "width": 0.05, "position_x": 0.86, "position_y": 0.2}  # fmt: skip
     plotter.add_mesh(
         body, scalars=title, clim=(0.0, item.top), cmap=SEQUENTIAL, ambient=0.45, diffuse=0.55, smooth_shading=False,
+        nan_color="lightgrey",
         scalar_bar_args=bar,
     )  # fmt: skip
     sharp = body.extract_feature_edges(
@@ -112,4 +115,14 @@ def draw_space(
     plotter.reset_camera_clipping_range()
     image = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()
-    return image
+    return _trimmed(image) if bare else image
+
+
+def _trimmed(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The picture without the white around it, but for a margin."""
+    drawn = image.min(axis=2) < _WHITE
+    rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+    if not rows.size:
+        return image
+    low, left = max(rows[0] - _MARGIN, 0), max(columns[0] - _MARGIN, 0)
+    return image[low : rows[-1] + _MARGIN, left : columns[-1] + _MARGIN]

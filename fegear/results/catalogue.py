@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fegear.results import (
     contact_lines,
+    contact_pattern,
     crosscheck,
     design_chart,
     dynamic_factor,
@@ -78,6 +79,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             flank_root_stress.FLANK_ROOT_STRESS,
             load_distribution.LOAD_DISTRIBUTION,
             flank_load_factors.FLANK_LOAD_FACTORS,
+            contact_pattern.CONTACT_PATTERN,
             mesh_stiffness_matrix.MESH_STIFFNESS_MATRIX,
         ),
         "Profile relief": (

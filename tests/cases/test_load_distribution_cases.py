@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.case.reading import read_scene
+from fegear.engine.figure import Figure
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
@@ -130,9 +131,28 @@ def test_every_load_of_the_case_has_its_row(cache, outcome):
 
 
 def test_the_pictures_are_drawn(outcome, tmp_path):
-    for figure in outcome.figures:
+    flat = [figure for figure in outcome.figures if isinstance(figure, Figure)]
+    for figure in flat:
         list(draw_pictures(figure, tmp_path))
     assert {path.name for path in tmp_path.rglob("*.png")} == {"load_distribution_I.png", "load_over_face_I.png"}
+
+
+def test_pressure_stands_on_the_loaded_flanks_of_both_teeth(outcome):
+    found = outcome.data.found
+    (deferred,) = (figure for figure in outcome.figures if not isinstance(figure, Figure))
+    (skin,) = deferred.made().panels[0].items
+    values, points = np.asarray(skin.values), np.asarray(skin.points)
+    on = np.isfinite(values)
+    radius = np.hypot(*points[:2, on]) * 1e-3
+    reach = found.pair.radius(np.array([found.pair.x_start, found.pair.x_end]), "driver")
+    assert radius.min() >= reach.min() * (1.0 - 1e-6)
+    assert radius.max() <= reach.max() * (1.0 + 1e-6)
+    assert np.nanmax(values) <= found.pressure.max() * 1e-6 * (1.0 + 1e-9)
+    assert 0.5 * found.pressure.max() * 1e-6 < np.nanmax(values)
+    half = points[2] > 0.0  # driver
+    assert on[half].any()
+    assert on[~half].any()
+    assert skin.triangles.max() == points.shape[1] - 1
 
 
 @pytest.mark.parametrize(
@@ -142,6 +162,7 @@ def test_the_pictures_are_drawn(outcome, tmp_path):
         ("pair.I.line_error={}", "line_error"),
         ('pair.I.line_error={file="nowhere.csv"}', "nowhere.csv"),
         ("load_distribution.positions=1", "positions"),
+        ('load_distribution.coat="0 um"', "coat"),
         ('pair.I.width="plane"', "no meaning for helical gears"),
         ('pair.I.width="thick"', "width"),
         ('pair.I.compliance={source="cornell"}', "pair.I.compliance"),

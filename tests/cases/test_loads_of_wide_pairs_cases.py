@@ -8,6 +8,7 @@ import pytest
 
 from fegear.case.reading import read_scene
 from fegear.contact.flank import FlankGaps
+from fegear.contact.flank.complementarity import hat_averages
 from fegear.contact.flank.load_factors import (
     even_along_the_lines,
     iso_face_load_factor,
@@ -15,6 +16,7 @@ from fegear.contact.flank.load_factors import (
     straight_gap,
     transverse_load_factor,
 )
+from fegear.contact.flank.pattern import separation
 from fegear.contact.flank.positions import roll_points
 from fegear.contact.flank.root_stress import rooted_lines
 from fegear.contact.flank.transmission_error import curve_through, flank_transmission_errors, from_half
@@ -162,6 +164,42 @@ def test_factors_are_one_where_nothing_is_uneven(results):
     factors = root_factors(spread, perfect, rooted, np.linspace(-4e-3, 4e-3, 9), 0)
     assert (factors.face, factors.transverse) == pytest.approx((1.0, 1.0), rel=1e-12)
     assert iso_face_load_factor(perfect.pair, FlankGaps(), 3600.0) == 1.0
+
+
+def test_the_contact_pattern_grows_with_load_and_coat_and_is_the_gap_of_rigid_flanks_without_load(results):
+    rows = columns(results, "contact_pattern_I")
+    np.testing.assert_allclose(rows["load [N]"], [36.0, 900.0, 3600.0, 7200.0])
+    assert (np.diff(rows["printed_share"]) >= 0.0).all()
+    assert 0.0 < rows["printed_share"][0] < 0.8
+    assert (rows["z_first [mm]"] == -4.0).all()  # the gap opens toward +z
+    pattern = results.outcomes[Task("contact-pattern", "I")].data.pattern
+    assert (pattern.printed_share(12e-6) >= pattern.printed_share(6e-6)).all()
+    assert (pattern.printed(1e-12) == (pattern.separation < 1e-12)).all()
+    loaded = results.outcomes[Task("loaded-flanks", "I")].data
+    found, gap = loaded.found, loaded.gaps.at(loaded.found.pair, loaded.found.lines)
+    apart = separation(found, gap)
+    assert (apart[found.contact.force > 0.0] == 0.0).all()
+    assert (apart >= 0.0).all()
+    # hardly loaded, the flanks stand apart by what the gap is more than at the place that is nearest
+    lines = found.lines
+    light = loaded.flanks.solve([0.01], loaded.gaps, loaded.known)
+    averaged = hat_averages(lines, gap)
+    rigid = averaged - np.where(lines.present, averaged, np.inf).min(axis=1, keepdims=True)
+    np.testing.assert_allclose(
+        separation(light, gap)[:, :, 0][lines.present], rigid[lines.present], atol=1e-9
+    )  # 0.01 N deflects a pair of 150 N/um by far less than a nanometre
+
+
+def test_maps_reach_the_tips(results):
+    found = results.outcomes[Task("loaded-flanks", "I")].data.found
+    x = np.linspace(found.pair.x_start, found.pair.x_end, 31)
+    z = np.linspace(found.lines.low, found.lines.high, 11)
+    assert np.isfinite(found.over_plane(x, z, 1)).all()
+    # what is linear over the plane of action comes back
+    line = found.spread(x, z, 2.0 * found.lines.x - 3.0 * found.lines.z)
+    # but in the corners, where lines are too short to be divided
+    wanted = 2.0 * x - 3.0 * z[:, None]
+    np.testing.assert_allclose(line[1:-1], wanted[1:-1], atol=1e-6 * found.pair.base_pitch)
 
 
 def test_what_has_no_meaning_over_the_face_is_refused():

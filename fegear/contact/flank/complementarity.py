@@ -148,6 +148,12 @@ def secant_compliance(known: FlankCompliance, place: Index, force: Array) -> Arr
     return _tangent(known, place, force, own=0.0)[0]
 
 
+def deflection(known: FlankCompliance, force: Array) -> Array:
+    """Approach of all stations under forces of shape (P, M), widths that follow the load included, shape (P, M) [m]."""
+    matrix, constant = _tangent(known, np.arange(force.shape[0]), force)
+    return np.asarray(np.einsum("pij,pj->pi", matrix, force) + constant)
+
+
 def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.0) -> tuple[Array, Array]:
     """Tangent compliances at forces of shape (B, M), and what the tangent leaves at zero force.
 

@@ -162,18 +162,33 @@ class LoadedFlanks(ReadOnlyArrays):
         case : int
             Number of the load.
         """
+        return self.spread(x, z, self.line_load[:, :, case])
+
+    def spread(self, x: Array, z: Array, values: Array) -> Array:
+        """The same of anything that is known at the stations, shape (P, M)."""
         lines, slope = self.lines, base_twist(self.pair)
         seen = [(float(lines.roll[p] + lines.pair[p, s.start] * self.pair.base_pitch), p, s)
                 for p in range(lines.roll.size) for s in lines.at(p)]  # fmt: skip
         seen.sort(key=lambda found: found[0])
+        ends = [self._along_edge(x_end, values) for x_end in (self.pair.x_start, self.pair.x_end)]
         found = np.full((z.size, x.size), np.nan)
         for row, height in enumerate(z.tolist()):
-            on = [(at, float(np.interp(height, lines.z[p, s], self.line_load[p, s, case])))
+            on = [(at, float(np.interp(height, lines.z[p, s], values[p, s])))
                   for at, p, s in seen if lines.z[p, s][0] <= height <= lines.z[p, s][-1]]  # fmt: skip
+            for x_end, (heights, known) in zip((self.pair.x_start, self.pair.x_end), ends, strict=True):
+                if heights.size:  # beyond the last roll position that brings a line up to this height
+                    on.append((x_end + slope * height, float(np.interp(height, heights, known))))
             if len(on) > 1:
-                at, load = np.array(on).T
+                at, load = np.array(sorted(on)).T
                 found[row] = np.interp(x + slope * height, at, load, left=np.nan, right=np.nan)
         return found
+
+    def _along_edge(self, x: float, values: Array) -> tuple[Array, Array]:
+        """Heights at which contact lines end on the tip or form circle at x, ascending, and the values there."""
+        lines = self.lines
+        on = lines.present & lines.at_edge & (np.abs(lines.x - x) < 1e-6 * self.pair.base_pitch)
+        order = np.argsort(lines.z[on])
+        return lines.z[on][order], values[on][order]
 
 
 #: Matrices that a pair keeps: two for itself, two for its error, as many for other effects.

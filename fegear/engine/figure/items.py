@@ -240,6 +240,7 @@ class Skin(_Item):
     points : array_like, shape (3, N)
     triangles : ndarray of int, shape (3, M)
     values : array_like, shape (N,)
+        NaN where there is nothing: grey.
     top : float
         Where the scale of colours ends; it starts at zero.
     label, unit : str
