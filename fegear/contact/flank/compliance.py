@@ -137,10 +137,16 @@ def flank_compliance(
     b = np.sqrt(factor * (load / lines.length)[:, None])
     b = np.full(lines.x.shape, _NOMINAL_HALF_WIDTH * module) if hertz == "none" else b
     mean = _line_means(lines, b)
+    # Apart, so that a changed load has little to find anew, and changed gaps nothing.
     known = cache or SolutionCache()
     made_of = code_version("contact", "fem", "geometry"), pair, lines, [gears[member].identity for member in MEMBERS]
     matrix = known.solve(content_key("own", *made_of), lambda: _own(pair, gears, lines), _PLAIN).value
-    matrix = matrix + _widened(pair, gears, lines, b, mean)
+    matrix = (
+        matrix
+        + known.solve(
+            content_key("widened", *made_of, b, mean), lambda: _widened(pair, gears, lines, b, mean), _PLAIN
+        ).value
+    )
     if coupling:
         matrix += known.solve(content_key("beside", *made_of), lambda: _beside(pair, gears, lines), _PLAIN).value
     index = np.arange(lines.x.shape[1])

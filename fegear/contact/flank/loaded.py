@@ -191,8 +191,8 @@ class LoadedFlanks(ReadOnlyArrays):
         return lines.z[on][order], values[on][order]
 
 
-#: Matrices that a pair keeps: two for itself, two for its error, as many for other effects.
-_KEPT = 8
+#: Matrices that a pair keeps: three for itself, three for its error, as many for other effects.
+_KEPT = 12
 
 
 @dataclass(frozen=True)

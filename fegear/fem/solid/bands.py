@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -55,6 +56,12 @@ class Bands(ReadOnlyArrays):
     def count(self) -> int:
         """Number of bands."""
         return int(self.radius.size)
+
+    @cached_property
+    def is_chain(self) -> bool:
+        """Whether each band falls to the next ones, as those of `hats`."""
+        step = np.diff(self.zeta)
+        return self.profile == "hat" and bool((self.after[:-1] == step).all() and (self.before[1:] == step).all())
 
     def part(self, span: slice) -> Bands:
         """Some of the bands."""
@@ -154,19 +161,13 @@ def profiles_at(pressed: Bands, zeta: Array) -> Array:
 
 def overlap(pressed: Bands) -> Array:
     """Integrals of products of two bands' profiles along the face, shape (P, P) [1/module]."""
-    if _is_chain(pressed):
+    if pressed.is_chain:
         return _overlap_of_chain(pressed)
     ends = np.unique(np.concatenate([pressed.zeta - pressed.before, pressed.zeta, pressed.zeta + pressed.after]))
     half = 0.5 * np.diff(ends)
     z = (0.5 * (ends[1:] + ends[:-1])[:, None] + half[:, None] * np.array([-1.0, 1.0]) / math.sqrt(3.0)).ravel()
     values = profiles_at(pressed, z)
     return np.asarray((values * np.repeat(half, 2)) @ values.T)
-
-
-def _is_chain(pressed: Bands) -> bool:
-    """Whether each band falls to the next ones, as those of `hats`."""
-    step = np.diff(pressed.zeta)
-    return pressed.profile == "hat" and bool((pressed.after[:-1] == step).all() and (pressed.before[1:] == step).all())
 
 
 def _overlap_of_chain(pressed: Bands) -> Array:

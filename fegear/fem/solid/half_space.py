@@ -10,6 +10,7 @@ cosines along the face by themselves.
 from __future__ import annotations
 
 import itertools
+import math
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
@@ -84,12 +85,30 @@ def band_cosines(pressed: Bands, width: float, count: int) -> Array:
     if pressed.profile == "even":
         waves[:, 1:] = (np.sin(k * (at + after)) - np.sin(k * (at - before))) / k / (before + after)
         return waves
+    if pressed.is_chain and pressed.count > 1:
+        # Of stations that stand in a row each one's cosines serve its neighbours, and sines are left at the ends.
+        cosines = _cosines(at[:, 0] / width, count)[:, 1:]
+        fall = np.diff(cosines, axis=0) / after[:-1]
+        waves[0, 1:], waves[-1, 1:] = -k * np.sin(k * at[0]), k * np.sin(k * at[-1])
+        waves[:-1, 1:] -= fall
+        waves[1:, 1:] += fall
+        waves[:, 1:] *= 2.0 / (before + after) / k**2
+        return waves
     for reach, sign in ((before, -1.0), (after, 1.0)):
         some = np.where(reach > 0.0, reach, 1.0)
         half = -sign * np.sin(k * at) / k + (np.cos(k * at) - np.cos(k * (at + sign * some))) / (k**2 * some)
         waves[:, 1:] += np.where(reach > 0.0, half, 0.0)
     waves[:, 1:] *= 2.0 / (before + after)
     return waves
+
+
+def _cosines(place: Array, count: int) -> Array:
+    """cos(n pi place), n = 0..count, shape (P, count + 1): sums of two angles, for few cosines are costly."""
+    few = max(1, math.isqrt(count))
+    steps = np.pi * np.arange(count // few + 1) * few
+    near, far = np.pi * np.multiply.outer(place, np.arange(few)), np.multiply.outer(place, steps)
+    both = np.cos(far)[:, :, None] * np.cos(near)[:, None] - np.sin(far)[:, :, None] * np.sin(near)[:, None]
+    return np.asarray(both.reshape(place.size, -1)[:, : count + 1])
 
 
 @lru_cache(maxsize=16)
