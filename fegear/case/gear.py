@@ -117,6 +117,11 @@ class GearPart(Part):
     normal_diametral_pitch: PositiveInverseLength | None = None
 
     @property
+    def over_face(self) -> tuple[str, ...]:
+        """Keys that say what is ground off over the face, of those that are given."""
+        return tuple(key for key in ("lead", "bias", "topography") if getattr(self, key) is not None)
+
+    @property
     def is_helical(self) -> bool:
         """Whether the gear is described as a helical one (of helix angle zero as the limit)."""
         return self.helix_angle is not None

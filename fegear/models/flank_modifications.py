@@ -28,9 +28,6 @@ if TYPE_CHECKING:
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
 
-#: Keys of a gear that say what is ground off over its face.
-FACE_KEYS = ("lead", "bias", "topography")
-
 
 @dataclass(frozen=True)
 class FaceModifications:

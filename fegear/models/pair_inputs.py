@@ -180,9 +180,20 @@ def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
             remarks.append(
                 f"Gear {gear} has spacing_errors, but the effect is off: its teeth are assumed to be evenly spaced."
             )
+        if part.over_face:
+            remarks.append(
+                f"Gear {gear} has {' and '.join(part.over_face)}, which plane teeth do not know: they are the same all "
+                f'along the face. Write width = "solid" for pair {name}.'
+            )
         remarks += width_remarks(scene, gear)
         if scene.case.pair[name].compliance.source == "fe":
             remarks += bore_remarks(scene, gear)
+    given = [key for key in ("misalignment", "line_error", "modification") if getattr(scene.case.pair[name], key)]
+    if given:
+        remarks.append(
+            f"Pair {name} has {' and '.join(given)}, which plane teeth do not know: they are the same all along the "
+            f'face. Write width = "solid" for it.'
+        )
     pair = scene.pairs[name]
     if sentence := heavy_load(pair, max(scene.case.pair[name].all_loads(pair), default=0.0)):
         remarks.append(f"Pair {name}: {sentence}")

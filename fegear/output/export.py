@@ -133,6 +133,8 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
         if relieved:
             told = ", ".join(sorted(meshes))
             remarks.append(f"Gear {name}, {told}: flanks as generated, without the relief of the case.")
+    if over_face := scene.case.gear[name].over_face:
+        remarks.append(f"Gear {name}: flanks the same all along the face, without {' and '.join(over_face)} of the case.")
     if scene.case.gear[name].spacing_errors is not None:
         remarks.append(f"Gear {name}: teeth evenly spaced, without the spacing errors of the case.")
     return written, remarks

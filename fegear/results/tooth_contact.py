@@ -73,7 +73,7 @@ class ToothContactInputs:
     lead : float or None
         Error of the pinion's lead that the case gives in place of a lead angle [m].
     relieved : tuple of str
-        Gears whose relief the analysis does not know.
+        Gears whose relief, lead, bias or topography the analysis does not know.
     """
 
     pair: HelicalPair
@@ -311,7 +311,8 @@ def _inputs(scene: Scene, name: str) -> ToothContactInputs:
         next((key for key in ("load", "torque") if getattr(part, key) is not None), "")
         if "crosscheck" not in scene.case.results else "",
         part.misalignment.lead if part.misalignment is not None else None,
-        tuple(gear for gear in dict.fromkeys((part.driver, part.driven)) if scene.case.gear[gear].relief is not None),
+        tuple(gear for gear in dict.fromkeys((part.driver, part.driven))
+              if scene.case.gear[gear].relief is not None or scene.case.gear[gear].over_face),
     )  # fmt: skip
 
 
@@ -355,7 +356,7 @@ def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
     if asked.relieved:
         of = " and ".join(f"gear {gear}" for gear in asked.relieved)
         idle = (
-            f"Pair {name}: the relief of {of} changes nothing here: tooth contact analysis takes the flanks as cut, "
+            f"Pair {name}: relief, lead, bias and topography of {of} change nothing here: tooth contact analysis takes the flanks as cut, "
             "with the pair's own modification."
         )
         remarks += (idle,)

@@ -43,7 +43,11 @@ FACTS: dict[str, EffectFact] = {
         "a source with a contact of its own: no table",
         ("nonlinear steps",),
     ),
-    "relief": EffectFact("flanks are modified", "`relief` on a gear", ("reliefs",)),
+    "relief": EffectFact(
+        "flanks are modified",
+        "`relief` on a gear; for pairs with a width also `lead`, `bias`, `topography`, and `modification` of the pair",
+        ("reliefs",),
+    ),
     "spacing_errors": EffectFact("teeth stand unevenly", "`spacing_errors` on a gear", ("spacing errors",)),
     "corner_contact": EffectFact(
         "tip corners touch before and after the path of contact",
@@ -62,8 +66,8 @@ FACTS: dict[str, EffectFact] = {
         "tooth pairs come and go: the stiffness varies in time", "results in time", ("springs in time",)
     ),
     "misalignment": EffectFact(
-        "helical gears run with errors of axes, lead, profile and centre distance; a gap over the face counts",
-        "`misalignment` of a helical pair, or `line_error` for `load-distribution`",
+        "gears run with errors of axes, lead, profile and centre distance; a gap over the face counts",
+        "`misalignment` of a helical pair or of one with a width, or `line_error` of one with a width",
         ("misaligned flanks",),
     ),
 }
