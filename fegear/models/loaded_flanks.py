@@ -182,6 +182,17 @@ def check_flanks_to_load(scene: Scene, name: str) -> None:
             f'give pair.{name}.misalignment = {{ driven = {{ out_of_plane = "10 um" }} }}, or leave the effect out',
         )  # fmt: skip
     asked = flanks_to_load(scene, name)
+    gears = scene.case.gear.values()
+    if effects.relief and not (asked.cutter or any(gear.relief or gear.over_face for gear in gears)):
+        raise InputError(
+            "effects.relief", "true", "finds no gear with relief, lead, bias or topography in this case",
+            f"give gear.{part.driver}.relief or lead, or leave the effect out",
+        )  # fmt: skip
+    if effects.spacing_errors and all(gear.spacing_errors is None for gear in gears):
+        raise InputError(
+            "effects.spacing_errors", "true", "finds no gear with spacing_errors in this case",
+            f"give gear.{part.driver}.spacing_errors, or leave the effect out",
+        )  # fmt: skip
     for member, flank in zip(MEMBERS, asked.flanks, strict=True):
         if effects.relief and flank.wants_delta:
             raise InputError(

@@ -133,8 +133,15 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
         if relieved:
             told = ", ".join(sorted(meshes))
             remarks.append(f"Gear {name}, {told}: flanks as generated, without the relief of the case.")
-    if over_face := scene.case.gear[name].over_face:
-        remarks.append(f"Gear {name}: flanks the same all along the face, without {' and '.join(over_face)} of the case.")
-    if scene.case.gear[name].spacing_errors is not None:
+    return written, [*remarks, *_left_out(scene, name)]
+
+
+def _left_out(scene: Scene, name: str) -> list[str]:
+    """What no format holds of a gear's teeth: modifications over the face, spacing errors."""
+    part, remarks = scene.case.gear[name], []
+    if part.over_face:
+        given = " and ".join(part.over_face)
+        remarks.append(f"Gear {name}: flanks the same all along the face, without {given} of the case.")
+    if part.spacing_errors is not None:
         remarks.append(f"Gear {name}: teeth evenly spaced, without the spacing errors of the case.")
-    return written, remarks
+    return remarks

@@ -356,8 +356,8 @@ def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
     if asked.relieved:
         of = " and ".join(f"gear {gear}" for gear in asked.relieved)
         idle = (
-            f"Pair {name}: relief, lead, bias and topography of {of} change nothing here: tooth contact analysis takes the flanks as cut, "
-            "with the pair's own modification."
+            f"Pair {name}: relief, lead, bias and topography of {of} change nothing here: tooth contact analysis takes "
+            "the flanks as cut, with the pair's own modification."
         )
         remarks += (idle,)
     if asked.ignored:

@@ -1,16 +1,19 @@
 """``load-distribution``: from a case to line load, K_Hbeta, shares and pictures, and what it refuses."""
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fegear.case.reading import read_scene
+from fegear.contact.flank import FlankGaps, contact_lines
 from fegear.engine.figure import Figure
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.errors import InputError
+from fegear.models.loaded_flanks import flanks_to_load
 from fegear.models.solid_influence import solid_gear_to_solve
 from fegear.output.draw_png import draw_pictures
 from fegear.results.catalogue import STAGES
@@ -90,14 +93,25 @@ def test_a_table_over_the_face_is_the_same_as_its_key(cache, outcome, tmp_path):
     assert value(found, "K_Hbeta").si == pytest.approx(value(outcome, "K_Hbeta").si, rel=1e-9)
 
 
-def test_lead_modifications_of_either_gear_count_as_line_errors_do(cache, outcome, tmp_path):
+def gaps(*overrides):
+    """What the case says of the gaps on a few contact lines, without its profile relief; the pair; what it knows."""
+    asked = flanks_to_load(read_scene(CASE, [*COARSE, *overrides]), "I")
+    lines = contact_lines(asked.pair, asked.pair.x_start + asked.pair.base_pitch * np.array([0.2, 0.7]), 1e-3)
+    plain = asked.gaps(relief=True, misalignment=False)
+    found = asked.gaps(relief=True, misalignment=asked.effects.misalignment)
+    bare = FlankGaps(plain.driver_relief, plain.driven_relief)
+    return (found.at(asked.pair, lines) - bare.at(asked.pair, lines))[lines.present], lines, asked
+
+
+def test_lead_modifications_of_either_gear_count_as_line_errors_do(tmp_path):
     """One formula, four ways to write it: per pair, per gear, as a table over the face, on a grid."""
     lead = tmp_path / "lead.csv"
     lead.write_text("z [mm],removal [um]\n-4,0\n4,10\n", "utf-8")
     grid = tmp_path / "grid.csv"
     rows = [f"{r},{z},{1.25 * (z + 4)}" for r in (5, 60) for z in (-4, 4)]
     grid.write_text("\n".join(["roll_angle [deg],z [mm],removal [um]", *rows]), "utf-8")
-    wanted = value(outcome, "K_Hbeta").si
+    wanted, lines, _ = gaps()
+    np.testing.assert_allclose(wanted, 1.25e-3 * (lines.z[lines.present] + 4e-3), atol=1e-18)
     end = '{amount="4 um", length="8 mm", end="II"}'
     own = (
         'gear.pinion.lead={slope="10 um"}',
@@ -106,12 +120,28 @@ def test_lead_modifications_of_either_gear_count_as_line_errors_do(cache, outcom
         f'gear.wheel.topography={{file="{grid.as_posix()}"}}',
     )
     for key in own:
-        found = ran(cache, key, "effects.relief=true", "effects.misalignment=false")
-        assert value(found, "K_Hbeta").si == pytest.approx(wanted, rel=1e-9), key
-    twisted = ran(cache, 'gear.pinion.bias="10 um"', "effects.relief=true", "effects.misalignment=false")
-    assert value(twisted, "K_Hbeta").si != pytest.approx(wanted, rel=1e-3)
-    (told,) = (r for r in neglected(ran(cache, "effects.relief=false", own[0])) if "effects.relief" in r)
-    assert "lead modifications that are left out" in told
+        np.testing.assert_allclose(gaps(key, "effects.misalignment=false")[0], wanted, atol=1e-18, err_msg=key)
+    twisted = gaps('gear.pinion.bias="10 um"', "effects.misalignment=false")[0]
+    assert 2e-6 < np.abs(twisted).max() <= 2.5e-6 * (1.0 + 1e-9)
+    assert gaps(own[0])[2].has_data("relief")
+
+
+def test_shafts_count_by_the_part_of_them_in_the_plane_of_action():
+    """Sine and cosine of alpha_wt, 1/cos(beta_b)^2 along a contact line; over any length, or as an angle."""
+    _, lines, asked = gaps()
+    pair, straight = asked.pair, 'pair.I.line_error={over_face="0 um"}'
+    share = {"in_plane": math.sin(pair.working_pressure_angle), "out_of_plane": math.cos(pair.working_pressure_angle)}
+    keys = [f'{{{member}={{{key}="{20.0 / part:.15g} um", over="16 mm"}}}}'
+            for key, part in share.items() for member in ("driver", "driven")]  # fmt: skip
+    keys.append(f'{{shaft_angle="{1.25e-3 / share["out_of_plane"]:.15g} rad"}}')
+    for key in keys:
+        found = gaps(straight, f"pair.I.misalignment={key}")[0]
+        for j in np.unique(lines.pair[lines.present]):
+            for p in range(2):
+                on = (lines.pair[p] == j) & lines.present[p]
+                at = np.split(found, np.cumsum(lines.present.sum(axis=1))[:-1])[p][on[lines.present[p]]]
+                slope = np.diff(at) / np.diff(lines.z[p, on])
+                np.testing.assert_allclose(slope, 1.25e-3 / math.cos(pair.driver.base_helix_angle) ** 2, rtol=1e-6)
 
 
 def test_left_out_coupling_is_told_with_its_size(cache, outcome):
@@ -168,6 +198,10 @@ def test_pressure_stands_on_the_loaded_flanks_of_both_teeth(outcome):
         ('pair.I.compliance={source="cornell"}', "pair.I.compliance"),
         ('pair.I.root_stress={source="heywood"}', "root_stress.source"),
         ("gear.wheel.lead={}", "lead"),
+        ("effects.spacing_errors=true", "effects.spacing_errors.*finds no gear"),
+        ('pair.I.misalignment={driven={in_plane="10 mm"}}', "pair.I.misalignment.driven.in_plane.*no small error"),
+        ('gear.wheel.lead={crowning="5 mm"}', "gear.wheel.*check the unit"),
+        ('gear.wheel.bias={amount="5 um", start_radius="10 mm"}', "gear.wheel.bias.*base circle"),
         ('gear.wheel.lead={end_relief={amount="5 um", length="9 mm"}}', r"wheel.lead.end_relief\[0\].length"),
         ('gear.wheel.topography={file="nowhere.csv"}', "nowhere.csv"),
     ],
