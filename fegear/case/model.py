@@ -11,6 +11,7 @@ from fegear.case.cost import CostPart
 from fegear.case.design import DesignPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
+from fegear.case.flank_design import FlankDesignPart
 from fegear.case.gear import GearPart
 from fegear.case.helical import ToothContactPart
 from fegear.case.load_distribution import LoadDistributionPart
@@ -37,6 +38,7 @@ class Case(Part):
     load_distribution: LoadDistributionPart = Field(default_factory=LoadDistributionPart)
     transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
     design: DesignPart | None = None
+    flank_design: FlankDesignPart | None = None
     loading: LoadingPart | None = None
     transmission_error: TransmissionErrorPart = Field(default_factory=TransmissionErrorPart)
     train: TrainPart | None = None

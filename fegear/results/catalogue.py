@@ -13,6 +13,7 @@ from fegear.results import (
     dynamic_factor,
     dynamic_increments,
     dynamic_root_stress,
+    flank_design,
     flank_generation,
     flank_load_factors,
     flank_load_sharing,
@@ -88,6 +89,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             relief_chart.RELIEF_CHART,
             relief_chart.ROBUSTNESS,
             loading_spectrum.LOADING_SPECTRUM,
+            flank_design.FLANK_DESIGN,
         ),
         "Helical pairs": (
             tooth_contact.TOOTH_CONTACT,

@@ -154,6 +154,15 @@ def deflection(known: FlankCompliance, force: Array) -> Array:
     return np.asarray(np.einsum("pij,pj->pi", matrix, force) + constant)
 
 
+def approach_by_gap(known: FlankCompliance, force: Array) -> Array:
+    """Growth of the approach by that of the averaged gaps, solved forces of shape (P, M) given, shape (P, M).
+
+    None where apart; the sum at every roll position is one.
+    """
+    matrix = tangent_compliance(known, np.arange(force.shape[0]), force)
+    return _bordered(matrix, np.zeros_like(force), force > 0.0, np.ones(force.shape[0]))[0]
+
+
 def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.0) -> tuple[Array, Array]:
     """Tangent compliances at forces of shape (B, M), and what the tangent leaves at zero force.
 

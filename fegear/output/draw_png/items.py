@@ -122,12 +122,19 @@ def _heat(axes: Any, _panel: Panel, item: HeatMap) -> Any:
     if item.numbers:
         for (row, column), value in np.ndenumerate(z):
             known = bool(np.isfinite(value))
-            dark = known and item.centre and abs(value - item.centre[0]) > 0.75 * item.centre[1] and value < high
             axes.text(
                 x[column], y[row], f"{value:.2f}" if known else "×", ha="center", va="center", fontsize=8.5,
-                color="white" if dark and value < item.centre[0] else "black",  # type: ignore[index]
+                color="white" if known and _dark(item, float(value)) else "black",
             )  # fmt: skip
     return image
+
+
+def _dark(item: HeatMap, value: float) -> bool:
+    """Whether a tile of a value is too dark for black numbers."""
+    low, high = item.ends
+    if item.centre:
+        return value < item.centre[0] - 0.75 * item.centre[1]
+    return value < low + 0.55 * (high - low)
 
 
 def _field(axes: Any, _panel: Panel, item: TriangleField) -> Any:

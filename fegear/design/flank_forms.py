@@ -1,0 +1,129 @@
+"""What a grinder can do to the flanks of a pair, in a few numbers: tip reliefs, crowning, end relief, slope, bias."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.frozen import ReadOnlyArrays
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.arrays import Array
+    from fegear.geometry.pair import GearPair
+
+
+@dataclass(frozen=True, slots=True)
+class GroundRelief:
+    """Modification of both flanks together, the same along the face or along the profile but for the bias.
+
+    Parameters
+    ----------
+    driver_tip, driver_tip_length : float
+        Straight tip relief of the driver: removal at the end of the path of contact, and length along it [m].
+    driven_tip, driven_tip_length : float
+        The driven gear's, at the start of the path.
+    crowning : float
+        Of the lead: a parabola, nothing in the middle, removal at both ends of the face [m].
+    end_relief, end_relief_length : float
+        Removal at both ends of the face, growing as a straight line over a length [m].
+    slope : float
+        Of the helix: removal at the end of the face at +b/2 less that at -b/2 [m].
+    bias : float
+        Twist of the flank: growth of the driver's profile slope from one end of the face to the other [m]; a quarter
+        of it is taken from the driver's tip at +b/2 and from its root at -b/2, and left at the two other corners.
+    """
+
+    driver_tip: float = 0.0
+    driver_tip_length: float = 0.0
+    driven_tip: float = 0.0
+    driven_tip_length: float = 0.0
+    crowning: float = 0.0
+    end_relief: float = 0.0
+    end_relief_length: float = 0.0
+    slope: float = 0.0
+    bias: float = 0.0
+
+    @property
+    def numbers(self) -> Array:
+        """All of them in the order of `NUMBERS`, shape (9,)."""
+        return np.array([getattr(self, name) for name in NUMBERS])
+
+    @classmethod
+    def of(cls, numbers: Array) -> GroundRelief:
+        """From numbers in the order of `NUMBERS`; a relief of no amount has no length."""
+        given = dict(zip(NUMBERS, (float(v) for v in numbers), strict=True))
+        for amount, length in LENGTHS.items():
+            if given[amount] == 0.0:
+                given[length] = 0.0
+        return cls(**given)
+
+    def removal(self, pair: GearPair, x: ArrayLike, z: ArrayLike) -> Array:
+        """Removal at points of the plane of action, not negative on the flank [m]."""
+        base = 0.5 * abs(self.slope) + 0.25 * abs(self.bias)
+        return np.asarray(FormsAt.over(pair, x, z).removed(self.numbers) + base)
+
+
+#: The nine numbers, and the amounts that go with a length.
+NUMBERS: tuple[str, ...] = tuple(f.name for f in fields(GroundRelief))
+LENGTHS = {
+    "driver_tip": "driver_tip_length", "driven_tip": "driven_tip_length", "end_relief": "end_relief_length",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FormsAt(ReadOnlyArrays):
+    """Places of the plane of action, as the modifications count them; arrays of any one shape.
+
+    Parameters
+    ----------
+    driver_depth, driven_depth : ndarray
+        Distance along the path from where the driver's, and the driven gear's, tip leaves contact [m].
+    end_depth : ndarray
+        Distance from the nearer end of the face [m].
+    across, along : ndarray
+        -1 to 1 from the driver's root to its tip, and from one end of the face to the other.
+    """
+
+    driver_depth: Array
+    driven_depth: Array
+    end_depth: Array
+    across: Array
+    along: Array
+
+    @classmethod
+    def over(cls, pair: GearPair, x: ArrayLike, z: ArrayLike) -> FormsAt:
+        """Places of a pair."""
+        first, second = np.asarray(x, dtype=float), np.asarray(z, dtype=float)
+        half = 0.5 * pair.face_width
+        middle = 0.5 * (pair.x_start + pair.x_end)
+        return cls(
+            pair.x_end - first, first - pair.x_start, half - np.abs(second),
+            2.0 * (first - middle) / pair.path_length, second / half,
+        )  # fmt: skip
+
+    def removed(self, numbers: Array) -> Array:
+        """Removal by nine numbers, without the constant that keeps it from being negative, shape of the places [m]."""
+        tip, tip_length, foot, foot_length, crowning, end, end_length, slope, bias = numbers.tolist()
+        total = crowning * self.along**2 + 0.5 * slope * self.along + 0.25 * bias * self.across * self.along
+        ends = ((tip, tip_length, self.driver_depth), (foot, foot_length, self.driven_depth),
+                (end, end_length, self.end_depth))  # fmt: skip
+        for amount, length, depth in ends:
+            if amount != 0.0:
+                total = total + amount * np.maximum(1.0 - depth / length, 0.0)
+        return np.asarray(total)
+
+    def slopes(self, numbers: Array) -> Array:
+        """Derivative by each of the nine numbers, shape (9, ...)."""
+        found = np.zeros((len(NUMBERS), *self.across.shape))
+        for i, depth in ((0, self.driver_depth), (2, self.driven_depth), (5, self.end_depth)):
+            amount, length = numbers[i], numbers[i + 1]
+            if length > 0.0:
+                inside = depth < length
+                found[i] = np.where(inside, 1.0 - depth / length, 0.0)
+                found[i + 1] = np.where(inside, amount * depth / length**2, 0.0)
+        found[4], found[7], found[8] = self.along**2, 0.5 * self.along, 0.25 * self.across * self.along
+        return found

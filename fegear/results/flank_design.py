@@ -1,0 +1,228 @@
+"""Result ``flank-design``: relief of loaded flanks in two dimensions, exact and as it can be ground."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.case.flank_design import FlankDesignPart
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage
+from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
+from fegear.models.loaded_flanks import flanks_to_load
+from fegear.models.pair_inputs import gear_name
+from fegear.results.drawn_flank_design import flank_design_figures
+from fegear.results.flank_design_tables import (
+    designs_table,
+    keys_of,
+    map_table,
+    roll_table,
+    topography_table,
+    values_of,
+)
+from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.sources import HERTZ, INVOLUTE, RING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.design.flank_design import FlankDesign, FlankDesignTask
+    from fegear.design.flank_grid import ReliefGrid
+    from fegear.engine.stage import Upstream, Work
+    from fegear.geometry import GearPair
+    from fegear.geometry.pair import Member
+
+#: The gears' own reliefs are what the design replaces.
+FLANK_DESIGN_EFFECTS = ("neighbour_coupling", "hertz", "misalignment")
+#: Misalignments of a map: over the standard deviation of the scatter, or [m] without one.
+_MAPPED, _MAPPED_ALONE = (-2.0, -1.0, 0.0, 1.0, 2.0), (-10e-6, -5e-6, 0.0, 5e-6, 10e-6)
+#: Seconds of a contact line on both gears, of one combination of a grid and of the exact loads of one family.
+_LINE, _COMBINATION, _FAMILY = 0.05, 4e-4, 1.0
+
+
+@dataclass(frozen=True)
+class FlankDesignInputs:
+    """What the design of a pair's flanks depends on, besides its loaded flanks.
+
+    Parameters
+    ----------
+    part : FlankDesignPart
+    name : str
+        Of the pair.
+    gears : mapping of str to str
+        Names of driver and driven.
+    """
+
+    part: FlankDesignPart
+    name: str
+    gears: Mapping[Member, str]
+
+
+@dataclass(frozen=True)
+class FlankDesignData:
+    """A design and its pair."""
+
+    pair: GearPair
+    design: FlankDesign
+
+
+def _part(scene: Scene) -> FlankDesignPart:
+    return scene.case.flank_design or FlankDesignPart()
+
+
+def _pairs(scene: Scene) -> tuple[str, ...]:
+    named, wide = _part(scene).pair, tuple(scene.wide_pairs)
+    if named is not None:
+        if named not in scene.pairs:
+            raise InputError("flank_design.pair", f'"{named}"', "is no pair of this case")
+        return (named,)
+    if len(wide) > 1:
+        raise InputError(
+            "flank_design.pair", "(not given)", "is needed where several pairs have a width", "name one of them"
+        )
+    return wide or tuple(scene.pairs)
+
+
+def _check(scene: Scene, name: str) -> None:
+    if name not in scene.wide_pairs:
+        raise InputError(
+            f"pair.{name}.width", '"plane"', "leaves no flanks to design over the face",
+            f'write pair.{name}.width = "solid", or ask for the result relief',
+        )  # fmt: skip
+    _task(_part(scene), scene.pairs[name], 1.0)
+
+
+def _inputs(scene: Scene, name: str) -> FlankDesignInputs:
+    return FlankDesignInputs(_part(scene), name, {member: gear_name(scene, name, member) for member in MEMBERS})
+
+
+def _grid(part: FlankDesignPart) -> ReliefGrid | None:
+    from fegear.design.flank_grid import ReliefGrid
+
+    if part.grid is None:
+        return None
+    g = part.grid
+    lists = (g.tip_amounts, g.tip_lengths, g.crownings, g.end_amounts, g.end_lengths, g.slopes, g.biases)
+    return ReliefGrid(*(tuple(values) for values in lists))
+
+
+def _task(part: FlankDesignPart, pair: GearPair, nominal: float) -> FlankDesignTask:
+    from fegear.design import LoadingFunction, Ramp
+    from fegear.design.flank_design import FlankDesignTask
+    from fegear.design.flank_loading import FlankLoading
+    from fegear.design.flank_scatter import NOMINAL, normal_scatter
+
+    length = part.length or (part.contact_ratio * pair.base_pitch if part.contact_ratio else pair.path_length)
+    if length > pair.path_length * (1.0 + 1e-9):
+        raise InputError(
+            "flank_design.length", f"{length * 1e3:.6g} mm",
+            f"is longer than the path of contact, {pair.path_length * 1e3:.6g} mm "
+            f"({pair.contact_ratio:.5g} base pitches)",
+        )  # fmt: skip
+    centre = 0.5 * (pair.x_start + pair.x_end) if part.centre is None else part.centre
+    ramp = Ramp(part.slope)
+    loading = FlankLoading(LoadingFunction(length, pair.base_pitch, centre, ramp, ramp), pair.face_width,
+                           part.end_length)  # fmt: skip
+    zone = loading.over_path
+    slack = 1e-9 * pair.base_pitch
+    if zone.x_start < pair.x_start - slack or zone.x_end > pair.x_end + slack:
+        raise InputError(
+            "flank_design.centre", f"{centre * 1e3:.6g} mm", "puts the loading beyond the path of contact",
+            "choose a shorter design length, or leave centre out",
+        )  # fmt: skip
+    load = part.load or nominal
+    loads = tuple(sorted(part.loads)) if part.loads else (load,)
+    scatter = normal_scatter(part.scatter.over_face, part.scatter.levels) if part.scatter else NOMINAL
+    over_face = part.map.over_face
+    if over_face is None:
+        over_face = [k * part.scatter.over_face for k in _MAPPED] if part.scatter else list(_MAPPED_ALONE)
+    return FlankDesignTask(
+        loading, load, loads, tuple(part.families), _grid(part), part.largest_face_load_factor or math.inf, scatter,
+        part.positions, tuple(sorted(set(over_face))), tuple(sorted({load * f for f in part.map.load_factors})),
+    )  # fmt: skip
+
+
+def _compute(inputs: FlankDesignInputs, upstream: Upstream, work: Work) -> FlankDesignData:
+    from fegear.design.flank_design import design_flanks
+
+    found = loaded_flanks(upstream, inputs.name)
+    asked, flanks = found.asked, found.flanks
+    apart = asked.gaps(relief=False, misalignment=bool(asked.effects.misalignment))
+    task = _task(inputs.part, flanks.pair, asked.nominal)
+    return FlankDesignData(flanks.pair, design_flanks(flanks, found.known, apart, task, work.progress))
+
+
+def _present(data: FlankDesignData, inputs: FlankDesignInputs) -> Outcome:
+    name, design, task = inputs.name, data.design, data.design.task
+    shares: dict[str, dict[Member, float]] = {
+        "driver": {"driver": 1.0},
+        "driven": {"driven": 1.0},
+        "both": dict.fromkeys(MEMBERS, 0.5),
+    }
+    chosen = shares[inputs.part.gear]
+    tables = [topography_table(name, inputs.gears[m], m, share, data) for m, share in chosen.items()]
+    tables += [designs_table(name, data), map_table(name, design), roll_table(name, design)]
+    loading = task.loading
+    settings: dict[str, object] = {
+        "design_load": task.load, "design_contact_ratio": loading.over_path.length / loading.over_path.base_pitch,
+        "slope": loading.over_path.ramp.slope, "end_length": loading.end_length, "positions": task.positions,
+        "combinations": sum(one.candidates for one in design.found.values()),
+        "loaded_exactly": sum(one.exact for one in design.found.values()),
+    }  # fmt: skip
+    figures = flank_design_figures(name, data, inputs.gears)
+    return Outcome(data, tuple(tables), values_of(name, design), settings, _remarks(data, inputs), figures)
+
+
+def _remarks(data: FlankDesignData, inputs: FlankDesignInputs) -> tuple[str, ...]:
+    name, design = inputs.name, data.design
+    remarks = []
+    for state in (design.best, *design.robust):
+        keys = "; ".join(keys_of(design.found[state.label].relief, data.pair, inputs.gears))
+        remarks.append(f"Pair {name}, {state.label}: as keys of the gears, {keys or 'nothing'}.")
+    unproven = [label for label, one in design.found.items() if not one.proven]
+    if unproven:
+        remarks.append(
+            f"Pair {name}: {', '.join(unproven)}: too many combinations come so near the least that not all of them "
+            "were loaded exactly; the least of the grid is likely, not proven. A coarser grid would be."
+        )
+    return tuple(remarks)
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    from fegear.design.flank_grid import usual_grid
+
+    part, asked = _part(scene), flanks_to_load(scene, name)
+    pair = asked.pair
+    grid = _grid(part) or usual_grid(1.0, pair.path_length, pair.face_width, pair.base_pitch)
+    counts = [len(grid.combinations(family)) for family in part.families]
+    levels = part.scatter.levels if part.scatter else 0
+    combinations = (sum(counts) + levels * max(counts)) * len(part.loads or (1.0,))
+    stations = asked.panels * (1.0 + pair.contact_ratio)
+    lines = part.positions * (1.0 + pair.total_contact_ratio)
+    exact = _FAMILY * (len(counts) + levels) * (stations / 34.0) ** 1.5 * len(part.loads or (1.0,))
+    seconds = _LINE * lines + _COMBINATION * combinations * part.positions / 24.0 + exact
+    return Forecast({"combinations": combinations, "positions": part.positions}, seconds)
+
+
+FLANK_DESIGN = Stage(
+    name="flank-design",
+    title="Relief of loaded flanks",
+    results=("flank-design",),
+    about="relief over profile and face for the least transmission error under load, exact and as ground",
+    subjects=_pairs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    needs=needs_flanks,
+    check=_check,
+    effects=FLANK_DESIGN_EFFECTS,
+    cites=citing(
+        Citation("mark", "relief that leaves no transmission error at the design load", "Eqs. 4.6 to 4.14"),
+        *RING, HERTZ, INVOLUTE,
+    ),
+    forecast=_forecast,
+)  # fmt: skip

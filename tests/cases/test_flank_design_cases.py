@@ -1,0 +1,141 @@
+"""``flank-design``: from a case to tables, keys and files that a case reads back, and what it refuses."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.errors import InputError
+from fegear.output.tables import write_table
+from fegear.results.catalogue import STAGES
+from fegear.results.flank_design_tables import keys_of, topography_table
+from fegear.solution_cache import SolutionCache
+
+CASE = Path(__file__).parents[2] / "cases" / "helical_flank_design.toml"
+COARSE = (
+    "accuracy.tolerance=1e-1", "load_distribution.positions=9", "load_distribution.panels=5",
+    "flank_design.positions=12", "flank_design.largest_face_load_factor=9",
+    'gear.pinion.face_width="6 mm"', 'gear.wheel.face_width="6 mm"', 'pair.I.load="1800 N"',
+    'flank_design.grid={tip_amounts=["12 um", "20 um"], tip_lengths=["4.5 mm"], crownings=["4 um"], biases=["-4 um"]}',
+    'flank_design.families=["profile", "profile-lead-and-bias"]', "flank_design.map.load_factors=[0.5, 1.0]",
+    'flank_design.scatter={over_face="6 um", levels=2}',
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def cache():
+    return SolutionCache()
+
+
+def ran(cache, *overrides, path=CASE, result="flank-design"):
+    scene = read_scene(path, [*COARSE, *overrides])
+    return run_plan(scene, make_plan(scene, STAGES), cache=cache).outcomes[Task(result, "I")]
+
+
+@pytest.fixture(scope="module")
+def outcome(cache):
+    return ran(cache)
+
+
+def table(outcome, name):
+    (found,) = (one for one in outcome.tables if one.name == name)
+    return found
+
+
+def columns(outcome, name):
+    return {column.head: np.asarray(column.values) for column in table(outcome, name).columns}
+
+
+def value(outcome, name):
+    (found,) = (one for one in outcome.values if one.name == f"I.{name}")
+    return found
+
+
+def test_what_is_left_is_ordered_by_freedom(outcome):
+    rows = columns(outcome, "flank_designs_I")
+    label = rows["relief"].tolist()
+    left = dict(zip(label, rows["te_peak_to_peak [um]"].tolist(), strict=True))
+    assert label[:2] == ["no relief", "exact topography"]
+    assert left["exact topography"] < 0.015 * left["no relief"]
+    assert left["profile"] < 0.3 * left["no relief"]
+    assert left["profile-lead-and-bias"] < 1.2 * left["profile"]
+    assert value(outcome, "no_relief.te_peak_to_peak").value == left["no relief"]
+    assert (rows["combinations"][2:] > 0).all()
+    assert rows["proven"].min() == 1.0
+    assert (rows["te_mean_over_scatter [um]"] >= 0.9 * rows["te_peak_to_peak [um]"]).all()
+    # the robust one has the least mean over the scatter of all that its family can do
+    mean = dict(zip(label, rows["te_mean_over_scatter [um]"].tolist(), strict=True))
+    assert mean["robust"] <= 1.03 * mean["profile-lead-and-bias"]
+
+
+def test_the_map_holds_the_design_load(outcome):
+    rows = columns(outcome, "flank_map_I")
+    assert set(rows["load [N]"].tolist()) == {900.0, 1800.0}
+    assert np.unique(rows["over_face [um]"]).tolist() == pytest.approx([-12.0, -6.0, 0.0, 6.0, 12.0])
+    here = (rows["relief"] == "exact topography") & (rows["over_face [um]"] == 0.0)
+    assert rows["te_peak_to_peak [um]"][here & (rows["load [N]"] == 1800.0)] == pytest.approx(
+        np.ptp(columns(outcome, "flank_design_roll_I")["te_exact_topography [um]"]), rel=1e-6
+    )
+
+
+def load_distribution(cache, folder, *overrides):
+    """Transmission error of a case with reliefs of its own."""
+    case = folder / "again.toml"
+    case.write_text(CASE.read_text().replace('"flank-design"', '"load-distribution"'))
+    found = ran(cache, "effects.relief=true", *overrides, path=case, result="load-distribution")
+    return columns(found, "load_distribution_roll_I")["te [um]"]
+
+
+@pytest.mark.parametrize("on", ["driver", "both"])
+def test_its_topography_is_read_back_by_a_case(cache, outcome, tmp_path, on):
+    overrides = []
+    for gear, member in (("pinion", "driver"), ("wheel", "driven")):
+        if on == "both":
+            found = topography_table("I", gear, member, 0.5, outcome.data)
+        elif gear == "pinion":
+            found = table(outcome, "flank_topography_I_pinion")
+        else:
+            continue
+        path = write_table(tmp_path, found)
+        overrides.append(f'gear.{gear}.topography.file="{path.name}"')
+    te = load_distribution(cache, tmp_path, *overrides)
+    wanted = columns(outcome, "flank_design_roll_I")["te_exact_topography [um]"]
+    np.testing.assert_allclose(te, wanted, atol=1e-4)
+
+
+def test_its_keys_grind_what_it_says(cache, outcome, tmp_path):
+    design, pair = outcome.data.design, outcome.data.pair
+    for label in ("robust", "profile-lead-and-bias"):
+        keys = keys_of(design.found[label].relief, pair, {"driver": "pinion", "driven": "wheel"})
+        assert keys
+        te = load_distribution(cache, tmp_path, *(key.replace(" = ", "=", 1) for key in keys))
+        wanted = columns(outcome, "flank_design_roll_I")[f"te_{label.replace('-', '_')} [um]"]
+        np.testing.assert_allclose(np.ptp(te), np.ptp(wanted), atol=2e-3)
+        assert any(keys[0] in remark for remark in outcome.remarks)
+
+
+@pytest.mark.parametrize(
+    ("override", "key"),
+    [
+        ('flank_design.pair="J"', "flank_design.pair"),
+        ('flank_design.length="90 mm"', "flank_design.length"),
+        ("flank_design.contact_ratio=0.9", "length"),
+        ('flank_design.centre="20 mm"', "flank_design.centre"),
+        ('flank_design.end_length="7 mm"', "flank_design.end_length"),
+        ('flank_design.grid={tip_amounts=["5 um"]}', "tip_amounts"),
+        ("flank_design.largest_face_load_factor=1.001", "largest_face_load_factor"),
+    ],
+)
+def test_what_cannot_be_is_refused(cache, override, key):
+    with pytest.raises(InputError, match=key):
+        ran(cache, override)
+
+
+def test_a_plane_pair_is_sent_to_relief(cache):
+    spur = [f"gear.{g}.{k}" for g in ("pinion", "wheel") for k in ('helix_angle="0 deg"', 'hand="spur"')]
+    with pytest.raises(InputError, match="solid"):
+        ran(cache, *spur)

@@ -1,0 +1,296 @@
+"""Relief of loaded flanks: the exact topography, what can be ground, the search over its grid, and their laws."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fegear.contact import Engagement, PairCompliance, finite_element_compliance
+from fegear.contact.flank import FlankPair, flank_compliance
+from fegear.contact.flank.complementarity import approach_by_gap, hat_averages, solve_contact
+from fegear.design import LoadingFunction, Ramp
+from fegear.design.flank_forms import LENGTHS, NUMBERS, FormsAt, GroundRelief
+from fegear.design.flank_grid import FAMILIES, ReliefGrid, held_by
+from fegear.design.flank_loading import FlankLoading
+from fegear.design.flank_quick import quick_flanks
+from fegear.design.flank_scatter import NOMINAL, normal_scatter
+from fegear.design.flank_search import best_of_family, quick_values
+from fegear.design.flank_topography import design_lines, station_relief, table_nodes, tabulated, topography
+from fegear.design.flank_trials import FlankTrials
+from fegear.design.minimum_excitation import minimum_excitation
+from fegear.errors import RangeError
+from fegear.fem import solve_gear
+from fegear.fem.solid import SolidSettings, solve_solid
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+
+STEEL = Material(206.8e9, 0.3, 7850.0)
+COARSE = SolidSettings().scaled(2.0)
+MODULE, WIDTH, LOAD = 3e-3, 7.5e-3, 2250.0
+
+
+def gear(beta=15.0, hand="right", teeth=20):
+    tooth = Tooth(teeth, BasicRack(1.0, 1.25, 0.25), helix_angle=math.radians(beta))
+    return Gear(tooth, MODULE, 0.5 * tooth.root_radius * MODULE, WIDTH, STEEL, "strain", hand if beta else "spur")
+
+
+def solid(one, **how):
+    m = one.module
+    return solve_solid(one.tooth, one.twist * m, one.face_width / m, 0.3, one.bore_radius / m, COARSE, reach=2, **how)
+
+
+@pytest.fixture(scope="module")
+def flanks():
+    """A right-handed driver and its left-handed mate."""
+    first, second = gear(), gear(hand="left")
+    return FlankPair(GearPair(first, second), {"driver": solid(first), "driven": solid(second)}, panel=0.5, positions=9)
+
+
+@pytest.fixture(scope="module")
+def check(flanks):
+    """Compliances at roll positions that no design has seen."""
+    return flanks.compliance(LOAD)
+
+
+def loading(pair, slope=0.0, ends=0.0, length=None):
+    path = LoadingFunction(length or pair.path_length, pair.base_pitch, 0.5 * (pair.x_start + pair.x_end), Ramp(slope))
+    return FlankLoading(path, pair.face_width, ends)
+
+
+def designed(flanks, positions, share):
+    pair = flanks.pair
+    lines = design_lines(pair, share, positions, flanks.panel * MODULE)
+    known = flank_compliance(pair, flanks.gears, lines, LOAD)
+    return known, station_relief(known, np.zeros(lines.x.shape), share, LOAD)
+
+
+@pytest.fixture(scope="module")
+def exact(flanks):
+    return designed(flanks, 16, loading(flanks.pair))
+
+
+@pytest.fixture(scope="module")
+def trials(flanks, exact):
+    known, _ = exact
+    return FlankTrials(flanks.pair, known, np.zeros(known.lines.x.shape), np.array([LOAD]))
+
+
+def table_of(flanks, found):
+    x, z = table_nodes(found, flanks.pair)
+    removal = tabulated(found, flanks.pair, x, z)
+    return topography(flanks.pair, "driver", x, z, removal), removal
+
+
+def ripple(known, gap, load=LOAD):
+    return float(np.ptp(solve_contact(known, gap, np.array([load])).approach))
+
+
+def gap_of(flanks, known, table):
+    lines = known.lines
+    removal = table.removal(flanks.pair.roll_angle(lines.x, "driver"), lines.z)
+    return np.where(lines.present, removal, 0.0)
+
+
+@pytest.mark.parametrize(("slope", "ends", "ratio"), [(0.0, 0.0, None), (1.0, 2e-3, 1.2), (0.5, 3.75e-3, 1.0)])
+def test_all_pairs_together_carry_the_load_at_every_height_and_roll_position(flanks, slope, ends, ratio):
+    pair = flanks.pair
+    share = loading(pair, slope, ends, ratio and ratio * pair.base_pitch)
+    z = np.linspace(-0.5, 0.5, 4001) * WIDTH
+    twist = pair.driver.twist * pair.driver.base_radius
+    for roll in np.random.default_rng(1).uniform(0.0, pair.base_pitch, 5):
+        pairs = roll + pair.base_pitch * np.arange(-4, 5)[:, None] - twist * z
+        total = share.line_load(pairs, z).sum(axis=0)
+        np.testing.assert_allclose(total, share.over_face(z), rtol=1e-9)
+        assert np.trapezoid(total, z) == pytest.approx(1.0, abs=1e-6)
+    assert share.over_face(z).max() * WIDTH == pytest.approx(share.face_load_factor, rel=1e-6)
+
+
+def test_ends_that_meet_are_refused(flanks):
+    with pytest.raises(RangeError, match="end_length"):
+        loading(flanks.pair, ends=0.51 * WIDTH)
+
+
+def test_the_exact_topography_leaves_no_transmission_error(flanks, check, exact):
+    """Less than 1 % at positions that it has not seen, and half the step leaves a third or less."""
+    bare = ripple(check, np.zeros(check.lines.x.shape))
+    known, found = exact
+    # where it was designed every station touches and bears its design load
+    contact = solve_contact(known, found.relief, np.array([LOAD]))
+    assert np.ptp(contact.approach) < 5e-3 * bare
+    left = []
+    for _, one in (designed(flanks, 8, loading(flanks.pair)), (known, found)):
+        table, removal = table_of(flanks, one)
+        assert removal.min() == 0.0
+        left.append(ripple(check, gap_of(flanks, check, table)))
+    assert left[1] < 0.01 * bare
+    assert left[1] < left[0] / 3.0
+
+
+def test_off_the_design_load_it_leaves_the_more_the_farther(flanks, check, exact):
+    gap = gap_of(flanks, check, table_of(flanks, exact[1])[0])
+    left = [ripple(check, gap, f * LOAD) for f in (0.25, 0.6, 1.0, 1.3, 1.8)]
+    assert left[0] > left[1] > left[2] < left[3] < left[4]
+
+
+def test_a_short_design_zone_and_a_known_misalignment_leave_nothing_either(flanks, check):
+    pair = flanks.pair
+    share = loading(pair, 0.0, 1.5e-3, 1.2 * pair.base_pitch)
+    lines = design_lines(pair, share, 16, flanks.panel * MODULE)
+    known = flank_compliance(pair, flanks.gears, lines, LOAD)
+    askew = normal_scatter(6e-6, 2)  # levels of plus and minus one deviation
+    found = station_relief(known, askew.gaps(lines)[1], share, LOAD)
+    gap = gap_of(flanks, check, table_of(flanks, found)[0])
+    bare = ripple(check, askew.gaps(check.lines)[1])
+    assert ripple(check, gap + askew.gaps(check.lines)[1]) < 0.025 * bare
+    zone = share.over_path
+    beyond = lines.present & ((lines.x < zone.x_start - 0.05 * MODULE) | (lines.x > zone.x_end + 0.05 * MODULE))
+    assert beyond.any()
+    assert (found.force[beyond] == 0.0).all()
+    contact = solve_contact(known, found.relief + askew.gaps(lines)[1], np.array([LOAD]))
+    assert contact.force[beyond].max() < 1e-3 * LOAD
+
+
+@pytest.mark.long
+def test_a_spur_pair_that_cannot_move_along_the_axis_gets_the_relief_of_the_plane():
+    one = gear(0.0)
+    pair = GearPair(one, one)
+    solution = solve_solid(one.tooth, 0.0, WIDTH / MODULE, 0.3, one.bore_radius / MODULE, SolidSettings(), reach=1,
+                           plane_strain=True)  # fmt: skip
+    flanks = FlankPair(pair, {"driver": solution, "driven": solution}, panel=1.0, positions=4)
+    share = loading(pair, slope=1.0)
+    _, found = designed(flanks, 8, share)
+    plane = finite_element_compliance(solve_gear(one, reach=1))
+    wanted = minimum_excitation(Engagement(PairCompliance(pair, plane, plane)), share.over_path, LOAD)
+    x = found.lines.x
+    relief = wanted.driver_relief.at(x) + wanted.driven_relief.at(x)
+    on = found.lines.present
+    shift = (found.relief - relief)[on]
+    assert np.ptp(shift) < 2e-3 * np.ptp(relief[on])
+
+
+def test_forms_and_their_slopes(flanks):
+    pair = flanks.pair
+    rng = np.random.default_rng(3)
+    x, z = rng.uniform(pair.x_start, pair.x_end, 200), rng.uniform(-0.5, 0.5, 200) * WIDTH
+    forms = FormsAt.over(pair, x, z)
+    at = np.array([12e-6, 4.1e-3, 9e-6, 3.3e-3, 5e-6, 7e-6, 2.1e-3, -3e-6, 8e-6])
+    slopes = forms.slopes(at)
+    for k, step in enumerate(1e-6 * np.maximum(np.abs(at), 1e-6)):
+        more, less = at.copy(), at.copy()
+        more[k] += step
+        less[k] -= step
+        found = (forms.removed(more) - forms.removed(less)) / (2.0 * step)
+        np.testing.assert_allclose(slopes[k], found, atol=1e-6 * max(1e-3, np.abs(found).max()))
+    assert GroundRelief.of(at).removal(pair, x, z).min() >= 0.0
+    assert (GroundRelief().removal(pair, x, z) == 0.0).all()
+    assert GroundRelief.of(at).numbers.tolist() == at.tolist()
+    nothing = at.copy()
+    nothing[NUMBERS.index("end_relief")] = 0.0
+    assert GroundRelief.of(nothing).end_relief_length == 0.0
+    assert set(LENGTHS) | set(LENGTHS.values()) < set(NUMBERS)
+
+
+def test_the_approach_follows_gaps_as_said(trials):
+    known, lines = trials.known, trials.known.lines
+    gap = trials.gap(GroundRelief(18e-6, 4e-3, 18e-6, 4e-3, 6e-6).numbers)
+    rng = np.random.default_rng(5)
+    change = np.where(lines.present, rng.uniform(0.0, 1e-10, lines.x.shape), 0.0)
+    first, second = (solve_contact(known, g, np.array([LOAD])) for g in (gap, gap + change))
+    weights = approach_by_gap(known, first.force[:, :, 0])
+    np.testing.assert_allclose(weights.sum(axis=1), 1.0, rtol=1e-12)
+    found = (weights * hat_averages(lines, change)).sum(axis=1)
+    np.testing.assert_allclose((second.approach - first.approach)[:, 0], found, rtol=1e-4)
+
+
+def test_the_quick_way_is_the_exact_one_where_nothing_is_pressed_together(flanks, exact):
+    """Contacts of a fixed width, and as many coarse stations as fine ones."""
+    known = flank_compliance(flanks.pair, flanks.gears, exact[0].lines, LOAD, hertz="linear")
+    quick = quick_flanks(known, exact[1].force, 400, 5)
+    trials = FlankTrials(flanks.pair, known, np.zeros(known.lines.x.shape), np.array([LOAD]))
+    numbers = [GroundRelief(), GroundRelief(25e-6, 5e-3, 15e-6, 3e-3), GroundRelief(0, 0, 0, 0, 40e-6, 0, 0, 9e-6)]
+    gaps = np.stack([trials.gap(one.numbers) for one in numbers])
+    approach, factor = quick.solve(quick.gaps(gaps), LOAD)
+    for gap, z, k in zip(gaps, approach, factor, strict=True):
+        contact = solve_contact(known, gap, np.array([LOAD]))
+        np.testing.assert_allclose(z, contact.approach[:, 0], rtol=1e-9)
+        assert k == pytest.approx(float(trials.of_gap(gap).face_load_factor[0, 0]), rel=0.1)
+
+
+GRID = ReliefGrid(
+    tip_amounts=(10e-6, 20e-6), tip_lengths=(4e-3,), crownings=(4e-6,), end_amounts=(6e-6,), end_lengths=(2e-3,),
+    slopes=(3e-6,), biases=(-6e-6, 6e-6),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def found(trials, exact):
+    """The best of every family."""
+    best = {}
+    for family in FAMILIES:
+        starts = [best[held].relief for held in held_by(family)]
+        best[family] = best_of_family(trials, family, GRID, exact[1].force, starts=starts)
+    return best
+
+
+def test_the_best_of_the_grid_is_that_of_brute_force(trials, found):
+    for family in ("profile", "lead"):
+        numbers = GRID.numbers(family, GRID.combinations(family))
+        values = [trials.value(trials.of_numbers(one).peak_to_peak) for one in numbers]
+        best = found[family]
+        assert best.candidates == len(values)
+        assert best.proven
+        assert best.value_on_grid == pytest.approx(min(values), rel=1e-12)
+        assert best.on_grid.numbers.tolist() == numbers[int(np.argmin(values))].tolist()
+
+
+def test_more_freedom_never_leaves_more_and_descents_stay_in_the_box(trials, found):
+    for family, best in found.items():
+        assert best.value <= best.value_on_grid
+        assert trials.value(trials.of_numbers(best.relief.numbers).peak_to_peak) == pytest.approx(best.value, rel=1e-6)
+        low, high = GRID.limits(family)
+        at = best.relief.numbers
+        assert ((at >= low) | (at == 0.0)).all()
+        assert (at <= high).all()
+        for held in held_by(family):
+            assert best.value <= found[held].value
+            assert best.value_on_grid <= found[held].value_on_grid
+    assert held_by("profile-lead-and-bias") == tuple(f for f in FAMILIES if f != "profile-lead-and-bias")
+    assert found["profile"].value < 0.2 * trials.value(trials.of_numbers(np.zeros(9)).peak_to_peak)
+
+
+def test_scatter_of_nothing_is_the_nominal_pair(trials):
+    assert normal_scatter(0.0, 3) is NOMINAL
+    scatter = normal_scatter(5e-6, 3)
+    moments = [float(scatter.weights @ (scatter.over_face / 5e-6) ** n) for n in range(6)]
+    np.testing.assert_allclose(moments, [1.0, 0.0, 1.0, 0.0, 3.0, 0.0], atol=1e-12)
+    numbers = GroundRelief(18e-6, 4e-3, 18e-6, 4e-3, 5e-6).numbers
+    small = replace(trials, scatter=normal_scatter(1e-14, 3)).of_numbers(numbers)
+    still = trials.of_numbers(numbers)
+    np.testing.assert_allclose(small.te, np.broadcast_to(still.te, small.te.shape), rtol=1e-7)
+    # an aligned pair of mirrored gears with symmetric relief does not know which way its shafts stand askew
+    askew = replace(trials, scatter=scatter).of_numbers(numbers).peak_to_peak[:, 0]
+    assert askew[0] == pytest.approx(askew[2], rel=0.05)
+
+
+def test_the_gradient_of_the_value_is_that_of_differences(trials):
+    scattered = replace(trials, scatter=normal_scatter(5e-6, 3), loads=np.array([0.6 * LOAD, LOAD]))
+    at = GroundRelief(18e-6, 4e-3, 17e-6, 3.8e-3, 5e-6, 4e-6, 2e-3, 2e-6, 5e-6).numbers
+    tried = scattered.of_numbers(at, slope=True)
+    value, gradient = scattered.tangent(tried, np.zeros(9))
+    assert value == pytest.approx(scattered.value(tried.peak_to_peak), rel=1e-12)
+    for k in (0, 3, 4, 7):
+        step = np.zeros(9)
+        step[k] = 1e-5 * abs(at[k])
+        ahead = scattered.value(scattered.of_numbers(at + step).peak_to_peak)
+        assert (ahead - value) / step[k] == pytest.approx(gradient[k], rel=0.02, abs=1e-3 * np.abs(gradient).max())
+
+
+def test_the_largest_face_load_factor_is_kept_or_refused(trials, exact):
+    force = exact[1].force
+    askew = replace(trials, apart=normal_scatter(9e-6, 2).gaps(trials.known.lines)[1])
+    _, _, factor = quick_values(quick_flanks(askew.known, force, 5, askew.cells), askew, "lead", GRID)
+    most = float(np.sort(factor)[len(factor) // 2])
+    best = best_of_family(askew, "lead", GRID, force, most)
+    assert float(askew.of_numbers(best.relief.numbers).face_load_factor.max()) <= most
+    with pytest.raises(RangeError, match="largest_face_load_factor"):
+        best_of_family(askew, "lead", GRID, force, 1.0001)
