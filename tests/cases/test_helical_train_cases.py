@@ -17,6 +17,7 @@ from fegear.engine.stage import Task
 from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
 from fegear.solution_cache import SolutionCache
+from fegear.studies.cost.asked import asked
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_stage_train.toml"
 COARSE = (
@@ -206,3 +207,10 @@ def test_what_contradicts_the_teeth_is_refused(overrides, words):
 def test_unknown_pairs_are_named():
     with pytest.raises(InputError, match="is no pair of this case"):
         read_scene(CASE, ['transmissibility.stage.mesh.pair="J"'])
+
+
+def test_the_cost_of_teeth_over_their_face_is_not_studied():
+    with pytest.raises(InputError, match="pair first is loaded over its face"):
+        asked(read_scene(CASE, COARSE))
+    scene = read_scene(CASE, [*COARSE, 'cost.quantities=["te-peak-to-peak"]'])
+    assert asked(scene).pairs == ("second",)

@@ -17,6 +17,7 @@ from fegear.studies.cost.quantities import OF_GEAR, Quantity
 if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.case.train import TrainPart
 
 
 #: Quantities that each wanted result stands for.
@@ -168,7 +169,27 @@ def _mesh(scene: Scene, pair: str, names: list[str]) -> str:
             "cost.quantities", '"dynamic-factor"', "needs a train, speeds, and an effect of motion in time",
             "describe them and set effects.contact_loss = true, or remove the quantity",
         )  # fmt: skip
+    if mesh and train is not None and _over_the_face(scene, train, names):
+        return ""
     return mesh if mesh and ("dynamic-factor" in names or not math.isnan(speed.one_speed)) else ""
+
+
+def _over_the_face(scene: Scene, train: TrainPart, names: list[str]) -> bool:
+    """Whether the train has teeth that are loaded over their face, whose cost is not studied here.
+
+    Raises
+    ------
+    InputError
+        If the dynamics of such a train are asked for.
+    """
+    wide = [name for name in map(train.loaded_pair_of, train.mesh) if name in scene.wide_pairs]
+    moving = sorted({"tooth-force", "dynamic-factor"} & set(names))
+    if wide and moving:
+        raise InputError(
+            "cost.quantities", f'"{moving[0]}"', f"needs plane teeth in all of the train, and pair {wide[0]} is loaded "
+            "over its face", "remove the quantity",
+        )  # fmt: skip
+    return bool(wide)
 
 
 def asked(scene: Scene) -> Asked:
