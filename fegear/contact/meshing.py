@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -54,6 +54,16 @@ class Contacts:
     relative_radius: Array
     edge: Array
     gap: Array
+
+
+class Touching(NamedTuple):
+    """Places of contact of a pair; see `Contacts`."""
+
+    gap: Array
+    driver_length: Array
+    driven_length: Array
+    relative_radius: Array
+    edge: Array
 
 
 @dataclass(frozen=True)
@@ -115,16 +125,26 @@ class Meshing:
         at = np.atleast_1d(np.asarray(x, dtype=float))
         number = self.pair_numbers
         xs = at + number[:, None] * pair.base_pitch
+        found = self.touching(xs)
+        rb1, rb2 = pair.driver.base_radius, pair.driven.base_radius
+        return Contacts(
+            number, xs, found.gap < np.inf, np.hypot(rb1, found.driver_length), np.hypot(rb2, found.driven_length),
+            found.driver_length / rb1, found.driven_length / rb2, found.relative_radius, found.edge, found.gap,
+        )  # fmt: skip
+
+    def touching(self, x: Array) -> Touching:
+        """Contact of a pair at places along the line of action [m], of any shape; infinitely apart if there is none."""
+        pair = self.pair
         slack = 1e-10 * pair.base_pitch
-        inside = (xs >= pair.x_start - slack) & (xs <= pair.x_end + slack)
-        on_path = np.clip(xs, pair.x_start, pair.x_end)
+        inside = (x >= pair.x_start - slack) & (x <= pair.x_end + slack)
+        on_path = np.clip(x, pair.x_start, pair.x_end)
         length1 = np.array(pair.flank_curvature_radius(on_path, "driver"))
         length2 = np.array(pair.flank_curvature_radius(on_path, "driven"))
         gap = np.where(inside, 0.0, np.inf)
         curvature = 1.0 / length1 + 1.0 / length2
-        edge = np.full(xs.shape, -np.inf)
+        edge = np.full(x.shape, -np.inf)
         if self.corner_contact:
-            for corner, beyond in zip(self.corners, (pair.x_start - xs, xs - pair.x_end), strict=True):
+            for corner, beyond in zip(self.corners, (pair.x_start - x, x - pair.x_end), strict=True):
                 edge = np.maximum(edge, np.where(inside, -corner.distance(on_path), -np.inf))
                 off = ~inside & (beyond > 0.0) & (beyond < pair.base_pitch)
                 if not (corner.exists and off.any()):
@@ -133,8 +153,5 @@ class Meshing:
                 (length1 if corner.flank_of == "driver" else length2)[off] = flank
                 curvature[off] = 1.0 / flank + 1.0 / corner.radius_of_curvature
                 edge[off] = -np.inf if corner.rounding > 0.0 else slope / curvature[off]
-        rb1, rb2 = pair.driver.base_radius, pair.driven.base_radius
-        return Contacts(
-            number, xs, gap < np.inf, np.hypot(rb1, length1), np.hypot(rb2, length2), length1 / rb1, length2 / rb2,
-            np.maximum(1.0 / curvature, 1e-6 * pair.driver.module), edge, gap,
-        )  # fmt: skip
+        relative = np.maximum(1.0 / curvature, 1e-6 * pair.driver.module)
+        return Touching(gap, length1, length2, relative, edge)

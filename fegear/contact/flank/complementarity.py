@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.flank.averages import GAUSS, LocalMatrix
+from fegear.contact.load_sharing import edge_law
 from fegear.errors import ConvergenceError
 from fegear.frozen import ReadOnlyArrays
 from fegear.tally import note, tallied
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 _MANY_AT_ONCE, _MOST_STEPS = 15, 400
 #: Share of the mean line load below which the logarithm is continued by its tangent.
 _SMALLEST = 1e-9
+#: From a rounded tip the sharp edge is as far away as this [m].
+_FAR = 1e3
 
 
 @dataclass(frozen=True)
@@ -186,14 +189,26 @@ def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.
         if known.fixed_half_width is None:
             load = np.maximum(local.read(near, f), least)
             q = known.width_factor[place]
-            slope = -s * (np.log((a * q[:, :-1] + b * q[:, 1:]) * load / unit[:, :-1] ** 2) + own)
-            local.add(near, part * slope, part * s * load)
+            square = (a * q[:, :-1] + b * q[:, 1:]) * load
+            psi, change = _at_edges(known, place, (a, b), square)
+            slope = -s * (np.log(square / unit[:, :-1] ** 2) + own - 2.0 * psi + own * change)
+            local.add(near, part * slope, part * s * load * (1.0 + change))
         else:
             width = known.fixed_half_width[place]
             relative = (a * width[:, :-1] + b * width[:, 1:]) / unit[:, :-1]
             local.add(near, -2.0 * s * part * np.log(relative), np.zeros_like(part))
     local.into(matrix, density)
     return matrix, local.constant[:, local.inside] * density
+
+
+def _at_edges(known: FlankCompliance, place: Index, share: tuple[float, float], square: Array) -> tuple[Array, Array]:
+    """What sharp tip edges add beside and beyond the ends of the path: psi and t dpsi/dt of `edge_law`, (B, M - 1)."""
+    edges = known.lines.edges
+    if edges is None:
+        return np.zeros_like(square), np.zeros_like(square)
+    tilt = np.maximum(edges.tilt[place], -_FAR)
+    at = share[0] * tilt[:, :-1] + share[1] * tilt[:, 1:]
+    return edge_law(at / np.sqrt(square))
 
 
 def _bordered(matrix: Array, gap: Array, active: Mask, total: Array) -> tuple[Array, Array, Array]:

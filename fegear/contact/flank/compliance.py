@@ -129,8 +129,7 @@ def flank_compliance(
     FlankCompliance
     """
     module, lean = pair.driver.module, math.cos(pair.driver.base_helix_angle)
-    rho = {member: pair.flank_curvature_radius(lines.x, member) for member in MEMBERS}
-    across = np.maximum(rho["driver"] * rho["driven"] / (rho["driver"] + rho["driven"]), 1e-6 * module) / lean
+    across = _relative_radius(pair, lines) / lean
     moduli = [pair.gear(m).material for m in MEMBERS]
     softness = sum((1.0 - m.poisson_ratio**2) / m.young_modulus for m in moduli)
     factor = 4.0 * across * softness / math.pi
@@ -232,9 +231,17 @@ def _pressed(
 def line_bands(pair: GearPair, member: Member, body: FlankBody, lines: ContactLines) -> Bands:
     """Bands of all stations on a gear's flank, line by line as `places_of` has them."""
     module = pair.driver.module
-    radius = np.clip(pair.radius(lines.x, member) / module, *_flank(body))[lines.present]
+    radius = np.clip(lines.radius(pair, member) / module, *_flank(body))[lines.present]
     heights = (lines.z[lines.present] + pair.face_height(member)) / module
     return _bands(body, radius, heights, places_of(lines)[1])
+
+
+def _relative_radius(pair: GearPair, lines: ContactLines) -> Array:
+    """Relative radius of curvature of both flanks, or of flank and edge, in the transverse section, (P, M) [m]."""
+    if lines.edges is not None:
+        return lines.edges.relative_radius
+    first, second = (pair.flank_curvature_radius(lines.x, member) for member in MEMBERS)
+    return np.maximum(first * second / (first + second), 1e-6 * pair.driver.module)
 
 
 def _line_means(lines: ContactLines, values: Array) -> Array:

@@ -63,11 +63,11 @@ class FlankGaps(ReadOnlyArrays):
         """Gap at the stations, shape (P, M) [m]: the sum of all, where unmodified flanks touch."""
         gap = self.of_pair(lines.pair, lines.z)
         for member in MEMBERS:
-            gap = gap + self.removed(member, pair.roll_angle(lines.x, member), lines.z + pair.face_height(member))
+            gap = gap + self.removed(member, lines.roll_angle(pair, member), lines.z + pair.face_height(member))
         if self.tilt != PARALLEL:
             note("misaligned flanks")
             gap = gap + self.tilt.gap(pair, lines.x, lines.z)
-        return np.asarray(gap)
+        return np.asarray(gap if lines.edges is None else gap + lines.edges.gap)
 
     def removed(self, member: Member, roll: Array, z: Array) -> Array:
         """What is missing from a gear's flank at roll angles [rad] and heights on its own face [m]."""

@@ -2,7 +2,8 @@
 
 In the plane of action, x along the transverse line of action and z along the axes, the contact line of pair j at the
 roll position x_0 is straight: x = x_0 + j p_bt - z tan(beta_b), the twist of the driver positive for a right hand. It
-ends at the tips and form circles in use and at the ends of the common face (ISO 21771, 5.4).
+ends at the tips and form circles in use and at the ends of the common face (ISO 21771, 5.4), or goes on along the tip
+edges (`fegear.contact.flank.tip_edges`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.flank.tip_edges import edge_reach, tip_edges
 from fegear.errors import InputError
 from fegear.frozen import ReadOnlyArrays
 
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.arrays import Array, Mask
-    from fegear.geometry.pair import GearPair
+    from fegear.contact.flank.tip_edges import TipEdges
+    from fegear.geometry.pair import GearPair, Member
 
 #: A contact line shorter than this is left out [modules]: it is no longer long beside its Hertzian width.
 SHORTEST_LINE = 0.15
@@ -44,9 +47,11 @@ class ContactLines(ReadOnlyArrays):
     low, high : float
         Ends of the common face [m].
     at_edge : ndarray of bool
-        Whether the line ends here at a tip or form circle.
+        Whether a line ends here at a tip or form circle, or stands on a sharp tip edge.
     weight : ndarray, shape (P,)
         Part of a base pitch that each roll position stands for; they add up to 1. Empty: all alike.
+    edges : TipEdges or None
+        What the stations touch where lines go on along the tip edges; None where they end there.
     """
 
     roll: Array
@@ -58,6 +63,20 @@ class ContactLines(ReadOnlyArrays):
     high: float
     at_edge: Mask
     weight: Array = field(default_factory=lambda: np.empty(0))
+
+    edges: TipEdges | None = None
+
+    def roll_length(self, pair: GearPair, member: Member) -> Array:
+        """Roll length of one gear where the stations touch, shape (P, M) [m]: on the path its radius of curvature."""
+        return pair.flank_curvature_radius(self.x, member) if self.edges is None else self.edges.length(member)
+
+    def roll_angle(self, pair: GearPair, member: Member) -> Array:
+        """Roll angle of one gear where the stations touch, shape (P, M) [rad]."""
+        return self.roll_length(pair, member) / pair.gear(member).base_radius
+
+    def radius(self, pair: GearPair, member: Member) -> Array:
+        """Radius of one gear where the stations touch, shape (P, M) [m]."""
+        return np.hypot(pair.gear(member).base_radius, self.roll_length(pair, member))
 
     def mean(self, values: Array) -> Array:
         """Mean over a base pitch of what is known at the roll positions, shape (P, ...)."""
@@ -108,7 +127,9 @@ def life_of_contact(pair: GearPair) -> tuple[float, float]:
     return pair.x_start - reach, pair.x_end + reach
 
 
-def contact_lines(pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLike = ()) -> ContactLines:
+def contact_lines(
+    pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLike = (), most_gap: float = 0.0
+) -> ContactLines:
     """Divide the contact lines of all pairs in reach.
 
     Parameters
@@ -120,6 +141,8 @@ def contact_lines(pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLi
         Length of a panel along the face, at most [m].
     weight : array_like, shape (P,) or (0,)
         Part of a base pitch that each roll position stands for.
+    most_gap : float
+        Lines go on along tip edges up to this distance from the mate [m]; 0 for lines that end at tips.
 
     Returns
     -------
@@ -133,17 +156,21 @@ def contact_lines(pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLi
     positions = np.atleast_1d(np.asarray(roll, dtype=float))
     half, slope, pitch = 0.5 * pair.face_width, base_twist(pair), pair.base_pitch
     shortest = shortest_line(pair)
+    before, after = edge_reach(pair, most_gap)
+    start, end = pair.x_start - before, pair.x_end + after
     found: list[list[tuple[int, Array, Array, tuple[bool, bool]]]] = []
     for x0 in positions.tolist():
         lines = []
-        first = math.floor((pair.x_start - abs(slope) * half - x0) / pitch)
-        last = math.ceil((pair.x_end + abs(slope) * half - x0) / pitch)
+        first = math.floor((start - abs(slope) * half - x0) / pitch)
+        last = math.ceil((end + abs(slope) * half - x0) / pitch)
         for j in range(first, last + 1):
-            low, high, edges = _limits(pair, x0 + j * pitch, slope, half)
+            at = x0 + j * pitch
+            low, high, edges = _limits(at, slope, half, (start, end), 1e-10 * pitch)
             if high - low < shortest * (1.0 - 1e-9):
                 continue
-            z = np.linspace(low, high, max(1, math.ceil((high - low) / panel - 1e-9)) + 1)
-            lines.append((j, np.clip(x0 + j * pitch - slope * z, pair.x_start, pair.x_end), z, edges))
+            tips = sorted((at - x) / slope for x in (pair.x_start, pair.x_end)) if slope and most_gap > 0.0 else []
+            z = _stations(low, high, tips, panel)
+            lines.append((j, np.clip(at - slope * z, start, end), z, edges))
         if not lines:
             raise InputError(
                 "pair", f"roll position {x0 * 1e3:.6g} mm", "has no tooth pair in reach of the line of action",
@@ -161,14 +188,29 @@ def contact_lines(pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLi
             number[p, here], present[p, here], x_[p, here], z_[p, here] = j, True, x, z
             at_edge[p, at], at_edge[p, at + z.size - 1] = edges
             at += z.size
-    return ContactLines(positions, number, present, x_, z_, -half, half, at_edge, np.asarray(weight, dtype=float))
+    touched = tip_edges(pair, x_) if most_gap > 0.0 else None
+    if touched is not None:
+        on_edge = np.where(touched.gap > 0.0, touched.tilt > -np.inf, touched.tilt >= -1e-9 * pair.base_pitch)
+        at_edge = present & (on_edge | (at_edge & (touched.gap == 0.0)))
+    return ContactLines(
+        positions, number, present, x_, z_, -half, half, at_edge, np.asarray(weight, dtype=float), touched
+    )
 
 
-def _limits(pair: GearPair, x: float, slope: float, half: float) -> tuple[float, float, tuple[bool, bool]]:
-    """Between which heights a line is on the path and on the face, and whether its ends are tip or form circles."""
-    slack = 1e-10 * pair.base_pitch
+def _stations(low: float, high: float, tips: list[float], panel: float) -> Array:
+    """Stations of a line: equal panels, from tip edge to tip edge where these lie on it."""
+    inside = [z for z in tips if low + 0.5 * panel < z < high - 0.5 * panel]
+    ends = [low, *inside, high]
+    parts = [np.linspace(a, b, max(1, math.ceil((b - a) / panel - 1e-9)) + 1) for a, b in itertools.pairwise(ends)]
+    return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
+
+
+def _limits(
+    x: float, slope: float, half: float, path: tuple[float, float], slack: float
+) -> tuple[float, float, tuple[bool, bool]]:
+    """Between which heights a line is on the path and on the face, and whether its ends are those of the path."""
     if slope == 0.0:
-        inside = pair.x_start - slack <= x <= pair.x_end + slack
+        inside = path[0] - slack <= x <= path[1] + slack
         return (-half, half, (False, False)) if inside else (0.0, -1.0, (False, False))
-    ends = sorted(((x - pair.x_end) / slope, (x - pair.x_start) / slope))
+    ends = sorted(((x - path[1]) / slope, (x - path[0]) / slope))
     return max(-half, ends[0]), min(half, ends[1]), (ends[0] > -half, ends[1] < half)

@@ -16,6 +16,7 @@ from fegear.contact.flank.gaps import FlankGaps
 from fegear.contact.flank.lines import base_twist, contact_lines
 from fegear.contact.flank.positions import roll_points
 from fegear.contact.flank.swept import load_below, swept_mean
+from fegear.contact.flank.tip_edges import edge_reach
 from fegear.errors import InputError
 from fegear.frozen import ReadOnlyArrays
 from fegear.geometry.pair import MEMBERS
@@ -210,6 +211,8 @@ class FlankPair:
         Length of a panel along the face, at most [modules].
     positions : int
         Roll positions over one base pitch.
+    most_gap : float
+        Contact lines go on along tip edges up to this distance from the mate's flank [m]; 0 for lines that end there.
     cache : SolutionCache
         Where what gaps and loads do not change is recalled from and kept; by default a memory of this pair's own.
     """
@@ -220,12 +223,13 @@ class FlankPair:
     hertz: Hertz = "load-dependent"
     panel: float = 0.5
     positions: int = 16
+    most_gap: float = 0.0
     cache: SolutionCache = field(default_factory=partial(SolutionCache, most=_KEPT), compare=False, repr=False)
 
     @property
     def points(self) -> Panels:
         """Roll positions and their weights over a base pitch, for means and Fourier series: see `roll_points`."""
-        return roll_points(self.pair, self.positions)
+        return roll_points(self.pair, self.positions, edge_reach(self.pair, self.most_gap))
 
     @property
     def roll(self) -> Array:
@@ -239,7 +243,7 @@ class FlankPair:
                 raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
         points = self.points
         lines = contact_lines(
-            self.pair, points.x, self.panel * self.pair.driver.module, points.weights / points.period
+            self.pair, points.x, self.panel * self.pair.driver.module, points.weights / points.period, self.most_gap
         )  # fmt: skip
         with one_thread():
             return flank_compliance(

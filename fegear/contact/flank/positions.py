@@ -25,15 +25,19 @@ _FEWEST, _SHORTEST = 3, 5e-3
 _BESIDE = 1e-7
 
 
-def line_breaks(pair: GearPair) -> Array:
-    """Roll positions in one base pitch from x_start on at which contact lines begin, end, or reach a corner [m]."""
+def line_breaks(pair: GearPair, beyond: tuple[float, float] = (0.0, 0.0)) -> Array:
+    """Roll positions in one base pitch from x_start on at which contact lines begin, end, or reach a corner [m].
+
+    Along tip edges lines go on `beyond` start and end of the path [m].
+    """
     reach = abs(base_twist(pair)) * 0.5 * pair.face_width
     late = abs(base_twist(pair)) * shortest_line(pair)  # a line counts once it is as long as that
-    places = [pair.x_start - reach + late, pair.x_start + reach, pair.x_end - reach, pair.x_end + reach - late]
+    start, end = pair.x_start - beyond[0], pair.x_end + beyond[1]
+    places = [start - reach + late, pair.x_start + reach, pair.x_end - reach, end + reach - late]
     return np.unique(np.mod(np.array(places) - pair.x_start, pair.base_pitch)) + pair.x_start
 
 
-def roll_points(pair: GearPair, count: int) -> Panels:
+def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 0.0)) -> Panels:
     """Roll positions and what part of a base pitch each stands for.
 
     Parameters
@@ -41,13 +45,15 @@ def roll_points(pair: GearPair, count: int) -> Panels:
     pair : GearPair
     count : int
         Number of positions. With fewer than three to a piece they are the middles of equal parts of the base pitch.
+    beyond : (float, float)
+        How far lines go on along tip edges before the start and after the end of the path [m].
 
     Returns
     -------
     Panels
     """
     pitch = pair.base_pitch
-    breaks = line_breaks(pair)
+    breaks = line_breaks(pair, beyond)
     ends = np.append(breaks, breaks[0] + pitch)
     pieces = [(a, b) for a, b in pairwise(ends.tolist()) if b - a > _SHORTEST * pitch]
     if count < _FEWEST * len(pieces):
