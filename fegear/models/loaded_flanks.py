@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.models.pair_inputs import Flanks
 
 #: Effects that loaded flanks know.
-FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "misalignment")
+FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact", "misalignment")
 #: Panels per module of face.
 _PANELS_PER_MODULE = 4.0
 

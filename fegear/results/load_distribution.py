@@ -124,9 +124,8 @@ def _loads(name: str, data: LoadedFlanksData) -> Table:
 def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
     name, found, i = inputs.name, data.found, data.nominal
     te, lines = found.transmission_error[:, i], found.lines
-    pressure, load = found.pressure[:, :, i], found.line_load[:, :, i]
+    pressure = found.pressure[:, :, i]
     inner = np.where(lines.at_edge, 0.0, pressure)
-    largest = float(np.where(lines.at_edge, 0.0, load).max())
     p, s = np.unravel_index(int(inner.argmax()), inner.shape)
     k_error = float(data.error.face_load_factor[i])
     where = f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
@@ -137,9 +136,10 @@ def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
               "of the transmission error over the roll positions"),
         Value(f"{name}.K_Hbeta", float(found.face_load_factor[i]), "", k_error,
               "largest load per face width over the mean one, averaged over a base pitch"),
-        Value(f"{name}.largest_line_load", largest, "N/mm", None,
+        Value(f"{name}.largest_line_load", float(found.largest_line_load[i]), "N/mm",
+              float(data.error.largest_line_load[i]),
               "on one contact line, tips and form circles left out"),
-        Value(f"{name}.largest_hertz_pressure", float(inner.max()), "MPa", None,
+        Value(f"{name}.largest_hertz_pressure", float(inner.max()), "MPa", float(data.error.largest_pressure[i]),
               f"smooth flanks, tips and form circles left out, {where}"),
         Value(f"{name}.largest_share", float(found.share[:, :, i].max()), "",
               float(data.error.share[:, :, i].max()), "of one tooth pair"),
@@ -156,10 +156,24 @@ def _remarks(name: str, data: LoadedFlanksData) -> list[str]:
     lines, load = found.lines, found.line_load[:, :, i]
     remarks = []
     if (edge := float(np.where(lines.at_edge, load, 0.0).max())) > 0.0:
+        tips = lines.edges is not None
         remarks.append(
-            f"Pair {name}: contact lines end at tips or form circles under up to {edge * 1e-3:.4g} N/mm. A sharp edge "
-            "has no largest pressure: the number beside it grows with the number of panels, and largest_hertz_pressure "
-            "leaves it out. Relieve the tips to see what they carry."
+            f"Pair {name}: "
+            + ("sharp tip edges carry" if tips else "contact lines end at tips or form circles under")
+            + f" up to {edge * 1e-3:.4g} N/mm. A sharp edge has no largest pressure: the number beside it grows with "
+            "the number of panels, and largest_hertz_pressure leaves it out. "
+            + (
+                "Round the tips (tip_radius_rounding) to give it one."
+                if tips
+                else "Relieve the tips, or set effects.corner_contact = true for what their edges carry."
+            )
+        )
+    if lines.edges is not None:
+        gap = np.where(load > 0.0, lines.edges.gap, 0.0)
+        on = (found.contact.force[:, :, i] * (lines.edges.gap > 0.0)).sum(axis=1) / found.load[i]
+        remarks.append(
+            f"Pair {name}: tip edges carry up to {float(on.max()):.2%} of the load, {float(found.lines.mean(on)):.2%} "
+            f"on the average over a base pitch, and touch up to {float(gap.max()) * 1e6:.3g} um beyond the path."
         )
     ends = np.isclose(np.abs(lines.z), lines.high, rtol=1e-9) & lines.present
     if (end := float(np.where(ends, load, 0.0).max())) > 0.0:

@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 _OF_GAPS = ("relief", "spacing_errors", "misalignment")
 #: Share of the mean transmission error that gaps may be off by without a remark.
 _UNREMARKED = 0.02
+#: How often contact lines may be continued farther along tip edges that turn out to be loaded.
+_LONGER_EDGES = 3
+#: Roll positions that show what tip edges change.
+_FEW = 12
 #: Seconds of one contact line on one gear, and of the contact at one roll position.
 _LINE, _CONTACT = 0.03, 0.004
 
@@ -91,6 +95,7 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedFlanksData:
 def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlanksData:
     from fegear.contact.flank import FlankPair
     from fegear.contact.flank.error import flank_error
+    from fegear.contact.flank.tip_edges import usual_gap
     from fegear.contact.flank.touching import beside_the_lines, unloaded_error
 
     effects = asked.effects
@@ -99,14 +104,22 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlank
     coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
     flanks = FlankPair(
         asked.pair, fine, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions,
-        work.cache,
+        usual_gap(asked.pair, max(asked.loads)) if effects.corner_contact else 0.0, work.cache,
     )  # fmt: skip
     gaps = asked.gaps(**{effect: effects.is_on(effect) for effect in _OF_GAPS})
     known = flanks.compliance(asked.nominal)
     found = flanks.solve(asked.loads, gaps, known)
+    for _ in range(_LONGER_EDGES):
+        if not found.reaches_the_last_edges:
+            break
+        flanks = replace(flanks, most_gap=2.0 * flanks.most_gap)
+        known = flanks.compliance(asked.nominal)
+        found = flanks.solve(asked.loads, gaps, known)
     error = flank_error(flanks, found, coarse, gaps)
     neglected = {
-        effect: _with(effect, asked, flanks, known, gaps)
+        effect: _with_edges(asked, flanks, gaps, found)
+        if effect == "corner_contact"
+        else _with(effect, asked, flanks, known, gaps)
         for effect in FLANK_EFFECTS
         if not effects.is_on(effect) and asked.has_data(effect)
     }
@@ -114,6 +127,15 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlank
     beside = beside_the_lines(asked.pair, gaps, found.lines)
     nominal = asked.loads.index(asked.nominal)
     return LoadedFlanksData(asked, flanks, known, gaps, found, error, nominal, neglected, unloaded, beside)
+
+
+def _with_edges(asked: FlanksToLoad, flanks: FlankPair, gaps: FlankGaps) -> tuple[float, float]:
+    """The same with contact along tip edges, at no more roll positions than means over a base pitch need."""
+    from fegear.contact.flank.tip_edges import usual_gap
+
+    edged = replace(flanks, positions=min(flanks.positions, _FEW), most_gap=usual_gap(asked.pair, asked.nominal))
+    found = edged.solve([asked.nominal], gaps)
+    return float(found.mean_transmission_error[0]), float(found.face_load_factor[0])
 
 
 def _with(
@@ -166,6 +188,7 @@ def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
         "hertz": "contacts do not widen with their load",
         "relief": "gears have a relief or lead modifications that are left out",
         "spacing_errors": "gears have spacing_errors that are left out",
+        "corner_contact": "contact lines end at the tips instead of going on along their edges",
         "misalignment": "the pair has a misalignment or line_error that is left out",
     }
     found, i = data.found, data.nominal

@@ -42,6 +42,8 @@ class FlankError:
     mean: Array
     peak_to_peak: Array
     face_load_factor: Array
+    largest_line_load: Array
+    largest_pressure: Array
     coarse: LoadedFlanks
 
 
@@ -70,7 +72,8 @@ def flank_error(
     return FlankError(
         np.abs(again - te), share, np.abs(other.mean_transmission_error - found.mean_transmission_error),
         np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)) + _between_positions(flanks.points, te),
-        np.abs(factor - found.face_load_factor),
+        np.abs(factor - found.face_load_factor), np.abs(other.largest_line_load - found.largest_line_load),
+        np.abs(other.largest_pressure - found.largest_pressure),
         other,
     )  # fmt: skip
 

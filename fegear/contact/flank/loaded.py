@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 #: Parts of the face whose loads are told apart: so long at most [modules], so many at least.
 _CELL, _FEWEST_CELLS = 0.5, 4
+#: Share of the largest gap of a tip edge from which on it is one of the last.
+_LAST = 0.8
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,30 @@ class LoadedFlanks(ReadOnlyArrays):
     def pressure(self) -> Array:
         """Largest Hertzian pressure at the stations [Pa], shape (P, M, L)."""
         return self.known.pressure(self.line_load)
+
+    @property
+    def _off_edges(self) -> Array:
+        """1 at stations, 0 at those on tips, form circles and sharp edges, where nothing is the largest."""
+        return np.where(self.lines.at_edge, 0.0, 1.0)[:, :, None]
+
+    @property
+    def largest_line_load(self) -> Array:
+        """[N/m], shape (L,), tips and form circles left out."""
+        return np.asarray((self.line_load * self._off_edges).max(axis=(0, 1)))
+
+    @property
+    def largest_pressure(self) -> Array:
+        """Hertzian [Pa], shape (L,), tips and form circles left out."""
+        return np.asarray((self.pressure * self._off_edges).max(axis=(0, 1)))
+
+    @property
+    def reaches_the_last_edges(self) -> bool:
+        """Whether tip edges are loaded that are as far from their mates as contact lines go on: to be continued."""
+        edges = self.lines.edges
+        if edges is None:
+            return False
+        far = edges.gap > _LAST * edges.gap[self.lines.present].max()
+        return bool((self.contact.force * (far & (edges.gap > 0.0))[:, :, None]).any())
 
     @property
     def pair_numbers(self) -> Array:

@@ -57,7 +57,8 @@ def touching_gaps(pair: GearPair, gaps: FlankGaps, lines: ContactLines) -> Array
 
 def beside_the_lines(pair: GearPair, gaps: FlankGaps, lines: ContactLines) -> float:
     """Largest difference of `FlankGaps.at` from the least gaps up the flanks, but for a shift of all [m]."""
-    found = np.where(lines.present, touching_gaps(pair, gaps, lines), np.inf)
+    on_path = lines.present if lines.edges is None else lines.present & (lines.edges.gap == 0.0)
+    found = np.where(on_path, touching_gaps(pair, gaps, lines), np.inf)
     on = np.isfinite(found)
     change = gaps.at(pair, lines)[on] - found[on]
     return float(np.abs(change - np.median(change)).max()) if change.size else 0.0

@@ -1,0 +1,120 @@
+"""Contact lines that go on along tip edges: exact gaps, the plane's corner contact, no jump at small helix angles."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fegear.contact import Engagement, PairCompliance, finite_element_compliance
+from fegear.contact.flank import FlankGaps, FlankPair, contact_lines, flank_compliance
+from fegear.contact.flank.complementarity import solve_contact
+from fegear.contact.flank.tip_edges import edge_reach, usual_gap
+from fegear.contact.flank.touching import touching_gaps
+from fegear.fem import solve_gear
+from fegear.fem.solid import SolidSettings, solve_solid
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+
+STEEL = Material(206.8e9, 0.3, 7850.0)
+MODULE = 3e-3
+
+
+def gear(beta, hand="right", teeth=20, width=9e-3, rounding=0.0):
+    tooth = Tooth(teeth, BasicRack(1.0, 1.25, 0.25), helix_angle=math.radians(beta), tip_rounding=rounding)
+    bore = 0.5 * tooth.root_radius * MODULE
+    return Gear(tooth, MODULE, bore, width, STEEL, "strain", hand if beta else "spur")
+
+
+def solid(one, settings=None, plane_strain=False):
+    return solve_solid(
+        one.tooth, one.twist * MODULE, one.face_width / MODULE, 0.3, one.bore_radius / MODULE,
+        settings or SolidSettings().scaled(1.7), reach=1, plane_strain=plane_strain,
+    )  # fmt: skip
+
+
+def loaded(flanks, roll, load, most_gap):
+    lines = contact_lines(flanks.pair, roll, flanks.panel * MODULE, (), most_gap)
+    known = flank_compliance(flanks.pair, flanks.gears, lines, load)
+    contact = solve_contact(known, FlankGaps().at(flanks.pair, lines), np.array([load]))
+    return known, contact
+
+
+@pytest.mark.parametrize(("beta", "teeth"), [(0.0, (20, 20)), (20.0, (23, 57))])
+def test_gaps_are_those_of_the_helicoids(beta, teeth):
+    """Least gap between both helicoids in space, the driven one fixed where the plane code takes the middle of both."""
+    pair = GearPair(gear(beta, "right", teeth[0]), gear(beta, "left", teeth[1]))
+    roll = pair.x_start + pair.base_pitch * (np.arange(8) + 0.5) / 8
+    lines = contact_lines(pair, roll, 0.25 * MODULE, (), 30e-6)
+    gap, least = lines.edges.gap, touching_gaps(pair, FlankGaps(), lines)
+    near, far = (lines.present & (gap > 0.0) & on for on in (gap < 5e-6, gap >= 5e-6))
+    assert far.any()
+    np.testing.assert_allclose(least[near], gap[near], rtol=0.025, atol=1e-9)
+    np.testing.assert_allclose(least[far], gap[far], rtol=0.06)
+    on_path = lines.present & (gap == 0.0)
+    assert np.abs(least[on_path]).max() < 1e-12
+    assert gap[lines.present].max() <= 30e-6 * (1.0 + 1e-3)
+
+
+def test_a_line_on_an_edge_stays_on_it_and_has_its_curvature():
+    pair = GearPair(gear(20.0, "right", 23, rounding=0.1), gear(20.0, "left", 57, rounding=0.1))
+    roll = pair.x_start + pair.base_pitch * (np.arange(8) + 0.5) / 8
+    lines = contact_lines(pair, roll, 0.25 * MODULE, (), 30e-6)
+    on = lines.present & (lines.edges.gap > 0.0) & (lines.x > 0.0)
+    tip = lines.roll_length(pair, "driver")[on]
+    np.testing.assert_allclose(tip, pair.flank_curvature_radius(pair.x_end, "driver"), rtol=1e-12)
+    assert np.all(lines.roll_length(pair, "driven")[on] > pair.flank_curvature_radius(pair.x_end, "driven"))
+    # a rounded edge is sharper than any flank, and never called sharp
+    assert lines.edges.relative_radius[on].max() < 0.1 * MODULE
+    assert not lines.at_edge[on].any()
+    sharp = GearPair(gear(20.0, "right", 23), gear(20.0, "left", 57))
+    lines = contact_lines(sharp, roll, 0.25 * MODULE, (), 30e-6)
+    on = lines.present & (lines.edges.gap > 0.0)
+    assert lines.at_edge[on].all()
+    assert edge_reach(sharp, 0.0) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("rounding", [0.0, pytest.param(0.1, marks=pytest.mark.long)])
+def test_a_spur_pair_meets_its_tips_as_in_the_plane(rounding):
+    one = gear(0.0, rounding=rounding)
+    plane = finite_element_compliance(solve_gear(one, reach=1))
+    flank = solid(one, SolidSettings().scaled(1.5), plane_strain=True)
+    pair = GearPair(one, one)
+    engagement = Engagement(PairCompliance(pair, plane, plane), corner_contact=True)
+    load = 300e3 * one.face_width
+    roll = pair.x_end - pair.base_pitch + np.array([-0.3e-3, -0.02e-3, 0.02e-3, 0.2e-3, 0.5e-3])
+    known, contact = loaded(FlankPair(pair, {"driver": flank, "driven": flank}, panel=1.5), roll, load, 60e-6)
+    wanted = engagement.solve(engagement.grid(roll), [load])
+    np.testing.assert_allclose(contact.approach, wanted.transmission_error, rtol=6e-3)
+    ahead = (contact.force[:, :, 0] * ((known.lines.pair == 1) & known.lines.present)).sum(axis=1) / load
+    number = wanted.grid.contacts.number.tolist().index(1)
+    np.testing.assert_allclose(ahead, wanted.shared.loads[number, :, 0] / load, atol=6e-3)
+    # the pair leaves along its tip edge, slowly
+    assert ahead[-1] > 0.03
+    assert np.all(np.diff(ahead) < 0.0)
+
+
+def largest(beta, most_gap):
+    """Largest pressure off the edges as the line ahead crosses the tip of the driver from one face end to the other."""
+    hands = [gear(beta, hand, width=15e-3) for hand in ("right", "left")]
+    pair = GearPair(*hands)
+    solids = [solid(one, SolidSettings().scaled(2.2)) for one in (hands if beta else hands[:1])]
+    flanks = FlankPair(pair, {"driver": solids[0], "driven": solids[-1]}, panel=0.5)
+    slope = abs(pair.driver.twist * pair.driver.base_radius) * 0.5 * pair.face_width
+    roll = pair.x_end - pair.base_pitch - 1e-9 + slope * np.array([-1.5, -0.5, 0.0, 0.5])
+    known, contact = loaded(flanks, roll, 300e3 * pair.face_width, most_gap)
+    support = np.where(known.lines.support > 0.0, known.lines.support, 1.0)
+    pressure = known.pressure(contact.force / support[:, :, None])[:, :, 0]
+    return float(np.where(known.lines.present & ~known.lines.at_edge, pressure, 0.0).max())
+
+
+def test_the_largest_pressure_does_not_jump_at_a_small_helix_angle():
+    spur, edged, ending = largest(0.0, 60e-6), largest(0.1, 60e-6), largest(0.1, 0.0)
+    assert edged == pytest.approx(spur, rel=0.02)
+    assert ending > 1.15 * spur  # what lines that end at tips make of it
+
+
+def test_lines_without_tip_edges_are_what_they_were():
+    pair = GearPair(gear(20.0, "right", 23), gear(20.0, "left", 57))
+    lines = contact_lines(pair, np.array([0.0]), 1e-3)
+    assert lines.edges is None
+    np.testing.assert_array_equal(lines.roll_length(pair, "driven"), pair.flank_curvature_radius(lines.x, "driven"))
+    assert usual_gap(pair, 1000.0) == pytest.approx(2.0 * usual_gap(pair, 500.0))
