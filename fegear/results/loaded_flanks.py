@@ -117,7 +117,7 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlank
         found = flanks.solve(asked.loads, gaps, known)
     error = flank_error(flanks, found, coarse, gaps)
     neglected = {
-        effect: _with_edges(asked, flanks, gaps, found)
+        effect: _with_edges(asked, flanks, gaps)
         if effect == "corner_contact"
         else _with(effect, asked, flanks, known, gaps)
         for effect in FLANK_EFFECTS
