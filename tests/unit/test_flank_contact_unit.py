@@ -486,3 +486,28 @@ def test_light_loads_stand_where_rigid_flanks_touch(known):
     # The gap of a hat is the mean of what it spans: C h^2/b^2 above the least one, a quarter of it for half the panel.
     assert (np.abs(off[0]) < 4.0 * 20e-6 * (0.5 * MODULE / (0.5 * WIDTH)) ** 2).all()
     assert np.abs(off[1]).max() < 0.5 * np.abs(off[0]).max()
+
+
+@pytest.mark.long
+def test_a_wide_spur_pair_free_to_move_tends_to_the_plane_in_the_middle_of_its_face():
+    """Its ends give way, which reaches in by about one over the width: root stress in the middle and mean deflection."""
+    missed = []
+    for width in (4.0, 8.0):
+        tooth = Tooth(28, BasicRack(1.0, 1.25, 0.25))
+        one = Gear(tooth, MODULE, 0.5 * tooth.root_radius * MODULE, width * MODULE, STEEL, "strain", "spur")
+        load = 222e3 * width * MODULE
+        plane = finite_element_compliance(solve_gear(one, reach=1))
+        solution, pair = solid(one, SolidSettings(), reach=1), GearPair(one, one)
+        flanks = FlankPair(pair, {"driver": solution, "driven": solution}, positions=12)
+        found = flanks.solve([load])
+        engagement = Engagement(PairCompliance(pair, plane, plane))
+        wanted = tooth_stress(engagement, (), [load], flanks.roll, "driver")
+        te = engagement.solve(engagement.grid(flanks.roll), [load]).transmission_error[:, 0]
+        rooted = rooted_lines(pair, "driver", found.lines, solution, coupling=True)
+        middle = rooted.stress("tension", found.contact.force[:, :, 0], np.zeros(1)).value[:, 0]
+        missed.append((middle.max() / wanted.tension.max() - 1.0, np.mean(found.transmission_error[:, 0] / te - 1.0)))
+    stress, deflection = np.array(missed).T
+    assert 0.0 < stress[1] < 0.05
+    assert 0.0 < deflection[1] < 0.035
+    assert 0.35 < stress[1] / stress[0] < 0.65
+    assert 0.4 < deflection[1] / deflection[0] < 0.8
