@@ -19,7 +19,9 @@ def results(as_json: AsJson = False) -> None:
     column = max(map(len, RESULTS))
     for subject, stages in SUBJECTS.items():
         voice.say(f"{subject}:")
-        for line in two_columns([(name, _meaning(stage, name)) for stage in stages for name in stage.results], column):
+        # Several stages may give one result, each for gears and pairs of its kind.
+        once = {name: _meaning(stage, name) for stage in reversed(stages) for name in reversed(stage.results)}
+        for line in two_columns(list(reversed(once.items())), column):
             voice.say(line)
     voice.say('Ask for them by results = ["geometry", ...] in a case, or by --results geometry,stiffness.')
     found = [

@@ -106,7 +106,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
         for task in order
     )
     running = {step.stage.name for step in steps}
-    skipped = tuple((stage.name, _why_not(stage)) for stage in stages if stage.name not in running)
+    skipped = tuple((stage.name, _why_not(stage, scene.case.results)) for stage in stages if stage.name not in running)
     used = {effect for step in steps for effect in step.effects}
     # What `fegear cost` studies in this case is wanted too, if not by a run.
     used |= {effect for name in scene.case.cost.stages if name in by_name for effect in by_name[name].effects}
@@ -134,7 +134,9 @@ def _require_effects(scene: Scene, stage: Stage) -> None:
         )
 
 
-def _why_not(stage: Stage) -> str:
+def _why_not(stage: Stage, wanted: Sequence[str]) -> str:
     if not stage.results:
         return "needed by no requested result"
+    if any(result in wanted for result in stage.results):
+        return "no gear or pair of this case is computed this way"
     return f'not requested (results does not list "{stage.results[0]}")'

@@ -490,7 +490,7 @@ def test_light_loads_stand_where_rigid_flanks_touch(known):
 
 @pytest.mark.long
 def test_a_wide_spur_pair_free_to_move_tends_to_the_plane_in_the_middle_of_its_face():
-    """Its ends give way, which reaches in by about one over the width: root stress in the middle and mean deflection."""
+    """Its ends give way, which reaches in by about one over the width: root stress and deflection."""
     missed = []
     for width in (4.0, 8.0):
         tooth = Tooth(28, BasicRack(1.0, 1.25, 0.25))
