@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,6 +51,12 @@ class ToothContactData:
     no_ellipses: str = ""
 
 
+#: Results that tell of the same pair under load, and values and figures that they have, too: here they are "unloaded".
+_UNDER_LOAD = frozenset({"transmission-error", "load-distribution", "contact-pattern"})
+_VALUES_OF_BOTH = ("te_peak_to_peak", "te_max", "te_min")
+_FIGURES_OF_BOTH = ("transmission_error_", "contact_pattern_")
+
+
 @dataclass(frozen=True, slots=True)
 class ToothContactInputs:
     """What the analysis of a pair depends on.
@@ -74,6 +80,8 @@ class ToothContactInputs:
         Error of the pinion's lead that the case gives in place of a lead angle [m].
     relieved : tuple of str
         Gears whose relief, lead, bias or topography the analysis does not know.
+    loaded : bool
+        Whether another wanted result tells of the same flanks under load, in values and figures of the same names.
     """
 
     pair: HelicalPair
@@ -85,6 +93,7 @@ class ToothContactInputs:
     ignored: str = field(default="", compare=False)
     lead: float | None = field(default=None, compare=False)
     relieved: tuple[str, ...] = field(default=(), compare=False)
+    loaded: bool = field(default=False, compare=False)
 
 
 def _pairs(scene: Scene) -> tuple[str, ...]:
@@ -306,13 +315,15 @@ def _inputs(scene: Scene, name: str) -> ToothContactInputs:
     part, asked = scene.case.pair[name], scene.case.tooth_contact
     a, b = (scene.case.gear[gear].material.build().plane_modulus("strain") for gear in (part.driver, part.driven))
     absorb = part.modification is not None and part.modification.absorb
+    loaded = not _UNDER_LOAD.isdisjoint(scene.case.results)
     return ToothContactInputs(
         scene.helical_pairs[name], asked.positions, absorb, asked.load, 1.0 / (1.0 / a + 1.0 / b), name,
         next((key for key in ("load", "torque") if getattr(part, key) is not None), "")
-        if "crosscheck" not in scene.case.results else "",
+        if "crosscheck" not in scene.case.results and not loaded else "",
         part.misalignment.lead if part.misalignment is not None else None,
         tuple(gear for gear in dict.fromkeys((part.driver, part.driven))
               if scene.case.gear[gear].relief is not None or scene.case.gear[gear].over_face),
+        loaded,
     )  # fmt: skip
 
 
@@ -369,6 +380,13 @@ def _present(data: ToothContactData, asked: ToothContactInputs) -> Outcome:
     if data.no_ellipses:
         remarks += (f"Pair {name}: no contact ellipses: {data.no_ellipses}.",)
     figures = tooth_contact_figures(name, contact, data.bearing, asked.load)
+    if asked.loaded:
+        both = {f"{name}.{value}": f"{name}.unloaded_{value}" for value in _VALUES_OF_BOTH}
+        values = tuple(replace(value, name=both.get(value.name, value.name)) for value in values)
+        figures = tuple(
+            replace(figure, key=f"unloaded_{figure.key}") if figure.key.startswith(_FIGURES_OF_BOTH) else figure
+            for figure in figures
+        )
     return Outcome(data, _tables(name, contact, data.bearing), values, settings, remarks, figures)
 
 
