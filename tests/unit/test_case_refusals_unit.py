@@ -150,7 +150,7 @@ def test_other_lists_of_numbers_are_left_alone(fine):
         ({"balance": "lod"}, r'train\.balance = "lod": is no body of this case; the nearest known name is "load"'),
         ({"torque": {"motr": "5 N*m"}}, r'train\.torque = "motr": is no body'),
         ({"mesh": {"I": {"driver": "motor", "driven": "wheel"}}}, r'train\.mesh\.I\.driven = "wheel": is no body'),
-        ({"mesh": {"II": {"driver": "motor", "driven": "load"}}}, r'train\.mesh\.II\.pair = "II": is no spur pair'),
+        ({"mesh": {"II": {"driver": "motor", "driven": "load"}}}, r'train\.mesh\.II\.pair = "II": is no pair'),
         ({"damper": {"d": {"a": "lead", "damping": "1 N*m*s"}}}, r'train\.damper\.d\.a = "lead": is no body'),
     ],
 )
