@@ -33,6 +33,8 @@ _UNREMARKED = 0.02
 _LONGER_EDGES = 3
 #: Roll positions that show what tip edges change.
 _FEW = 12
+#: So many loaded places at a roll position tell too little of the load along a contact line.
+_FEWEST = 3
 #: Seconds of one contact line on one gear, and of the contact at one roll position.
 _LINE, _CONTACT = 0.03, 0.004
 
@@ -162,10 +164,10 @@ def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
         "width": asked.width, "positions": asked.positions, "panels": asked.panels,
         "stations": int(found.lines.present.sum()), "newton_steps": found.contact.steps,
         "hertz": asked.effects.hertz, "neighbour_coupling": asked.effects.neighbour_coupling,
-        "nominal_load": asked.nominal, "loads": list(asked.loads),
+        "base_pitch": asked.base_pitch, "nominal_load": asked.nominal, "loads": list(asked.loads),
         "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
     }  # fmt: skip
-    return Outcome(data, settings=settings, remarks=(*_neglected(data), *_beside(data)))
+    return Outcome(data, settings=settings, remarks=(*_neglected(data), *_beside(data), *_short(data)))
 
 
 def _beside(data: LoadedFlanksData) -> tuple[str, ...]:
@@ -177,6 +179,20 @@ def _beside(data: LoadedFlanksData) -> tuple[str, ...]:
         f"Pair {data.asked.name}: where modifications or errors are steep the flanks touch beside the contact lines of "
         f"unmodified ones, which moves gaps by up to {data.beside * 1e6:.3g} um; the mean transmission error is "
         f"{mean * 1e6:.4g} um. Column te_unloaded of load_distribution_roll_{data.asked.name} knows it, loads do not."
+    )
+    return (remark,)
+
+
+def _short(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say where the load stands on so few places that panels are too long for it."""
+    found = data.found
+    fewest = (found.contact.force > 0.0).sum(axis=1).min(axis=0)
+    if fewest.min() > _FEWEST:
+        return ()
+    i = int(fewest.argmin())
+    remark = (
+        f"Pair {data.asked.name}: under {found.load[i]:.4g} N the flanks touch at {fewest[i]} places of a roll position, "
+        "too few to tell how the load spreads between them. Raise load_distribution.panels."
     )
     return (remark,)
 

@@ -144,6 +144,30 @@ def test_shafts_count_by_the_part_of_them_in_the_plane_of_action():
                 np.testing.assert_allclose(slope, 1.25e-3 / math.cos(pair.driver.base_helix_angle) ** 2, rtol=1e-6)
 
 
+def test_the_pinion_s_cutting_counts_along_the_line_of_action():
+    """TM-107451's keys: a lead angle turns the flank, a crown counts along the normal, a parabola up it."""
+    none = 'pair.I.line_error={over_face="0 um"}'
+    _, lines, asked = gaps(none)
+    z, lean = lines.z[lines.present], asked.pair.driver.base_helix_angle
+    found, _, _ = gaps(none, 'pair.I.misalignment={lead_angle="1 arcmin"}')
+    assert np.polyfit(z, found, 1)[0] == pytest.approx(-math.radians(1.0 / 60.0), rel=0.02)
+    by_lead, _, _ = gaps(none, 'pair.I.misalignment={lead="0.1 mm"}')
+    assert np.polyfit(z, by_lead, 1)[0] < 0.0  # a longer lead is a smaller helix angle
+    found, _, _ = gaps(none, 'pair.I.modification={crown="5 um"}')
+    np.testing.assert_allclose(found, 5e-6 / math.cos(lean) * (z / 4e-3) ** 2, atol=1e-10)
+    found, _, _ = gaps(none, 'pair.I.modification={parabola="1 / m"}')
+    # a_c s^2 along the cutter's normal, s along its profile from the pitch line
+    s = lines.x[lines.present] * math.cos(lean) / math.tan(asked.pair.driver.normal_pressure_angle)
+    assert np.corrcoef(found, s**2)[0, 1] > 0.99
+    assert found.min() > -1e-9
+    absorbed, _, _ = gaps(none, 'pair.I.modification={parabola="1 / m", absorb=true}',
+                          'pair.I.misalignment={shaft_angle="1 arcmin"}', "effects.misalignment=true")  # fmt: skip
+    assert np.isfinite(absorbed).all()
+    pair = gaps(none, 'pair.I.misalignment={centre_distance="0.1 mm"}')[2].pair
+    assert pair.centre_distance - asked.pair.centre_distance == pytest.approx(1e-4)
+    assert pair.contact_ratio < asked.pair.contact_ratio
+
+
 def test_left_out_coupling_is_told_with_its_size(cache, outcome):
     found = ran(cache, "effects.neighbour_coupling=false", 'effects.hertz="none"')
     assert value(found, "te_mean").si < value(outcome, "te_mean").si

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from fegear.contact.flank import FlankGaps, contact_lines
-from fegear.errors import InputError
+from fegear.errors import GeometryError, InputError
 from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
 from fegear.geometry.flank_modification import Bias, HelixSlope, LeadCrowning, LeadEndRelief, LeadTable, Topography
 from fegear.geometry.relief import tip_relief
+from fegear.geometry.shaft_tilt import ShaftTilt
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH = 3e-3, 24e-3
@@ -115,3 +116,35 @@ def test_modifications_add_up_and_count_the_same_on_either_gear(pair, lines):
 def test_what_is_no_grid_is_refused(grid):
     with pytest.raises(InputError, match="topography"):
         Topography(*grid)
+
+
+def test_mirrored_hands_with_mirrored_errors_have_mirrored_gaps():
+    """z changes its sign with the hand; a shaft's deviation, a slope and a bias with it, a crowning does not."""
+    at = np.array([0.1, 0.45, 0.8])
+    sides = []
+    for hands, sign in ((("right", "left"), 1.0), (("left", "right"), -1.0), (("spur", "spur"), 1.0),
+                        (("spur", "spur"), -1.0)):  # fmt: skip
+        beta = 0.0 if hands[0] == "spur" else 15.0
+        pair = GearPair(gear(beta=beta, hand=hands[0]), gear(31, beta, hands[1]), axial_offset=sign * 3e-3)
+        lines = contact_lines(pair, pair.x_start + pair.base_pitch * at, 0.5 * MODULE)
+        end = LeadEndRelief(5e-6, 3e-3, WIDTH, "II" if sign > 0.0 else "I")
+        slope = (HelixSlope(sign * 6e-6, WIDTH),)
+        gaps = FlankGaps(
+            driver_flank=(LeadCrowning(8e-6, WIDTH), Bias(sign * 9e-6, 0.2, 0.6, WIDTH), end),
+            driven_flank=slope, tilt=ShaftTilt(sign * 3e-4, sign * 2e-4),
+        )  # fmt: skip
+        # what a slope of the other sign starts from is a shift of the whole
+        gap = gaps.at(pair, lines) + (0.0 if sign > 0.0 else 6e-6)
+        sides.append([np.sort(gap[p, s]) for p in range(at.size) for s in lines.at(p)])
+    for one, other in (sides[:2], sides[2:]):
+        for a, b in zip(one, other, strict=True):
+            np.testing.assert_allclose(a, b, atol=1e-15)
+
+
+def test_faces_beside_each_other_are_refused():
+    with pytest.raises(GeometryError, match="beside each other"):
+        GearPair(gear(), gear(31, hand="left"), axial_offset=WIDTH)
+    pair = GearPair(gear(), gear(31, hand="left", width=0.5 * WIDTH), axial_offset=0.5 * WIDTH)
+    assert pair.face_width == pytest.approx(0.25 * WIDTH)
+    assert pair.face_height("driver") == pytest.approx(0.375 * WIDTH)
+    assert pair.face_height("driven") == pytest.approx(-0.125 * WIDTH)
