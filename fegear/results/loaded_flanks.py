@@ -191,8 +191,8 @@ def _short(data: LoadedFlanksData) -> tuple[str, ...]:
         return ()
     i = int(fewest.argmin())
     remark = (
-        f"Pair {data.asked.name}: under {found.load[i]:.4g} N the flanks touch at {fewest[i]} places of a roll position, "
-        "too few to tell how the load spreads between them. Raise load_distribution.panels."
+        f"Pair {data.asked.name}: under {found.load[i]:.4g} N the flanks touch at {fewest[i]} places of a roll "
+        "position, too few to tell how the load spreads between them. Raise load_distribution.panels."
     )
     return (remark,)
 
