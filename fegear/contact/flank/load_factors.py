@@ -66,7 +66,7 @@ def root_factors(found: LoadedFlanks, perfect: LoadedFlanks, rooted: RootedLines
     """
     solved, ideal = found.contact.force[:, :, case], perfect.contact.force[:, :, case]
     loads = solved, even_along_the_lines(found.lines, solved), even_along_the_lines(found.lines, ideal)
-    largest, even, best = (float(rooted.stress("tension", force, z).value.max()) for force in loads)
+    largest, even, best = (rooted.largest("tension", force, z) for force in loads)
     return RootFactors(largest / even, even / best, largest)
 
 

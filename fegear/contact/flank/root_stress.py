@@ -30,6 +30,10 @@ if TYPE_CHECKING:
 
 #: Teeth beside the lines in contact that are followed too, where neighbours count.
 _BESIDE = 1
+#: What pulls and what presses counts as large.
+_SIGN: dict[Side, float] = {"tension": 1.0, "compression": -1.0}
+#: The largest of points up the fillet misses the largest of the curve through them by much less than this share.
+_FITTED = 0.1
 
 
 @dataclass(frozen=True)
@@ -107,22 +111,36 @@ class RootedLines:
             Along the face, from the middle of the common one [m].
         """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
-        zeta = (places + self.pair.face_height(self.member)) / m
-        solution, fillet = self.solution, self.solution.fillets[side]
-        _, spans = places_of(self.lines)
-        on = force[self.lines.present]
-        loads = np.stack([self.loads[:, s] @ on[s] for s in spans], axis=1)
-        total = np.zeros((fillet.arc.size, places.size, len(self.teeth)))
-        for k, felt in self.sources.items():
-            used, column = np.unique(felt[:, 1], return_inverse=True)
-            stress = solution.stress_under(k, side, loads[:, used], zeta)[0]
-            total[:, :, felt[:, 0]] += stress[:, :, column]  # at most one line is k teeth away
-        end = self._ends(side, zeta)
-        sign = 1.0 if side == "tension" else -1.0
+        fillet, sign = self.solution.fillets[side], _SIGN[side]
+        total, end = self._felt(side, force, places / m), self._ends(side, places / m)
         value, arc = extreme(total.reshape(fillet.arc.size, -1), fillet.arc, sign, end.ravel())
         radius = np.interp(arc, fillet.arc, np.hypot(*fillet.place)) * m
         shape = places.size, len(self.teeth)
         return StressOverFace(self.x, places, value.reshape(shape).T / m**2, radius.reshape(shape).T)
+
+    def largest(self, side: Side, force: Array, z: ArrayLike) -> float:
+        """Largest value of `stress` over all positions and places [Pa], which only the highest of them are fitted for."""
+        m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
+        arc, sign = self.solution.fillets[side].arc, _SIGN[side]
+        total = self._felt(side, force, places / m).reshape(arc.size, -1)
+        end = self._ends(side, places / m).ravel()
+        on = np.maximum(np.searchsorted(arc, end, side="right"), 1) > np.arange(arc.size)[:, None]
+        top = np.where(on, sign * total, -np.inf).max(axis=0)
+        high = top >= top.max() - _FITTED * abs(top.max())
+        return float((sign * extreme(total[:, high], arc, sign, end[high])[0]).max()) / m**2
+
+    def _felt(self, side: Side, force: Array, zeta: Array) -> Array:
+        """Stress up the fillet under forces on the stations, shape (points, Z, T) [1/module^2 times N]."""
+        solution, fillet = self.solution, self.solution.fillets[side]
+        _, spans = places_of(self.lines)
+        on = force[self.lines.present]
+        loads = np.stack([self.loads[:, s] @ on[s] for s in spans], axis=1)
+        total = np.zeros((fillet.arc.size, zeta.size, len(self.teeth)))
+        for k, felt in self.sources.items():
+            used, column = np.unique(felt[:, 1], return_inverse=True)
+            stress = solution.stress_under(k, side, loads[:, used], zeta)[0]
+            total[:, :, felt[:, 0]] += stress[:, :, column]  # at most one line is k teeth away
+        return total
 
     def _ends(self, side: Side, zeta: Array) -> Array:
         """How far up the fillet stress is root stress, shape (Z, T): less beside a contact line near its foot."""
