@@ -72,7 +72,7 @@ def pack(value: object) -> bytes:
     return struct.pack("<Q", len(head)) + head + bytes(body)
 
 
-def unpack(data: bytes) -> object:
+def unpack(data: bytes | memoryview) -> object:
     """Read what `pack` wrote.
 
     Raises
@@ -83,7 +83,7 @@ def unpack(data: bytes) -> object:
     try:
         (length,) = struct.unpack_from("<Q", data)
         start = 8 + length
-        return _decode(json.loads(data[8:start]), memoryview(data)[start:])
+        return _decode(json.loads(bytes(data[8:start])), memoryview(data)[start:])
     except (struct.error, KeyError, IndexError, TypeError, UnicodeDecodeError) as problem:
         raise ValueError(f"not packed data: {problem}") from None
 

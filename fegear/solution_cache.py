@@ -24,7 +24,7 @@ class Codec(NamedTuple, Generic[T]):
     """How solutions of one kind become bytes and come back; `read` gives None for bytes that it cannot use."""
 
     write: Callable[[T], bytes]
-    read: Callable[[bytes], T | None]
+    read: Callable[[bytes | memoryview], T | None]
 
 
 class Solution(NamedTuple, Generic[T]):
@@ -143,5 +143,5 @@ def _timed(compute: Callable[[], T]) -> Solution[T]:
 def _read(data: bytes | None, codec: Codec[T]) -> Solution[T] | None:
     if data is None or len(data) < _SECONDS.size:
         return None
-    value = codec.read(data[_SECONDS.size :])
+    value = codec.read(memoryview(data)[_SECONDS.size :])  # may be large: not copied
     return None if value is None else Solution(value, _SECONDS.unpack_from(data)[0], "disk")

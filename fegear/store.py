@@ -68,11 +68,11 @@ class Store:
         """Return an entry; None if there is none, it is damaged, or it was made for another key."""
         place = self._place(key)
         try:
-            data = place.read_bytes()
+            with place.open("rb") as file:
+                head, payload = file.read(_HEAD), file.read()
         except OSError:
             return None
-        payload = data[_HEAD:]
-        if data[:_HEAD] != _head(key, payload):
+        if head != _head(key, payload):
             return None
         with contextlib.suppress(OSError):  # records when it was last of use; a folder may be read-only
             os.utime(place)

@@ -62,7 +62,7 @@ def _plain(item: object, kinds: tuple[type, ...]) -> object:
     return item
 
 
-def _restored(data: bytes, tooth: Tooth, kinds: tuple[type, ...]) -> Any:
+def _restored(data: bytes | memoryview, tooth: Tooth, kinds: tuple[type, ...]) -> Any:
     """Rebuild a solution; None if the bytes do not fit."""
     names = {kind.__name__: kind for kind in kinds}
 

@@ -44,7 +44,7 @@ _WIDTH_STEP = 0.8
 _STATIONS_AT_ONCE = 4000
 
 
-def _matrix(data: bytes) -> Array | None:
+def _matrix(data: bytes | memoryview) -> Array | None:
     found = unpack(data)
     return found if isinstance(found, np.ndarray) and found.ndim == 3 else None
 

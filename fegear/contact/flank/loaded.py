@@ -271,7 +271,7 @@ class FlankPair:
         lines = contact_lines(
             self.pair, points.x, self.panel * self.pair.driver.module, points.weights / points.period, self.most_gap
         )  # fmt: skip
-        with one_thread():
+        with one_thread(with_scipy=False):
             return flank_compliance(
                 self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz, cache=self.cache
             )
@@ -304,7 +304,7 @@ class FlankPair:
             raise InputError("load", f"{loads.min()} N", "must be positive and finite")
         known = self.compliance(float(loads.max())) if known is None else known
         assembled = time.perf_counter()
-        with one_thread():
+        with one_thread(with_scipy=False):
             contact = solve_contact(known, (gaps or FlankGaps()).at(self.pair, known.lines), loads)
         seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
         return LoadedFlanks(self.pair, known, contact, loads, seconds)

@@ -119,7 +119,7 @@ class RootedLines:
         return StressOverFace(self.x, places, value.reshape(shape).T / m**2, radius.reshape(shape).T)
 
     def largest(self, side: Side, force: Array, z: ArrayLike) -> float:
-        """Largest value of `stress` over all positions and places [Pa], which only the highest of them are fitted for."""
+        """Largest value of `stress` [Pa]: curves are laid through the highest of all points alone."""
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
         arc, sign = self.solution.fillets[side].arc, _SIGN[side]
         total = self._felt(side, force, places / m).reshape(arc.size, -1)

@@ -51,7 +51,7 @@ ENTRY_SHARES = {"contact": 1.5, "neighbour": 4.0, "root_tension": 2.9, "root_com
 _STATION, _MOST_STATIONS = 0.5, 24
 
 
-def _errors(data: bytes) -> dict[str, float] | None:
+def _errors(data: bytes | memoryview) -> dict[str, float] | None:
     found = unpack(data)
     return found if isinstance(found, dict) else None
 
