@@ -27,7 +27,6 @@ POSITIONS = {"two whole lines": 0.25, "a line that ends at the tip": 0.02}
 LEVELS = {
     "coarse": (0.065, 0.1, 0.6, 0.25, (0.25, 0.5), 0.75),
     "fillets": (0.065, 0.1, 0.6, 0.12, (0.25, 0.5), 0.75),
-    "fine": (0.038, 0.08, 0.5, 0.14, (0.125, 0.25), 0.375),
 }
 #: Only so near to the contact line, and over the whole of each edge that reaches there, the driven flank is watched for
 #: contact [modules]: one and a half times the Hertzian half-width. Watching all of it takes more iterations.
