@@ -80,9 +80,9 @@ class _Life:
     def curve(self, row: int, values: Array, x: Array) -> Array:
         """What `values` (pairs, P) of a pair are at roll positions, shape (Q,)."""
         points = self.points
-        smooth = curve_through(points, values[row], x)
         # a base pitch later the pair ahead stands where this one stands now
         around = [values[r] if 0 <= r < len(values) else np.zeros(points.x.size) for r in (row - 1, row, row + 1)]
+        smooth = curve_through(points, around[1], x)
         places = np.concatenate([points.x + turn * points.period for turn in (-1, 0, 1)])
         straight = np.interp(x, places, np.concatenate(around))
         return np.where(self.straight[np.searchsorted(points.breaks, x)], straight, smooth)
@@ -92,7 +92,7 @@ class _Life:
         x, number = self.places(s)
         error = self.curve(1, np.tile(self.error, (3, 1)), x)
         row = int(number[0] + self.direction * slot) - self.first
-        if not 0 <= row < len(self.force):
+        if not -1 <= row <= len(self.force):
             return np.zeros(s.shape), error
         k, w = self.curve(row, self.stiffness, x), self.curve(row, self.force, x)
         bears = (k > _NO_SPRING * self.stiffness.sum(axis=0).max()) & (w > 0.0)
@@ -150,7 +150,8 @@ def flank_excitation(flanks: FlankPair, found: LoadedFlanks, *, forward: bool = 
     )  # fmt: skip
     pitch = found.pair.base_pitch
     start, end = life_of_contact(found.pair if forward else found.pair.reversed())
-    slots = range(math.floor(start / pitch), math.ceil(end / pitch))
+    # straight lines between few roll positions carry a pair a step beyond its life
+    slots = range(math.floor(start / pitch) - 1, math.ceil(end / pitch) + 1)
     deflection = float(life.error.max())
 
     def fit(quantity: int, slot: int) -> Periodic:
@@ -159,5 +160,9 @@ def flank_excitation(flanks: FlankPair, found: LoadedFlanks, *, forward: bool = 
             lambda s: life.spring(slot, s)[quantity], life.cuts, tolerance=FIT, shortest=SHORTEST, scale=scale
         )
 
-    stiff, apart = (tuple(fit(quantity, slot) for slot in slots) for quantity in (0, 1))
-    return MeshExcitation.about_load(stiff, apart, slots.start)
+    stiffness_of = {slot: fit(0, slot) for slot in slots}
+    bears = [slot for slot, spring in stiffness_of.items() if np.any(spring.coefficients)]
+    slots = range(bears[0], bears[-1] + 1)
+    return MeshExcitation.about_load(
+        tuple(stiffness_of[slot] for slot in slots), tuple(fit(1, slot) for slot in slots), slots.start
+    )
