@@ -50,7 +50,9 @@ def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankLoadShari
     history = flank_pair_history(found, loaded.gaps.at(pair, found.lines))
     again = flank_pair_history(coarse, loaded.gaps.at(pair, coarse.lines))
     largest, other = (one.hertz_pressure[:, loaded.nominal].max() for one in (history, again))
-    return FlankLoadSharingData(loaded, history, history_error(history, again), float(abs(other - largest)))
+    missed = loaded.missed  # by slices, of compliances
+    error = history_error(history, again) + missed * history.load * (1.0 - history.share)
+    return FlankLoadSharingData(loaded, history, error, float(abs(other - largest) + 0.5 * missed * largest))
 
 
 def _present(data: FlankLoadSharingData, inputs: Subject) -> Outcome:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -63,7 +63,20 @@ def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankTransmiss
     again = flank_transmission_errors(loaded.error.coarse, points)
     perfect = loaded.flanks.solve([loaded.asked.nominal], None, loaded.known)
     compliance = float(perfect.mean_transmission_error[0]) / loaded.asked.nominal
-    return FlankTransmissionErrorData(loaded, each, flank_transmission_error_shift(each[i], again[i]), compliance)
+    shift = _missed_too(flank_transmission_error_shift(each[i], again[i]), each[i], loaded.missed)
+    return FlankTransmissionErrorData(loaded, each, shift, compliance)
+
+
+def _missed_too(shift: TransmissionErrorShift, te: FlankTransmissionError, missed: float) -> TransmissionErrorShift:
+    """The same with what slices are known to miss of compliances."""
+    return replace(
+        shift,
+        mean=shift.mean + missed * te.mean,
+        peak_to_peak=shift.peak_to_peak + missed * te.peak_to_peak,
+        effective=shift.effective + missed * te.effective_error,
+        amplitude=shift.amplitude + missed * te.series.amplitude,
+        stiffness=shift.stiffness + missed * te.mean_secant,
+    )
 
 
 def _present(data: FlankTransmissionErrorData, inputs: Subject) -> Outcome:

@@ -25,6 +25,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.errors import InputError
+from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
 
@@ -52,6 +53,18 @@ def test_the_flanks_are_loaded_once_for_all_results(results):
     tasks = [str(task) for task in results.outcomes]
     assert tasks.count("loaded-flanks of I") == 1
     assert "loaded-pair of I" not in tasks
+
+
+def test_errors_of_slices_count_what_slices_are_known_to_miss(results):
+    loaded = results.outcomes[Task("loaded-flanks", "I")].data
+    assert loaded.missed == missed_by_slices(1.0)["contact"]
+    assert any("slices of the plane section" in remark for remark in results.remarks)
+    for name in ("te_mean", "te_peak_to_peak", "mesh_stiffness_mean"):
+        value = results.values[f"I.{name}"]
+        assert value.error > loaded.missed * value.value
+    factor, pressure = (results.values[f"I.{name}"] for name in ("K_Hbeta", "largest_hertz_pressure"))
+    assert factor.error > loaded.missed * (factor.value - 1.0)
+    assert pressure.error > 0.1 * pressure.value
 
 
 def test_all_results_tell_the_same(results):
@@ -121,7 +134,7 @@ def test_root_stress_over_the_face_and_its_largest_value_are_one(results):
         np.testing.assert_allclose(way["stress_face_position [mm]"], z[np.arange(len(z)), over.argmax(axis=1)])
         largest = results.values[f"I.{member}.largest_root_tension"]
         assert largest.si == pytest.approx(1e6 * over.max(), rel=1e-9)
-        assert 0.0 < largest.error < largest.si
+        assert 0.0 < largest.error < largest.value
         assert (way["stress at 7200 N [MPa]"].max() > over.max() > way["stress at 900 N [MPa]"].max()).all()
         assert way["t [s]"][-1] == pytest.approx(np.ptp(way["x [mm]"]) * 1e-3 / rate, rel=1e-6)
         # the gap opens toward +z, so the load and with it the stress are at -z

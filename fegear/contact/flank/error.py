@@ -78,6 +78,25 @@ def flank_error(
     )  # fmt: skip
 
 
+def with_misses(error: FlankError, found: LoadedFlanks, missed: float) -> FlankError:
+    """The same for bodies that are known to miss compliances by a share, as slices do: no coarser solution shows that.
+
+    Deflections are off by it; shares, load over the face and line loads, which only follow its unevenness, at most by
+    it; pressure goes with the root of the load.
+    """
+    share = found.share
+    return replace(
+        error,
+        transmission_error=error.transmission_error + missed * np.abs(found.transmission_error),
+        share=error.share + missed * share * (1.0 - share),
+        mean=error.mean + missed * np.abs(found.mean_transmission_error),
+        peak_to_peak=error.peak_to_peak + missed * np.ptp(found.transmission_error, axis=0),
+        face_load_factor=error.face_load_factor + missed * (found.face_load_factor - 1.0),
+        largest_line_load=error.largest_line_load + missed * found.largest_line_load,
+        largest_pressure=error.largest_pressure + 0.5 * missed * found.largest_pressure,
+    )
+
+
 def _between_positions(points: Panels, te: Array) -> Array:
     """What half of the roll positions on each piece of the base pitch miss of the peak-to-peak value [m]."""
     piece = np.searchsorted(points.breaks, points.x)
