@@ -46,13 +46,29 @@ def spline(x: ArrayLike, y: ArrayLike) -> Spline:
     n = at.size
     h = np.diff(at)
     d = np.diff(value) / h
-    # Dense: N is about a hundred, made once per gear.
-    a, r = np.zeros((n, n)), np.zeros(n)
-    i = np.arange(1, n - 1)
-    a[i, i - 1], a[i, i], a[i, i + 1] = h[1:], 2.0 * (h[:-1] + h[1:]), h[:-1]
+    lower, middle, upper, r = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    lower[1:-1], middle[1:-1], upper[1:-1] = h[1:], 2.0 * (h[:-1] + h[1:]), h[:-1]
     r[1:-1] = 3.0 * (h[1:] * d[:-1] + h[:-1] * d[1:])
-    a[0, 0], a[0, 1] = h[1], h[0] + h[1]
+    middle[0], upper[0] = h[1], h[0] + h[1]
     r[0] = ((h[0] + 2.0 * (h[0] + h[1])) * h[1] * d[0] + h[0] ** 2 * d[1]) / (h[0] + h[1])
-    a[-1, -1], a[-1, -2] = h[-2], h[-1] + h[-2]
+    middle[-1], lower[-1] = h[-2], h[-1] + h[-2]
     r[-1] = ((h[-1] + 2.0 * (h[-1] + h[-2])) * h[-2] * d[-1] + h[-1] ** 2 * d[-2]) / (h[-1] + h[-2])
-    return Spline(at, value, np.asarray(np.linalg.solve(a, r), dtype=float))
+    return Spline(at, value, _tridiagonal(lower, middle, upper, r))
+
+
+def _tridiagonal(lower: Array, middle: Array, upper: Array, right: Array) -> Array:
+    """Solve a tridiagonal system by elimination without exchanges.
+
+    Every row but the first and the last is dominated by its middle; the first leaves h_0 + h_1 > 0 to the second, whose
+    multiplier is then 1 + h_1/h_0 over 1, so nothing grows.
+    """
+    m, r = middle.tolist(), right.tolist()
+    low, up = lower.tolist(), upper.tolist()
+    for i in range(1, len(m)):
+        share = low[i] / m[i - 1]
+        m[i] -= share * up[i - 1]
+        r[i] -= share * r[i - 1]
+    r[-1] /= m[-1]
+    for i in range(len(m) - 2, -1, -1):
+        r[i] = (r[i] - up[i] * r[i + 1]) / m[i]
+    return np.array(r)
