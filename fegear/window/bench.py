@@ -59,7 +59,7 @@ class Bench:
         self._numbers = itertools.count(1)
         self._computing: Computing | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._number = 0
+        self._number = self._first = 0
         self._found: dict[str, _Content] = {}
         self._last: dict[str, _Content] = {}
 
@@ -103,6 +103,7 @@ class Bench:
         self.desk, self.pinned = desk, None
         self._found.clear()
         self._last.clear()
+        self._first = self._number + 1
         self.tell("laid")
         self.compute()
 
@@ -164,6 +165,11 @@ class Bench:
         self._last.pop("compared", None)
         self.tell("unpinned")
 
+    def _with_gears(self, pairs: dict[str, Any]) -> dict[str, Any]:
+        """What changes by hand, with the gears in mesh where they were not sent again."""
+        before = self._last.get("hands", {}).get("pairs", {})
+        return {name: {**one, "mesh": one["mesh"] or before.get(name, {}).get("mesh")} for name, one in pairs.items()}
+
     def move_relief(self, gear: str, end: str, start: float, amount: float, *, moving: bool) -> None:
         """Have a tip or root relief start at a roll angle [deg] with an amount [um]; the others stay.
 
@@ -174,10 +180,10 @@ class Bench:
         """
         desk = self._on_desk()
         text, table = desk.text, ("gear", gear, "relief", end)
-        for key in ("start_radius", "length", "normalised_length", "amount_over_delta"):
-            text = with_value(text, (*table, key), None)
         text = with_value(text, (*table, "amount"), f'"{amount:.2f} um"')
         text = with_value(text, (*table, "start_roll_angle"), f'"{start:.3f} deg"')
+        for key in ("start_radius", "length", "normalised_length", "amount_over_delta"):
+            text = with_value(text, (*table, key), None)
         self._put(with_value(text, ("effects", "relief"), "true"), moving=moving)
 
     def move_load(self, pair: str, key: str, text: str, *, moving: bool) -> None:
@@ -224,11 +230,13 @@ class Bench:
             self._last |= {what: content} if what == "compared" and self.pinned else {}
             self.tell(what, content)
             return
-        if what == "refused":
-            self.tell(what, content)
+        if said.number < self._first:  # of the case that lay here before
             return
-        if said.number != self._number:  # of a case that has been changed since
+        # While a value is being moved, the answer to an earlier place of it is what there is; it ends nothing.
+        if what in ("refused", "done") and said.number != self._number:
             return
+        if what == "hands":
+            content = {"pairs": self._with_gears(content["pairs"])}
         if what == "plan":
             self._found = {task: one for task, one in self._found.items() if task in content["tasks"]}
         elif what == "found":

@@ -6,7 +6,6 @@ import contextlib
 import shutil
 import tempfile
 import threading
-import time
 from typing import TYPE_CHECKING
 
 from fegear.engine.processes import start_process
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     from fegear.window.jobs import Job
 
 #: A computation that is no longer wanted is stopped with its process if it has not noticed after this time [s].
-PATIENCE = 2.0
+PATIENCE = 5.0
 #: A process that is asked to end is killed after this [s].
 _GRACE = 2.0
 
@@ -121,13 +120,3 @@ def end(process: BaseProcess) -> None:
     if process.is_alive():
         process.kill()
         process.join(_GRACE)
-
-
-def wait_for(condition: Callable[[], bool], seconds: float) -> bool:
-    """Whether something comes true within a time."""
-    until = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > until:
-            return False
-        time.sleep(0.01)
-    return True

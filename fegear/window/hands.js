@@ -52,6 +52,7 @@ const fegearHands = (() => {
       requestAnimationFrame(turn);
     }
     kept.set = (data) => {
+      if (!data) return;
       if (JSON.stringify(data) === JSON.stringify(kept.data)) return draw();
       kept.data = data;
       const m = data.module * 1e3, wide = Math.max(6 * m, 1.3e3 * Math.max(-data.start, data.end)), tall = 3.2 * m;

@@ -12,6 +12,21 @@ const fegear = (() => {
     return one;
   };
 
+  // Figures out of sight are painted when they come near it.
+  const MARGIN = 200, owners = new WeakMap(), late = new Set();
+  const near = (figure) => {
+    const { top, bottom } = figure.getBoundingClientRect();
+    return bottom > -MARGIN && top < innerHeight + MARGIN;
+  };
+  const watch = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      if (!isIntersecting) continue;
+      watch.unobserve(target);
+      const { kept, key } = owners.get(target);
+      if (late.has(target) && kept.specs.has(key)) line = line.then(() => paint(kept, key));
+    }
+  }, { rootMargin: `${MARGIN}px` });
+
   function section(task) {
     if (!sections.has(task)) {
       const element = made("section", "task");
@@ -39,12 +54,15 @@ const fegear = (() => {
     }
     figure.querySelector(".plot-title").textContent = spec.heading;
     figure.querySelector("figcaption").textContent = spec.caption;
-    const place = figure.querySelector(".plot");
+    const place = figure.querySelector(".plot"), drawn = place.classList.contains("js-plotly-plot");
+    owners.set(figure, { kept, key });
+    late.delete(figure);
+    if (drawn && !near(figure)) { late.add(figure); watch.observe(figure); return; } // painted when it comes into sight
     place.setAttribute("aria-label", `${spec.heading}. ${spec.caption}`);
     const shaded = shadesOf(JSON.stringify({ data: spec.data, layout: spec.layout }), mode, kept.darker);
     const look = shadesOf(JSON.stringify(template), mode, kept.darker);
     shaded.layout.uirevision = key; // what the reader has zoomed into stays
-    await draw(place, { key, ...shaded }, look, place.classList.contains("js-plotly-plot"));
+    await draw(place, { key, ...shaded }, look, drawn);
     place.dataset.count = Number(place.dataset.count || 0) + 1;
   }
 
@@ -128,8 +146,15 @@ const fegear = (() => {
   };
 
   let line = Promise.resolve(); // one after the other: a figure is not painted twice at a time
+  const newest = new Map(); // what is overtaken before its turn is not shown
+  const OVERTAKEN = new Set(["found", "hands", "plan"]);
   function hear(what, content) {
-    if (heard[what]) line = line.then(() => heard[what](content)).catch((problem) => console.error(problem));
+    if (!heard[what]) return line;
+    const kind = `${what} ${content?.task ?? ""}`, number = (newest.get(kind) ?? 0) + 1;
+    newest.set(kind, number);
+    line = line.then(() => {
+      if (!OVERTAKEN.has(what) || newest.get(kind) === number) return heard[what](content);
+    }).catch((problem) => console.error(problem));
     return line;
   }
   dark.addEventListener("change", () => {

@@ -47,6 +47,7 @@ class Worker:
     def __init__(self, connection: Connection, folder: Path) -> None:
         self._connection, self._cache = connection, SolutionCache(Store(folder))
         self._waiting: deque[Job] = deque()
+        self._meshes: dict[str, object] = {}
         self._number, self._may_drop, self._begun = 0, False, 0.0
 
     def serve(self) -> None:
@@ -64,7 +65,9 @@ class Worker:
             wait = False
             job = self._connection.recv()
             if isinstance(job, Compute):
-                self._waiting = deque(one for one in self._waiting if not isinstance(one, Compute))
+                for one in [one for one in self._waiting if isinstance(one, Compute)]:
+                    self._waiting.remove(one)
+                    self._connection.send(Said(one.number, "dropped"))
             self._waiting.append(job)
 
     def _say(self, what: str, **content: object) -> None:
@@ -123,7 +126,13 @@ class Worker:
         plan = make_plan(scene, STAGES)
         if told:
             self._say("plan", tasks=[str(step.task) for step in plan.steps])
-            self._say("hands", pairs=hands_of(scene))
+            pairs = hands_of(scene)
+            meshes = {name: one["mesh"] for name, one in pairs.items()}
+            for name, one in pairs.items():  # outlines are long, and most changes leave them as they are
+                if asked.moving and self._meshes.get(name) == one["mesh"]:
+                    one["mesh"] = None
+            self._meshes = meshes
+            self._say("hands", pairs=pairs)
         return run_plan(
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,

@@ -7,6 +7,7 @@ import json
 import os
 import queue
 import socket
+import time
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -31,7 +32,7 @@ from fegear.window.desk import Desk
 from fegear.window.doorkeeper import Doorkeeper
 from fegear.window.form import fields, form, tables_to_add
 from fegear.window.hands import hands_of
-from fegear.window.jobs import Asked, Compute, Design, Export
+from fegear.window.jobs import Asked, Compute, Design, Export, Said
 from fegear.window.journal import journal_folder
 from fegear.window.server import free_port, serve
 from fegear.window.worker import scene_of
@@ -213,6 +214,23 @@ def test_a_relief_moved_by_hand_is_the_relief_of_the_case(tmp_path):
     assert scene_of(bench.asked()).case.gear["a"].relief is None
 
 
+def test_answers_to_earlier_places_of_a_moved_value_are_shown_and_end_nothing(tmp_path):
+    bench = Bench(None)
+    bench.lay(Desk(TWO, "c", tmp_path))
+    told = []
+    bench.listen(lambda what, content: told.append(what))
+    bench._first, bench._number = 3, 7
+    found = {"task": "x", "values": "", "figures": []}
+    for number, what, content in (
+        (2, "found", found), (2, "done", {}), (2, "refused", {"sentence": "", "key": ""}),  # of the case before
+        (5, "plan", {"tasks": ["x"]}), (5, "hands", {"pairs": {"I": {"mesh": {"a": 1}}}}), (5, "found", found),
+        (5, "done", {"moving": True}), (7, "hands", {"pairs": {"I": {"mesh": None}}}), (7, "done", {"moving": False}),
+    ):  # fmt: skip
+        bench._hear(Said(number, what, content))
+    assert told == ["plan", "hands", "found", "hands", "done"]
+    assert dict(bench.shown_now())["hands"] == {"pairs": {"I": {"mesh": {"a": 1}}}}
+
+
 def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
     for path in CASES:
         asked = Asked(path.read_text("utf-8"), path.stem, str(path.parent))
@@ -383,6 +401,11 @@ def test_of_many_changes_the_last_is_computed_and_those_before_are_given_up(comp
     finished = [said.number for said in heard.all if said.what == "done" and said.number >= 10]
     assert finished[-1] == 17
     assert len(finished) <= 2
+    for _ in range(100):  # what is forgotten in there would end the process later
+        if not made._open:
+            break
+        time.sleep(0.05)
+    assert made._open == {}
 
 
 def test_a_case_that_is_refused_while_it_computes_says_where(computing, tmp_path):
