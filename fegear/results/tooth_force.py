@@ -134,6 +134,13 @@ def over_time(force: ToothForce) -> Axis:
     )
 
 
+def _while(data: ToothForceData) -> str:
+    """From when to when a tooth pair is followed."""
+    if data.train.meshes[data.mesh].pair.driver.helix_angle == 0.0:
+        return "from its first contact at A to its last at E"
+    return "while its contact line crosses the plane of action, at the position of the line's middle"
+
+
 def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
     force, names = data.force, data.train.names
     name, x, marks = names[data.mesh], force.x * 1e3, path_marks(data.train.meshes[data.mesh].pair)
@@ -146,7 +153,7 @@ def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
     return Figure(
         f"tooth_force_{name}",
         f"Force on one tooth pair of mesh {name}",
-        f"Mesh {name}: force on one tooth pair from its first contact at A to its last at E; the level line "
+        f"Mesh {name}: force on one tooth pair {_while(data)}; the level line "
         "is the mean mesh force. Below: what the vibration adds, by the mesh that excites it.",
         (
             Panel(over_time(force), Axis("tooth force", "N", zero=True), tuple(top), (*marks, mean), height=1.2),
