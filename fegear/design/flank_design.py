@@ -12,7 +12,15 @@ from fegear.design.flank_forms import GroundRelief
 from fegear.design.flank_grid import FAMILIES, held_by, usual_grid
 from fegear.design.flank_scatter import NOMINAL, Scatter
 from fegear.design.flank_search import best_of_family, led_on
-from fegear.design.flank_topography import design_lines, station_relief, table_nodes, tabulated, topography
+from fegear.design.flank_topography import (
+    design_force,
+    design_lines,
+    lines_at,
+    station_relief,
+    table_nodes,
+    tabulated,
+    topography,
+)
 from fegear.design.flank_trials import FlankTrials, Tried
 from fegear.frozen import ReadOnlyArrays
 from fegear.one_thread import one_thread
@@ -78,7 +86,7 @@ class FlankState(ReadOnlyArrays):
     relief : GroundRelief or None
         None for the exact topography.
     te : ndarray, shape (P,)
-        Transmission error at the roll positions of the pair's other results, none of which the design has seen [m].
+        Transmission error at the roll positions of the pair's other results, which the topography has not seen [m].
     peak_to_peak, peak_to_peak_error : float
         The larger of that over these positions and over those of the design, and by how much they differ [m].
     face_load_factor, pressure : float
@@ -166,7 +174,7 @@ def design_flanks(
     ----------
     flanks : FlankPair
     known : FlankCompliance
-        Of the roll positions that the design is checked at.
+        Of the roll positions at which reliefs to grind are tried and the exact topography is checked.
     apart : FlankGaps
         What keeps the flanks apart besides the relief: misalignment that is known.
     task : FlankDesignTask
@@ -180,10 +188,14 @@ def design_flanks(
     report = progress or (lambda _fraction: None)
     pair = flanks.pair
     lines = design_lines(pair, task.loading, task.positions, flanks.panel * pair.driver.module)
-    with one_thread():
-        own = flank_compliance(
-            pair, flanks.gears, lines, task.load, coupling=flanks.coupling, hertz=flanks.hertz, cache=flanks.cache
-        )
+
+    def compliance_at(lines: ContactLines) -> FlankCompliance:
+        with one_thread():
+            return flank_compliance(
+                pair, flanks.gears, lines, task.load, coupling=flanks.coupling, hertz=flanks.hertz, cache=flanks.cache
+            )
+
+    own = compliance_at(lines)
     report(0.3)
     gap = apart.at(pair, lines)
     station = station_relief(own, gap, task.loading, task.load)
@@ -191,33 +203,42 @@ def design_flanks(
     removal = tabulated(station, pair, x, z)
     table = topography(pair, "driver", x, z, removal)
     grid = task.grid or usual_grid(float(np.ptp(removal)), pair.path_length, pair.face_width, pair.base_pitch)
-    trials = FlankTrials(pair, own, gap, np.array(task.loads))
+    # What is ground leaves most where contact lines begin and end, where the positions of the other results stand, and
+    # may leave as much between few of them: it is chosen by both.
+    scan = FlankTrials(pair, known, apart.at(pair, known.lines), np.array(task.loads))
+    force = design_force(known.lines, task.loading, task.load)
+    roll = np.mod(np.concatenate([known.lines.roll, lines.roll]) - pair.x_start, pair.base_pitch) + pair.x_start
+    dense = lines_at(pair, np.unique(roll), flanks.panel * pair.driver.module)
+    trials = FlankTrials(pair, compliance_at(dense), apart.at(pair, dense), scan.loads)
     found: dict[str, FamilyBest] = {}
     wanted = [family for family in FAMILIES if family in task.families]
     for number, family in enumerate(wanted):
         starts = [found[held].relief for held in held_by(family) if held in found]
-        found[family] = best_of_family(trials, family, grid, station.force, task.most_factor, starts)
+        found[family] = best_of_family(trials, family, grid, force, task.most_factor, starts, scan)
         report(0.3 + 0.4 * (number + 1) / len(wanted))
     if wanted and task.scatter.over_face.size > 1:
         scattered = replace(trials, scatter=task.scatter)
         starts = [one.relief for one in found.values() if one.family in (*held_by(wanted[-1]), wanted[-1])]
-        found[ROBUST] = best_of_family(scattered, wanted[-1], grid, station.force, task.most_factor, starts)
+        found[ROBUST] = best_of_family(
+            scattered, wanted[-1], grid, force, task.most_factor, starts, replace(scan, scatter=task.scatter)
+        )
         # One start more: where scattered misalignment leads may be the better valley without it, too.
         found[wanted[-1]] = led_on(trials, found[wanted[-1]], grid, found[ROBUST].relief, task.most_factor)
     report(0.9)
-    check = FlankTrials(pair, known, apart.at(pair, known.lines), np.array([task.load]))
+    trials = replace(scan, loads=np.array([task.load]))
+    designed = FlankTrials(pair, own, gap, trials.loads)
     reliefs: dict[str, GroundRelief | Topography] = {
         UNRELIEVED: GroundRelief(),
         EXACT: table,
         **{label: one.relief for label, one in found.items()},
     }
-    states = tuple(_state(label, relief, replace(trials, loads=check.loads), check, task)
+    states = tuple(_state(label, relief, trials, designed, task)
                    for label, relief in reliefs.items())  # fmt: skip
     return FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
 
 
 def _state(
-    label: str, relief: GroundRelief | Topography, trials: FlankTrials, check: FlankTrials, task: FlankDesignTask
+    label: str, relief: GroundRelief | Topography, trials: FlankTrials, designed: FlankTrials, task: FlankDesignTask
 ) -> FlankState:
     """Evaluate a relief on both sets of roll positions, over the scatter and over the maps."""
 
@@ -229,14 +250,14 @@ def _state(
             removed = relief.removal(trials.pair.roll_angle(lines.x, "driver"), height)
         return np.where(lines.present, removed, 0.0)
 
-    here, there = gap(trials.known.lines), gap(check.known.lines)
-    own, other = trials.of_gap(here), check.of_gap(there)
-    ripple = [float(one.peak_to_peak[0, 0]) for one in (own, other)]
+    here = gap(trials.known.lines)
+    found, other = trials.of_gap(here), designed.of_gap(gap(designed.known.lines))
+    ripple = [float(one.peak_to_peak[0, 0]) for one in (found, other)]
     count = len(task.map_over_face)
     over = Scatter(np.array(task.map_over_face), np.full(count, 1.0 / count))
     return FlankState(
-        label, relief if isinstance(relief, GroundRelief) else None, other.te[0, :, 0], max(ripple),
-        abs(ripple[0] - ripple[1]), float(other.face_load_factor[0, 0]), float(other.pressure[0, 0]),
-        replace(check, scatter=task.scatter).of_gap(there) if task.scatter is not NOMINAL else other,
-        replace(check, scatter=over, loads=np.array(task.map_loads)).of_gap(there),
+        label, relief if isinstance(relief, GroundRelief) else None, found.te[0, :, 0], max(ripple),
+        abs(ripple[0] - ripple[1]), float(found.face_load_factor[0, 0]), float(found.pressure[0, 0]),
+        replace(trials, scatter=task.scatter).of_gap(here) if task.scatter is not NOMINAL else found,
+        replace(trials, scatter=over, loads=np.array(task.map_loads)).of_gap(here),
     )  # fmt: skip

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.design.flank_trials import FlankTrials, Tried
 
 #: Candidates loaded exactly, at least and at most; those from which a descent starts; coarse panels over the face.
-_LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 24, 240, 3, 5
+_LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 24, 240, 6, 5
 #: Extent of the first region of trust over the box, its growth and its shrinking; rounds; gain that ends a descent.
 _TRUST, _GROWS, _SHRINKS, _ROUNDS, _ENDED = 0.1, 1.6, 0.35, 24, 2e-3
 #: Combinations whose gaps are held at a time; K_Hbeta of the quick way may err by this much.
@@ -52,7 +52,7 @@ class FamilyBest:
     candidates, exact : int
         Combinations tried, and those of them that were loaded exactly.
     quick_error : float
-        Largest difference between quick and exact values among those [m].
+        By how much the quick way was too high at most among those [m].
     proven : bool
         Whether no combination left to the quick way could be better with an error as large as that.
     """
@@ -112,6 +112,7 @@ def best_of_family(
     force: Array,
     most_factor: float = np.inf,
     starts: Sequence[GroundRelief] = (),
+    scan: FlankTrials | None = None,
 ) -> FamilyBest:
     """Find the modification of a family that leaves the least.
 
@@ -121,19 +122,22 @@ def best_of_family(
     family : str
     grid : ReliefGrid
     force : ndarray, shape (P, M)
-        Design forces, about which the quick way takes compliances as straight [N].
+        Design forces at the stations of `scan`, about which the quick way takes compliances as straight [N].
     most_factor : float
         Largest K_Hbeta that is allowed, at all loads and misalignments.
     starts : sequence of GroundRelief
         Further starts of descents: a best one of a smaller family, so that more freedom never leaves more.
+    scan : FlankTrials, optional
+        Fewer roll positions at which all combinations are tried the quick way; those of `trials` without.
 
     Raises
     ------
     RangeError
         If no combination keeps to the largest K_Hbeta.
     """
-    quick = quick_flanks(trials.known, force, _PANELS, trials.cells)
-    numbers, rough, factor = quick_values(quick, trials, family, grid)
+    few = scan or trials
+    quick = quick_flanks(few.known, force, _PANELS, few.cells)
+    numbers, rough, factor = quick_values(quick, few, family, grid)
     allowed = factor <= most_factor * _FACTOR_SLACK
     order = np.argsort(np.where(allowed, rough, np.inf), kind="stable")[: int(allowed.sum())]
     seen: list[tuple[float, int]] = []
@@ -144,7 +148,7 @@ def best_of_family(
         tried = trials.of_numbers(numbers[i])
         exact += 1
         value = trials.value(tried.peak_to_peak)
-        error = max(error, abs(value - rough[i]))
+        error = max(error, rough[i] - value)
         # K_Hbeta costs as much as the contact: asked only of those that a descent might start from.
         if (len(seen) < _STARTS or value < seen[-1][0]) and _keeps(tried, most_factor):
             seen = sorted([*seen, (value, i)])[:_STARTS]

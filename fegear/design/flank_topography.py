@@ -79,13 +79,25 @@ def design_lines(pair: GearPair, loading: FlankLoading, count: int, panel: float
         more = start + np.mod(np.concatenate([kinks + d for d in (*near, *-near)]) - start, pitch)
         roll = np.unique(np.concatenate([roll, more]))
         roll = roll[np.concatenate([[True], np.diff(roll) > 1e-4 * pitch / count])]
-    step = np.diff(roll, append=roll[0] + pitch)
-    return contact_lines(pair, roll, panel, 0.5 * (step + np.roll(step, 1)) / pitch)
+    return lines_at(pair, roll, panel)
+
+
+def lines_at(pair: GearPair, roll: Array, panel: float) -> ContactLines:
+    """Contact lines at ascending roll positions of one base pitch, each for half of the way to both its neighbours."""
+    step = np.diff(roll, append=roll[0] + pair.base_pitch)
+    return contact_lines(pair, roll, panel, 0.5 * (step + np.roll(step, 1)) / pair.base_pitch)
 
 
 def _is_straight(pair: GearPair, count: int) -> bool:
     """Whether a contact line lies, with all its length, between two of so many roll positions."""
     return abs(base_twist(pair)) * pair.face_width < pair.base_pitch / count
+
+
+def design_force(lines: ContactLines, loading: FlankLoading, load: float) -> Array:
+    """Design load on the stations of contact lines, shape (P, M) [N]; its sum is the load at every roll position."""
+    force = np.where(lines.present, loading.line_load(lines.x, lines.z), 0.0) * lines.support
+    # Hats carry what straight pieces between the stations do: the sum is off by the square of a panel's length.
+    return np.asarray(force * (load / force.sum(axis=1))[:, None])
 
 
 def station_relief(known: FlankCompliance, apart: Array, loading: FlankLoading, load: float) -> StationRelief:
@@ -101,9 +113,7 @@ def station_relief(known: FlankCompliance, apart: Array, loading: FlankLoading, 
         Design load along the transverse line of action [N].
     """
     lines = known.lines
-    force = load * np.where(lines.present, loading.line_load(lines.x, lines.z), 0.0) * lines.support
-    # Hats carry what straight pieces between the stations do: the sum is off by the square of a panel's length.
-    force *= (load / force.sum(axis=1))[:, None]
+    force = design_force(lines, loading, load)
     u = deflection(known, force)
     zone = loading.over_path
     inside = lines.present & (lines.x >= zone.x_start) & (lines.x <= zone.x_end)

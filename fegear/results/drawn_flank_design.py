@@ -169,8 +169,8 @@ def _roll(name: str, data: FlankDesignData) -> Figure:
     return Figure(
         f"flank_design_roll_{name}",
         f"Transmission error of pair {name} with each relief",
-        f"Pair {name}: transmission error over a base pitch less its mean, at roll positions that the design has not "
-        "seen. In the legend: peak to peak.",
+        f"Pair {name}: transmission error over a base pitch less its mean, at roll positions that the exact "
+        "topography has not seen. In the legend: peak to peak.",
         tuple(panels),
         under=f"{design.task.load:.5g} N",
     )

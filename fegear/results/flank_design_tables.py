@@ -74,7 +74,7 @@ def designs_table(name: str, data: FlankDesignData) -> Table:
         Column("best_on_grid", np.array([one.value_on_grid if one else 0.0 for one in counted]), "um",
                "what the best combination of the grid leaves, before the descent; 0 where nothing is searched"),
         Column("quick_error", np.array([one.quick_error if one else 0.0 for one in counted]), "um",
-               "of the quick way that all combinations were tried in, as far as seen"),
+               "by which the quick way that all combinations were tried in was too high, as far as seen"),
         Column("proven", np.array([float(one.proven) if one else 1.0 for one in counted]), "",
                "1: no other combination can be better with such an error"),
     ]  # fmt: skip
