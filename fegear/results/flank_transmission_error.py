@@ -96,6 +96,12 @@ def _present(data: FlankTransmissionErrorData, inputs: Subject) -> Outcome:
             f"counts these instead of {_IN_EFFECTIVE_ERROR}; load_distribution.positions = "
             f"{2 * _IN_EFFECTIVE_ERROR} or more shows them all."
         )
+    if loaded.asked.effects.spacing_errors:
+        remarks.append(
+            f"Pair {inputs.name}: with spacing errors every base pitch has a transmission error of its own; this is "
+            f"that of base pitch {loaded.asked.base_pitch}, its harmonics are those of a pair that repeats it, and "
+            "rotational harmonics are not computed over the face."
+        )
     return Outcome(
         data,
         tuple(error_tables(shown, (error,))),

@@ -28,6 +28,7 @@ from fegear.errors import InputError
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
+from fegear.results.flank_transmission_error import FLANK_TRANSMISSION_ERROR
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
 COARSE = (
@@ -213,6 +214,16 @@ def test_maps_reach_the_tips(results):
     # but in the corners, where lines are too short to be divided
     wanted = 2.0 * x - 3.0 * z[:, None]
     np.testing.assert_allclose(line[1:-1], wanted[1:-1], atol=1e-6 * found.pair.base_pitch)
+
+
+def test_the_transmission_error_says_what_spacing_errors_leave_open(results):
+    data = results.outcomes[Task("flank-transmission-error", "I")].data
+    inputs = FLANK_TRANSMISSION_ERROR.inputs(results.scene, "I")
+    assert not any("rotational" in remark for remark in FLANK_TRANSMISSION_ERROR.present(data, inputs).remarks)
+    effects = data.loaded.asked.effects.model_copy(update={"spacing_errors": True})
+    uneven = replace(data, loaded=replace(data.loaded, asked=replace(data.loaded.asked, effects=effects)))
+    (told,) = (remark for remark in FLANK_TRANSMISSION_ERROR.present(uneven, inputs).remarks if "rotational" in remark)
+    assert "base pitch 0" in told
 
 
 def test_what_has_no_meaning_over_the_face_is_refused():
