@@ -112,7 +112,8 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array) -> Contact:
         if steps > _MOST_STEPS:
             raise ConvergenceError(
                 f"Contact over the flank found no consistent set of loaded stations for {index.size} of {place.size} "
-                "problems. Check the compliances: their matrix must be positive definite."
+                "problems. Check the loads: contacts must be narrow beside the height of a tooth. Of a table of "
+                "compliances the matrix must be positive definite."
             )
         here, w = place[index], total[index]
         matrix, constant = _tangent(known, here, v)
