@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from fegear.results.loaded_flanks import LoadedFlanksData
 
 #: Seconds of a roll position: both gears, both solutions, three loads.
-_SECONDS = 0.03
+_SECONDS = 0.015
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
     positions = scene.case.load_distribution.positions
-    return Forecast({"positions": positions}, 0.1 + _SECONDS * positions)
+    return Forecast({"positions": positions}, 0.05 + _SECONDS * positions)
 
 
 FLANK_LOAD_FACTORS = Stage(

@@ -36,7 +36,7 @@ _FEW = 12
 #: So many loaded places at a roll position tell too little of the load along a contact line.
 _FEWEST = 3
 #: Seconds of one contact line on one gear, and of the contact at one roll position.
-_LINE, _CONTACT = 0.03, 0.004
+_LINE, _CONTACT = 0.0023, 0.001
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,96 @@
+"""What loaded flanks cost, and what cheaper bodies make of the same pair.
+
+python benchmarks/bench_loaded_flanks.py [CASE]
+
+Processor seconds of one core for the pair of cases/helical_pair.toml: the gears, their compliances along the contact
+lines, the contact under all loads, then the same with another load; after that plane sections that know nothing of each
+other (thin slices), without and with neighbouring teeth, coupled slices, and the solid gears.
+"""
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from fegear.case.reading import read_scene
+from fegear.contact.flank import FlankPair
+from fegear.contact.flank.error import flank_error
+from fegear.fem.solid import solve_slices, solve_solid, solve_thin_slices
+from fegear.geometry.pair import MEMBERS
+from fegear.models.loaded_flanks import flanks_to_load
+from fegear.models.solid_influence import solid_gear_to_solve
+from fegear.one_thread import one_thread
+
+CASE = Path(__file__).resolve().parents[1] / "cases" / "helical_pair.toml"
+BODIES = {"thin slices": solve_thin_slices, "coupled slices": solve_slices, "solid": solve_solid}
+
+
+class Clock:
+    """Processor seconds since it was last asked."""
+
+    def __init__(self):
+        self.at = time.process_time()
+
+    def lap(self) -> float:
+        """Seconds of this stretch."""
+        before, self.at = self.at, time.process_time()
+        return self.at - before
+
+
+def solved(scene, asked, solve, *, coarse=False):
+    """Both gears by one of the solvers."""
+    found = {}
+    for member, name in zip(MEMBERS, asked.gears, strict=True):
+        wanted = solid_gear_to_solve(scene, name)
+        gear, settings = wanted.gear, wanted.settings.coarser() if coarse else wanted.settings
+        found[member] = solve(
+            gear.tooth, gear.twist * gear.module, gear.face_width / gear.module, gear.material.poisson_ratio,
+            gear.bore_radius / gear.module, settings, reach=wanted.reach,
+        )  # fmt: skip
+    return found
+
+
+def main() -> None:
+    """Print seconds of every stretch, then a line for every body."""
+    scene = read_scene(Path(sys.argv[1]) if len(sys.argv) > 1 else CASE)
+    asked = flanks_to_load(scene, next(iter(scene.pairs)))
+    gaps = asked.gaps(relief=asked.effects.relief, misalignment=asked.effects.misalignment)
+    rows = []
+    for name, solve in BODIES.items():
+        clock = Clock()
+        gears = solved(scene, asked, solve)
+        gear_seconds = clock.lap()
+        for coupling in (False, True):
+            flanks = FlankPair(asked.pair, gears, coupling, asked.effects.hertz, asked.panel, asked.positions)
+            clock.lap()
+            known = flanks.compliance(asked.nominal)
+            assembly = clock.lap()
+            found = flanks.solve(asked.loads, gaps, known)
+            rows.append((f"{name}{', neighbours' * coupling}", gear_seconds, assembly, clock.lap(), found))
+    coarse = solved(scene, asked, solve_solid, coarse=True)
+    print(f"coarser solid gears, for the error: {clock.lap():.2f} s")
+    for title, load in (
+        ("first", asked.nominal),
+        ("the same again", asked.nominal),
+        ("another load", 1.1 * asked.nominal),
+    ):
+        clock.lap()
+        known = flanks.compliance(load)
+        found = flanks.solve(np.array(asked.loads) * load / asked.nominal, gaps, known)
+        flank_error(flanks, found, coarse, gaps)
+        print(f"compliances, contact and error, {title}: {clock.lap():.3f} s")
+    nominal = asked.loads.index(asked.nominal)
+    print("body                         gears  lines  contact  te mean  peak to peak  K_Hbeta   [s, um]")
+    for name, *seconds, one in rows:
+        te = one.transmission_error[:, nominal] * 1e6
+        mean, factor = one.mean_transmission_error[nominal] * 1e6, one.face_load_factor[nominal]
+        print(
+            f"{name:28s} {seconds[0]:5.1f}  {seconds[1]:5.2f}  {seconds[2]:7.3f}  {mean:7.3f}  "
+            f"{np.ptp(te):12.3f}  {factor:7.4f}"
+        )
+
+
+if __name__ == "__main__":
+    with one_thread():
+        main()
