@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 #: Parts of the face whose loads are told apart: so long at most [modules], so many at least.
 _CELL, _FEWEST_CELLS = 0.5, 4
+#: Nearer to a sharp edge than this share of a base pitch is on it.
+_ON_EDGE = 1e-6
 #: Share of the largest gap of a tip edge from which on it is one of the last.
 _LAST = 0.8
 
@@ -90,20 +92,28 @@ class LoadedFlanks(ReadOnlyArrays):
         """Largest Hertzian pressure at the stations [Pa], shape (P, M, L)."""
         return self.known.pressure(self.line_load)
 
-    @property
-    def _off_edges(self) -> Array:
-        """1 at stations, 0 at those on tips, form circles and sharp edges, where nothing is the largest."""
-        return np.where(self.lines.at_edge, 0.0, 1.0)[:, :, None]
+    @cached_property
+    def largest_line_loads(self) -> Array:
+        """At each roll position [N/m], shape (P, L); where lines end at tips or form circles is left out."""
+        ends = self.lines.at_edge
+        if self.lines.edges is not None:  # on tip edges line loads are finite
+            ends = ends & (self.lines.edges.gap == 0.0) & (self.lines.edges.tilt < -_ON_EDGE * self.pair.base_pitch)
+        return np.asarray(np.where(ends[:, :, None], 0.0, self.line_load).max(axis=1))
+
+    @cached_property
+    def largest_pressures(self) -> Array:
+        """Hertzian at each roll position [Pa], shape (P, L), where lines end at tips and sharp edges left out."""
+        return np.asarray(np.where(self.lines.at_edge[:, :, None], 0.0, self.pressure).max(axis=1))
 
     @property
     def largest_line_load(self) -> Array:
-        """[N/m], shape (L,), tips and form circles left out."""
-        return np.asarray((self.line_load * self._off_edges).max(axis=(0, 1)))
+        """Of all roll positions [N/m], shape (L,)."""
+        return np.asarray(self.largest_line_loads.max(axis=0))
 
     @property
     def largest_pressure(self) -> Array:
-        """Hertzian [Pa], shape (L,), tips and form circles left out."""
-        return np.asarray((self.pressure * self._off_edges).max(axis=(0, 1)))
+        """Of all roll positions [Pa], shape (L,)."""
+        return np.asarray(self.largest_pressures.max(axis=0))
 
     @property
     def reaches_the_last_edges(self) -> bool:
