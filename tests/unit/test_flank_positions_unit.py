@@ -91,3 +91,22 @@ def test_integrals_of_straight_pieces():
         values = np.interp(x, z, load[:, i])
         wanted = [(values * (x < end)).sum() * np.ptp(z) / 200_000 for end in ends]
         np.testing.assert_allclose(load_below(z, load, ends)[:, i], wanted, atol=2e-5)
+
+
+def test_stations_are_one_place_on_both_flanks():
+    """So both gears feel the same forces at the same places: their moments balance about any axis."""
+    gears = pair(20.0)
+    lines = contact_lines(gears, roll_points(gears, 6).x, 1e-3)
+    u = np.array([math.cos(gears.working_pressure_angle), math.sin(gears.working_pressure_angle)])
+    rho, other = (lines.roll_length(gears, member) for member in ("driver", "driven"))
+    # from each axis: the radius of the base circle square to the line of action, and the roll length along it
+    across = np.array([-u[1], u[0]])
+    at = gears.driver.base_radius * across[:, None, None] + rho * u[:, None, None]
+    mate = -gears.driven.base_radius * across[:, None, None] - other * u[:, None, None]
+    centre = np.array([0.0, gears.centre_distance])[:, None, None]
+    np.testing.assert_allclose((at - mate - centre)[:, lines.present], 0.0, atol=1e-15)
+    np.testing.assert_allclose(lines.radius(gears, "driver"), np.hypot(*at), rtol=1e-12)
+    # a unit force on each station, along the normal of both flanks, about the driver's axis and the driven gear's
+    for base, arm in ((gears.driver.base_radius, at), (-gears.driven.base_radius, mate)):
+        torque = arm[0] * u[1] - arm[1] * u[0]
+        np.testing.assert_allclose(np.abs(torque[lines.present]), abs(base), rtol=1e-12)

@@ -8,6 +8,7 @@ import pytest
 from fegear.contact import Engagement, PairCompliance, finite_element_compliance
 from fegear.contact.flank import FlankGaps, FlankPair, contact_lines, flank_compliance
 from fegear.contact.flank.complementarity import solve_contact
+from fegear.contact.flank.error import flank_error
 from fegear.contact.flank.tip_edges import edge_reach, usual_gap
 from fegear.contact.flank.touching import touching_gaps
 from fegear.fem import solve_gear
@@ -118,3 +119,38 @@ def test_lines_without_tip_edges_are_what_they_were():
     assert lines.edges is None
     np.testing.assert_array_equal(lines.roll_length(pair, "driven"), pair.flank_curvature_radius(lines.x, "driven"))
     assert usual_gap(pair, 1000.0) == pytest.approx(2.0 * usual_gap(pair, 500.0))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("beta", [0.0, 10.0, 20.0, 30.0])
+@pytest.mark.parametrize("most_gap", [0.0, 50e-6])
+def test_errors_are_honest_against_finer_everything(beta, most_gap):
+    """Finer meshes with more functions, a fourth of the panel's length, twice the roll positions."""
+    hands = [gear(beta, hand, width=15e-3) for hand in ("right", "left")]
+    pair = GearPair(*hands)
+    base = SolidSettings().scaled(1.7)
+    solids = [
+        [solid(one, settings) for one in hands] for settings in (base, base.coarser(), SolidSettings().scaled(0.9))
+    ]
+    usual, coarse, fine = (dict(zip(("driver", "driven"), two, strict=True)) for two in solids)
+    flanks = FlankPair(pair, usual, panel=0.25, positions=16, most_gap=most_gap)
+    finer = FlankPair(pair, fine, panel=0.0625, positions=32, most_gap=most_gap)
+    load = 250e3 * pair.face_width
+    z = np.linspace(-0.5, 0.5, 33) * pair.face_width
+    crowned = FlankGaps(face_position=z, line_gap=8e-6 * (2.0 * z / pair.face_width) ** 2)
+    misaligned = FlankGaps(face_position=z, line_gap=10e-6 * (z / pair.face_width + 0.5))
+    known, better = flanks.compliance(load), finer.compliance(load)
+    for gaps in (FlankGaps(), crowned, misaligned):
+        found, wanted = flanks.solve([load], gaps, known), finer.solve([load], gaps, better)
+        error = flank_error(flanks, found, coarse, gaps)
+        for key, stated in (
+            ("mean_transmission_error", error.mean), ("face_load_factor", error.face_load_factor),
+            ("largest_line_load", error.largest_line_load), ("largest_pressure", error.largest_pressure),
+        ):  # fmt: skip
+            off = abs(float(getattr(found, key)[0] - getattr(wanted, key)[0]))
+            assert off < 1.2 * float(stated[0]), (key, off, stated)
+        off = abs(float(np.ptp(found.transmission_error) - np.ptp(wanted.transmission_error)))
+        assert off < 1.2 * float(error.peak_to_peak[0])
+        # and they are no blanket
+        assert error.mean[0] < 0.03 * found.mean_transmission_error[0]
+        assert error.face_load_factor[0] < 0.08 * found.face_load_factor[0]

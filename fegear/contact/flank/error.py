@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 #: By how much panels are longer.
 _LONGER = 1.5
-#: What of a change of the largest load at any roll position is taken for its error, and what of that of the curve
-#: through half of the roll positions, held against solutions with a fourth of the panel's length on finer meshes.
-_LOCAL, _OF_HALF = 2.0, 0.5
+#: What is taken for an error of the change of shares, of that of the largest load at any roll position, and of that by
+#: half of the roll positions: held against solutions with a fourth of the panel's length on finer meshes.
+_SHARES, _LOCAL, _OF_HALF = 1.2, 2.5, 0.5
 
 
 @dataclass(frozen=True)
@@ -77,8 +77,10 @@ def flank_error(
                       for i, (k, on) in enumerate(zip(at.tolist(), same, strict=True))])  # fmt: skip
     shift = np.abs(other.mean_transmission_error - found.mean_transmission_error)
     return FlankError(
-        np.abs(again - te), share, shift,
-        np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)) + _between_positions(flanks.points, te),
+        np.abs(again - te), _SHARES * share, shift,
+        # Half of how far the curve changes its shape: its largest and smallest values may do so together.
+        np.maximum(np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), 0.5 * np.ptp(again - te, axis=0))
+        + _between_positions(flanks.points, te),
         _over_face(flanks.points, found, other, shift / found.mean_transmission_error),
         _largest(found, found.line_load, found.largest_line_loads, other.largest_line_loads),
         _largest(found, found.pressure, found.largest_pressures, other.largest_pressures), other,
