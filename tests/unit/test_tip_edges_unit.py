@@ -84,7 +84,7 @@ def test_a_spur_pair_meets_its_tips_as_in_the_plane(rounding):
     roll = pair.x_end - pair.base_pitch + np.array([-0.3e-3, -0.02e-3, 0.02e-3, 0.2e-3, 0.5e-3])
     known, contact = loaded(FlankPair(pair, {"driver": flank, "driven": flank}, panel=1.5), roll, load, 60e-6)
     wanted = engagement.solve(engagement.grid(roll), [load])
-    np.testing.assert_allclose(contact.approach, wanted.transmission_error, rtol=6e-3)
+    np.testing.assert_allclose(contact.approach, wanted.transmission_error, rtol=8e-3)
     ahead = (contact.force[:, :, 0] * ((known.lines.pair == 1) & known.lines.present)).sum(axis=1) / load
     number = wanted.grid.contacts.number.tolist().index(1)
     np.testing.assert_allclose(ahead, wanted.shared.loads[number, :, 0] / load, atol=6e-3)

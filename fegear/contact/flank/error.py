@@ -25,6 +25,8 @@ _LONGER = 1.5
 #: What is taken for an error of the change of shares, of that of the largest load at any roll position, and of that by
 #: half of the roll positions: held against solutions with a fourth of the panel's length on finer meshes.
 _SHARES, _LOCAL, _OF_HALF = 1.2, 2.5, 0.5
+#: The same of a change of the transmission error's shape, for its peak-to-peak value.
+_SHAPE = 0.8
 
 
 @dataclass(frozen=True)
@@ -78,8 +80,8 @@ def flank_error(
     shift = np.abs(other.mean_transmission_error - found.mean_transmission_error)
     return FlankError(
         np.abs(again - te), _SHARES * share, shift,
-        # Half of how far the curve changes its shape: its largest and smallest values may do so together.
-        np.maximum(np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), 0.5 * np.ptp(again - te, axis=0))
+        # Most of how far the curve changes its shape: its largest and smallest values may do so together.
+        np.maximum(np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), _SHAPE * np.ptp(again - te, axis=0))
         + _between_positions(flanks.points, te),
         _over_face(flanks.points, found, other, shift / found.mean_transmission_error),
         _largest(found, found.line_load, found.largest_line_loads, other.largest_line_loads),
