@@ -30,6 +30,11 @@ if TYPE_CHECKING:
 _STROKE = 1.5
 
 
+#: Results in memory: some ten states of a case, whose gears stay as long as they are used. An hour of changes fills no
+#: more than that.
+_MOST = 48
+
+
 class Unwanted(BaseException):
     """The case that is being computed is no longer wanted; nothing on the way takes this for a failure of its own."""
 
@@ -45,7 +50,7 @@ class Worker:
     """
 
     def __init__(self, connection: Connection, folder: Path) -> None:
-        self._connection, self._cache = connection, SolutionCache(Store(folder))
+        self._connection, self._cache = connection, SolutionCache(Store(folder), _MOST)
         self._waiting: deque[Job] = deque()
         self._meshes: dict[str, object] = {}
         self._number, self._may_drop, self._begun = 0, False, 0.0
