@@ -201,7 +201,7 @@ OF_MESH, UNITY = "transmissibility.I.mesh", "transmissibility.I.unity_ratio"
         (LINES, "gear.pinion.bore_radius=300 mm", "gear.pinion.bore_radius", "root radius"),
         (LINES, "gear.pinion.module=2 mm", "gear.pinion.module", "write normal_module"),
         (LINES, "gear.pinion.face_width=0 mm", "gear.pinion.face_width", "greater than zero"),
-        (LINES, "results=['load-sharing']", "results", "those of this case are helical"),
+        (LINES, "results=['load-sharing']", "pair.I.load", "is needed"),
         (LINES, "pair.I.misalignment={lead='1 um', lead_angle='1 arcmin'}", "pair.I.misalignment.lead", "contradicts"),
         ("litvin_lead", "pair.I.misalignment={lead='1 m'}", "pair.I.misalignment.lead", "within 20%"),
         (
