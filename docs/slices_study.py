@@ -1,13 +1,14 @@
 """What slices get wrong over helix angle and face width: the table docs/studies/slices.csv, and its picture.
 
-Run as ``python docs/slices_study.py`` (a quarter of an hour) to make the table anew. As a hook of mkdocs it draws the
-picture from the committed table, so that page and table cannot disagree.
+Run as ``python docs/slices_study.py`` (a quarter of an hour) to make both anew; ``--picture`` draws the committed
+table.
 """
 
 from __future__ import annotations
 
 import csv
 import math
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,13 +21,11 @@ from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.output.draw_png import draw_pictures
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member
 
 TABLE = Path(__file__).parent / "studies" / "slices.csv"
-MADE = Path(__file__).resolve().parents[1] / "results" / "studies"
+IMAGES = Path(__file__).parent / "images"
 PICTURE = "slices_study"
 #: The first line of the table.
 COMMAND = "# python docs/slices_study.py"
@@ -97,7 +96,7 @@ def figure() -> Figure:
     shown = {
         "mean_te [um]": ("mean transmission error", "over the solid's"),
         "peak_to_peak [um]": ("peak to peak", "over the solid's"),
-        "face_load_factor_misaligned": ("K_{Hβ}, 10 um askew", "over the solid's"),
+        "face_load_factor_misaligned": ("K_{Hβ}, 10 µm askew", "over the solid's"),
     }
     panels = []
     for body in ("thin slices", "slices"):
@@ -116,23 +115,15 @@ def figure() -> Figure:
     )  # fmt: skip
 
 
-def on_files(files, config):
-    """Draw the picture for the site."""
-    from mkdocs.structure.files import File
-
-    for picture in draw():
-        files.append(File.generated(config, f"images/{picture.name}", abs_src_path=str(picture)))
-    return files
-
-
-def draw() -> Iterator[Path]:
-    """Draw the picture into results/studies."""
-    MADE.mkdir(parents=True, exist_ok=True)
-    for picture in draw_pictures(figure(), MADE):
-        yield picture.path
-
-
 def main() -> None:
+    """Make the table, unless asked for the picture alone, and draw it."""
+    if "--picture" not in sys.argv:
+        make_table()
+    for _ in draw_pictures(figure(), IMAGES):
+        pass
+
+
+def make_table() -> None:
     """Make the table."""
     lines = [COMMAND, ",".join(HEAD)]
     for width in WIDTHS:
