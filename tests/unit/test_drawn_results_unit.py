@@ -19,14 +19,13 @@ from fegear.output.draw_png.sheet import Sheet
 from fegear.results.drawn_pair import pair_figure, path_marks, roll_marks
 from fegear.results.dynamic_factor import _figure as _factor_figure
 from fegear.results.gear_data import Drawing
-from fegear.results.loaded_pair import engagement_marks, pitch_marks
+from fegear.results.loaded_pair import pitch_marks
 from fegear.results.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
 from fegear.results.natural_modes import _campbell_figure
 from fegear.studies.swept import Swept, varying
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3)
 PAIR = GearPair(GEAR, GEAR)
-LOADED = SimpleNamespace(engagement=SimpleNamespace(pair=PAIR))
 TRAIN = SimpleNamespace(names=("I", "II"), speed_ratio=1.0, speed_of="motor")
 
 
@@ -40,9 +39,8 @@ def drawn_texts(panel: Panel, head: tuple[str, str] = ("", "")) -> tuple[set[str
 
 
 def test_points_of_the_path_are_marked_on_every_abscissa_that_follows_it():
-    assert engagement_marks(LOADED) == path_marks(PAIR)
     assert [mark.label for mark in path_marks(PAIR)] == list("ABCDE")
-    over_pitch = pitch_marks(LOADED, np.array([PAIR.x_start, PAIR.x_start + PAIR.base_pitch]))
+    over_pitch = pitch_marks(PAIR, np.array([PAIR.x_start, PAIR.x_start + PAIR.base_pitch]))
     assert [mark.label for mark in over_pitch] == list("ABCD")
     rolls = {mark.label: mark.at for mark in roll_marks(PAIR, "driven")}
     assert rolls["A"] > rolls["C"] > rolls["E"]
