@@ -3,11 +3,12 @@
 python tests/other_codes/make_pair_calculix.py coarse "two whole lines"
 python tests/other_codes/make_pair_calculix.py coarse "a line that ends at the tip"
 python tests/other_codes/make_pair_calculix.py fillets "two whole lines"
+python tests/other_codes/make_pair_calculix.py fillets "a line that ends at the tip"
 
 Each run has two steps, aligned and with the driver tilted in the plane of action. Driver and driven are turned against
 each other by what fegear predicts for 900 N; what CalculiX tells is the load that this takes, its shares and the stress
 of the fillets. A run of the coarse mesh (122,000 equations) takes some 20 iterations of ten seconds of one core, with
-finer fillets as many of twelve. Of "fillets" the committed file has the tilted step alone.
+finer fillets as many of twelve. Of "fillets" the committed file has the tilted steps alone.
 """
 
 import json
