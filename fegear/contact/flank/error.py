@@ -25,8 +25,9 @@ _LONGER = 1.5
 #: What is taken for an error of the change of shares, of that of the largest load at any roll position, and of that by
 #: half of the roll positions: held against solutions with a fourth of the panel's length on finer meshes.
 _SHARES, _LOCAL, _OF_HALF = 1.2, 2.5, 0.5
-#: The same of a change of the transmission error's shape, for its peak-to-peak value.
-_SHAPE = 0.8
+#: The same for the peak-to-peak transmission error: of a change of its shape, and of what half of the roll positions
+#: miss of the curve, whose peaks beside tip edges may stand between all of them.
+_SHAPE, _OF_CURVE = 0.8, 3.0
 
 
 @dataclass(frozen=True)
@@ -143,4 +144,4 @@ def _half(points: Panels) -> Mask:
 def _between_positions(points: Panels, te: Array) -> Array:
     """What half of the roll positions on each piece of the base pitch miss of the curve and its peak-to-peak [m]."""
     missed = np.array([np.abs(from_half(points, one) - one).max() for one in te.T])
-    return np.maximum(_OF_HALF * missed, np.ptp(te, axis=0) - np.ptp(te[_half(points)], axis=0))
+    return np.maximum(_OF_CURVE * missed, np.ptp(te, axis=0) - np.ptp(te[_half(points)], axis=0))
