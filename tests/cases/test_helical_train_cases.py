@@ -95,7 +95,8 @@ def test_a_tooth_pair_carries_through_the_whole_plane_of_action(outcomes):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (["effects.friction=true", "effects.neighbour_coupling=false"], "follows one place of contact on the path"),
+        (["effects.friction=true", "effects.neighbour_coupling=false", "effects.corner_contact=false"],
+         "follows one place of contact on the path"),
         (["effects.spacing_errors=true", f"gear.wheel_1.spacing_errors={33 * ['1 um']}"], "solved in one base pitch"),
         (['results=["dynamic-root-stress"]'], "follows one place of contact on the path"),
         (['train.mesh.second.like={pair="first"}'], "teeth of another width"),
