@@ -29,7 +29,7 @@ RESULTS = [
     "gear-train", "mesh-force-spectrum", "tooth-force", "mesh-stiffness-matrix", "transmissibility", "pair-forces"
 ]  # fmt: skip
 ASKED = (
-    f"results={RESULTS}",
+    f"results={RESULTS}", "effects.corner_contact=false",
     f"transmissibility.stage.driver.bearing={RIGID}", f"transmissibility.stage.driven.bearing={RIGID}",
     "transmissibility.stage.frequencies=5", 'transmissibility.stage.excitation.speeds=["0.01 rpm"]',
     "transmissibility.stage.excitation.transmission_error.harmonics=2",
