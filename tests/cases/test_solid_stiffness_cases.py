@@ -135,7 +135,9 @@ def test_a_wider_contact_gives_way_less_by_its_logarithm(results):
     two = solid_table(gear, one.influence, one.radius, one.position, 2.0 * one.half_width)
     line_load = (2.0 / 3.0) / (0.5 * gear.module)
     expected = 2.0 * (1.0 - 0.3**2) / (np.pi * gear.material.young_modulus) * np.log(2.0) * line_load
-    assert (one.c_self - two.c_self)[:, 2] == pytest.approx(expected, rel=0.01)
+    # Waves of the hat as short as the contact is wide answer less than their logarithm says.
+    assert (one.c_self - two.c_self)[:, 2] == pytest.approx(expected, rel=0.015)
+    assert ((one.c_self - two.c_self)[:, 2] < expected).all()
 
 
 def test_pictures_and_field(results, tmp_path):
