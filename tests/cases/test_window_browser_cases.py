@@ -89,10 +89,24 @@ def browser(program):
         yield opened
 
 
-def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server(browser, tmp_path):
+@pytest.fixture
+def serve(tmp_path):
+    made = []
+
+    def start(*arguments: str) -> Served:
+        made.append(Served(tmp_path, *arguments))
+        return made[-1]
+
+    yield start
+    for one in made:
+        if one.process.poll() is None:
+            one.end(signal.SIGKILL)
+
+
+def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server(browser, serve, tmp_path):
     path = tmp_path / "drive.toml"
     path.write_text(TEXT)
-    served = Served(tmp_path, str(path))
+    served = serve(str(path))
     go(browser, served.address)
     browser.until(f"{DRAWN} && {field('pair.I.load')} !== null")
     before = largest_load(browser)
@@ -156,7 +170,7 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     # The server is killed; its successor has what was not saved, and writes it where it belongs.
     served.end(signal.SIGKILL)
     assert path.read_text() == TEXT
-    served = Served(tmp_path, str(path))
+    served = serve(str(path))
     go(browser, served.address)
     browser.until(f"{field('pair.I.load')}?.value === '7 kN'")
     assert "were not saved are here again" in browser.run("document.querySelector('.told').textContent")
