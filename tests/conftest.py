@@ -1,4 +1,4 @@
-"""How many random cases a property is tried on: 50 in the ordinary run, always the same; 1000 in the long run.
+"""How many random cases a property is tried on: 40 in the ordinary run, always the same; 1000 in the long run.
 
 Tests that run another program ask the fixture `program` for it: where it is missing they are skipped, with the line
 that installs it. ``--no-skips`` lets no test be skipped.
@@ -13,7 +13,7 @@ import sys
 import pytest
 from hypothesis import HealthCheck, settings
 
-ORDINARY, LONG = 50, 1000
+ORDINARY, LONG = 40, 1000
 #: Solves and long chains of laws take their time; what is slow shows in the durations, not as a failure.
 _SHARED = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, HealthCheck.filter_too_much]}
 

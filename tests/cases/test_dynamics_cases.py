@@ -90,7 +90,7 @@ def test_four_square_spectrum_and_root_stress():
 @pytest.mark.parametrize(
     ("coupled", "close"),
     # without coupling each contact is linear about the full load on one pair, as in NASA TM-89901
-    [("true", 1e-4), ("false", 3e-3)],
+    [("true", 1e-4), pytest.param("false", 3e-3, marks=pytest.mark.long)],
 )
 def test_static_part_of_the_dynamic_root_stress_is_the_quasi_static_history(coupled, close):
     """The same teeth by two routes: springs of the train with the neighbours' forces, and load sharing itself."""
@@ -214,7 +214,7 @@ def test_minimum_excitation_without_relief_data_is_refused():
         ("train.balance=nobody", "no body of this case"),
         ("train.mesh.I.driver=lft", 'nearest known name is "left"'),
         ("train.body.left={}", "is missing"),
-        ("train.mesh.II.like={ pair = 'III' }", "no spur pair"),
+        ("train.mesh.II.like={ pair = 'III' }", "is no pair of this case; known here: I, II"),
         ("dynamics.speeds={ start = '500 rpm' }", "incomplete"),
         ("dynamics.frequencies={ start = '100 Hz', stop = '10 Hz' }", "greater than start"),
     ],

@@ -55,6 +55,7 @@ def value(outcome, name):
     return found
 
 
+@pytest.mark.long
 def test_what_is_left_is_told(outcome):
     rows = columns(outcome, "flank_designs_I")
     label = rows["relief"].tolist()
@@ -71,6 +72,7 @@ def test_what_is_left_is_told(outcome):
     assert mean["robust"] <= 1.03 * mean["profile-lead-and-bias"]
 
 
+@pytest.mark.long
 def test_the_map_holds_the_design_load(outcome):
     rows = columns(outcome, "flank_map_I")
     assert set(rows["load [N]"].tolist()) == {900.0, 1800.0}
@@ -89,6 +91,7 @@ def load_distribution(cache, folder, *overrides):
     return columns(found, "load_distribution_roll_I")["te [um]"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("on", ["driver", "both"])
 def test_its_topography_is_read_back_by_a_case(cache, outcome, tmp_path, on):
     overrides = []
@@ -106,6 +109,7 @@ def test_its_topography_is_read_back_by_a_case(cache, outcome, tmp_path, on):
     np.testing.assert_allclose(te, wanted, atol=1e-4)
 
 
+@pytest.mark.long
 def test_its_keys_grind_what_it_says(cache, outcome, tmp_path):
     design, pair = outcome.data.design, outcome.data.pair
     for label in ("robust", "profile-lead-and-bias"):

@@ -155,6 +155,7 @@ def test_mirrored_hands_with_mirrored_shafts_have_the_same_error(beta, shaft, le
     assert mirrored[0].mesh.r1[sharp] == pytest.approx(mirrored[1].mesh.r1[sharp], abs=2e-7)
 
 
+@pytest.mark.long
 def test_error_vanishes_linearly_with_the_misalignment():
     sizes = 3.0 * 10.0 ** -np.arange(0.0, 7.0, 2.0)  # arc-min, down to 3e-6
     for name in ("shaft_angle", "lead_angle", "profile_angle"):

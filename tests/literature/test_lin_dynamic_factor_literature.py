@@ -79,6 +79,7 @@ def test_contact_ratio_and_pitch_point():
     assert relief_start(pair.x_end, pair.x_hpstc, 1.284) == pytest.approx(0.0, abs=3e-6)
 
 
+@pytest.mark.long
 def test_unmodified_gears():
     """Fig. 5(c): about 2.2 at about 11,000 rpm; the issue asks for 2.1 to 2.2 between 10,000 and 11,500 rpm."""
     for shaft_ratio in (0.02, 0.05):

@@ -122,6 +122,7 @@ def test_the_driven_gear_may_drive(solved, flanks, known):
     assert springs.first_slot == again.first_slot
 
 
+@pytest.mark.long
 def test_plane_strain_over_the_face_is_the_plane_pair():
     """A spur pair that cannot move along its axis: springs of plane teeth with coupled neighbours."""
     one = gear(0.0)
