@@ -29,8 +29,9 @@ def flank_pressure_figure(name: str, found: LoadedFlanks, case: int) -> Figure:
     shift = 0.5 * (1.0 + _APART) * (found.lines.high - found.lines.low)
     parts = [_tooth(found, member, case) for member in MEMBERS]
     moved = [
-        points + np.array([[0.0], [0.0], [sign * shift]]) for sign, (points, _, _) in zip((1, -1), parts, strict=True)
-    ]
+        points + np.array([[0.0], [parts[0][0][1].max() - points[1].max()], [sign * shift]])
+        for sign, (points, _, _) in zip((1, -1), parts, strict=True)
+    ]  # side by side with the driver, however different the radii
     count = moved[0].shape[1]
     values = np.concatenate([value for _, _, value in parts]) * 1e-6
     top = float(np.percentile(values[values > 0.0], _TOP)) if (values > 0.0).any() else 1.0
