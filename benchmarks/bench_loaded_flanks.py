@@ -16,14 +16,13 @@ import numpy as np
 from fegear.case.reading import read_scene
 from fegear.contact.flank import FlankPair
 from fegear.contact.flank.error import flank_error
-from fegear.fem.solid import solve_slices, solve_solid, solve_thin_slices
-from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_flanks import flanks_to_load
-from fegear.models.solid_influence import solid_gear_to_solve
+from fegear.models.solid_influence import solid_settings_of
 from fegear.one_thread import one_thread
+from fegear.studies.cost.flank_ladder import BODIES
+from fegear.studies.cost.flank_measure import solve_bodies
 
 CASE = Path(__file__).resolve().parents[1] / "cases" / "helical_pair.toml"
-BODIES = {"thin slices": solve_thin_slices, "coupled slices": solve_slices, "solid": solve_solid}
 
 
 class Clock:
@@ -38,28 +37,15 @@ class Clock:
         return self.at - before
 
 
-def solved(scene, asked, solve, *, coarse=False):
-    """Both gears by one of the solvers."""
-    found = {}
-    for member, name in zip(MEMBERS, asked.gears, strict=True):
-        wanted = solid_gear_to_solve(scene, name)
-        gear, settings = wanted.gear, wanted.settings.coarser() if coarse else wanted.settings
-        found[member] = solve(
-            gear.tooth, gear.twist * gear.module, gear.face_width / gear.module, gear.material.poisson_ratio,
-            gear.bore_radius / gear.module, settings, reach=wanted.reach,
-        )  # fmt: skip
-    return found
-
-
 def main() -> None:
     """Print seconds of every stretch, then a line for every body."""
     scene = read_scene(Path(sys.argv[1]) if len(sys.argv) > 1 else CASE)
     asked = flanks_to_load(scene, next(iter(scene.pairs)))
     gaps = asked.gaps(relief=asked.effects.relief, misalignment=asked.effects.misalignment)
-    rows = []
-    for name, solve in BODIES.items():
+    settings, rows = solid_settings_of(scene, asked.gears[0]), []
+    for body, name in BODIES.items():
         clock = Clock()
-        gears = solved(scene, asked, solve)
+        gears = solve_bodies(scene, asked.name, body, settings)
         gear_seconds = clock.lap()
         for coupling in (False, True):
             flanks = FlankPair(asked.pair, gears, coupling, asked.effects.hertz, asked.panel, asked.positions)
@@ -68,7 +54,7 @@ def main() -> None:
             assembly = clock.lap()
             found = flanks.solve(asked.loads, gaps, known)
             rows.append((f"{name}{', neighbours' * coupling}", gear_seconds, assembly, clock.lap(), found))
-    coarse = solved(scene, asked, solve_solid, coarse=True)
+    coarse = solve_bodies(scene, asked.name, "solid", settings.coarser())
     print(f"coarser solid gears, for the error: {clock.lap():.2f} s")
     for title, load in (
         ("first", asked.nominal),

@@ -8,7 +8,9 @@ from pydantic import Field
 
 from fegear.case.part import Part
 
-QuantityName = Literal["c_0", "c_1", "root-stress", "te-peak-to-peak", "tooth-force", "dynamic-factor"]
+QuantityName = Literal[
+    "c_0", "c_1", "root-stress", "te-peak-to-peak", "tooth-force", "dynamic-factor", "te-mean", "face-load-factor"
+]  # fmt: skip
 
 
 class CostPart(Part):
@@ -23,4 +25,5 @@ class CostPart(Part):
         """Stages whose effects the quantities named here depend on."""
         names = set(self.quantities or ())
         of_pair = ("loaded-pair",) if names & {"te-peak-to-peak", "tooth-force", "dynamic-factor"} else ()
+        of_pair = (*of_pair, "loaded-flanks") if names & {"te-mean", "face-load-factor"} else of_pair
         return (*of_pair, "motion") if "dynamic-factor" in names else of_pair

@@ -42,7 +42,7 @@ def _references(case: Case) -> Iterator[tuple[str, str | None, str]]:
     yield "stiffness.gear", case.stiffness.gear, "gear"
     yield "stiffness.pair", case.stiffness.pair, "pair"
     yield "cost.gear", case.cost.gear, "spur gear"
-    yield "cost.pair", case.cost.pair, "spur pair"
+    yield "cost.pair", case.cost.pair, "pair"
     if case.study is not None:
         yield "study.gear", case.study.gear, "spur gear"
     if case.design is not None:

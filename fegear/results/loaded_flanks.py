@@ -23,7 +23,10 @@ if TYPE_CHECKING:
     from fegear.contact.flank import FlankCompliance, FlankGaps, FlankPair, LoadedFlanks
     from fegear.contact.flank.error import FlankError
     from fegear.engine.stage import Upstream, Work
+    from fegear.fem.solid.flank_body import FlankBody
+    from fegear.geometry.pair import Member
     from fegear.models.loaded_flanks import FlanksToLoad
+    from fegear.solution_cache import SolutionCache
 
 #: Effects that keep flanks apart.
 _OF_GAPS = ("relief", "spacing_errors", "misalignment")
@@ -97,10 +100,46 @@ def loaded_flanks(upstream: Upstream, name: str) -> LoadedFlanksData:
     return cast("LoadedFlanksData", upstream[Task("loaded-flanks", name)])
 
 
-def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlanksData:
+def load_flanks(
+    asked: FlanksToLoad, bodies: Mapping[Member, FlankBody], cache: SolutionCache
+) -> tuple[FlankPair, FlankGaps, LoadedFlanks]:
+    """Load a pair of solved gears as its case says, along tip edges as far as these carry load.
+
+    Parameters
+    ----------
+    asked : FlanksToLoad
+    bodies : mapping of {"driver", "driven"} to FlankBody
+    cache : SolutionCache
+        Of compliances.
+
+    Returns
+    -------
+    flanks : FlankPair
+    gaps : FlankGaps
+        Of the effects that are on.
+    found : LoadedFlanks
+        Under all loads.
+    """
     from fegear.contact.flank import FlankPair
-    from fegear.contact.flank.error import flank_error, with_misses
     from fegear.contact.flank.tip_edges import usual_gap
+
+    effects = asked.effects
+    flanks = FlankPair(
+        asked.pair, bodies, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions,
+        usual_gap(asked.pair, max(asked.loads)) if effects.corner_contact else 0.0, cache,
+    )  # fmt: skip
+    gaps = asked.gaps(**{effect: effects.is_on(effect) for effect in _OF_GAPS})
+    found = flanks.solve(asked.loads, gaps, flanks.compliance(asked.nominal))
+    for _ in range(_LONGER_EDGES):
+        if not found.reaches_the_last_edges:
+            break
+        flanks = replace(flanks, most_gap=2.0 * flanks.most_gap)
+        found = flanks.solve(asked.loads, gaps, flanks.compliance(asked.nominal))
+    return flanks, gaps, found
+
+
+def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlanksData:
+    from fegear.contact.flank.error import flank_error, with_misses
     from fegear.contact.flank.touching import beside_the_lines, unloaded_error
     from fegear.fem.solid.slice_laws import missed_by_slices
 
@@ -108,19 +147,8 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlank
     solved = [solid_solution_of(upstream, gear) for gear in asked.gears]
     fine = {member: one.fine for member, one in zip(MEMBERS, solved, strict=True)}
     coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
-    flanks = FlankPair(
-        asked.pair, fine, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions,
-        usual_gap(asked.pair, max(asked.loads)) if effects.corner_contact else 0.0, work.cache,
-    )  # fmt: skip
-    gaps = asked.gaps(**{effect: effects.is_on(effect) for effect in _OF_GAPS})
-    known = flanks.compliance(asked.nominal)
-    found = flanks.solve(asked.loads, gaps, known)
-    for _ in range(_LONGER_EDGES):
-        if not found.reaches_the_last_edges:
-            break
-        flanks = replace(flanks, most_gap=2.0 * flanks.most_gap)
-        known = flanks.compliance(asked.nominal)
-        found = flanks.solve(asked.loads, gaps, known)
+    flanks, gaps, found = load_flanks(asked, fine, work.cache)
+    known = found.known
     missed = missed_by_slices(asked.pair.driver.twist)["contact"] if asked.width == "slices" else 0.0
     error = with_misses(flank_error(flanks, found, coarse, gaps), found, missed)
     neglected = {

@@ -206,7 +206,7 @@ def test_effects_that_only_the_cost_study_depends_on_are_not_idle(case):
         ('cost.quantities=["c0"]', "cost.quantities"),
         ("cost.quantity=1", "unknown key"),
         ("cost.gear=b", 'cost.gear = "b": is no spur gear of this case'),
-        ("cost.pair=J", 'cost.pair = "J": is no spur pair of this case'),
+        ("cost.pair=J", 'cost.pair = "J": is no pair of this case'),
         ('results=["geometry"]', "ask for nothing whose cost can be chosen"),
         ("effects.hertz=none", "nothing converges"),
         ('cost.quantities=["dynamic-factor"]', "needs a train"),

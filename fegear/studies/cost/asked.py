@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import InputError
+from fegear.models.loaded_flanks import check_flanks_to_load
 from fegear.models.motion import motion_inputs
+from fegear.models.solid_influence import flank_pairs
 from fegear.results.gear_contacts import contact_half_width, load_radii
 from fegear.results.loaded_pair import plane_pairs
-from fegear.studies.cost.quantities import OF_GEAR, Quantity
+from fegear.studies.cost.quantities import OF_FLANKS, OF_GEAR, Quantity
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
@@ -36,6 +38,9 @@ _OF_RESULT = {
     "dynamic-root-stress": ("root-stress", "tooth-force"),
     "dynamic-factor": ("dynamic-factor",),
 }
+#: Results that tell of a pair over its face, and those of plane gears, which a study of such a pair says nothing of.
+_OVER_FACE = frozenset({"load-distribution", "transmission-error", "load-sharing"})
+_OF_PLANE_GEARS = frozenset({"stiffness", "root-stress", "crosscheck"})
 #: Line load where the case names none [N/m].
 _USUAL_LINE_LOAD = 100e3
 
@@ -54,6 +59,8 @@ class Asked:
         Load positions of the gear's quantities and the contact's half-width there [m].
     line_load : float
         [N/m], for closed forms whose contact is not linear in it.
+    over_face : bool
+        Whether the pair is loaded over its face: then there is nothing of gears, meshes and closed forms.
     """
 
     scene: Scene
@@ -64,6 +71,7 @@ class Asked:
     radii: Array
     half_width: Array
     line_load: float
+    over_face: bool = False
 
     @property
     def pairs(self) -> tuple[str, ...]:
@@ -192,6 +200,52 @@ def _over_the_face(scene: Scene, train: TrainPart, names: list[str]) -> bool:
     return bool(wide)
 
 
+def _flank_pair(scene: Scene) -> str:
+    """The pair whose load over the face is studied; empty for a study in the plane.
+
+    That is studied where the quantities are such pairs' own, where ``cost.pair`` is one, or where the case asks for
+    results over the face and for nothing that a study in the plane could answer.
+    """
+    part, wanted = scene.case.cost, set(scene.case.results)
+    pairs = [name for name in flank_pairs(scene) if scene.case.pair[name].normal_load(scene.pairs[name]) is not None]
+    given = set(part.quantities or ())
+    if part.pair in scene.plane_pairs or not pairs:
+        chosen = part.pair if part.pair in pairs else ""
+    else:
+        chosen = part.pair or pairs[0]
+    loaded = [p for p in scene.plane_pairs if scene.case.pair[p].normal_load(scene.pairs[p]) is not None]
+    if given:
+        plane = bool(given - set(OF_FLANKS)) or (given == {"te-peak-to-peak"} and bool(loaded) and part.pair != chosen)
+    else:
+        plane = not wanted & _OVER_FACE or bool(wanted & _OF_PLANE_GEARS) or (
+            part.pair not in scene.wide_pairs and bool(loaded) and any(_OF_RESULT.get(result) for result in wanted)
+        )  # fmt: skip
+    return "" if plane or not chosen else chosen
+
+
+def _asked_of_flanks(scene: Scene, pair: str) -> Asked:
+    """What is to be studied of a pair that is loaded over its face."""
+    check_flanks_to_load(scene, pair)
+    if scene.case.effects.hertz == "none":
+        raise InputError(
+            "effects.hertz", '"none"', "leaves contacts as wide as the load that a mesh resolves",
+            'write hertz = "load-dependent" under [effects]',
+        )  # fmt: skip
+    known = {
+        "te-mean": Quantity("te-mean", pair, "um", f"mean loaded transmission error of pair {pair}"),
+        "te-peak-to-peak": Quantity(
+            "te-peak-to-peak",
+            pair,
+            "um",
+            f"peak-to-peak transmission error of pair {pair} at its roll positions",
+        ),
+        "face-load-factor": Quantity("face-load-factor", pair, "", f"K_Hbeta, face load factor of pair {pair}"),
+    }
+    names = scene.case.cost.quantities or OF_FLANKS
+    none = np.empty(0)
+    return Asked(scene, tuple(known[name] for name in dict.fromkeys(names)), "", pair, "", none, none, math.nan, True)
+
+
 def asked(scene: Scene) -> Asked:
     """Read from a case what is to be studied.
 
@@ -200,7 +254,16 @@ def asked(scene: Scene) -> Asked:
     InputError
         If nothing can be, or a quantity lacks its gear, pair, load or train.
     """
+    over_face = _flank_pair(scene)
+    if over_face:
+        return _asked_of_flanks(scene, over_face)
     names = _names(scene)
+    alone = sorted(set(names) & (set(OF_FLANKS) - {"te-peak-to-peak"}))
+    if alone:
+        raise InputError(
+            "cost.quantities", f'"{alone[0]}"', "is of a pair that is loaded over its face, and is studied without "
+            "quantities of plane teeth", 'ask for results = ["load-distribution"], and remove the others',
+        )  # fmt: skip
     pair = _pair(scene, names)
     gear = _gear(scene, names, pair)
     mesh = _mesh(scene, pair, names)

@@ -8,7 +8,10 @@ from typing import Literal
 
 from fegear.fem.settings import MeshSettings
 
-Family = Literal["compliance-formula", "stress-formula", "sector", "ring", "tolerance", "table"]
+Family = Literal[
+    "compliance-formula", "stress-formula", "sector", "ring", "tolerance", "table",
+    "thin-slices", "thin-slices-alone", "coupled-slices", "coupled-slices-alone", "solid", "solid-alone",
+]  # fmt: skip
 
 #: The mean stiffness of the standard as a compliance of each tooth.
 ISO_STIFFNESS = "iso6336-stiffness"
@@ -22,7 +25,9 @@ class Configuration:
     ----------
     family : str
         ``compliance-formula``, ``stress-formula``, ``sector`` (teeth with free sides), ``ring`` (the whole gear),
-        ``tolerance`` (what a run picks for ``accuracy.tolerance``), ``table`` (the case's own compliances).
+        ``tolerance`` (what a run picks for ``accuracy.tolerance``), ``table`` (the case's own compliances); of a pair
+        that is loaded over its face ``thin-slices``, ``coupled-slices`` and ``solid``, with ``-alone`` without
+        neighbouring teeth.
     settings : MeshSettings or None
         Of finite elements with given settings.
     factor : float

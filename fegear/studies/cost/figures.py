@@ -26,11 +26,15 @@ NAMES = {
     "dynamic-factor": "dynamic factor",
     "te-harmonics": "harmonics of the transmission error",
     "stiffness-harmonics": "harmonics of the mesh stiffness",
+    "te-mean": "mean transmission error",
+    "face-load-factor": "K_{Hbeta}, face load factor",
 }
 #: Formulas answer so quickly that their seconds would stretch the axis; they stand no farther left than this [s].
 _QUICKEST = 1e-4
 #: Errors below what a double resolves.
 _ROUND_OFF = 1e-16
+#: What tells alike marks of a pair with its width apart.
+_OF_FLANKS = " Edges shorten from one group of equal marks to the next on the right; within a group panels differ."
 _ORDERS = ((2, "sky", "circle"), (3, "blue", "square"), (4, "green", "diamond"))
 #: Where the grey zone of the reference's own error starts, over that error.
 _BELOW = 0.3
@@ -39,8 +43,10 @@ _BELOW = 0.3
 def cost_figures(results: CostResults) -> tuple[Figure, ...]:
     """Describe all: the quantities together, each alone, and the knobs where some were turned."""
     alone = tuple(_quantity_figure(results, quantity) for quantity in results.quantities)
+    more = _OF_FLANKS if results.asked.over_face else ""
     together = Figure(
-        "cost", "What accuracy costs", "Every configuration of the study; grey: below the reference's own error.",
+        "cost", "What accuracy costs",
+        f"Every configuration of the study; grey: below the reference's own error.{more}",
         tuple(_panel(results, q, title=NAMES.get(q.name, q.name), written=False) for q in results.quantities),
         columns=min(2, len(results.quantities)),
     )  # fmt: skip
@@ -54,7 +60,8 @@ def _quantity_figure(results: CostResults, quantity: Quantity) -> Figure:
         f"cost_{quantity.name}",
         f"Cost of {name}",
         f"{quantity.meaning[0].upper()}{quantity.meaning[1:]}: relative error against a converged solution over the "
-        f"seconds it takes. The grey band lies below the error of the reference itself ({floor:.0e}).",
+        f"seconds it takes. The grey band lies below the error of the reference itself ({floor:.0e})."
+        + (_OF_FLANKS if results.asked.over_face else ""),
         (_panel(results, quantity, title="", written=True),),
     )
 
@@ -70,10 +77,16 @@ def _panel(results: CostResults, quantity: Quantity, *, title: str, written: boo
         (("sector",), "sector with free sides", "orange", "triangle-up"),
         (("compliance-formula", "stress-formula"), "closed form", "red", "x"),
         (("table",), "the case's table", "ink", "square"),
+        (("thin-slices-alone",), "thin slices without neighbours", "orange", "x"),
+        (("thin-slices",), "thin slices", "orange", "triangle-up"),
+        (("coupled-slices-alone",), "coupled slices without neighbours", "green", "x"),
+        (("coupled-slices",), "coupled slices", "green", "diamond"),
+        (("solid-alone",), "solid without neighbours", "blue", "x"),
+        (("solid",), "solid", "blue", "circle"),
         (("tolerance",), "chosen for accuracy.tolerance, error estimate included", "purple", "star"),
     ):
         here = [row for row in rows if row.configuration.family in families]
-        items += _points(results, here, label, role, symbol, written=written)
+        items += _points(results, here, label, role, symbol, written=written and not results.asked.over_face)
     front = results.front(quantity.name)
     if front.front.size:
         t, e = np.maximum(front.seconds[front.front], _QUICKEST), front.error[front.front]

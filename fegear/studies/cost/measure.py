@@ -209,6 +209,8 @@ def measure_meshes(found: Found, group: tuple[Configuration, ...]) -> None:
 
 def answered(asked: Asked, configuration: Configuration) -> list[Quantity]:
     """Quantities that a configuration knows anything of."""
+    if asked.over_face:
+        return list(asked.quantities)
     kinds: dict[str, frozenset[str]] = {
         "compliance-formula": ComplianceFormula.answers, "stress-formula": StressFormula.answers,
         "table": CaseTable.answers,

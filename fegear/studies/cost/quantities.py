@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 #: Quantities of one gear, at many load positions; the others are numbers of a pair or a mesh.
 OF_GEAR = ("c_0", "c_1", "root-stress")
+#: Those of a pair that is loaded over its face.
+OF_FLANKS = ("te-mean", "te-peak-to-peak", "face-load-factor")
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 
 from fegear.engine.run import Silence
 from fegear.fem.solid import SolidSettings
+from fegear.models.loaded_flanks import flanks_to_load
 from fegear.models.settings import seconds_of_gear
 from fegear.models.solid_influence import seconds_of_solid_gear
 from fegear.one_thread import one_thread
 from fegear.studies.cost.answers import answer
+from fegear.studies.cost.flank_ladder import flank_ladder, flank_seconds
+from fegear.studies.cost.flank_measure import measure_flanks, refer_flanks
 from fegear.studies.cost.knobs import ladder_knobs
 from fegear.studies.cost.ladder import make_ladder
 from fegear.studies.cost.measure import (
@@ -46,6 +49,8 @@ _SOLIDS = 25.0
 
 def forecast(asked: Asked, ladder: Ladder) -> float:
     """About how long a study takes on one core [s]."""
+    if asked.over_face:
+        return flank_seconds(asked, ladder)
     own = sum(_ANSWER_SECONDS.get(q.name, 0.02) for q in asked.quantities)
     total = _KNOB_SECONDS * bool(asked.pair) + own * (len(ladder.configurations) + 2)
     if asked.scene.case.stiffness.face_positions is not None and asked.gear:
@@ -60,6 +65,8 @@ def forecast(asked: Asked, ladder: Ladder) -> float:
 
 def ladder_of(asked: Asked, *, quick: bool = False) -> Ladder:
     """The ladder for what is asked."""
+    if asked.over_face:
+        return flank_ladder(flanks_to_load(asked.scene, asked.pair).panels, quick=quick)
     teeth = min((asked.scene.gears[name].teeth for name in asked.gears), default=0)
     solved = [q.name for q in asked.quantities if asked.solves(q)]
     return make_ladder(asked.usual_half_width, solved, teeth, tabled=asked.tabled, quick=quick)
@@ -84,7 +91,7 @@ def study_cost(asked: Asked, *, quick: bool = False, watcher: Watcher | None = N
     started = time.perf_counter()
     ladder = ladder_of(asked, quick=quick)
     found = Found(asked)
-    steps = _steps(found, ladder)
+    steps = _flank_steps(found, ladder) if asked.over_face else _steps(found, ladder)
     try:
         with one_thread():
             for number, (title, work) in enumerate(steps, start=1):
@@ -132,6 +139,17 @@ def _steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], None]]]
         )
     if asked.scene.case.stiffness.face_positions is not None and asked.gear:
         steps.append(("Knobs of the gear with its width", lambda: found.knobs.extend(solid_knobs(asked))))
+    return steps
+
+
+def _flank_steps(found: Found, ladder: Ladder) -> list[tuple[str, Callable[[], None]]]:
+    """The same for a pair that is loaded over its face; its reference warms everything up."""
+    steps: list[tuple[str, Callable[[], None]]] = [
+        (f"Reference: {ladder.reference.label}", partial(refer_flanks, found, ladder))
+    ]
+    for group in ladder.meshes:
+        more = f" and {len(group) - 1} more" if len(group) > 1 else ""
+        steps.append((group[0].label + more, partial(measure_flanks, found, group)))
     return steps
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.outcome import Column, Table
+from fegear.studies.cost.flank_ladder import FlankConfiguration
 from fegear.studies.cost.result import ALL, TOLERANCES
 from fegear.units import from_si
 
@@ -37,6 +38,7 @@ def cost_table(results: CostResults) -> Table:
         found = [row.configuration.settings for row in rows]
         return np.array([float(getattr(s, name)) if s else math.nan for s in found])
 
+    panels = [c.panels if isinstance(c := row.configuration, FlankConfiguration) else 0 for row in rows]
     columns = (
         Column("quantity", words(lambda r: r.quantity), "", "what was computed"),
         Column("configuration", words(lambda r: r.configuration.label), "", "with what"),
@@ -59,6 +61,7 @@ def cost_table(results: CostResults) -> Table:
         Column("flank_edge_length", setting("flank_edge_length"), "", "[modules]"),
         Column("patch_half_width", setting("patch_half_width"), "", "[modules]"),
         Column("teeth", np.array([r.configuration.teeth for r in rows]), "", "of a sector; 0 for the whole gear"),
+        Column("panels", np.array(panels, dtype=int), "", "along the face of a pair with its width; else 0"),
         Column("case_line", words(lambda r: r.configuration.paste(results.asked.pair)), "", "asks a case for this"),
         Column("reason", words(lambda r: r.reason), "", "why there is no answer"),
     )  # fmt: skip
@@ -84,7 +87,7 @@ def orders_table(results: CostResults) -> Table:
 def knobs_table(results: CostResults) -> Table:
     """The configurations behind the observed orders."""
     knobs = results.knobs
-    count = [k.step.size for k in knobs]
+    count = np.array([k.step.size for k in knobs], dtype=int)
 
     def joined(name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
         return np.concatenate([np.empty(0), *(getattr(k, name) for k in knobs)])
