@@ -54,14 +54,18 @@ def solve_bodies(scene: Scene, pair: str, body: str, settings: SolidSettings) ->
 
 
 def refer_flanks(found: Found, ladder: Ladder) -> None:
-    """Solve the reference and the coarser one that shows its error."""
-    values, check = (
-        _values(_load(found.asked, one, _solve(found.asked, one))) for one in (ladder.reference, ladder.check)
-    )
-    for quantity in found.asked.quantities:
+    """Solve the reference, and what shows its error: coarser gears and fewer panels, each alone and both.
+
+    Their largest difference counts: of both together alone, one could make up for the other.
+    """
+    asked, best, check = found.asked, ladder.reference, ladder.check
+    fine, coarse = _solve(asked, best), _solve(asked, check)
+    values = _values(_load(asked, best, fine))
+    others = [_values(_load(asked, one, bodies)) for one, bodies in ((check, fine), (best, coarse), (check, coarse))]
+    for quantity in asked.quantities:
         name = quantity.name
         found.reference[name] = values[name]
-        found.floors[name] = max(miss(name, check[name], values[name]).largest, _ROUND_OFF)
+        found.floors[name] = max(_ROUND_OFF, *(miss(name, other[name], values[name]).largest for other in others))
 
 
 def measure_flanks(found: Found, group: tuple[Configuration, ...]) -> None:
