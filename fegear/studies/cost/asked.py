@@ -130,7 +130,7 @@ def _names(scene: Scene) -> list[str]:
     if not found:
         raise InputError(
             "results", ", ".join(f'"{r}"' for r in scene.case.results), "ask for nothing whose cost can be chosen",
-            "ask for one of " + ", ".join(f'"{r}"' for r in _OF_RESULT)
+            "ask for one of " + ", ".join(f'"{r}"' for r in (*_OF_RESULT, "load-distribution"))
             + ', or write quantities = ["c_0"] under [cost]',
         )  # fmt: skip
     order = (*OF_GEAR, "te-peak-to-peak", "tooth-force", "dynamic-factor")
