@@ -143,12 +143,12 @@ def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
               f"smooth flanks, tips and form circles left out, {where}"),
         Value(f"{name}.largest_share", float(found.share[:, :, i].max()), "",
               float(data.error.share[:, :, i].max()), "of one tooth pair"),
-        Value(f"{name}.equilibrium", float(found.equilibrium.max()), "", 0.0, "sum of all forces less load, over load"),
     )  # fmt: skip
     values = tuple(value for value in values if value.name.removeprefix(f"{name}.") not in inputs.elsewhere)
     tables = (_stations(name, found, i), _over_face(name, found, i), _positions(name, data), _loads(name, data))
     figures = load_distribution_figures(name, found, i)
-    return Outcome(data, tables, values, remarks=tuple(_remarks(name, data)), figures=figures)
+    settings = {"equilibrium": float(found.equilibrium.max())}
+    return Outcome(data, tables, values, settings, tuple(_remarks(name, data)), figures)
 
 
 def _remarks(name: str, data: LoadedFlanksData) -> list[str]:
