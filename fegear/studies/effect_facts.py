@@ -36,7 +36,9 @@ class EffectFact:
 
 FACTS: dict[str, EffectFact] = {
     "neighbour_coupling": EffectFact(
-        "a loaded tooth deflects its neighbours and stresses their roots", 'compliance source "fe" of plane teeth', ("neighbours",)
+        "a loaded tooth deflects its neighbours and stresses their roots",
+        'compliance source "fe" of plane teeth',
+        ("neighbours",),
     ),
     "hertz": EffectFact(
         "contacts widen with their load (`linear`: as wide as under the nominal load)",
