@@ -37,6 +37,7 @@ def results():
         return study_cost(asked(read_scene(CASE, NARROW)), quick=True)
 
 
+@pytest.mark.long
 def test_every_body_is_tried_with_and_without_neighbours(results):
     assert results.complete
     assert [q.name for q in results.quantities] == list(OF_FLANKS)
@@ -55,6 +56,7 @@ def error(results, family, quantity):
     return min(rows, key=lambda row: row.configuration.factor).miss.largest
 
 
+@pytest.mark.long
 def test_slices_and_pairs_that_stand_alone_err_more_than_solid_gears(results):
     solid = error(results, "solid", "te-mean")
     assert solid < 0.01
@@ -62,6 +64,7 @@ def test_slices_and_pairs_that_stand_alone_err_more_than_solid_gears(results):
         assert error(results, family, "te-mean") > 3.0 * solid, family
 
 
+@pytest.mark.long
 def test_a_configuration_is_charged_once_for_all_quantities(results):
     whole = {row.configuration: row.seconds.cpu for row in results.at_once()}
     assert len(whole) == results.planned
@@ -69,6 +72,7 @@ def test_a_configuration_is_charged_once_for_all_quantities(results):
         assert row.seconds.cpu == pytest.approx(whole[row.configuration], rel=1e-12)
 
 
+@pytest.mark.long
 def test_its_values_are_those_of_a_run(results):
     """A configuration's numbers are those of the case's pair under its load, with such gears and as many panels."""
     rows = {row.quantity: row for row in results.rows if row.configuration.label.startswith("coupled slices, ")}
@@ -82,6 +86,7 @@ def test_its_values_are_those_of_a_run(results):
     assert rows["face-load-factor"].value == pytest.approx(found.face_load_factor[0], rel=1e-12)
 
 
+@pytest.mark.long
 def test_page_and_tables_are_written(results, tmp_path):
     write_cost(results, tmp_path, plots=False)
     head, *lines = (tmp_path / "tables" / "cost.csv").read_text().splitlines()

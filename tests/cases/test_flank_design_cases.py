@@ -130,7 +130,7 @@ def test_its_keys_grind_what_it_says(cache, outcome, tmp_path):
         ('flank_design.centre="20 mm"', "flank_design.centre"),
         ('flank_design.end_length="7 mm"', "flank_design.end_length"),
         ('flank_design.grid={tip_amounts=["5 um"]}', "tip_amounts"),
-        ("flank_design.largest_face_load_factor=1.001", "largest_face_load_factor"),
+        pytest.param("flank_design.largest_face_load_factor=1.001", "largest_face_load_factor", marks=pytest.mark.long),
     ],
 )
 def test_what_cannot_be_is_refused(cache, override, key):

@@ -142,6 +142,7 @@ def test_plane_strain_over_the_face_is_the_plane_pair():
     assert springs.first_slot == wanted.first_slot
 
 
+@pytest.mark.long
 def test_a_helix_that_goes_to_zero_is_a_spur_pair():
     found = []
     for beta in (0.0, 1e-5):
