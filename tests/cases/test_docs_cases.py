@@ -56,6 +56,7 @@ def site(tmp_path_factory):
     return folder, done.stderr
 
 
+@pytest.mark.long
 def test_the_search_is_in_sight_and_works_in_a_folder(site, program):
     """The list of pages scrolled it away at load, and a browser refused its worker below file://."""
     folder, said = site
@@ -80,6 +81,7 @@ def test_the_search_is_in_sight_and_works_in_a_folder(site, program):
         assert browser.complaints == []
 
 
+@pytest.mark.long
 def test_the_site_builds_without_a_warning(site):
     folder, said = site
     # Pages that name other cases, or show what their own run makes, link to what this shortened site leaves out.

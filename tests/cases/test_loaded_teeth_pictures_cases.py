@@ -26,9 +26,10 @@ QUICK = ("accuracy.tolerance=2e-2",)
             "calculix_pair",
             ["load_sharing", "transmission_error", "transmission_error_harmonics", "root_stress_history"],
         ),
-        (
+        pytest.param(
             "nasa_relief_design",
             ["relief", "relief_candidates", "harris_map", "relief_chart", "robustness"],
+            marks=pytest.mark.long,
         ),
         ("mark_minimum_excitation", ["relief", "relief_candidates", "harris_map"]),
     ],

@@ -111,6 +111,7 @@ def test_motion_that_grows_for_ever_is_refused():
         steady_state(MotionModel(rig, (even,), speed), tolerance=1e-6)
 
 
+@pytest.mark.long
 def test_linear_motion_has_the_spectrum_of_the_linear_train():
     """Constant stiffness and an uneven transmission error: shooting over five pitches against Fourier, line by line."""
     error = mesh_excitation(uneven(), LOAD).transmission_error(LOAD, tolerance=1e-9)

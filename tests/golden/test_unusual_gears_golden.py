@@ -110,6 +110,7 @@ def test_no_tolerance_is_missed_in_silence_by_any_gear(tolerance):
     assert not silent_misses(KNOWN, tolerance)
 
 
+@pytest.mark.long
 def test_contacts_that_once_were_wrong_by_percents_are_within_a_thousandth():
     """Defaults: at .0015 modules from the tip (4.9 % before), wide ones (.7 %), loads beside a short fillet (40 %)."""
     for name in QUICK:

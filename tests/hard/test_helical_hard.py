@@ -30,6 +30,7 @@ angles = st.floats(-5.0, 5.0).map(lambda a: a * ARCMIN)
 
 @pytest.mark.examples(6, 120)
 @given(angles, st.floats(-6.0, 6.0), st.sampled_from([0.0, 1.0]))
+@pytest.mark.long
 def test_a_helix_angle_that_vanishes_leaves_the_spur_pair(shaft, lead, parabola):
     errors = Misalignment(shaft_angle=shaft, profile_angle=lead * ARCMIN)
     assume(abs(shaft) > 0.01 * ARCMIN)

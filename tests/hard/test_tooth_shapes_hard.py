@@ -204,7 +204,9 @@ def test_a_thinner_rim_on_a_stiff_hub_is_stiffer_and_tends_to_a_tooth_on_rigid_g
     assert slope[1] == pytest.approx(slope[0], rel=0.15)
 
 
-@pytest.mark.parametrize(("bore", "near"), [(1.0 - 1e-5, "the root circle"), (1e-6, "the centre")])
+@pytest.mark.parametrize(
+    ("bore", "near"), [pytest.param(1.0 - 1e-5, "the root circle", marks=pytest.mark.long), (1e-6, "the centre")]
+)
 def test_bores_that_no_elements_resolve_are_refused_with_one_that_they_do(bore, near):
     """One asked for 32 GiB, another never came back."""
     tooth = Tooth(28)

@@ -116,7 +116,7 @@ def test_a_listener_that_says_nothing_is_no_scheduler(monkeypatch):
             map_points(math.sqrt, [1.0], Executor(address))
 
 
-@pytest.mark.parametrize("lost", ["workers", "scheduler"])
+@pytest.mark.parametrize("lost", [pytest.param("workers", marks=pytest.mark.long), "scheduler"])
 def test_a_cluster_that_is_lost_ends_the_wait(monkeypatch, capfd, lost):
     program = (
         "from dask.distributed import LocalCluster\n"
