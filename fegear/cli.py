@@ -17,7 +17,7 @@ from fegear.commands.effects import effects
 from fegear.commands.export import export
 from fegear.commands.help import Command, Group, context_settings
 from fegear.commands.new import new
-from fegear.commands.open import open  # noqa: A004
+from fegear.commands.open import open  # noqa: A004  (the name of the command)
 from fegear.commands.plan import plan
 from fegear.commands.results import results
 from fegear.commands.run import run

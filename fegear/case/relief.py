@@ -29,7 +29,7 @@ def several(part: type[Part]) -> BeforeValidator:
     def read(value: Any) -> Any:
         return [value] if isinstance(value, dict) else value
 
-    return BeforeValidator(read, json_schema_input_type=part | list[part])  # type: ignore[valid-type]
+    return BeforeValidator(read, json_schema_input_type=part | list[part])  # type: ignore[valid-type]  # made at run time
 
 
 class EndReliefPart(Part):

@@ -222,4 +222,4 @@ class TransmissibilityPart(Part):
                 f"{prefix}.unity_ratio.base_radius", "(not given)", "is needed for moments",
                 'write base_radius = "70.48 mm"',
             )  # fmt: skip
-        return model.both_gears(u.base_radius, u.aspect_ratio * u.base_radius)  # type: ignore[union-attr]
+        return model.both_gears(u.base_radius, u.aspect_ratio * u.base_radius)  # type: ignore[union-attr]  # as above

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _DIGEST = 32
 
 
-class _CheckedFiles(IndexDataCacheFile):  # type: ignore[misc]
+class _CheckedFiles(IndexDataCacheFile):  # type: ignore[misc]  # numba has no types
     """Numba's files with a digest in front, and with what they were made for.
 
     Numba itself takes every file for what it should be: a flipped bit is another program, and of two processes that
