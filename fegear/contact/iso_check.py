@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.virtual_gears import virtual_root_stress
-from fegear.formulas import iso6336_rating as rating
-from fegear.formulas.iso6336_stiffness import Stiffness, pair_stiffness
+from fegear.formulas.iso6336 import part3_pair as rating
+from fegear.formulas.iso6336.part1_stiffness import Stiffness, pair_stiffness
 from fegear.formulas.outcome import Outcome, attempt
 
 if TYPE_CHECKING:

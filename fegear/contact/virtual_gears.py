@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem import solve_gear
-from fegear.formulas.iso6336_root_stress import virtual_teeth
+from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
 from fegear.geometry import Gear
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.formulas import agma908, cornell_heywood, dolan_broghamer, heywood, iso6336_root_stress
+from fegear.formulas import agma908, cornell_heywood, dolan_broghamer, heywood
+from fegear.formulas.iso6336 import part3_root_stress
 from fegear.formulas.outcome import Outcome, attempt
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ ROOT_STRESS_SOURCES: dict[str, RootStressSource] = {
         cornell_heywood.SOURCE,
         cornell_heywood.TROCHOID_SOURCE,
         heywood.SOURCE,
-        iso6336_root_stress.SOURCE,
+        part3_root_stress.SOURCE,
         agma908.SOURCE,
         dolan_broghamer.SOURCE,
     )

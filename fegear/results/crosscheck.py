@@ -101,7 +101,7 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
     )
     from fegear.contact.iso_check import rated_helical_pair, rated_spur_pair
     from fegear.formulas.cornell_section import radial_section_lengths
-    from fegear.formulas.iso6336_stiffness import pair_stiffness
+    from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
     from fegear.formulas.outcome import attempt
 
     gears, pairs, count = {}, {}, len(asked.gears) + len(asked.pairs)

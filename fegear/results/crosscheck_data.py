@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from fegear.contact.iso_check import RatedPair
     from fegear.fem import StiffnessTable
     from fegear.formulas.cornell_section import SectionLengths
-    from fegear.formulas.iso6336_stiffness import Stiffness
+    from fegear.formulas.iso6336.part1_stiffness import Stiffness
     from fegear.formulas.outcome import Outcome as Answer
     from fegear.geometry import Gear, GearPair
     from fegear.results.crosscheck_iso import IsoInputs

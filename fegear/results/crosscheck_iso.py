@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.iso_check import HelicalCheck, RatedPair
     from fegear.fem.settings import MeshSettings
-    from fegear.formulas.iso6336_rating import RatingChoice
+    from fegear.formulas.iso6336.part3_pair import RatingChoice
 
 #: Tangential load per face width of helical pairs when the case names none [N/m].
 USUAL_LINE_LOAD = 100e3
@@ -37,7 +37,7 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
     part = scene.case.pair[name]
     names = (part.driver, part.driven)
     from fegear.contact.iso_check import HelicalCheck
-    from fegear.formulas.iso6336_rating import RatingChoice
+    from fegear.formulas.iso6336.part3_pair import RatingChoice
 
     choice = RatingChoice(part.iso_6336.edition, part.iso_6336.accuracy_grade)
     rims = (scene.case.gear[names[0]].rim_thickness, scene.case.gear[names[1]].rim_thickness)

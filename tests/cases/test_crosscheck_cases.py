@@ -21,7 +21,7 @@ from fegear.engine.run import run_plan
 from fegear.errors import InputError
 from fegear.fem.settings import MeshSettings
 from fegear.formulas import cornell_heywood as cornell
-from fegear.formulas.iso6336_rating import RatingChoice, ToothLoad, rate_helical, rate_spur
+from fegear.formulas.iso6336.part3_pair import RatingChoice, ToothLoad, rate_helical, rate_spur
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import SOURCES
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fegear.errors import RangeError
-from fegear.formulas.iso6336_face_load import face_load_factor, root_exponent
+from fegear.formulas.iso6336.part1_face_load import face_load_factor, root_exponent
 
 STIFFNESS, LOAD = 15e9, 300e3
 

@@ -11,8 +11,8 @@ from fegear.case.gear import RackPart
 from fegear.errors import GeometryError
 from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import MeshSettings
-from fegear.formulas import iso6336_root_stress as iso
 from fegear.formulas.fillet_section import section_at_tangent
+from fegear.formulas.iso6336 import part3_root_stress as iso
 from fegear.geometry import BasicRack, Tooth
 from fegear.geometry.fillet import ProtuberanceFillet
 

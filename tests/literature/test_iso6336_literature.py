@@ -5,9 +5,9 @@ import math
 import pytest
 
 from fegear.errors import ConvergenceError, RangeError
-from fegear.formulas import iso6336_root_stress as root
-from fegear.formulas import iso6336_stiffness as stiff
 from fegear.formulas.fillet_section import section_at_tangent
+from fegear.formulas.iso6336 import part1_stiffness as stiff
+from fegear.formulas.iso6336 import part3_root_stress as root
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 
 

@@ -8,9 +8,9 @@ from helical_gears import helical_gear
 from fegear.contact.closed_form_compliance import closed_form_compliance
 from fegear.contact.pair_compliance import PairCompliance
 from fegear.errors import GeometryError, InputError, RangeError
-from fegear.formulas.iso6336_rating import RatingChoice, rate_spur
-from fegear.formulas.iso6336_root_stress import virtual_teeth
-from fegear.formulas.iso6336_stiffness import pair_stiffness, theoretical_stiffness
+from fegear.formulas.iso6336.part1_stiffness import pair_stiffness, theoretical_stiffness
+from fegear.formulas.iso6336.part3_pair import RatingChoice, rate_spur
+from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
 from fegear.formulas.root_stress_sources import root_stress_table
 from fegear.geometry import GearPair
 from fegear.helical import HelicalPair, Misalignment, pair_contact, tooth_contact

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.flank.lines import ContactLines
-from fegear.formulas.iso6336_face_load import face_load_factor, root_exponent
-from fegear.formulas.iso6336_stiffness import pair_stiffness
+from fegear.formulas.iso6336.part1_face_load import face_load_factor, root_exponent
+from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 
 if TYPE_CHECKING:
     from fegear.arrays import Array

@@ -11,7 +11,7 @@ import numpy as np
 from fegear.contact import closed_form_compliance, finite_element_compliance, table_sources
 from fegear.contact.closed_form_compliance import ConstantCompliance
 from fegear.errors import RangeError
-from fegear.formulas.iso6336_stiffness import pair_stiffness
+from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
 from fegear.formulas.outcome import attempt
 from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import source as formula_source

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
-from fegear.formulas import iso6336_root_stress as root
+from fegear.formulas.iso6336 import part3_root_stress as root
 from fegear.formulas.load_line import refuse_helix
 
 if TYPE_CHECKING:

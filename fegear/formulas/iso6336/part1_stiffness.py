@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
-from fegear.formulas.iso6336_root_stress import virtual_teeth
+from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
 
 if TYPE_CHECKING:
     from fegear.geometry import GearPair
