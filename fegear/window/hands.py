@@ -9,9 +9,9 @@ import numpy as np
 
 from fegear.errors import InputError
 from fegear.output.draw_plotly import darker, plotly_json
-from fegear.results.moving_pair import moving_pair
 from fegear.results.relief_handles import handled_relief
 from fegear.window.case_text import value_at
+from fegear.window.gears import gears_in_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,12 +22,6 @@ if TYPE_CHECKING:
 _MEMBERS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
 #: Points of a designed relief that a case is given: straight lines between them stay within its own error.
 _POINTS = 61
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return np.round(value, 9).tolist()  # to a nanometre
-    return value
 
 
 def hands_of(scene: Scene) -> dict[str, Any]:
@@ -44,9 +38,8 @@ def hands_of(scene: Scene) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for name, pair in scene.pairs.items():
-        mesh = {key: _plain(value) for key, value in asdict(moving_pair(pair)).items()}
         reliefs = _reliefs(scene, name) if name in scene.spur_pairs else []
-        found[name] = {"mesh": mesh, "reliefs": reliefs, "load": _load(scene.document, name)}
+        found[name] = {"mesh": gears_in_mesh(pair), "reliefs": reliefs, "load": _load(scene.document, name)}
     return found
 
 

@@ -34,6 +34,7 @@ def _serve_files() -> None:
         (report, "figure.js"),
         (report, "page.css"),
         (own, "window.js"),
+        (own, "gears.js"),
         (own, "hands.js"),
         (own, "window.css"),
     ):
@@ -112,6 +113,6 @@ def show(bench: Bench) -> None:
     _serve_files()
     for name in ("page.css", "window.css"):
         ui.add_head_html(f'<link rel="stylesheet" href="{_AT}/{name}">')
-    for name in ("plotly.js", "figure.js", "window.js", "hands.js"):
+    for name in ("plotly.js", "figure.js", "window.js", "gears.js", "hands.js"):
         ui.add_head_html(f'<script src="{_AT}/{name}"></script>')
     Page(bench)

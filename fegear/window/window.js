@@ -82,7 +82,7 @@ const fegear = (() => {
     },
     async found({ task, title, values, figures, darker, loads }) {
       const kept = section(task);
-      if (loads) fegearHands.loads(loads);
+      if (loads) fegearGears.loads(loads);
       kept.darker = darker;
       kept.element.querySelector("h2").textContent = title;
       kept.element.querySelector(".numbers").innerHTML = values; // made and escaped by the report's own templates
