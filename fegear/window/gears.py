@@ -1,4 +1,4 @@
-"""The gears in mesh for the page: outlines and how they turn, once; what is shown on them follows in its own messages."""
+"""The gears in mesh for the page: outlines and how they turn; what is shown on them follows in messages of its own."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from fegear.results.moving_pair import moving_pair
 
 if TYPE_CHECKING:
-    from fegear.geometry import GearPair
+    from fegear.case.reading import Scene
 
 
 def _plain(value: Any) -> Any:
@@ -19,11 +19,13 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def gears_in_mesh(pair: GearPair) -> dict[str, Any]:
+def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
     """Outlines of both gears and how they turn, for the page to draw.
 
     Parameters
     ----------
-    pair : GearPair
+    scene : Scene
+    name : str
+        Of the pair.
     """
-    return {key: _plain(value) for key, value in asdict(moving_pair(pair)).items()}
+    return {key: _plain(value) for key, value in asdict(moving_pair(scene.pairs[name])).items()}

@@ -37,9 +37,9 @@ def hands_of(scene: Scene) -> dict[str, Any]:
         By the pair's name: ``mesh``, ``reliefs`` and ``load``.
     """
     found: dict[str, Any] = {}
-    for name, pair in scene.pairs.items():
+    for name in scene.pairs:
         reliefs = _reliefs(scene, name) if name in scene.spur_pairs else []
-        found[name] = {"mesh": gears_in_mesh(pair), "reliefs": reliefs, "load": _load(scene.document, name)}
+        found[name] = {"mesh": gears_in_mesh(scene, name), "reliefs": reliefs, "load": _load(scene.document, name)}
     return found
 
 
