@@ -1,7 +1,7 @@
 """The one place where units enter and leave: SI floats inside, text with units outside.
 
-Inside fegear every number is a plain float in SI (m, N, Pa, kg, s, rad). Case files write
-``"3.175 mm"``; tables name the unit in the column head.
+Inside fegear every number is a plain float in SI (m, N, Pa, kg, s, rad; temperatures in degrees Celsius). Case files
+write ``"3.175 mm"``; tables name the unit in the column head.
 """
 
 from __future__ import annotations
@@ -58,6 +58,18 @@ DIMENSIONS: dict[str, Dimension] = {
     "inverse_length": Dimension("1/m", "8 / inch"),
     "compliance": Dimension("m/N", "1.26e-8 m/N"),
     "viscosity": Dimension("Pa*s", "0.02 Pa*s"),
+    "kinematic_viscosity": Dimension("m^2/s", "220 mm^2/s"),
+    "temperature": Dimension("degC", "60 degC"),
+}
+
+#: Units of temperature with their size and the reading of their zero, both in degrees Celsius: the one quantity with
+#: an offset. The formulas of oils and scuffing are written in degrees Celsius, and so are temperatures inside fegear.
+TEMPERATURES: dict[str, tuple[float, float]] = {
+    "degC": (1.0, 0.0),
+    "deg*C": (1.0, 0.0),  # what becomes of the degree sign
+    "K": (1.0, -273.15),
+    "degF": (5.0 / 9.0, -160.0 / 9.0),
+    "deg*F": (5.0 / 9.0, -160.0 / 9.0),
 }
 
 _INCH, _LBF, _PSI = 0.0254, 4.4482216152605, 6894.757293168361
@@ -84,6 +96,8 @@ EVERYDAY: dict[str, dict[str, float]] = {
     "inverse_length": {"1/inch": 1.0 / _INCH, "1/in": 1.0 / _INCH, "1/mm": 1e3, "1/m": 1.0},
     "compliance": {"um/N": 1e-6, "mm/N": 1e-3, "m/N": 1.0},
     "viscosity": {"Pa*s": 1.0, "mPa*s": 1e-3},
+    "kinematic_viscosity": {"mm^2/s": 1e-6, "cSt": 1e-6, "m^2/s": 1.0},
+    "temperature": {"degC": 1.0},
 }
 
 #: Every unit that is known, in words of pint; there are no prefixes but these. The radian is a dimension of its own
@@ -101,7 +115,7 @@ UNITS: dict[str, str] = {
     "Pa": "N/m^2", "kPa": "1e3*Pa", "MPa": "1e6*Pa", "GPa": "1e9*Pa", "bar": "1e5*Pa",
     "psi": "lbf/inch^2", "ksi": "1e3*psi", "Mpsi": "1e6*psi",
     "Nm": "N*m", "kNm": "kN*m", "MNm": "MN*m", "Nmm": "N*mm", "Ncm": "N*cm", "Ns": "N*s", "Nms": "N*m*s",
-    "Pas": "Pa*s", "mPas": "1e-3*Pa*s", "cP": "1e-3*Pa*s",
+    "Pas": "Pa*s", "mPas": "1e-3*Pa*s", "cP": "1e-3*Pa*s", "St": "1e-4*m^2/s", "cSt": "1e-6*m^2/s",
 }  # fmt: skip
 
 
@@ -136,6 +150,20 @@ def _size(unit: str, dimension: str) -> float:
             return float(quantity.to(si).magnitude) * size
     pound = ' ("lb" is a mass, the force is lbf)' if "lb" in names(unit) else ""
     raise UnreadableError(f"is not {_kind(dimension)}{pound}", _choices(dimension))
+
+
+def _celsius(number: float, unit: str) -> float:
+    """A temperature in degrees Celsius; below absolute zero there is none."""
+    if not unit:
+        raise UnreadableError("has no unit, but a temperature needs one", _choices("temperature"))
+    if unit not in TEMPERATURES:
+        rule = "has an unknown unit" if unit not in UNITS else "is not a temperature"
+        raise UnreadableError(rule, 'write degC, degF or K: "60 degC"')
+    size, zero = TEMPERATURES[unit]
+    value = number * size + zero
+    if value < -273.15:
+        raise UnreadableError("lies below absolute zero", "check the number and its unit")
+    return value
 
 
 def _kind(dimension: str) -> str:
@@ -200,7 +228,7 @@ def to_si(text: object, dimension: str, key: str = "value") -> float:
         raise InputError(key, shown(text), f"is a bare number, but {kind} needs a unit", remedy)
     try:
         number, unit = split(text)
-        value = number * _size(unit, dimension)
+        value = _celsius(number, unit) if dimension == "temperature" else number * _size(unit, dimension)
     except UnreadableError as error:
         raise InputError(key, shown(text), error.rule, error.remedy or remedy) from None
     if not math.isfinite(value):
@@ -233,6 +261,8 @@ PER_SI: dict[str, float] = {
     "arcsec": 206264.80624709636,
     "N/(mm.um)": 1e-9,
     "1/mm": 1e-3,
+    "degC": 1.0,  # inside, too
+    "mPa.s": 1e3,
 }
 
 

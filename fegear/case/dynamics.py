@@ -13,6 +13,7 @@ from fegear.case.part import (
     Part,
     PositiveNumber,
     PositiveSpeed,
+    PositiveViscosity,
     at_most,
     quantity,
     refuse,
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Frequency = Annotated[float, quantity("frequency", positive=True)]
-Viscosity = Annotated[float, quantity("viscosity", positive=True)]
 
 
 class SpeedsPart(Part):
@@ -89,7 +89,7 @@ class FrictionPart(Part):
     """``friction = { law, viscosity }`` or ``{ coefficient }``."""
 
     law: Literal["buckingham", "benedict-kelley", "constant"] = "buckingham"
-    viscosity: Viscosity | None = None
+    viscosity: PositiveViscosity | None = None
     coefficient: Annotated[Number, Field(ge=0.0, le=0.5)] | None = None
 
     @model_validator(mode="after")

@@ -23,6 +23,7 @@ from fegear.case.part import (
     spelt_also,
 )
 from fegear.case.relief import ReliefPart, SpacingErrorsPart
+from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, Material, Tooth
 from fegear.geometry.over_balls import over_balls
@@ -111,6 +112,12 @@ class GearPart(Part):
     bias: BiasPart | None = None
     topography: TopographyPart | None = None
     spacing_errors: SpacingErrorsPart | None = None
+    roughness: RoughnessPart | None = Field(
+        default=None, description="of flanks and root fillets, for scuffing, micropitting, friction and rating"
+    )
+    flank_treatment: FlankTreatment | None = Field(
+        default=None, description="what was done to the flanks: factor X_W of scuffing; through-hardened unless told"
+    )
     helix_angle: Angle | None = None
     hand: Literal["left", "right", "spur"] | None = None
     normal_module: PositiveLength | None = None

@@ -20,6 +20,7 @@ from fegear.case.part import (
     at_most,
     refuse,
 )
+from fegear.case.surface import LubricantPart, PairFrictionPart
 from fegear.errors import InputError
 from fegear.geometry import GearPair
 
@@ -104,6 +105,12 @@ class PairPart(Part):
     modification: ModificationPart | None = None
     axial_offset: Length = 0.0
     iso_6336: IsoPart = Field(default_factory=IsoPart)
+    lubricant: LubricantPart | None = Field(
+        default=None, description="the oil of the pair, for film thickness, scuffing, micropitting and friction"
+    )
+    friction: PairFrictionPart | None = Field(
+        default=None, description="friction law of tooth-loss; Schlenk's where the lubricant is known"
+    )
 
     @model_validator(mode="after")
     def _one_load(self) -> Self:

@@ -44,6 +44,8 @@ STRICT = {
     "mass": {"kg": 1.0, "g": 1e-3},
     "damping": {"N*s/m": 1.0},
     "viscosity": {"Pa*s": 1.0},
+    "kinematic viscosity": {"mm^2/s": 1e-6, "m^2/s": 1.0},
+    "temperature": {"degC": 1.0},
 }
 _QUANTITY = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?) *(.*?) *")
 _KEYBOARD = "abcdefghijklmnopqrstuvwxyzABCGHIKLMNPRSTUZ0123456789.,;:/*^-+_=' \"[]{}()µ°²"

@@ -12,7 +12,12 @@ import pytest
 from fegear.errors import InputError
 from fegear.units import DIMENSIONS, EVERYDAY, PER_SI, UNITS, as_text, registry, to_si, unit_size
 
-EVERY = [(dimension, unit, size) for dimension, units in EVERYDAY.items() for unit, size in units.items()]
+EVERY = [
+    (dimension, unit, size)
+    for dimension, units in EVERYDAY.items()
+    for unit, size in units.items()
+    if dimension != "temperature"  # has an offset, and a test of its own
+]
 #: What pint's own registry calls otherwise.
 IN_PINTS_WORDS = {
     "uin": "1e-6*inch", "thou": "1e-3*inch", "daN": "10*N", "U": "turn", "rev": "turn", "Mpsi": "1e6*psi", "Nm": "N*m",
@@ -50,10 +55,42 @@ def test_every_unit_that_is_known_has_the_size_that_pint_gives_it(unit):
     assert ours.magnitude == pytest.approx(by_pint(unit), rel=1e-14)
 
 
-@pytest.mark.parametrize("unit", sorted(PER_SI))
+@pytest.mark.parametrize("unit", sorted(set(PER_SI) - {"degC"}))
 def test_units_of_tables_equal_pint(unit):
     quantity = whole_pint().Quantity(1.0, unit).to_base_units()
     assert PER_SI[unit] * quantity.magnitude == pytest.approx(1.0, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "celsius"),
+    [
+        ("60 degC", 60.0),
+        ("60 \u00b0C", 60.0),
+        ("-40 degF", -40.0),
+        ("140 \u00b0F", 60.0),
+        ("333.15 K", 60.0),
+        ("0 K", -273.15),
+    ],
+)
+def test_temperatures_equal_pint_offset_and_all(text, celsius):
+    assert to_si(text, "temperature") == pytest.approx(celsius, abs=1e-12)
+    number, unit = text.split()
+    unit = {"\u00b0C": "degC", "\u00b0F": "degF", "K": "kelvin"}.get(unit, unit)
+    assert whole_pint().Quantity(float(number), unit).to("degC").magnitude == pytest.approx(celsius, abs=1e-12)
+    read = as_text(whole_pint().Quantity(float(number), unit), "temperature")
+    assert to_si(read, "temperature") == pytest.approx(celsius, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "rule"),
+    [
+        ("60", "has no unit"), (60, "bare number"), ("60 C", "unknown unit"), ("60 mm", "not a temperature"),
+        ("-1 K", "absolute zero"), ("-274 degC", "absolute zero"), ("60 deg", "not a temperature"),
+    ],
+)  # fmt: skip
+def test_what_is_no_temperature_is_refused(text, rule):
+    with pytest.raises(InputError, match=rule):
+        to_si(text, "temperature")
 
 
 def test_every_dimension_reads_its_own_example():

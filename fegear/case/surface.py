@@ -1,0 +1,160 @@
+"""What flanks and oil are like: ``roughness`` of a gear, ``lubricant`` and ``friction`` of a pair."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from fegear.case.part import (
+    Number,
+    Part,
+    PositiveDensity,
+    PositiveKinematicViscosity,
+    PositiveLength,
+    PositiveViscosity,
+    Temperature,
+    refuse,
+)
+
+#: R_z is about this many R_a where only one of them is given (ISO 6336-2 and ISO/TS 6336-22 use the same ratio).
+RZ_PER_RA = 6.0
+
+#: Base oils that ISO/TS 6336-20, -21 and -22 tell apart.
+OilKind = Literal[
+    "mineral",
+    "polyalphaolefin",
+    "polyglycol",
+    "water-soluble-polyglycol",
+    "traction-fluid",
+    "phosphate-ester",
+]
+Supply = Literal["dip", "spray", "spray-with-dip", "submerged"]
+#: What was done to the flanks, as the welding (structural) factor X_W of ISO/TS 6336-20 tells it apart.
+FlankTreatment = Literal[
+    "through-hardened",
+    "phosphated",
+    "copper-plated",
+    "nitrided",
+    "case-carburized",
+    "case-carburized-low-austenite",
+    "case-carburized-high-austenite",
+    "austenitic",
+]
+FrictionLaw = Literal[
+    "constant", "schlenk", "iso-6336-20", "iso-6336-21", "iso-6336-22", "buckingham", "benedict-kelley"
+]
+
+
+class RoughnessPart(Part):
+    """``roughness = { flank = "0.4 um", root = "1.6 um" }``: arithmetic mean roughness R_a, new or after running in."""
+
+    flank: PositiveLength | None = Field(
+        default=None, description="Ra of the working flanks, in the direction in which they slide"
+    )
+    root: PositiveLength | None = Field(default=None, description="Ra of the root fillets")
+    flank_rz: PositiveLength | None = Field(
+        default=None, description="mean peak-to-valley roughness Rz of the flanks; 6 Ra where it is not given"
+    )
+    root_rz: PositiveLength | None = Field(
+        default=None, description="mean peak-to-valley roughness Rz of the fillets; 6 Ra where it is not given"
+    )
+
+    @property
+    def flank_ra(self) -> float | None:
+        """Ra of the flanks [m]: as given, else a sixth of their Rz; None without either."""
+        return self.flank or (None if self.flank_rz is None else self.flank_rz / RZ_PER_RA)
+
+    @property
+    def flank_height(self) -> float | None:
+        """Rz of the flanks [m]: as given, else six Ra; None without either."""
+        return self.flank_rz or (None if self.flank is None else self.flank * RZ_PER_RA)
+
+    @property
+    def root_height(self) -> float | None:
+        """Rz of the fillets [m]: as given, else six Ra; None without either."""
+        return self.root_rz or (None if self.root is None else self.root * RZ_PER_RA)
+
+
+class LubricantPart(Part):
+    """``lubricant = { viscosity_40, viscosity_100, density_15, temperature, kind, ... }``: the oil of a pair."""
+
+    viscosity_40: PositiveKinematicViscosity = Field(
+        description="kinematic viscosity at 40 degC, the number of the ISO viscosity grade"
+    )
+    viscosity_100: PositiveKinematicViscosity | None = Field(
+        default=None,
+        description="kinematic viscosity at 100 degC; without it that of a mineral oil of viscosity index 95",
+    )
+    density_15: PositiveDensity = Field(default=895.0, description="density at 15 degC")
+    temperature: Temperature = Field(description="of the oil, in the sump or where it is sprayed into the mesh")
+    kind: OilKind = Field(default="mineral", description="base oil")
+    supply: Supply = Field(default="dip", description="how the oil comes to the teeth: factor X_S")
+    scuffing_load_stage: Annotated[int, Field(ge=1, le=14)] | None = Field(
+        default=None,
+        description="failure load stage of the FZG test A/8.3/90 (ISO 14635-1), for S_B and S_intS",
+    )
+    scuffing_temperature: Temperature | None = Field(
+        default=None, description="contact temperature at which the oil scuffs, in place of the one from the test"
+    )
+    micropitting_load_stage: Annotated[int, Field(ge=5, le=10)] | None = Field(
+        default=None, description="failure load stage of the FVA 54/7 test C/8.3/90, for the safety S_lambda"
+    )
+    micropitting_temperature: Temperature = Field(
+        default=90.0, description="oil temperature of that test; the standard test is run at 90 degC"
+    )
+    permissible_film: Annotated[Number, Field(gt=0.0, le=100.0)] | None = Field(
+        default=None, description="permissible specific film thickness lambda_GFP, in place of the one from the test"
+    )
+
+    @model_validator(mode="after")
+    def _thinner_when_hot(self) -> Self:
+        if self.viscosity_100 is not None and self.viscosity_100 >= self.viscosity_40:
+            raise refuse("must be below viscosity_40: oil thins as it warms", "check both", key="viscosity_100")
+        if self.viscosity_40 < 2e-6 or (self.viscosity_100 or 2e-6) < 2e-6:
+            key = "viscosity_40" if self.viscosity_40 < 2e-6 else "viscosity_100"
+            raise refuse("is below 2 mm^2/s, where the viscosity law of ASTM D341 does not hold", "check it", key=key)
+        for one, other in (
+            ("scuffing_load_stage", "scuffing_temperature"),
+            ("micropitting_load_stage", "permissible_film"),
+        ):
+            if getattr(self, one) is not None and getattr(self, other) is not None:
+                raise refuse(f"contradicts {one}", "give either", key=other)
+        if not -40.0 <= self.temperature <= 250.0:
+            raise refuse("must lie between -40 and 250 degC", "check the unit", key="temperature")
+        return self
+
+
+class PairFrictionPart(Part):
+    """``friction = { law = "schlenk" }`` or ``{ coefficient = 0.05 }``: of the flanks of a pair, for `tooth-loss`."""
+
+    law: FrictionLaw | None = Field(
+        default=None, description='friction law; "constant" with a coefficient, else "schlenk" unless told'
+    )
+    coefficient: Annotated[Number, Field(ge=0.0, le=0.5)] | None = Field(
+        default=None, description="friction coefficient of the law constant"
+    )
+    local: bool = Field(
+        default=False,
+        description="take a law of mean coefficients at every point with its own load, speeds and curvature",
+    )
+    viscosity: PositiveViscosity | None = Field(
+        default=None, description="dynamic viscosity for benedict-kelley; that of the lubricant where it is not given"
+    )
+
+    @model_validator(mode="after")
+    def _what_the_law_needs(self) -> Self:
+        if self.law == "constant" and self.coefficient is None:
+            raise refuse('is needed by law = "constant"', "give coefficient", key="coefficient", value="(not given)")
+        if self.law not in (None, "constant") and self.coefficient is not None:
+            raise refuse(f'has no meaning with law = "{self.law}"', "leave it out", key="coefficient")
+        if self.viscosity is not None and self.law != "benedict-kelley":
+            raise refuse('belongs to law = "benedict-kelley"', "leave it out", key="viscosity")
+        if self.local and self.name in ("constant", "buckingham", "benedict-kelley"):
+            raise refuse(f'has no meaning with law = "{self.name}"', "leave it out", key="local", value=True)
+        return self
+
+    @property
+    def name(self) -> FrictionLaw:
+        """The law: as given, constant with a coefficient, else Schlenk's."""
+        return self.law or ("schlenk" if self.coefficient is None else "constant")
