@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -118,6 +118,9 @@ class GearPart(Part):
     flank_treatment: FlankTreatment | None = Field(
         default=None, description="what was done to the flanks: factor X_W of scuffing; through-hardened unless told"
     )
+    tolerance_class: Annotated[int, Field(ge=1, le=11)] | None = Field(
+        default=None, description="flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11"
+    )
     helix_angle: Angle | None = None
     hand: Literal["left", "right", "spur"] | None = None
     normal_module: PositiveLength | None = None
@@ -140,6 +143,11 @@ class GearPart(Part):
 
     @model_validator(mode="after")
     def _one_size(self) -> Self:
+        if self.tolerance_class is not None and self.face_width is None:
+            raise refuse(
+                "is missing, but helix tolerances of a tolerance_class depend on it", 'write face_width = "20 mm"',
+                key="face_width",
+            )  # fmt: skip
         if self.is_helical:
             self._check_helical()
             return self
@@ -206,8 +214,12 @@ class GearPart(Part):
             gear = Gear(tooth, m, bore, width, self.material.build(), self.plane, self.hand or "spur")
             if self.ball_diameter is not None:
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
+            if self.tolerance_class is not None:
+                from fegear.formulas.iso1328 import tolerances_of
+
+                tolerances_of(gear, self.tolerance_class)  # refuses sizes that the standard knows no tolerance of
         except InputError as error:
-            names = _KEYS | ({"module": "normal_module"} if self.is_helical else {})
+            names = _KEYS | ({"module": "normal_module"} if self.is_helical else {"normal_module": "module"})
             raise at(prefix, self._in_words_of_the_case(error), names) from None
         return gear
 

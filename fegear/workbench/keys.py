@@ -44,6 +44,7 @@ class GearKeys(TypedDict, total=False):
     bias: Quantity | Mapping[str, Any]
     topography: Mapping[str, Any]
     spacing_errors: Sequence[Quantity] | Mapping[str, Any]
+    tolerance_class: int
     helix_angle: Quantity
     hand: Literal["left", "right", "spur"]
     normal_module: Quantity
