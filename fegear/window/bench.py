@@ -13,6 +13,7 @@ from fegear.window.case_text import literal, with_value
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.jobs import Asked, Compare, Compute, Design, Export, Said
+from fegear.window.sent import whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,7 +60,8 @@ class Bench:
         self._numbers = itertools.count(1)
         self._computing: Computing | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._number = self._first = 0
+        self._number = self._first = self._laid = 0
+        self._sight: tuple[str, ...] = ()
         self._found: dict[str, _Content] = {}
         self._last: dict[str, _Content] = {}
 
@@ -81,6 +83,10 @@ class Bench:
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener) if listener in self._listeners else None
 
+    def see(self, tasks: list[str]) -> None:
+        """Note which results are in sight on the page that was scrolled last."""
+        self._sight = tuple(tasks)
+
     def tell(self, what: str, content: _Content | None = None) -> None:
         """Tell every page."""
         for listener in list(self._listeners):
@@ -100,7 +106,7 @@ class Bench:
 
     def lay(self, desk: Desk | None) -> None:
         """Lay another case on the desk, or clear it to choose one."""
-        self.desk, self.pinned = desk, None
+        self.desk, self.pinned, self._laid, self._sight = desk, None, self._laid + 1, ()
         self._found.clear()
         self._last.clear()
         self._first = self._number + 1
@@ -142,7 +148,8 @@ class Bench:
             return
         self._number = next(self._numbers)
         self.tell("asked")
-        self._computing.ask(Compute(self._number, self.asked()._replace(moving=moving)))
+        asked = self.asked()._replace(moving=moving, sight=self._sight, laid=self._laid)
+        self._computing.ask(Compute(self._number, asked))
 
     def export(self, what: str, target: str) -> None:
         """Write the report or the drawings of the case as it is, at its own tolerance."""
@@ -240,7 +247,7 @@ class Bench:
         if what == "plan":
             self._found = {task: one for task, one in self._found.items() if task in content["tasks"]}
         elif what == "found":
-            self._found[content["task"]] = {**content, "pictures": {}}
+            self._found[content["task"]] = {**whole(content, self._found.get(content["task"])), "pictures": {}}
         elif what == "picture":
             self._found[content["task"]]["pictures"][content["key"]] = content
         if what in ("plan", "hands", "done"):

@@ -17,6 +17,10 @@ class Asked(NamedTuple):
         Factor of its tolerance: 1 computes it as it is written.
     moving : bool
         Whether a value of it is being moved: its numbers are wanted at once, their errors when it stands still.
+    sight : tuple of str
+        Tasks whose results are in sight on a page: they are wanted before those that are not.
+    laid : int
+        How many cases have lain on the desk before it: what was told of those is forgotten.
     """
 
     text: str
@@ -24,6 +28,8 @@ class Asked(NamedTuple):
     folder: str
     loosened: float = 1.0
     moving: bool = False
+    sight: tuple[str, ...] = ()
+    laid: int = 0
 
 
 @dataclass(frozen=True, slots=True)

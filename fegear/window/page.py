@@ -60,6 +60,7 @@ class Page:
         ui.on("load", lambda event: self._by_hand(lambda: bench.move_load(**event.args)))
         ui.on("drop", lambda event: self._by_hand(lambda: bench.drop_relief(**event.args)))
         ui.on("design", lambda event: self._by_hand(lambda: bench.design(**event.args)))
+        ui.on("sight", lambda event: bench.see(event.args["tasks"]))
         self._client.run_javascript(f"fegear.begin({json.dumps(template())})")
         self._client.on_delete(bench.listen(self._hear))
         self._lay()

@@ -27,6 +27,15 @@ const fegear = (() => {
     }
   }, { rootMargin: `${MARGIN}px` });
 
+  // The server is told which results are in sight: those are computed before the others.
+  const seen = new Set();
+  let telling = 0;
+  const sight = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) isIntersecting ? seen.add(target.dataset.task) : seen.delete(target.dataset.task);
+    clearTimeout(telling);
+    telling = setTimeout(() => emitEvent("sight", { tasks: [...seen].filter((task) => sections.has(task)) }), 300);
+  });
+
   function section(task) {
     if (!sections.has(task)) {
       const element = made("section", "task");
@@ -34,6 +43,7 @@ const fegear = (() => {
       element.append(made("h2"), made("div", "figures"), made("div", "stills"), made("div", "numbers"));
       element.hidden = true;
       $("results").append(element);
+      sight.observe(element);
       sections.set(task, { element, specs: new Map(), shown: new Map(), darker: {} });
     }
     return sections.get(task);
@@ -71,7 +81,7 @@ const fegear = (() => {
     asked() { document.body.classList.add("computing"); },
     plan({ tasks }) {
       for (const [task, kept] of sections) {
-        if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { kept.element.remove(); sections.delete(task); }
+        if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { sight.unobserve(kept.element); seen.delete(task); kept.element.remove(); sections.delete(task); }
       }
       const host = $("results");
       for (const task of tasks) {
@@ -92,6 +102,7 @@ const fegear = (() => {
         if (!keys.includes(figure.dataset.key)) { figure.remove(); kept.specs.delete(figure.dataset.key); }
       }
       for (const spec of figures) {
+        if (spec.same) continue;
         const text = JSON.stringify([spec.data, spec.layout, spec.heading, spec.caption]);
         if (kept.shown.get(spec.key) === text && kept.specs.has(spec.key)) continue;
         kept.shown.set(spec.key, text);
@@ -141,6 +152,8 @@ const fegear = (() => {
     unpinned() { sections.get("compared")?.element.remove(); sections.delete("compared"); },
     laid() {
       sections.clear();
+      seen.clear();
+      sight.disconnect();
       document.querySelectorAll("#results, #remarks, #compared, #hands").forEach((one) => one.replaceChildren());
     },
   };

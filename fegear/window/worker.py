@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections import deque
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,10 @@ from fegear.solution_cache import SolutionCache
 from fegear.store import Store
 from fegear.window.case_text import literal, with_value
 from fegear.window.hands import designed_reliefs, hands_of
+from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Compare, Compute, Design, Export, Said
+from fegear.window.order import in_order
+from fegear.window.sent import Sent
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -28,15 +30,11 @@ if TYPE_CHECKING:
 
 #: For so long a computation goes on while a value is being moved [s].
 _STROKE = 1.5
-
-
+#: A value that has not moved for so long stands still [s].
+_STILL = 0.2
 #: Results in memory: some ten states of a case, whose gears stay as long as they are used. An hour of changes fills no
 #: more than that.
 _MOST = 48
-
-
-class Unwanted(BaseException):
-    """The case that is being computed is no longer wanted; nothing on the way takes this for a failure of its own."""
 
 
 class Worker:
@@ -50,36 +48,31 @@ class Worker:
     """
 
     def __init__(self, connection: Connection, folder: Path) -> None:
-        self._connection, self._cache = connection, SolutionCache(Store(folder), _MOST)
-        self._waiting: deque[Job] = deque()
+        self._inbox, self._cache = Inbox(connection), SolutionCache(Store(folder), _MOST)
         self._meshes: dict[str, object] = {}
-        self._number, self._may_drop, self._begun = 0, False, 0.0
+        self._seconds: dict[str, float] = {}
+        self._number, self._begun, self._wait_before = 0, 0.0, 0
+        self._asked: Asked | None = None
+        self._laid, self._sent = 0, Sent()
 
     def serve(self) -> None:
         """Answer jobs until nobody is there to ask."""
+        self._inbox.open()
         _load()
         while True:
             try:
-                self._listen(wait=not self._waiting)
-                self._answer(self._waiting.popleft())
+                self.answer(self._inbox.take())
             except (EOFError, OSError):
                 return
 
-    def _listen(self, *, wait: bool = False) -> None:
-        while wait or self._connection.poll():
-            wait = False
-            job = self._connection.recv()
-            if isinstance(job, Compute):
-                for one in [one for one in self._waiting if isinstance(one, Compute)]:
-                    self._waiting.remove(one)
-                    self._connection.send(Said(one.number, "dropped"))
-            self._waiting.append(job)
-
     def _say(self, what: str, **content: object) -> None:
-        self._connection.send(Said(self._number, what, content))
+        self._inbox.say(Said(self._number, what, content))
 
-    def _answer(self, job: Job) -> None:
-        self._number, self._may_drop, self._begun = job.number, isinstance(job, Compute), time.monotonic()
+    def answer(self, job: Job) -> None:
+        """Do one job."""
+        self._number, self._begun, self._wait_before = job.number, time.monotonic(), 0
+        self._asked = job.asked if isinstance(job, Compute) else None
+        self._inbox.watch(self._gives_way if isinstance(job, Compute) else None)
         try:
             if isinstance(job, Compute):
                 self._compute(job.asked)
@@ -90,6 +83,7 @@ class Worker:
             else:
                 self._compare(job)
         except Unwanted:
+            self._inbox.watch(None)
             self._say("dropped")
         except InputError as error:
             self._say("refused", sentence=str(error), key=error.key)
@@ -97,28 +91,33 @@ class Worker:
             self._say("refused", sentence=str(error), key="")
         except MemoryError:
             self._say("refused", sentence="Out of memory: ask for less at once, or allow more.", key="")
+        finally:
+            self._inbox.watch(None)
 
     # ---- as a watcher of a run: every report of progress is an occasion to notice that another case is wanted ----
 
     def begin(self, title: str, number: int, count: int) -> None:
-        """Tell that a task begins."""
-        self._still_wanted()
+        """Tell that a task begins; what nobody waits for does not begin while a value moves."""
+        if number == self._wait_before:
+            self._wait_before = -1
+            self._inbox.wait(_STILL)
+        self._inbox.look()
         self._say("begin", title=title, number=number, count=count)
 
     def advance(self, _fraction: float) -> None:
         """Look whether another case is wanted."""
-        self._still_wanted()
+        self._inbox.look()
 
     def end(self, _seconds: float) -> None:
         """Look whether another case is wanted."""
-        self._still_wanted()
+        self._inbox.look()
 
-    def _still_wanted(self) -> None:
-        self._listen()
-        for job in self._waiting if self._may_drop else ():
-            # While a value is being moved every answer is soon followed by another question: it is finished first.
-            if isinstance(job, Compute) and not (job.asked.moving and time.monotonic() - self._begun < _STROKE):
-                raise Unwanted
+    def _gives_way(self, to: Compute) -> bool:
+        """Whether what is being computed is given up for another case."""
+        # While a value is being moved every answer is soon followed by another question: what is dragged for is
+        # finished first.
+        dragged = self._asked is not None and self._asked.moving and to.asked.moving and self._wait_before >= 0
+        return not dragged or time.monotonic() - self._begun > _STROKE
 
     # ---- jobs ----------------------------------------------------------------------------------------------------
 
@@ -130,11 +129,17 @@ class Worker:
         scene = scene_of(asked)
         plan = make_plan(scene, STAGES)
         if told:
-            self._say("plan", tasks=[str(step.task) for step in plan.steps])
+            if asked.laid != self._laid:
+                self._laid, self._sent, self._meshes = asked.laid, Sent(), {}
+            tasks = [str(step.task) for step in plan.steps]
+            self._say("plan", tasks=tasks)
+            self._sent.forget_others(tasks)
+            plan, at_once = in_order(plan, scene, asked.sight, self._seconds)
+            self._wait_before = at_once + 1 if asked.moving and at_once < len(plan.steps) else 0
             pairs = hands_of(scene)
             meshes = {name: one["mesh"] for name, one in pairs.items()}
             for name, one in pairs.items():  # outlines are long, and most changes leave them as they are
-                if asked.moving and self._meshes.get(name) == one["mesh"]:
+                if self._meshes.get(name) == one["mesh"]:
                     one["mesh"] = None
             self._meshes = meshes
             self._say("hands", pairs=pairs)
@@ -148,6 +153,7 @@ class Worker:
         results = self._results(asked, told=True)
         seconds = {str(task): (one.seconds, one.origin) for task, one in results.timings.items()}
         tolerance = results.scene.case.accuracy.tolerance
+        self._seconds.update({str(task): one.when_computed for task, one in results.timings.items()})
         self._say(
             "done", remarks=list(results.remarks), seconds=time.perf_counter() - started, timings=seconds,
             tolerance=tolerance, moving=asked.moving,
@@ -165,19 +171,19 @@ class Worker:
         figures = [one for one in outcome.figures if isinstance(one, Figure) and one.drawable_in_page]
         values = Values(outcome.values, scene.case.accuracy.tolerance)
         loads = outcome.tables[0] if task.stage == "load-sharing" else None
-        self._say(
-            "found",
-            task=str(task),
-            title=f"{title}: {task.subject}" if task.subject else title,
-            values=fragment([values]) if outcome.values else "",
-            figures=[
+        found = {
+            "task": str(task),
+            "title": f"{title}: {task.subject}" if task.subject else title,
+            "values": fragment([values]) if outcome.values else "",
+            "figures": [
                 {"key": one.key, "heading": one.heading, "caption": one.caption, **plotly_json(one)} for one in figures
             ],
-            darker=darker(figures),
-            loads=None if loads is None else {
+            "darker": darker(figures),
+            "loads": None if loads is None else {
                 "pair": task.subject, "x": loads.column("x").si.tolist(), "load": loads.column("load").si.tolist(),
             },
-        )  # fmt: skip
+        }  # fmt: skip
+        self._say("found", **self._sent.news(found))
 
     def _pictures(self, results: Results) -> None:
         """Draw what a page cannot draw itself, after all numbers are there."""
@@ -188,7 +194,7 @@ class Worker:
 
         for task, outcome in results.outcomes.items():
             for one in outcome.figures:
-                self._still_wanted()
+                self._inbox.look()
                 figure = one.made()
                 if figure.drawable_in_page and figure is one:
                     continue

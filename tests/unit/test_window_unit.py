@@ -6,10 +6,12 @@ import asyncio
 import json
 import os
 import queue
+import signal
 import socket
 import time
 import tomllib
 from dataclasses import replace
+from multiprocessing import Pipe
 from pathlib import Path
 
 import numpy as np
@@ -26,14 +28,18 @@ from fegear.output.report.rendering import fragment
 from fegear.results.catalogue import STAGES
 from fegear.results.relief_handles import handled_relief
 from fegear.solution_cache import SolutionCache
+from fegear.window import inbox as inbox_module
 from fegear.window.bench import Bench
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.doorkeeper import Doorkeeper
 from fegear.window.form import fields, form, tables_to_add
 from fegear.window.hands import hands_of
+from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Asked, Compute, Design, Export, Said
 from fegear.window.journal import journal_folder
+from fegear.window.order import in_order
+from fegear.window.sent import whole
 from fegear.window.server import free_port, serve
 from fegear.window.worker import scene_of
 
@@ -406,6 +412,80 @@ def test_of_many_changes_the_last_is_computed_and_those_before_are_given_up(comp
             break
         time.sleep(0.05)
     assert made._open == {}
+
+
+def test_while_a_value_moves_what_it_is_moved_for_is_found_and_the_rest_when_it_stands_still(computing, tmp_path):
+    made, heard = computing
+    text = TEXT.replace('["load-sharing"]', '["geometry", "load-sharing"]')
+    asked = Asked(text, "c", str(tmp_path), moving=True)
+    made.ask(Compute(60, asked))
+    while heard.until(60, "found").content["task"] != "load-sharing of I":
+        pass
+    made.ask(Compute(61, asked._replace(text=text.replace("5 kN", "6 kN"))))
+    heard.until(60, "dropped")
+    heard.until(61, "done")
+    found = [(said.number, said.content["task"]) for said in heard.all if said.what == "found" and said.number >= 60]
+    assert [task for number, task in found if number == 60][-1] == "load-sharing of I"
+    assert [task for number, task in found if number == 61][-2:] == ["load-sharing of I", "geometry"]
+    # what is the same as before is not sent again, and a page that opens later is shown it all the same
+    geometry = [s.content for s in heard.all if s.what == "found" and s.content["task"] == "geometry"]
+    made.ask(Compute(62, asked._replace(moving=False)))
+    heard.until(62, "done")
+    again = next(s.content for s in heard.all if s.number == 62 and s.content.get("task") == "geometry")
+    assert geometry[-1]["figures"]
+    assert [one.get("same") for one in again["figures"]] == [True] * len(geometry[-1]["figures"])
+    assert whole(again, geometry[-1])["figures"] == geometry[-1]["figures"]
+
+
+def test_answers_come_before_what_is_in_sight_and_that_before_the_rest(tmp_path):
+    results = '["geometry", "tooth-geometry-check", "relief-curves", "load-sharing"]'
+    scene = scene_of(Asked(TEXT.replace('["load-sharing"]', results), "c", str(tmp_path)))
+    plan = make_plan(scene, STAGES)
+    assert {"geometry", "relief-curves of I"} <= {str(step.task) for step in plan.steps}
+
+    def order(sight, seconds=None):
+        found = in_order(plan, scene, sight, seconds or {})
+        names = [step.task.stage for step in found.plan.steps]
+        assert sorted(names) == sorted(step.task.stage for step in plan.steps)
+        for number, step in enumerate(found.plan.steps):  # each behind what it needs
+            assert set(step.stage.needs(scene, step.task.subject)) <= {s.task for s in found.plan.steps[:number]}
+        return names[: found.at_once], names[found.at_once :]
+
+    assert order(())[0] == ["loaded-pair", "load-sharing"]
+    assert order(("geometry",))[1][0] == "geometry"
+    assert order(("geometry",), {"geometry": 0.01})[0] == ["loaded-pair", "load-sharing", "geometry"]
+    assert order(("geometry",), {"geometry": 1.0})[0] == ["loaded-pair", "load-sharing"]
+    scene = scene_of(Asked(TEXT.replace('["load-sharing"]', '["geometry", "relief-curves"]'), "c", str(tmp_path)))
+    plan = make_plan(scene, STAGES)
+    assert order(("geometry",))[0] == ["geometry"]
+    assert order(()) == ([step.task.stage for step in plan.steps], [])
+
+
+def _count(most):
+    while most:
+        most -= 1
+
+
+def test_what_is_no_longer_wanted_is_given_up_between_two_steps_of_a_long_computation():
+    ours, theirs = Pipe()
+    inbox = Inbox(theirs)
+    before = signal.getsignal(inbox_module._KNOCK)
+    try:
+        inbox.open()
+        inbox.watch(lambda _job: False)
+        ours.send(Compute(1, Asked("", "c", "")))
+        end = time.monotonic() + 0.2
+        while time.monotonic() < end:  # wanted still
+            pass
+        inbox.watch(lambda _job: True)
+        with pytest.raises(Unwanted):
+            _count(10**10)
+        inbox.watch(None)
+        ours.send(Compute(2, Asked("", "c", "")))  # the first is not wanted any more
+        assert (ours.recv().what, inbox.take().number) == ("dropped", 2)
+    finally:
+        ours.close()
+        signal.signal(inbox_module._KNOCK, before)
 
 
 def test_a_case_that_is_refused_while_it_computes_says_where(computing, tmp_path):

@@ -1,0 +1,137 @@
+"""Jobs as they come in while another is being done; of the cases to compute the last one counts, and is told at once.
+
+A thread reads the connection. Where what is being done is no longer wanted, it knocks: a signal of this process to
+itself, which the interpreter delivers between two steps of the computation.
+"""
+
+from __future__ import annotations
+
+import _thread
+import signal
+import threading
+from collections import deque
+from typing import TYPE_CHECKING
+
+from fegear.window.jobs import Compute, Said
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from multiprocessing.connection import Connection
+    from types import FrameType
+
+    from fegear.window.jobs import Job
+
+#: What the thread knocks with; on Windows the only one that it may.
+_KNOCK = signal.Signals["SIGUSR1" if hasattr(signal, "SIGUSR1") else "SIGBREAK"]
+#: How long it waits before it knocks again where nobody could answer [s].
+_AGAIN = 0.05
+#: Code that must not be left half-way: a module half imported, a message half sent, a place half registered.
+_WHOLE = ("<frozen importlib", "multiprocessing/connection.py", "threading.py", "/weakref.py", "/tempfile.py")
+
+
+class Unwanted(BaseException):
+    """The case that is being computed is no longer wanted; nothing on the way takes this for a failure of its own."""
+
+
+class Inbox:
+    """What is asked of a process over a connection.
+
+    Parameters
+    ----------
+    connection : Connection
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._jobs: deque[Job] = deque()
+        self._news, self._mouth = threading.Condition(), threading.Lock()
+        self._ended = False
+        self._unwanted: Callable[[Compute], bool] | None = None
+
+    def open(self) -> None:
+        """Begin to listen; in the main thread, which alone is interrupted."""
+        signal.signal(_KNOCK, self._knocked)
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self) -> None:
+        while True:
+            try:
+                while self.newest is not None and not self._connection.poll(_AGAIN):
+                    self._knock()
+                job = self._connection.recv()
+            except (EOFError, OSError):
+                with self._news:
+                    self._ended = True
+                    self._news.notify()
+                return
+            self.put(job)
+            self._knock()
+
+    def _knock(self) -> None:
+        if self._unwanted is not None:
+            _thread.interrupt_main(_KNOCK)
+
+    def put(self, job: Job) -> None:
+        """Lay a job to the others; cases that wait are no longer wanted if it is one."""
+        with self._news:
+            old = [one for one in self._jobs if isinstance(one, Compute)] if isinstance(job, Compute) else []
+            for one in old:
+                self._jobs.remove(one)
+            self._jobs.append(job)
+            self._news.notify()
+        for one in old:
+            self.say(Said(one.number, "dropped"))
+
+    def take(self) -> Job:
+        """The next job, as soon as there is one.
+
+        Raises
+        ------
+        EOFError
+            If nobody is there to ask.
+        """
+        with self._news:
+            while not self._jobs and not self._ended:
+                self._news.wait()
+            if not self._jobs:
+                raise EOFError
+            return self._jobs.popleft()
+
+    def wait(self, seconds: float) -> None:
+        """Wait for another job."""
+        with self._news:
+            if not self._jobs and not self._ended:
+                self._news.wait(seconds)
+
+    def say(self, said: Said) -> None:
+        """Answer."""
+        with self._mouth:
+            self._connection.send(said)
+
+    @property
+    def newest(self) -> Compute | None:
+        """The case that waits to be computed."""
+        return next((one for one in list(self._jobs) if isinstance(one, Compute)), None)
+
+    def watch(self, unwanted: Callable[[Compute], bool] | None) -> None:
+        """Say who decides whether what is being done gives way to another case; None where it never does."""
+        self._unwanted = unwanted
+
+    def look(self) -> None:
+        """Give up what is being done if another case is wanted.
+
+        Raises
+        ------
+        Unwanted
+            If so.
+        """
+        newest = self.newest
+        if self._unwanted is not None and newest is not None and self._unwanted(newest):
+            raise Unwanted
+
+    def _knocked(self, _signal: int, frame: FrameType | None) -> None:
+        while frame is not None:
+            if any(name in frame.f_code.co_filename.replace("\\", "/") for name in _WHOLE):
+                return  # the thread knocks again
+            frame = frame.f_back
+        self.look()
