@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -18,9 +18,18 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.geometry import Tooth
+    from fegear.geometry.curves import Trochoid
 
 #: A fillet sharper than this [modules] is a corner.
 SHARPEST = 1e-6
+
+
+class Filleted(Protocol):
+    """What has a fillet: a tooth, or a virtual one whose number is not whole."""
+
+    @property
+    def trochoid(self) -> Trochoid:
+        """What the rounding of the rack's tip cuts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +64,7 @@ class FilletPoint:
         return 2.0 * self.half_thickness
 
 
-def fillet_point(tooth: Tooth, parameter: float) -> FilletPoint:
+def fillet_point(tooth: Filleted, parameter: float) -> FilletPoint:
     """Point of the fillet at a parameter of `Tooth.fillet` [rad]."""
     f = tooth.trochoid
     x, y = f.points(parameter)
@@ -63,7 +72,7 @@ def fillet_point(tooth: Tooth, parameter: float) -> FilletPoint:
     return FilletPoint(float(x), float(y), float(fillet_radii(tooth, parameter)), math.atan2(float(ny), float(nx)))
 
 
-def fillet_radii(tooth: Tooth, parameter: ArrayLike) -> NDArray[np.float64]:
+def fillet_radii(tooth: Filleted, parameter: ArrayLike) -> NDArray[np.float64]:
     """Radii of curvature [modules] of the fillet at parameters of `Tooth.fillet` [rad].
 
     Raises
@@ -83,14 +92,14 @@ def fillet_radii(tooth: Tooth, parameter: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(radii)
 
 
-def tangent_range(tooth: Tooth) -> tuple[float, float]:
+def tangent_range(tooth: Filleted) -> tuple[float, float]:
     """Smallest and largest tangent angle on the fillet [rad]: at the involute and at the root circle."""
     f = tooth.trochoid
     angles = [math.atan2(float(n[1]), float(n[0])) for n in (f.normals(f.end), f.normals(f.start))]
     return angles[0], angles[1]
 
 
-def fillet_parameter(tooth: Tooth, tangent_angle: float) -> float:
+def fillet_parameter(tooth: Filleted, tangent_angle: float) -> float:
     """Parameter of `Tooth.fillet` [rad] where the tangent makes `tangent_angle` [rad] with the centre line.
 
     On a trochoid cut by a rack the tangent turns monotonically, by pi/2 - beta - phi(beta) - pi/z, so there is at

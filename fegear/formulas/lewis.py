@@ -14,6 +14,7 @@ from fegear.formulas.fillet_section import FilletPoint, fillet_parameter, fillet
 from fegear.formulas.load_line import LoadLine, load_line
 
 if TYPE_CHECKING:
+    from fegear.formulas.fillet_section import Filleted
     from fegear.geometry import Tooth
 
 
@@ -29,24 +30,10 @@ def lewis_section(tooth: Tooth, radius: float) -> tuple[FilletPoint, LoadLine]:
     RangeError
         If the parabola touches neither the fillet nor its continuation.
     """
-    from scipy.optimize import brentq
-
     load = load_line(tooth, radius)
-    apex = float(load.apex[0])
-
-    def excess(gamma: float) -> float:
-        p = fillet_point(tooth, fillet_parameter(tooth, gamma))
-        return math.tan(gamma) * 2.0 * (apex - p.height) - p.half_thickness
-
-    low, high = tangent_range(tooth)
-    high = min(high, 0.5 * math.pi - 1e-9)
-    if excess(low) > 0.0:
-        section = _above_the_fillet(tooth, apex)
-        if section is not None:
-            return section, load
-    elif excess(high) >= 0.0:
-        gamma = brentq(excess, low, high, xtol=1e-13)
-        return fillet_point(tooth, fillet_parameter(tooth, gamma)), load
+    section = touching_section(tooth, float(load.apex[0]))
+    if section is not None:
+        return section, load
     raise RangeError(
         "load radius",
         f"{radius:.6g} modules",
@@ -55,7 +42,25 @@ def lewis_section(tooth: Tooth, radius: float) -> tuple[FilletPoint, LoadLine]:
     )
 
 
-def _above_the_fillet(tooth: Tooth, apex: float) -> FilletPoint | None:
+def touching_section(tooth: Filleted, apex: float) -> FilletPoint | None:
+    """Section where the parabola with its apex at a height [modules] touches the trochoid; None if nowhere."""
+    from scipy.optimize import brentq
+
+    def excess(gamma: float) -> float:
+        p = fillet_point(tooth, fillet_parameter(tooth, gamma))
+        return math.tan(gamma) * 2.0 * (apex - p.height) - p.half_thickness
+
+    low, high = tangent_range(tooth)
+    high = min(high, 0.5 * math.pi - 1e-9)
+    if excess(low) > 0.0:
+        return _above_the_fillet(tooth, apex)
+    if excess(high) >= 0.0:
+        gamma = brentq(excess, low, high, xtol=1e-13)
+        return fillet_point(tooth, fillet_parameter(tooth, gamma))
+    return None
+
+
+def _above_the_fillet(tooth: Filleted, apex: float) -> FilletPoint | None:
     """Section at which the parabola touches the trochoid beyond its junction with the involute; None if nowhere."""
     from scipy.optimize import brentq
 

@@ -1,0 +1,168 @@
+"""ANSI/AGMA 2101-D04 against worked examples, and its laws.
+
+Shigley's Mechanical Engineering Design (Budynas and Nisbett, 8th edition), examples 14-4 (spur) and 14-5 (helical): a
+17-tooth pinion of 240 HB and a 52-tooth wheel of 200 HB, ten teeth per inch, face 1.5 inch, 4 hp at 1800 rpm, Q_v = 6,
+10^8 cycles of the pinion, reliability 90 %, commercial enclosed unit. Its J, I, K_s and the elastic coefficient of
+2300 sqrt(psi) are taken as printed (charts and a size factor that the standard does not have); all else is computed.
+"""
+
+import math
+
+import pytest
+
+from fegear.errors import RangeError
+from fegear.formulas import agma2101, agma2101_factors
+from fegear.formulas.agma908_pair import bending_factor, pitting_factor, shortest_contact_lines
+from fegear.formulas.agma2101_materials import AllowableStress, allowable_stress
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+
+INCH, PSI, LBF, FPM = 0.0254, 6894.757, 4.4482216, 0.00508
+SPEED = 1800 * math.pi / 30
+POWER = 4 * 745.69987
+#: E that makes Z_E Shigley's 2300 sqrt(psi) with nu = .3.
+STEEL = Material(young_modulus=2300.0**2 * PSI * 2 * math.pi * (1 - 0.09), poisson_ratio=0.3)
+
+
+def pair(z1, z2, helix=0.0, face=1.5 * INCH, module=INCH / 10, thinning=0.024, tip=0.25):
+    beta = math.radians(helix)
+    gears = []
+    for z, hand in ((z1, "right"), (z2, "left")):
+        tooth = Tooth(z, BasicRack(1.0, 1.25, tip), thickness_allowance=thinning, helix_angle=beta)
+        bore = 0.3 * tooth.root_radius * module
+        gears.append(Gear(tooth, module, bore, face, STEEL, hand=hand if helix else "spur"))
+    return GearPair(*gears)
+
+
+def shigley(helix, size):
+    """The service of both examples: F_t and v_t from power and speed."""
+    one = pair(17, 52, helix)
+    v = SPEED * one.driver.pitch_radius
+    return one, agma2101.Service(
+        POWER / v, v, (1e8, 1e8 * 17 / 52), accuracy=11, reliability=0.9, size=size,
+        mounting=agma2101_factors.Mounting("commercial"),
+    )  # fmt: skip
+
+
+STEELS = allowable_stress("through-hardened", 1, 240.0), allowable_stress("through-hardened", 1, 200.0)
+
+
+def printed(value, digits):
+    """Within half a unit of the last printed digit."""
+    text = f"{digits}"
+    decimals = len(text.partition(".")[2])
+    return value == pytest.approx(float(digits), abs=0.5001 * 10.0**-decimals)
+
+
+def test_shigley_14_4_a_spur_pair():
+    one, service = shigley(0.0, (1.043, 1.052))
+    assert service.speed / FPM == pytest.approx(801.1, abs=0.05)
+    assert service.tangential / LBF == pytest.approx(164.8, abs=0.05)
+    found = agma2101.rate(one, service, STEELS, agma2101.Geometry(0.121, (0.30, 0.40)))
+    # the book's exponent of A_v is 2/3, the standard's .667
+    assert found.factor("K_v").values[0] == pytest.approx(1.377, abs=1e-3)
+    assert printed(found.factor("K_H").values[0], "1.22")
+    assert printed(found.factor("Y_Z").values[0], "0.85")
+    assert [round(v, 3) for v in found.factor("Y_N").values] == [0.977, 0.996]
+    assert [round(v, 3) for v in found.factor("Z_N").values] == [0.948, 0.973]
+    assert round(found.factor("Z_W").values[1], 3) == 1.005
+    # K_H is 1.2203 where the book goes on with its rounded 1.22: three digits remain
+    assert [s / PSI for s in found.bending] == pytest.approx([6417, 4854], rel=1e-3)
+    assert [s / PSI for s in found.contact] == pytest.approx([70360, 70660], rel=1e-3)
+    # the metric edition's line of sigma_FP is 8 psi above that of the inch edition: 6.83 for 6.82
+    assert list(found.S_F) == pytest.approx([5.62, 6.82], abs=8e-3)
+    assert [round(s, 2) for s in found.S_H] == [1.69, 1.52]
+
+
+def test_shigley_14_5_a_helical_pair():
+    one, service = shigley(30.0, (1.043, 1.052))
+    assert service.speed / FPM == pytest.approx(925, abs=0.5)
+    assert service.tangential / LBF == pytest.approx(142.7, abs=0.05)
+    found = agma2101.rate(one, service, STEELS, agma2101.Geometry(0.195, (0.423, 0.529)))
+    assert found.factor("K_v").values[0] == pytest.approx(1.404, abs=1e-3)
+    assert found.factor("K_H").values[0] == pytest.approx(1.208, abs=1e-3)
+    assert [s / PSI for s in found.bending] == pytest.approx([3445, 2779], rel=1e-3)
+    assert [s / PSI for s in found.contact] == pytest.approx([48230, 48440], rel=1e-3)
+    assert found.S_F[0] == pytest.approx(10.5, abs=0.05)
+    assert found.S_F[1] == pytest.approx(11.9, abs=0.05)
+    assert [round(s, 2) for s in found.S_H] == [2.46, 2.22]
+
+
+def test_own_geometry_factors_stand_near_shigleys_charts():
+    """J of the helical pinion is .423 in the chart; I is the pitch point's there and 908-B89's mean radius here."""
+    wide = pair(17, 52, 30.0)
+    assert pytest.approx(0.423, abs=2e-3) == bending_factor(wide, "driver").J
+    assert pitting_factor(wide) == pytest.approx(0.195, rel=0.02)
+
+
+def test_a_helical_pair_tends_to_shortest_lines_and_contact_of_the_plane():
+    straight, lean = pair(26, 55, 0.0), pair(26, 55, 1e-5)
+    assert pitting_factor(lean) == pytest.approx(pitting_factor(straight), rel=1e-5)
+    assert pytest.approx(bending_factor(straight, "driver").J, rel=1e-5) == bending_factor(lean, "driver").J
+    # and J is continuous in I where the axial contact ratio passes one
+    face = math.pi / math.sin(math.radians(15.0)) * INCH / 10
+    low, high = (pitting_factor(pair(26, 55, 15.0, face * s)) for s in (1 - 1e-9, 1 + 1e-9))
+    assert low == pytest.approx(high, rel=1e-6)
+
+
+def test_shortest_lines_are_those_of_an_enumeration():
+    """Own count: lines z = (x - k p) / tan(beta_b) across a rectangle, moved over a base pitch in small steps."""
+    m_p, face, base = 1.63, 17.0, math.radians(18.0)
+    for m_f in (0.3, 1.2, 1.5, 2.75):
+        pitch = face * math.tan(base) / m_f
+        least = math.inf
+        for i in range(2000):
+            total = 0.0
+            for k in range(-8, 9):
+                low = max(0.0, (k + i / 2000) * pitch - m_p * pitch)
+                total += max(0.0, min(face * math.tan(base), (k + i / 2000) * pitch) - low) / math.sin(base)
+            least = min(least, total)
+        assert shortest_contact_lines(m_p, m_f, face, base) == pytest.approx(least, rel=1e-3)
+
+
+def test_laws_of_the_factors():
+    f = agma2101_factors
+    assert f.dynamic_factor(0.0, 9) == 1.0
+    assert f.rim_factor(1.2) == 1.0
+    assert f.rim_factor(1.2 - 1e-9) == pytest.approx(1.0, abs=1e-3)
+    assert f.pitting_cycle_factor(1e7) == pytest.approx(f.pitting_cycle_factor(1e7 * 1.001), rel=1e-3)
+    for brinell in (160.0, 250.0, 400.0):
+        below, above = (f.bending_cycle_factor(3e6 * s, brinell, "through-hardened") for s in (1 - 1e-9, 1.0))
+        assert below == pytest.approx(above, rel=2e-3)
+    assert [f.reliability_factor(r) for r in (0.5, 0.9, 0.99, 0.999, 0.9999)] == pytest.approx(
+        [0.70, 0.85, 1.0, 1.25, 1.5]
+    )
+    assert f.hardness_ratio_factor(3.0, 200.0, 200.0) == 1.0
+    at = [f.load_distribution(b, 0.2, f.Mounting()).proportion for b in (0.025, 0.0250001, 0.15)]
+    assert at[0] == pytest.approx(at[1], abs=2e-4)
+    one, service = shigley(0.0, (1.0, 1.0))
+    half = agma2101.rate(one, service, STEELS)
+    from dataclasses import replace
+
+    twice = agma2101.rate(one, replace(service, tangential=2 * service.tangential), STEELS)
+    assert twice.S_F[0] == pytest.approx(half.S_F[0] / 2)
+    assert twice.S_H[1] == pytest.approx(half.S_H[1] / math.sqrt(2))
+    turned = agma2101.rate(one.reversed(), service, STEELS)
+    assert turned.members == ("driven", "driver")
+    assert pytest.approx(half.S_H, rel=1e-12) == turned.S_H
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: agma2101_factors.dynamic_factor(10.0, 5), "A_v"),
+        (lambda: agma2101_factors.dynamic_factor(500.0, 9), "must not exceed"),
+        (lambda: allowable_stress("through-hardened", 3, 300.0), "grade"),
+        (lambda: allowable_stress("through-hardened", 1, 500.0), "180 to 400 HB"),
+        (lambda: allowable_stress("nitrided-4140", 1, 500.0), "core"),
+        (lambda: AllowableStress(-1.0, 1.0, 200.0), "sigma_HP"),
+        (lambda: agma2101_factors.reliability_factor(1.0), "reliability"),
+        (lambda: agma2101_factors.rim_factor(0.3), "m_B"),
+        (lambda: agma2101_factors.load_distribution(0.5, 0.1, agma2101_factors.Mounting()), "2 pinion diameters"),
+        (lambda: agma2101_factors.bending_cycle_factor(10.0, 200.0, "given"), "load cycles"),
+        (lambda: agma2101.Service(-1.0, 1.0), "F_t"),
+        (lambda: agma2101_factors.work_hardening_factor(1e-6, 500.0), "180 to 400"),
+    ],
+)  # fmt: skip
+def test_outside_says_why(call, words):
+    with pytest.raises(RangeError, match=words):
+        call()
