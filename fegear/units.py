@@ -60,6 +60,8 @@ DIMENSIONS: dict[str, Dimension] = {
     "viscosity": Dimension("Pa*s", "0.02 Pa*s"),
     "kinematic_viscosity": Dimension("m^2/s", "220 mm^2/s"),
     "temperature": Dimension("degC", "60 degC"),
+    "time": Dimension("s", "20000 h"),
+    "hardness": Dimension("HV", "700 HV"),
 }
 
 #: Units of temperature with their size and the reading of their zero, both in degrees Celsius: the one quantity with
@@ -98,6 +100,8 @@ EVERYDAY: dict[str, dict[str, float]] = {
     "viscosity": {"Pa*s": 1.0, "mPa*s": 1e-3},
     "kinematic_viscosity": {"mm^2/s": 1e-6, "cSt": 1e-6, "m^2/s": 1.0},
     "temperature": {"degC": 1.0},
+    "time": {"h": 3600.0, "min": 60.0, "s": 1.0},
+    "hardness": {"HV": 1.0, "HBW": 1.0 / 0.95, "HB": 1.0 / 0.95},
 }
 
 #: Every unit that is known, in words of pint; there are no prefixes but these. The radian is a dimension of its own
@@ -109,12 +113,13 @@ UNITS: dict[str, str] = {
     "ft": "12*inch", "foot": "ft", "feet": "ft",
     "rad": "[angle]", "mrad": "1e-3*rad", "urad": "1e-6*rad", "deg": f"{math.pi / 180.0!r}*rad", "degree": "deg",
     "degrees": "deg", "arcmin": "deg/60", "arcsec": "deg/3600", "rev": f"{_TURN!r}*rad", "turn": "rev", "U": "rev",
-    "s": "[time]", "min": "60*s", "Hz": "1/s", "kHz": "1e3/s", "rpm": "rev/min",
+    "s": "[time]", "min": "60*s", "h": "3600*s", "Hz": "1/s", "kHz": "1e3/s", "rpm": "rev/min",
     "kg": "[mass]", "g": "1e-3*kg", "t": "1e3*kg", "lb": "0.45359237*kg",
     "N": "kg*m/s^2", "kN": "1e3*N", "MN": "1e6*N", "daN": "10*N", "kgf": "9.80665*N", "lbf": "4.4482216152605*N",
     "Pa": "N/m^2", "kPa": "1e3*Pa", "MPa": "1e6*Pa", "GPa": "1e9*Pa", "bar": "1e5*Pa",
     "psi": "lbf/inch^2", "ksi": "1e3*psi", "Mpsi": "1e6*psi",
     "Nm": "N*m", "kNm": "kN*m", "MNm": "MN*m", "Nmm": "N*mm", "Ncm": "N*cm", "Ns": "N*s", "Nms": "N*m*s",
+    "HV": "[hardness]", "HBW": "HV/0.95", "HB": "HBW",  # steel, ISO 18265: HBW = 0.95 HV
     "Pas": "Pa*s", "mPas": "1e-3*Pa*s", "cP": "1e-3*Pa*s", "St": "1e-4*m^2/s", "cSt": "1e-6*m^2/s",
 }  # fmt: skip
 

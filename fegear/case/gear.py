@@ -23,6 +23,7 @@ from fegear.case.part import (
     spelt_also,
 )
 from fegear.case.relief import ReliefPart, SpacingErrorsPart
+from fegear.case.strength import StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, Material, Tooth
@@ -105,6 +106,9 @@ class GearPart(Part):
     ball_diameter: PositiveLength | None = None
     plane: Literal["strain", "stress", "auto"] = "strain"
     material: MaterialPart = Field(default_factory=MaterialPart)
+    strength: StrengthPart | None = Field(
+        default=None, description="what the material bears, for the result rating: kind, quality and hardness"
+    )
     tooth_mesh: str | None = None
     tooth_mesh_fillet: Literal["rack", "own"] = "rack"
     relief: ReliefPart | None = None

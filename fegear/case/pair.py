@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from fegear.case.helical import MisalignmentPart, ModificationPart, build_pair
 from fegear.case.load_distribution import LineErrorPart
+from fegear.case.operation import OperationPart, ShaftsPart
 from fegear.case.part import (
     Length,
     Part,
@@ -110,6 +111,12 @@ class PairPart(Part):
     )
     friction: PairFrictionPart | None = Field(
         default=None, description="friction law of tooth-loss; Schlenk's where the lubricant is known"
+    )
+    operation: OperationPart = Field(
+        default_factory=OperationPart, description="loads, life and required safeties that the result rating is for"
+    )
+    shafts: ShaftsPart | None = Field(
+        default=None, description="what carries the pinion, for the face load factor of ISO 6336-1 in the result rating"
     )
 
     @model_validator(mode="after")

@@ -37,6 +37,9 @@ class GearKeys(TypedDict, total=False):
     ball_diameter: Quantity
     plane: Literal["strain", "stress", "auto"]
     material: Mapping[str, Any]
+    strength: Mapping[str, Any]
+    roughness: Mapping[str, Any]
+    flank_treatment: str
     tooth_mesh: str
     tooth_mesh_fillet: Literal["rack", "own"]
     relief: Mapping[str, Any]
@@ -62,6 +65,10 @@ class PairKeys(TypedDict, total=False):
     modification: Mapping[str, Any]
     axial_offset: Quantity
     iso_6336: Mapping[str, Any]
+    lubricant: Mapping[str, Any]
+    friction: Mapping[str, Any]
+    operation: Mapping[str, Any]
+    shafts: Mapping[str, Any]
 
 
 _brief = reprlib.Repr()

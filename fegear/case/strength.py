@@ -1,0 +1,129 @@
+"""``strength`` of a gear: what its material bears, by ISO 6336-5 or in own numbers."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from fegear.case.part import Part, PositivePressure, quantity, refuse
+from fegear.errors import InputError
+from fegear.unit_text import UnreadableError, split
+
+#: Materials of ISO 6336-5 by the words that a case writes; `fegear.formulas.iso6336.part5_materials` knows their laws.
+MaterialName = Literal[
+    "normalized-steel",
+    "normalized-cast-steel",
+    "malleable-iron",
+    "nodular-iron",
+    "grey-iron",
+    "through-hardened-carbon-steel",
+    "through-hardened-alloy-steel",
+    "through-hardened-cast-carbon-steel",
+    "through-hardened-cast-alloy-steel",
+    "case-hardened-steel",
+    "induction-hardened-steel",
+    "nitrided-nitriding-steel",
+    "nitrided-through-hardening-steel",
+    "nitrocarburized-steel",
+]
+
+#: Rockwell C and Vickers hardness of unalloyed and low-alloy steel: ISO 18265:2013, table A.1.
+_HRC = (
+    20.3, 22.2, 24.0, 25.6, 27.1, 28.5, 29.8, 31.0, 32.2, 33.3, 34.4, 35.5, 36.6, 37.7, 38.8, 39.8, 40.8, 41.8, 42.7,
+    43.6, 44.5, 45.3, 46.1, 46.9, 47.7, 48.4, 49.1, 49.8, 50.5, 51.1, 51.7, 52.3, 53.0, 53.6, 54.1, 54.7, 55.2, 55.7,
+    56.3, 56.8, 57.3, 57.8, 58.3, 58.8, 59.2, 59.7, 60.1, 61.0, 61.8, 62.5, 63.3, 64.0, 64.7, 65.3, 65.9, 66.4, 67.0,
+    67.5, 68.0,
+)  # fmt: skip
+_HV = (*range(240, 700, 10), *range(700, 941, 20))
+
+
+def _rockwell(value: Any) -> Any:
+    """Rewrite Rockwell C as Vickers, from which it differs by no factor; anything else stays as it is."""
+    if not isinstance(value, str):
+        return value
+    try:
+        number, unit = split(value)
+    except (UnreadableError, InputError):
+        return value
+    if unit != "HRC":
+        return value
+    if not _HRC[0] <= number <= _HRC[-1]:
+        rule = f"must lie between {_HRC[0]:g} and {_HRC[-1]:g} HRC, where ISO 18265 converts it"
+        raise refuse(rule, "give it in HV or HBW", value=value)
+    i = max(bisect_left(_HRC, number), 1)
+    part = (number - _HRC[i - 1]) / (_HRC[i] - _HRC[i - 1])
+    return f"{_HV[i - 1] + part * (_HV[i] - _HV[i - 1]):.9g} HV"
+
+
+Hardness = Annotated[float, quantity("hardness", positive=True), BeforeValidator(_rockwell)]
+
+
+class StrengthPart(Part):
+    """``strength = { material, quality, hardness, ... }``: what the flanks and roots of a gear bear.
+
+    The allowable stress numbers come from the laws of ISO 6336-5 for the material, its quality and its hardness, or as
+    own numbers (`contact`, `bending` or `bending_allowable`); the material is named in any case, since life and notch
+    factors depend on its kind.
+    """
+
+    material: MaterialName = Field(
+        description="kind of material of ISO 6336-5, which allowable stresses, life factors and notch factors depend on"
+    )
+    quality: Literal["ML", "MQ", "ME"] = Field(
+        default="MQ",
+        description="quality of material and heat treatment (ISO 6336-5): ML lowest, MQ usual, ME highest",
+    )
+    hardness: Hardness | None = Field(
+        default=None, description="surface hardness in HV, HBW or HRC; the middle of the material's range without"
+    )
+    core_hardness: Hardness | None = Field(
+        default=None,
+        description="hardness of the core of case-hardened teeth of quality MQ: 25 HRC at least; from 30 HRC the root "
+        "bears more",
+    )
+    jominy_12: Hardness | None = Field(
+        default=None,
+        description="hardenability of case-hardened steel of quality MQ, hardness 12 mm from the quenched end of a "
+        "Jominy bar: from 28 HRC the root bears more",
+    )
+    contact: PositivePressure | None = Field(
+        default=None, description="own allowable stress number (contact) sigma_Hlim in place of that of ISO 6336-5"
+    )
+    bending: PositivePressure | None = Field(
+        default=None, description="own nominal stress number (bending) sigma_Flim in place of that of ISO 6336-5"
+    )
+    bending_allowable: PositivePressure | None = Field(
+        default=None, description="own allowable stress number (bending) sigma_FE = 2 sigma_Flim, in place of bending"
+    )
+    yield_strength: PositivePressure | None = Field(
+        default=None,
+        description="yield point sigma_S or proof stress sigma_0.2, on which the notch sensitivity of steels that are "
+        "not surface-hardened depends; estimated from the hardness without",
+    )
+    tensile_strength: PositivePressure | None = Field(
+        default=None, description="tensile strength sigma_B of cast iron, on which its notch sensitivity depends"
+    )
+    long_life: Annotated[float, Field(ge=0.85, le=1.0)] = Field(
+        default=0.85,
+        description="life factors Z_NT and Y_NT at 1e10 load cycles: 0.85, or up to 1 for the best material, "
+        "manufacture and lubrication with experience",
+    )
+    pitting_allowed: bool = Field(
+        default=False, description="whether some pitting may be seen, which Z_NT of limited life lets bear more"
+    )
+
+    @model_validator(mode="after")
+    def _one_of_each(self) -> Self:
+        if self.bending is not None and self.bending_allowable is not None:
+            raise refuse("contradicts bending", "give sigma_Flim or sigma_FE", key="bending_allowable")
+        case_hardened = self.material == "case-hardened-steel"
+        for key in ("core_hardness", "jominy_12"):
+            if getattr(self, key) is not None and not case_hardened:
+                raise refuse("has a meaning only for case-hardened-steel", f"remove {key}", key=key)
+        if self.tensile_strength is not None and not self.material.endswith("iron"):
+            raise refuse(
+                "has a meaning only for cast iron", "remove it, or give yield_strength", key="tensile_strength"
+            )
+        return self
