@@ -16,9 +16,19 @@ QuantityName = Literal[
 class CostPart(Part):
     """Which quantities of which gear and pair."""
 
-    quantities: Annotated[list[QuantityName], Field(min_length=1)] | None = None
-    gear: str | None = None
-    pair: str | None = None
+    quantities: Annotated[list[QuantityName], Field(min_length=1)] | None = Field(
+        default=None, description="What is studied; without it what `results` stands for."
+    )
+    gear: str | None = Field(
+        default=None,
+        description="The gear whose compliance and root stress are studied; without it that of `[stiffness]`, else "
+        "the pair's driver.",
+    )
+    pair: str | None = Field(
+        default=None,
+        description="The pair whose transmission error and forces are studied; without it that of `[stiffness]`, "
+        "else the first with a load.",
+    )
 
     @property
     def stages(self) -> tuple[str, ...]:

@@ -30,11 +30,21 @@ def _both_shapes() -> list[Shape]:
 class ChartPart(Part):
     """``chart = { amounts | amounts_over_delta, lengths, loads, shape }``: equal tip reliefs on both gears."""
 
-    amounts: Annotated[list[PositiveLength], Field(min_length=1)] | None = None
-    amounts_over_delta: Positive | None = None
-    lengths: Positive | None = None
-    loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = None
-    shape: Shape = "linear"
+    amounts: Annotated[list[PositiveLength], Field(min_length=1)] | None = Field(
+        default=None, description="Amounts of tip relief; give these or `amounts_over_delta`."
+    )
+    amounts_over_delta: Positive | None = Field(
+        default=None, description="Amounts of tip relief in units of Welbourn's Delta; without both up to 1.6 Delta."
+    )
+    lengths: Positive | None = Field(
+        default=None, description="Lengths in L_n of TM-89901, 1 from tip to HPSTC; without it up to 1.3."
+    )
+    loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = Field(
+        default=None, description="Loads; without it those of the pair."
+    )
+    shape: Shape = Field(
+        default="linear", description="How the removal grows from the start: straight, or as a parabola."
+    )
 
     @model_validator(mode="after")
     def _feasible(self) -> Self:
@@ -49,10 +59,14 @@ class ChartPart(Part):
 class RobustnessPart(Part):
     """``robustness = { load_factors, spacing_errors, relief_errors }``: deviations whose combinations are tried."""
 
-    load_factors: Positive = Field(default_factory=lambda: [0.7, 0.85, 1.0, 1.15, 1.3])
-    spacing_errors: Annotated[list[Length], Field(min_length=1)] = Field(default_factory=lambda: [0.0])
+    load_factors: Positive = Field(
+        default_factory=lambda: [0.7, 0.85, 1.0, 1.15, 1.3], description="Loads over the design load."
+    )
+    spacing_errors: Annotated[list[Length], Field(min_length=1)] = Field(
+        default_factory=lambda: [0.0], description="Spacing errors."
+    )
     relief_errors: Annotated[list[Annotated[Number, Field(gt=-1.0)]], Field(min_length=1)] = Field(
-        default_factory=lambda: [-0.2, 0.0, 0.2]
+        default_factory=lambda: [-0.2, 0.0, 0.2], description="Relative errors of the amount of relief."
     )
 
     @model_validator(mode="after")
@@ -65,21 +79,52 @@ class RobustnessPart(Part):
 class DesignPart(Part):
     """Which pair is to be relieved, for which load, and how its teeth are to share it."""
 
-    pair: str | None = None
-    load: PositiveForce | None = None
-    length: PositiveLength | None = None
-    contact_ratio: PositiveNumber | None = None
-    centre: Length | None = None
-    family: Literal["sinusoidal", "polynomial"] = "sinusoidal"
-    slope: Annotated[Number, Field(ge=0.0)] = 1.0
-    exponent: int | None = None
-    inner_slope: Annotated[Number, Field(ge=0.0)] = 1.0
-    peak: PositiveNumber | Literal["least-root-stress"] | None = None
-    grind: list[Shape] = Field(default_factory=_both_shapes)
-    roll_angles: Annotated[list[Angle], Field(min_length=1), at_most(10_000, "roll angles")] | None = None
-    metric: Literal["effective_error", "peak_to_peak"] = "peak_to_peak"
-    chart: ChartPart = Field(default_factory=ChartPart)
-    robustness: RobustnessPart = Field(default_factory=RobustnessPart)
+    pair: str | None = Field(default=None, description="Which pair; without it the only one.")
+    load: PositiveForce | None = Field(default=None, description="Design load; without it the pair's nominal load.")
+    length: PositiveLength | None = Field(
+        default=None,
+        description="Length of the design zone on the line of action; without it and `contact_ratio` the whole path "
+        "of contact.",
+    )
+    contact_ratio: PositiveNumber | None = Field(
+        default=None, description="Length of the design zone in base pitches; give this or `length`."
+    )
+    centre: Length | None = Field(
+        default=None, description="Middle of the design zone, from the pitch point; without it the middle of the path."
+    )
+    family: Literal["sinusoidal", "polynomial"] = Field(
+        default="sinusoidal", description="Family of the loading ramps: sinusoidal (4.12) or polynomial (4.14)."
+    )
+    slope: Annotated[Number, Field(ge=0.0)] = Field(
+        default=1.0, description="Slope s of the load at contact initiation; 1 is a straight line."
+    )
+    exponent: int | None = Field(default=None, description="Odd exponent r of the polynomial family; without it 7.")
+    inner_slope: Annotated[Number, Field(ge=0.0)] = Field(
+        default=1.0, description="Slope s of the inner ramps, for contact ratios above 2."
+    )
+    peak: PositiveNumber | Literal["least-root-stress"] | None = Field(
+        default=None,
+        description="Largest load of a tooth pair over the design load (F), for contact ratios above 2, or "
+        "`least-root-stress`; without it the middle of its range.",
+    )
+    grind: list[Shape] = Field(
+        default_factory=_both_shapes, description="Shapes of tip relief that a shop can grind; an empty list for none."
+    )
+    roll_angles: Annotated[list[Angle], Field(min_length=1), at_most(10_000, "roll angles")] | None = Field(
+        default=None,
+        description="Roll angles on the active profile at which `relief_points_<pair>_<gear>` gives load, deflection "
+        "and relief.",
+    )
+    metric: Literal["effective_error", "peak_to_peak"] = Field(
+        default="peak_to_peak", description="What the chart is judged by: peak to peak, or the effective error A_e."
+    )
+    chart: ChartPart = Field(
+        default_factory=ChartPart,
+        description="Equal tip reliefs on both gears that are tried, for `relief-chart` and `relief-curves`.",
+    )
+    robustness: RobustnessPart = Field(
+        default_factory=RobustnessPart, description="Deviations whose combinations are tried, for `robustness`."
+    )
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:

@@ -32,10 +32,14 @@ class SpeedsPart(Part):
 
     model_config = spelt_also(lambda table: table["properties"]["values"])
 
-    values: Annotated[list[PositiveSpeed], Field(min_length=1), at_most(100_000, "speeds")] | None = None
-    start: PositiveSpeed | None = None
-    stop: PositiveSpeed | None = None
-    count: Annotated[int, Field(ge=2, le=100_000)] | None = None
+    values: Annotated[list[PositiveSpeed], Field(min_length=1), at_most(100_000, "speeds")] | None = Field(
+        default=None, description="The speeds themselves; a list in place of the table says the same."
+    )
+    start: PositiveSpeed | None = Field(default=None, description="Lowest speed.")
+    stop: PositiveSpeed | None = Field(default=None, description="Highest speed.")
+    count: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
+        default=None, description="Speeds in the range, evenly spaced."
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -67,10 +71,10 @@ class SpeedsPart(Part):
 class FrequenciesPart(Part):
     """``frequencies = { start, stop, count, spacing }``."""
 
-    start: Frequency = 10.0
-    stop: Frequency = 10_000.0
-    count: Annotated[int, Field(ge=2, le=1_000_000)] = 1000
-    spacing: Literal["linear", "logarithmic"] = "linear"
+    start: Frequency = Field(default=10.0, description="Lowest frequency.")
+    stop: Frequency = Field(default=10_000.0, description="Highest frequency.")
+    count: Annotated[int, Field(ge=2, le=1_000_000)] = Field(default=1000, description="Frequencies in the range.")
+    spacing: Literal["linear", "logarithmic"] = Field(default="linear", description="How the frequencies are spaced.")
 
     @model_validator(mode="after")
     def _rising(self) -> Self:
@@ -88,9 +92,15 @@ class FrequenciesPart(Part):
 class FrictionPart(Part):
     """``friction = { law, viscosity }`` or ``{ coefficient }``."""
 
-    law: Literal["buckingham", "benedict-kelley", "constant"] = "buckingham"
-    viscosity: PositiveViscosity | None = None
-    coefficient: Annotated[Number, Field(ge=0.0, le=0.5)] | None = None
+    law: Literal["buckingham", "benedict-kelley", "constant"] = Field(
+        default="buckingham", description="Friction law of the teeth."
+    )
+    viscosity: PositiveViscosity | None = Field(
+        default=None, description="Viscosity of the oil, for `benedict-kelley`."
+    )
+    coefficient: Annotated[Number, Field(ge=0.0, le=0.5)] | None = Field(
+        default=None, description="Coefficient of friction, for `constant`."
+    )
 
     @model_validator(mode="after")
     def _what_the_law_needs(self) -> Self:
@@ -107,19 +117,27 @@ class FrictionPart(Part):
 class UnequalReliefPart(Part):
     """``{ driver, driven, length }``: amounts of tip relief over Delta on the two gears, and L_n."""
 
-    driver: Annotated[Number, Field(ge=0.0)]
-    driven: Annotated[Number, Field(ge=0.0)]
-    length: PositiveNumber
+    driver: Annotated[Number, Field(ge=0.0)] = Field(description="Amount of tip relief on the driver, over Delta.")
+    driven: Annotated[Number, Field(ge=0.0)] = Field(description="Amount of tip relief on the driven gear, over Delta.")
+    length: PositiveNumber = Field(description="Length of both reliefs in L_n.")
 
 
 class DesignChartPart(Part):
     """``chart = { mesh, amounts, lengths, unequal }``: tip relief on both gears, over Delta and in L_n of TM-89901."""
 
-    mesh: str | None = None
-    amounts: Annotated[list[PositiveNumber], Field(min_length=1)]
-    lengths: Annotated[list[PositiveNumber], Field(min_length=1)]
-    shape: Literal["linear", "parabolic"] = "linear"
-    unequal: list[UnequalReliefPart] = Field(default_factory=list, max_length=1000)
+    mesh: str | None = Field(default=None, description="Which mesh of the train; without it the only one.")
+    amounts: Annotated[list[PositiveNumber], Field(min_length=1)] = Field(
+        description="Amounts of tip relief over Delta, on both gears."
+    )
+    lengths: Annotated[list[PositiveNumber], Field(min_length=1)] = Field(
+        description="Lengths L_n of the reliefs, from tip (0) to HPSTC (1)."
+    )
+    shape: Literal["linear", "parabolic"] = Field(
+        default="linear", description="How the removal grows from the start: straight, or as a parabola."
+    )
+    unequal: list[UnequalReliefPart] = Field(
+        default_factory=list, max_length=1000, description="Further reliefs with an amount for each gear."
+    )
 
     @model_validator(mode="after")
     def _few_enough(self) -> Self:
@@ -130,18 +148,40 @@ class DesignChartPart(Part):
 class DynamicsPart(Part):
     """How the train is run; speeds are those of `speed_of`, by default the first body."""
 
-    speed: PositiveSpeed | None = None
-    speeds: SpeedsPart | None = None
-    speed_of: str | None = None
-    harmonics: Annotated[int, Field(ge=1, le=20_000)] = 64
-    lines: Annotated[int, Field(ge=1, le=50)] = 3
-    frequencies: FrequenciesPart = Field(default_factory=FrequenciesPart)
-    positions: Annotated[int, Field(ge=3, le=100_000)] = 201
-    direction: Literal["up", "down", "static", "rest"] = "down"
-    tolerance: Annotated[Number, Field(gt=1e-12, le=1e-2)] = 5e-4
-    friction: FrictionPart = Field(default_factory=FrictionPart)
-    loss_taken_by: str | None = None
-    chart: DesignChartPart | None = None
+    speed: PositiveSpeed | None = Field(
+        default=None, description="Speed of histories and spectra; without it the only one of `speeds`."
+    )
+    speeds: SpeedsPart | None = Field(
+        default=None, description="Speeds of sweeps: a list, or a range; without it `speed`."
+    )
+    speed_of: str | None = Field(default=None, description="Body whose speed that is; without it the first.")
+    harmonics: Annotated[int, Field(ge=1, le=20_000)] = Field(
+        default=64, description="Harmonics of each mesh; tooth forces take at least 256."
+    )
+    lines: Annotated[int, Field(ge=1, le=50)] = Field(default=3, description="Mesh harmonics in the Campbell diagram.")
+    frequencies: FrequenciesPart = Field(
+        default_factory=FrequenciesPart, description="Frequencies of the dynamic increments."
+    )
+    positions: Annotated[int, Field(ge=3, le=100_000)] = Field(
+        default=201, description="Positions of one tooth pair in histories."
+    )
+    direction: Literal["up", "down", "static", "rest"] = Field(
+        default="down",
+        description="Whether each speed of a sweep starts from the motion of the one before (`down`, `up`) or afresh "
+        "(`static`, `rest`).",
+    )
+    tolerance: Annotated[Number, Field(gt=1e-12, le=1e-2)] = Field(
+        default=5e-4, description="Relative error of the dynamic factor where the motion repeats."
+    )
+    friction: FrictionPart = Field(
+        default_factory=FrictionPart, description="Friction between the teeth; it needs the effect `friction`."
+    )
+    loss_taken_by: str | None = Field(
+        default=None,
+        description="Body whose torque makes up for the friction loss; without it that of `balance`, else of the "
+        "last torque.",
+    )
+    chart: DesignChartPart | None = Field(default=None, description="Tip reliefs that are tried, for `design-chart`.")
 
     @property
     def speed_values(self) -> NDArray[np.float64]:

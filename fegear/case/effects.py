@@ -4,21 +4,30 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from fegear.case.part import Part
 
 
 class EffectsPart(Part):
     """Physical effects by name."""
 
-    neighbour_coupling: bool = False
-    hertz: Literal["load-dependent", "linear", "none"] = "none"
-    relief: bool = False
-    spacing_errors: bool = False
-    corner_contact: bool = False
-    contact_loss: bool = False
-    friction: bool = False
-    parametric: bool = False
-    misalignment: bool = False
+    neighbour_coupling: bool = Field(
+        default=False, description="Whether a loaded tooth bends its neighbours through the body."
+    )
+    hertz: Literal["load-dependent", "linear", "none"] = Field(
+        default="none",
+        description="Contact deformation: as it grows with the load, linearised at the nominal load, or left out.",
+    )
+    relief: bool = Field(default=False, description="Whether profile and flank modifications count.")
+    spacing_errors: bool = Field(default=False, description="Whether spacing errors of the teeth count.")
+    corner_contact: bool = Field(
+        default=False, description="Whether deflected teeth meet before and after the nominal path of contact."
+    )
+    contact_loss: bool = Field(default=False, description="Whether teeth may part and hammer in motion.")
+    friction: bool = Field(default=False, description="Whether teeth rub.")
+    parametric: bool = Field(default=False, description="Whether the mesh stiffness varies in time.")
+    misalignment: bool = Field(default=False, description="Whether misalignment and line errors of a pair count.")
 
     def is_on(self, name: str) -> bool:
         """Whether an effect is switched on."""

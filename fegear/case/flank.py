@@ -13,10 +13,14 @@ from fegear.case.relief import Shape, several
 class LeadEndReliefPart(Part):
     """``end_relief = { amount, length, end, shape }``: of end I (-b/2), end II (+b/2), or both."""
 
-    amount: Length
-    length: PositiveLength
-    end: Literal["I", "II", "both"] = "both"
-    shape: Shape = "linear"
+    amount: Length = Field(description="Material removed at the end of the face.")
+    length: PositiveLength = Field(description="Length of the relief along the face.")
+    end: Literal["I", "II", "both"] = Field(
+        default="both", description="Which end is relieved: I at -b/2, II at +b/2, or both."
+    )
+    shape: Shape = Field(
+        default="linear", description="How the removal grows toward the end: straight, or as a parabola."
+    )
 
 
 class LeadPart(Part):
@@ -25,10 +29,18 @@ class LeadPart(Part):
     ``crowning`` is removed at both ends, ``slope`` at end II; ``file`` has the columns ``z`` and ``removal``.
     """
 
-    crowning: Length = 0.0
-    slope: Length = 0.0
-    end_relief: Annotated[list[LeadEndReliefPart], several(LeadEndReliefPart)] = Field(default_factory=list)
-    file: str | None = None
+    crowning: Length = Field(default=0.0, description="C_beta: a parabola over the face, removed at both ends.")
+    slope: Length = Field(
+        default=0.0, description="C_Hbeta, helix correction: nothing at end I, all of it removed at end II."
+    )
+    end_relief: Annotated[list[LeadEndReliefPart], several(LeadEndReliefPart)] = Field(
+        default_factory=list, description="Relief at the ends of the face: a table, or a list of several that add up."
+    )
+    file: str | None = Field(
+        default=None,
+        description="CSV file with `z [mm]` from the middle of the face and `removal [um]`, straight between its "
+        "entries, held beyond them.",
+    )
 
     @model_validator(mode="after")
     def _something(self) -> Self:
@@ -42,9 +54,16 @@ class BiasPart(Part):
 
     model_config = spelt_also(lambda table: table["properties"]["amount"])
 
-    amount: Length
-    start_radius: PositiveLength | None = None
-    end_radius: PositiveLength | None = None
+    amount: Length = Field(
+        description="Twist S_alpha; positive takes material from the tip at end II and from the root at end I, a "
+        "quarter at each corner."
+    )
+    start_radius: PositiveLength | None = Field(
+        default=None, description="Lower end of the twisted profile; without it that of the active profile."
+    )
+    end_radius: PositiveLength | None = Field(
+        default=None, description="Upper end of the twisted profile; without it that of the active profile."
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -55,4 +74,7 @@ class BiasPart(Part):
 class TopographyPart(Part):
     """``topography = { file }``: columns ``roll_angle`` or ``radius``, ``z`` and ``removal`` on a full grid."""
 
-    file: str
+    file: str = Field(
+        description="CSV file with `roll_angle [deg]` or `radius [mm]`, `z [mm]` and `removal [um]`, every roll "
+        "angle at every height once; bilinear between them, held beyond them."
+    )

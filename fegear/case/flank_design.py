@@ -34,13 +34,17 @@ class FlankGridPart(Part):
     Zero is always among the amounts; a list that is left out stays at nothing.
     """
 
-    tip_amounts: list[PositiveLength] = Field(default_factory=list)
-    tip_lengths: list[PositiveLength] = Field(default_factory=list)
-    crownings: list[Length] = Field(default_factory=list)
-    end_amounts: list[Length] = Field(default_factory=list)
-    end_lengths: list[PositiveLength] = Field(default_factory=list)
-    slopes: list[Length] = Field(default_factory=list)
-    biases: list[Length] = Field(default_factory=list)
+    tip_amounts: list[PositiveLength] = Field(default_factory=list, description="Amounts of tip relief.")
+    tip_lengths: list[PositiveLength] = Field(
+        default_factory=list, description="Lengths of tip relief along the line of action."
+    )
+    crownings: list[Length] = Field(default_factory=list, description="Amounts of lead crowning.")
+    end_amounts: list[Length] = Field(default_factory=list, description="Amounts of relief at the ends of the face.")
+    end_lengths: list[PositiveLength] = Field(
+        default_factory=list, description="Lengths of relief at the ends of the face."
+    )
+    slopes: list[Length] = Field(default_factory=list, description="Helix slopes over the face.")
+    biases: list[Length] = Field(default_factory=list, description="Amounts of bias.")
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -57,16 +61,21 @@ class FlankGridPart(Part):
 class ScatterPart(Part):
     """``scatter = { over_face, levels }``: standard deviation of the misalignment, and levels that stand for it."""
 
-    over_face: LengthOrZero
-    levels: Annotated[int, Field(ge=2, le=9)] = 3
+    over_face: LengthOrZero = Field(description="Standard deviation of the misalignment over the face.")
+    levels: Annotated[int, Field(ge=2, le=9)] = Field(
+        default=3, description="Levels (of Gauss and Hermite) that stand for the scatter."
+    )
 
 
 class FlankMapPart(Part):
     """``map = { over_face, load_factors }``: misalignments and loads over the design load that are mapped."""
 
-    over_face: Annotated[list[Length], Field(min_length=1)] | None = None
+    over_face: Annotated[list[Length], Field(min_length=1)] | None = Field(
+        default=None,
+        description="Misalignments that are mapped; without it to two deviations of the scatter, or 10 um.",
+    )
     load_factors: Annotated[list[PositiveNumber], Field(min_length=1)] = Field(
-        default_factory=lambda: [0.25, 0.5, 0.75, 1.0, 1.25]
+        default_factory=lambda: [0.25, 0.5, 0.75, 1.0, 1.25], description="Loads over the design load that are mapped."
     )
 
     @model_validator(mode="after")
@@ -78,21 +87,54 @@ class FlankMapPart(Part):
 class FlankDesignPart(Part):
     """Which pair's flanks are to be relieved, for which load, how teeth are to share it, and what can be ground."""
 
-    pair: str | None = None
-    load: PositiveForce | None = None
-    loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = None
-    length: PositiveLength | None = None
-    contact_ratio: PositiveNumber | None = None
-    centre: Length | None = None
-    slope: Annotated[Number, Field(ge=0.0, le=2.0)] = 0.0
-    end_length: LengthOrZero = 0.0
-    gear: Literal["driver", "driven", "both"] = "driver"
-    positions: Annotated[int, Field(ge=8, le=256)] = 24
-    families: Annotated[list[Family], Field(min_length=1)] = Field(default_factory=_all_families)
-    grid: FlankGridPart | None = None
-    largest_face_load_factor: Annotated[Number, Field(gt=1.0)] | None = None
-    scatter: ScatterPart | None = None
-    map: FlankMapPart = Field(default_factory=FlankMapPart)
+    pair: str | None = Field(default=None, description="Which pair; without it the only one with a width.")
+    load: PositiveForce | None = Field(default=None, description="Design load; without it the pair's nominal load.")
+    loads: Annotated[list[PositiveForce], Field(min_length=1)] | None = Field(
+        default=None,
+        description="Loads over which the reliefs to grind are chosen: the worst of them counts, each transmission "
+        "error in proportion to its load; without it the design load.",
+    )
+    length: PositiveLength | None = Field(
+        default=None,
+        description="Length of the design zone on the line of action; without it and `contact_ratio` the whole path "
+        "of contact.",
+    )
+    contact_ratio: PositiveNumber | None = Field(
+        default=None, description="Length of the design zone in base pitches; give this or `length`."
+    )
+    centre: Length | None = Field(
+        default=None, description="Middle of the design zone, from the pitch point; without it the middle of the path."
+    )
+    slope: Annotated[Number, Field(ge=0.0, le=2.0)] = Field(
+        default=0.0, description="Slope s of the load at contact initiation."
+    )
+    end_length: LengthOrZero = Field(
+        default=0.0, description="Length at both ends of the face over which the design load falls to nothing."
+    )
+    gear: Literal["driver", "driven", "both"] = Field(
+        default="driver", description="Which gear gets the exact topography, or both by halves."
+    )
+    positions: Annotated[int, Field(ge=8, le=256)] = Field(
+        default=24, description="Roll positions over one base pitch that the design stands on."
+    )
+    families: Annotated[list[Family], Field(min_length=1)] = Field(
+        default_factory=_all_families,
+        description="What can be ground: tip reliefs, crowning and end relief, helix slope, bias.",
+    )
+    grid: FlankGridPart | None = Field(
+        default=None,
+        description="Reliefs to grind that are tried, all combinations; without it they follow from the depth of the "
+        "exact topography.",
+    )
+    largest_face_load_factor: Annotated[Number, Field(gt=1.0)] | None = Field(
+        default=None,
+        description="K_Hbeta that the reliefs to grind must keep to, at all loads and every level of the scatter; "
+        "without it there is no limit.",
+    )
+    scatter: ScatterPart | None = Field(default=None, description="How much the misalignment scatters.")
+    map: FlankMapPart = Field(
+        default_factory=FlankMapPart, description="Misalignments and loads over which the chosen relief is mapped."
+    )
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:

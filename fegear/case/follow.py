@@ -19,8 +19,8 @@ _MOST = at_most(24, "responses")
 class _Range(Part):
     """What all ranges share."""
 
-    count: _Count = 61
-    spacing: Literal["linear", "logarithmic"] = "linear"
+    count: _Count = Field(default=61, description="Values in the range.")
+    spacing: Literal["linear", "logarithmic"] = Field(default="linear", description="How the values are spaced.")
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -46,47 +46,59 @@ class _Range(Part):
 class NumbersPart(_Range):
     """``{ start, stop, count, spacing, responses }`` of a plain number."""
 
-    start: Number
-    stop: Number
-    responses: Annotated[list[Number], _MOST] = Field(default_factory=list)
+    start: Number = Field(description="First value.")
+    stop: Number = Field(description="Last value.")
+    responses: Annotated[list[Number], _MOST] = Field(
+        default_factory=list, description="Values at which the frequency response is drawn."
+    )
 
 
 class AnglesPart(_Range):
     """The same of an angle."""
 
-    start: Angle
-    stop: Angle
-    responses: Annotated[list[Angle], _MOST] = Field(default_factory=list)
+    start: Angle = Field(description="First angle.")
+    stop: Angle = Field(description="Last angle.")
+    responses: Annotated[list[Angle], _MOST] = Field(
+        default_factory=list, description="Angles at which the frequency response is drawn."
+    )
 
 
 class StiffnessesPart(_Range):
     """The same of a stiffness."""
 
-    start: PositiveStiffness
-    stop: PositiveStiffness
-    responses: Annotated[list[PositiveStiffness], _MOST] = Field(default_factory=list)
+    start: PositiveStiffness = Field(description="First stiffness.")
+    stop: PositiveStiffness = Field(description="Last stiffness.")
+    responses: Annotated[list[PositiveStiffness], _MOST] = Field(
+        default_factory=list, description="Stiffnesses at which the frequency response is drawn."
+    )
 
 
 class FactorsPart(_Range):
     """The same of a factor, which is not negative."""
 
-    start: Annotated[Number, Field(ge=0.0)]
-    stop: Number
-    responses: Annotated[list[Annotated[Number, Field(ge=0.0)]], _MOST] = Field(default_factory=list)
+    start: Annotated[Number, Field(ge=0.0)] = Field(description="First factor.")
+    stop: Number = Field(description="Last factor.")
+    responses: Annotated[list[Annotated[Number, Field(ge=0.0)]], _MOST] = Field(
+        default_factory=list, description="Factors at which the frequency response is drawn."
+    )
 
 
 class FollowPart(Part):
     """Ranges by parameter; `bearing_stiffness` is a factor of all bearing stiffnesses of the case."""
 
-    alpha_y: NumbersPart | None = None
-    alpha_z: NumbersPart | None = None
-    alpha_theta: NumbersPart | None = None
-    aspect_ratio: NumbersPart | None = None
-    bearing_stiffness: FactorsPart | None = None
-    base_helix_angle: AnglesPart | None = None
-    kappa: NumbersPart | None = None
-    mu: NumbersPart | None = None
-    mesh_stiffness: StiffnessesPart | None = None
+    alpha_y: NumbersPart | None = Field(default=None, description="Range of `unity_ratio.alpha_y`.")
+    alpha_z: NumbersPart | None = Field(default=None, description="Range of `unity_ratio.alpha_z`.")
+    alpha_theta: NumbersPart | None = Field(default=None, description="Range of `unity_ratio.alpha_theta`.")
+    aspect_ratio: NumbersPart | None = Field(default=None, description="Range of `unity_ratio.aspect_ratio`.")
+    bearing_stiffness: FactorsPart | None = Field(
+        default=None, description="Range of a factor of all bearing stiffnesses."
+    )
+    base_helix_angle: AnglesPart | None = Field(default=None, description="Range of the base helix angle.")
+    kappa: NumbersPart | None = Field(
+        default=None, description="Range of kappa; it takes mu along where the case leaves mu out."
+    )
+    mu: NumbersPart | None = Field(default=None, description="Range of mu.")
+    mesh_stiffness: StiffnessesPart | None = Field(default=None, description="Range of the mesh stiffness K_M.")
 
     @model_validator(mode="after")
     def _something(self) -> Self:

@@ -40,9 +40,11 @@ _KEYS = {
 class MaterialPart(Part):
     """``material = { young_modulus, poisson_ratio, density }``."""
 
-    young_modulus: PositivePressure = 206.8e9
-    poisson_ratio: Number = 0.3
-    density: PositiveDensity = 7850.0
+    young_modulus: PositivePressure = Field(default=206.8e9, description="Young's modulus.")
+    poisson_ratio: Number = Field(
+        default=0.3, description="Poisson's ratio, below 0.5 (in plane strain at most 0.4999)."
+    )
+    density: PositiveDensity = Field(default=7850.0, description="Density, for inertia.")
 
     def build(self) -> Material:
         """Make the material."""
@@ -62,13 +64,34 @@ class RackPart(Part):
         lambda _table: {"type": "string", "pattern": "^(ISO ?)?(53 ?)?[A-Da-d]$", "examples": ["ISO 53 A"]}
     )
 
-    profile: str | None = None
-    addendum: Number | None = None
-    dedendum: Number | None = None
-    tip_radius: Number | Literal["full"] | None = None
-    protuberance: Number = 0.0
-    grinding_allowance: Number = 0.0
-    protuberance_angle: Angle = math.radians(10.0)
+    profile: str | None = Field(
+        default=None,
+        description="Profile of ISO 53, A to D, from which the keys that are left out are taken; without it C.",
+    )
+    addendum: Number | None = Field(
+        default=None,
+        description="Addendum in modules: how far the tooth stands above the pitch circle; without it that of the "
+        "profile, 1.0.",
+    )
+    dedendum: Number | None = Field(
+        default=None,
+        description="Dedendum in modules: how deep the rack cuts below the pitch circle; without it that of the "
+        "profile, 1.25 for C.",
+    )
+    tip_radius: Number | Literal["full"] | None = Field(
+        default=None,
+        description="Tip radius of the rack in modules, which makes the fillet, or `full` for a full fillet; without "
+        "it that of the profile, 0.25 for C.",
+    )
+    protuberance: Number = Field(
+        default=0.0,
+        description="Protuberance pr in modules: with `grinding_allowance` q the root is cut deeper than the "
+        "finished flank by pr - q.",
+    )
+    grinding_allowance: Number = Field(
+        default=0.0, description="Grinding allowance q in modules: what grinding still takes off the flank."
+    )
+    protuberance_angle: Angle = Field(default=math.radians(10.0), description="Angle of the protuberance flank.")
 
     @model_validator(mode="before")
     @classmethod
@@ -90,32 +113,94 @@ class RackPart(Part):
 class GearPart(Part):
     """One gear: tooth, size, body and material."""
 
-    teeth: int
-    module: PositiveLength | None = None
-    diametral_pitch: PositiveInverseLength | None = None
-    pressure_angle: Angle = math.radians(20.0)
-    profile_shift: Number = 0.0
-    rack: RackPart = Field(default_factory=RackPart)
-    thickness_allowance: LengthOrZero = 0.0
-    tip_diameter: PositiveLength | None = None
-    tip_radius_rounding: LengthOrZero = 0.0
-    tip_chamfer: LengthOrZero = 0.0
-    bore_radius: PositiveLength | None = None
-    rim_thickness: PositiveLength | None = None
-    face_width: PositiveLength | None = None
-    ball_diameter: PositiveLength | None = None
-    plane: Literal["strain", "stress", "auto"] = "strain"
-    material: MaterialPart = Field(default_factory=MaterialPart)
+    teeth: int = Field(description="Number of teeth, 5 to 1000.")
+    module: PositiveLength | None = Field(
+        default=None, description="Module, the pitch diameter over the number of teeth; give this or `diametral_pitch`."
+    )
+    diametral_pitch: PositiveInverseLength | None = Field(
+        default=None, description="Diametral pitch, teeth per length of pitch diameter; give this or `module`."
+    )
+    pressure_angle: Angle = Field(default=math.radians(20.0), description="Pressure angle of the basic rack.")
+    profile_shift: Number = Field(
+        default=0.0, description="Profile shift coefficient x: how far the rack is moved outward, in modules."
+    )
+    rack: RackPart = Field(
+        default_factory=RackPart,
+        description="The basic rack that cuts the gear: a profile of ISO 53 by name, or a table in modules; without "
+        "it ISO 53 C.",
+    )
+    thickness_allowance: LengthOrZero = Field(
+        default=0.0, description="Reduction of the tooth thickness at the pitch circle, cut by feeding the rack deeper."
+    )
+    tip_diameter: PositiveLength | None = Field(
+        default=None,
+        description="Diameter of the tip circle; without it the pitch diameter plus 2 (x + addendum) modules.",
+    )
+    tip_radius_rounding: LengthOrZero = Field(
+        default=0.0, description="Radius that rounds the edge between flank and tip circle; zero leaves it sharp."
+    )
+    tip_chamfer: LengthOrZero = Field(
+        default=0.0, description="Height of the chamfer between flank and tip circle; zero leaves the edge sharp."
+    )
+    bore_radius: PositiveLength | None = Field(
+        default=None,
+        description="Radius at which the body is held fast, inside the root circle; without it half the root radius.",
+    )
+    rim_thickness: PositiveLength | None = Field(
+        default=None,
+        description="Rim below the root circle, for Y_B of ISO 6336-3 in the crosscheck only; without it the gear is "
+        "solid.",
+    )
+    face_width: PositiveLength | None = Field(
+        default=None, description="Width of the gear; without it 1 mm, which no result per unit width depends on."
+    )
+    ball_diameter: PositiveLength | None = Field(
+        default=None,
+        description="Diameter of the balls or pins over which M_dK is given; without it the next preferred number (R "
+        "40) above the ball that touches at the V-circle.",
+    )
+    plane: Literal["strain", "stress", "auto"] = Field(
+        default="strain",
+        description="Plane strain, plane stress, or `auto`: strain where the face is at least five tooth thicknesses "
+        "wide.",
+    )
+    material: MaterialPart = Field(
+        default_factory=MaterialPart, description="Elasticity and density of the gear; without it steel."
+    )
     strength: StrengthPart | None = Field(
         default=None, description="what the material bears, for the result rating: kind, quality and hardness"
     )
-    tooth_mesh: str | None = None
-    tooth_mesh_fillet: Literal["rack", "own"] = "rack"
-    relief: ReliefPart | None = None
-    lead: LeadPart | None = None
-    bias: BiasPart | None = None
-    topography: TopographyPart | None = None
-    spacing_errors: SpacingErrorsPart | None = None
+    tooth_mesh: str | None = Field(
+        default=None,
+        description="File with a finite-element mesh of your own of the tooth sector; without it one is generated.",
+    )
+    tooth_mesh_fillet: Literal["rack", "own"] = Field(
+        default="rack",
+        description="Whether the fillet of `tooth_mesh` is held against the one that the rack cuts, or is your own "
+        "(optimised, ground).",
+    )
+    relief: ReliefPart | None = Field(
+        default=None,
+        description="Profile modification of every tooth; its parts add up, and it needs the effect `relief`.",
+    )
+    lead: LeadPart | None = Field(
+        default=None,
+        description="Modification of every flank over the face, the same at every height; it needs the effect "
+        "`relief`.",
+    )
+    bias: BiasPart | None = Field(
+        default=None,
+        description="Twist S_alpha: the profile slope at end II less that at end I; it needs the effect `relief`.",
+    )
+    topography: TopographyPart | None = Field(
+        default=None,
+        description="Modification of every flank by a table over roll angle and face; it needs the effect `relief`.",
+    )
+    spacing_errors: SpacingErrorsPart | None = Field(
+        default=None,
+        description="One accumulated error for each tooth in the order of meshing, positive where the flank lies "
+        "back; it needs the effect `spacing_errors`.",
+    )
     roughness: RoughnessPart | None = Field(
         default=None, description="of flanks and root fillets, for scuffing, micropitting, friction and rating"
     )
@@ -125,10 +210,20 @@ class GearPart(Part):
     tolerance_class: Annotated[int, Field(ge=1, le=11)] | None = Field(
         default=None, description="flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11"
     )
-    helix_angle: Angle | None = None
-    hand: Literal["left", "right", "spur"] | None = None
-    normal_module: PositiveLength | None = None
-    normal_diametral_pitch: PositiveInverseLength | None = None
+    helix_angle: Angle | None = Field(
+        default=None, description="Helix angle on the pitch cylinder, up to 60 deg; without it the gear is a spur gear."
+    )
+    hand: Literal["left", "right", "spur"] | None = Field(
+        default=None, description="Which way the helix winds; `spur` goes with a helix angle of zero."
+    )
+    normal_module: PositiveLength | None = Field(
+        default=None,
+        description="Module in the normal section of a helical gear; give this or `normal_diametral_pitch`.",
+    )
+    normal_diametral_pitch: PositiveInverseLength | None = Field(
+        default=None,
+        description="Diametral pitch in the normal section of a helical gear; give this or `normal_module`.",
+    )
 
     @property
     def over_face(self) -> tuple[str, ...]:

@@ -20,9 +20,21 @@ class ShaftPart(Part):
     Measured over the distance of its bearings, or over the face of its gear; positive opens the flanks toward end II.
     """
 
-    in_plane: Length = 0.0
-    out_of_plane: Length = 0.0
-    over: PositiveLength | None = None
+    in_plane: Length = Field(
+        default=0.0,
+        description="f_Sigma_delta of ISO/TR 10064-3: deviation in the plane of the axes; positive where they move "
+        "apart at end II.",
+    )
+    out_of_plane: Length = Field(
+        default=0.0,
+        description="f_Sigma_beta of ISO/TR 10064-3: deviation across that plane; positive where it opens the flanks "
+        "toward end II.",
+    )
+    over: PositiveLength | None = Field(
+        default=None,
+        description="Distance over which the deviations are measured, as that of the bearings; without it the gear's "
+        "own face.",
+    )
 
 
 class MisalignmentPart(Part):
@@ -32,13 +44,23 @@ class MisalignmentPart(Part):
     ``driver`` and ``driven`` are deviations of their shafts from parallel, which add to ``shaft_angle``.
     """
 
-    shaft_angle: Angle = 0.0
-    lead_angle: Angle = 0.0
-    lead: Length | None = None
-    profile_angle: Angle = 0.0
-    centre_distance: Length = 0.0
-    driver: ShaftPart | None = None
-    driven: ShaftPart | None = None
+    shaft_angle: Angle = Field(
+        default=0.0,
+        description="Turn of the driven gear's axis about the line of centres, the same as `out_of_plane` as an angle.",
+    )
+    lead_angle: Angle = Field(default=0.0, description="Error of the pinion's lead angle; give this or `lead`.")
+    lead: Length | None = Field(
+        default=None,
+        description="Error of the pinion's lead itself, Delta H_1 of TM-107451, Eq. 18; give this or `lead_angle`.",
+    )
+    profile_angle: Angle = Field(default=0.0, description="Error of the normal profile angle of the pinion's cutter.")
+    centre_distance: Length = Field(default=0.0, description="Error of the centre distance.")
+    driver: ShaftPart | None = Field(
+        default=None, description="Deviation of the driver's shaft from parallel, which adds to `shaft_angle`."
+    )
+    driven: ShaftPart | None = Field(
+        default=None, description="Deviation of the driven gear's shaft from parallel, which adds to `shaft_angle`."
+    )
 
     @model_validator(mode="after")
     def _one_lead(self) -> Self:
@@ -76,9 +98,14 @@ class ModificationPart(Part):
     normal; ``absorb = true`` chooses the crown so that its parabolic error absorbs the pair's linear one.
     """
 
-    parabola: InverseLength = 0.0
-    crown: LengthOrZero = 0.0
-    absorb: bool = False
+    parabola: InverseLength = Field(default=0.0, description="Coefficient a_c of the parabola on the pinion's cutter.")
+    crown: LengthOrZero = Field(
+        default=0.0, description="Material removed at each end of the pinion's face, along the normal."
+    )
+    absorb: bool = Field(
+        default=False,
+        description="Whether the crown is chosen so that its parabolic error absorbs the pair's linear one.",
+    )
 
     def crown_coefficient(self, pinion: Gear) -> float:
         """Crown as a turn of the section per squared height [rad/m^2]."""
@@ -89,8 +116,12 @@ class ModificationPart(Part):
 class ToothContactPart(Part):
     """``[tooth_contact]``: how finely the cycle is looked at, and the load for contact ellipses."""
 
-    positions: Annotated[int, Field(ge=2, le=100_000)] = 400
-    load: PositiveForce | None = None
+    positions: Annotated[int, Field(ge=2, le=100_000)] = Field(
+        default=400, description="Pinion angles per cycle; the extremes do not depend on it."
+    )
+    load: PositiveForce | None = Field(
+        default=None, description="Normal force on a tooth pair, for contact ellipses; without it there are none."
+    )
 
 
 def build_pair(

@@ -15,10 +15,19 @@ class LoadDistributionPart(Part):
     ``base_pitch`` says which teeth meet, where they have spacing errors: pair 0 is on the teeth of that number.
     """
 
-    positions: Annotated[int, Field(ge=2, le=256)] = 16
-    panels: Annotated[int, Field(ge=2, le=200)] | None = None
-    coat: PositiveLength = 6e-6
-    base_pitch: Annotated[int, Field(ge=0, le=1_000_000)] = 0
+    positions: Annotated[int, Field(ge=2, le=256)] = Field(
+        default=16, description="Roll positions over one base pitch."
+    )
+    panels: Annotated[int, Field(ge=2, le=200)] | None = Field(
+        default=None,
+        description="Parts into which the common face is divided; without it one to a quarter of a module.",
+    )
+    coat: PositiveLength = Field(default=6e-6, description="Thickness of the marking compound in the contact pattern.")
+    base_pitch: Annotated[int, Field(ge=0, le=1_000_000)] = Field(
+        default=0,
+        description="Which teeth meet where they have spacing errors: pair 0 is on the teeth of that number, counted "
+        "round and round.",
+    )
 
 
 class LineErrorPart(Part):
@@ -28,9 +37,13 @@ class LineErrorPart(Part):
     to both ends as a parabola; ``file`` has the columns ``z`` and ``gap``. They add up.
     """
 
-    over_face: Length = 0.0
-    crowning: LengthOrZero = 0.0
-    file: str | None = None
+    over_face: Length = Field(
+        default=0.0, description="Gap that opens from the face end at -b/2 to that at +b/2 along the driver's axis."
+    )
+    crowning: LengthOrZero = Field(
+        default=0.0, description="Gap that opens from the middle of the face to both ends, as a parabola."
+    )
+    file: str | None = Field(default=None, description="CSV file with `z` and `gap`, such as that of deflected shafts.")
 
     @model_validator(mode="after")
     def _something(self) -> Self:

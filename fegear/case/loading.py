@@ -15,19 +15,45 @@ _MOST_CURVES = 200
 class LoadingPart(Part):
     """Every combination of the lists is one loading function."""
 
-    pair: str | None = None
-    load: PositiveForce | None = None
-    length: PositiveLength | None = None
-    contact_ratio: PositiveNumber | None = None
-    family: Literal["sinusoidal", "polynomial"] = "sinusoidal"
-    slopes: Annotated[list[Annotated[Number, Field(ge=0.0)]], Field(min_length=1)] = Field(
-        default_factory=lambda: [0.0, 0.5, 1.0, 2.0]
+    pair: str | None = Field(
+        default=None,
+        description="The pair whose base pitch and load are taken; without it lengths are in base pitches and loads "
+        "in shares of the design load.",
     )
-    exponents: Annotated[list[int], Field(min_length=1)] | None = None
-    peaks: Annotated[list[PositiveNumber], Field(min_length=1)] | None = None
-    inner_slope: Annotated[Number, Field(ge=0.0)] = 1.0
-    highest_order: Annotated[Number, Field(gt=3.0, le=1e4)] = 30.0
-    content_above: Annotated[Number, Field(gt=0.0, le=1e3)] = 20.0
+    load: PositiveForce | None = Field(
+        default=None, description="Design load, with a pair; without it the pair's nominal load."
+    )
+    length: PositiveLength | None = Field(
+        default=None,
+        description="Loaded path on the line of action, with a pair; without it the pair's path of contact.",
+    )
+    contact_ratio: PositiveNumber | None = Field(
+        default=None, description="Loaded path in base pitches; required without a pair."
+    )
+    family: Literal["sinusoidal", "polynomial"] = Field(
+        default="sinusoidal", description="Family of the loading ramps: sinusoidal (4.12) or polynomial (4.14)."
+    )
+    slopes: Annotated[list[Annotated[Number, Field(ge=0.0)]], Field(min_length=1)] = Field(
+        default_factory=lambda: [0.0, 0.5, 1.0, 2.0],
+        description="Slopes s at contact initiation: 0 to 2, polynomial 0 to r.",
+    )
+    exponents: Annotated[list[int], Field(min_length=1)] | None = Field(
+        default=None, description="Odd exponents r of the polynomial family; without it 7."
+    )
+    peaks: Annotated[list[PositiveNumber], Field(min_length=1)] | None = Field(
+        default=None,
+        description="Largest loads of a tooth pair over the design load (F), for contact ratios above 2; without it "
+        "the middle of their range.",
+    )
+    inner_slope: Annotated[Number, Field(ge=0.0)] = Field(
+        default=1.0, description="Slope s of the inner ramps, for contact ratios above 2."
+    )
+    highest_order: Annotated[Number, Field(gt=3.0, le=1e4)] = Field(
+        default=30.0, description="Up to which spectra go, in tooth-mesh frequencies."
+    )
+    content_above: Annotated[Number, Field(gt=0.0, le=1e3)] = Field(
+        default=20.0, description="Order from which content counts as high in `loading_trade_off`, to ten times that."
+    )
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:

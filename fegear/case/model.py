@@ -28,21 +28,48 @@ from fegear.case.transmission_error import TransmissionErrorPart
 class Case(Part):
     """One case file."""
 
-    title: str = ""
-    results: Annotated[list[str], Field(min_length=1)]
-    gear: dict[str, GearPart] = Field(default_factory=dict)
-    pair: dict[str, PairPart] = Field(default_factory=dict)
-    stiffness: StiffnessPart = Field(default_factory=StiffnessPart)
-    study: StudyPart | None = None
-    tooth_contact: ToothContactPart = Field(default_factory=ToothContactPart)
-    load_distribution: LoadDistributionPart = Field(default_factory=LoadDistributionPart)
-    transmissibility: dict[str, TransmissibilityPart] = Field(default_factory=dict)
-    design: DesignPart | None = None
-    flank_design: FlankDesignPart | None = None
-    loading: LoadingPart | None = None
-    transmission_error: TransmissionErrorPart = Field(default_factory=TransmissionErrorPart)
-    train: TrainPart | None = None
-    dynamics: DynamicsPart = Field(default_factory=DynamicsPart)
-    effects: EffectsPart = Field(default_factory=EffectsPart)
-    accuracy: AccuracyPart = Field(default_factory=AccuracyPart)
-    cost: CostPart = Field(default_factory=CostPart)
+    title: str = Field(default="", description="Headline of the report; without it the file's name.")
+    results: Annotated[list[str], Field(min_length=1)] = Field(
+        description="What is wanted: these results are computed, and what they need, nothing else."
+    )
+    gear: dict[str, GearPart] = Field(default_factory=dict, description="The gears, each by a name of your choice.")
+    pair: dict[str, PairPart] = Field(
+        default_factory=dict, description="The pairs of gears in mesh, each by a name of your choice."
+    )
+    stiffness: StiffnessPart = Field(
+        default_factory=StiffnessPart, description="Where the tables of compliance and root stress are taken."
+    )
+    study: StudyPart | None = Field(
+        default=None, description="Gears over which root-stress formulas are held against finite elements."
+    )
+    tooth_contact: ToothContactPart = Field(
+        default_factory=ToothContactPart, description="How finely the contact of rigid flanks is followed."
+    )
+    load_distribution: LoadDistributionPart = Field(
+        default_factory=LoadDistributionPart, description="How finely the load over the face is resolved."
+    )
+    transmissibility: dict[str, TransmissibilityPart] = Field(
+        default_factory=dict, description="Helical pairs as rigid gears on bearings, each by a name of your choice."
+    )
+    design: DesignPart | None = Field(
+        default=None, description="Which pair is to be relieved, for which load, and how its teeth are to share it."
+    )
+    flank_design: FlankDesignPart | None = Field(
+        default=None, description="Relief over profile and face of a pair that is loaded with its width."
+    )
+    loading: LoadingPart | None = Field(default=None, description="Tooth loading functions to look at.")
+    transmission_error: TransmissionErrorPart = Field(
+        default_factory=TransmissionErrorPart,
+        description="A method from the literature beside the exact transmission error.",
+    )
+    train: TrainPart | None = Field(
+        default=None, description="The gear train: bodies, shafts, meshes, dampers and torques."
+    )
+    dynamics: DynamicsPart = Field(
+        default_factory=DynamicsPart, description="Speeds, frequencies, harmonics and friction of the running train."
+    )
+    effects: EffectsPart = Field(
+        default_factory=EffectsPart, description="The physical effects that count; each is off unless named."
+    )
+    accuracy: AccuracyPart = Field(default_factory=AccuracyPart, description="How exact the finite elements shall be.")
+    cost: CostPart = Field(default_factory=CostPart, description="What `fegear cost` studies; a run does not read it.")

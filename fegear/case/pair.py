@@ -38,10 +38,20 @@ def _several(value: Any) -> Any:
 class CompliancePart(Part):
     """``compliance = { source = "fe" }``: where a pair's tooth compliances come from."""
 
-    source: Literal["fe", "cornell", "weber-banaschek", "potential-energy", "table"] = "fe"
-    file: str | None = None
-    of: Literal["tooth", "pair"] | None = None
-    fit: Literal["linear", "cubic"] | None = None
+    source: Literal["fe", "cornell", "weber-banaschek", "potential-energy", "table"] = Field(
+        default="fe", description="Finite elements, a formula by its authors, or a table of your own."
+    )
+    file: str | None = Field(
+        default=None,
+        description="CSV file with `x [mm]` or `roll_angle [deg]` and `compliance [um/N]`, or with `load [N]` and "
+        "`deflection [um]`.",
+    )
+    of: Literal["tooth", "pair"] | None = Field(
+        default=None, description="Whether the table is of one tooth or of a pair of teeth."
+    )
+    fit: Literal["linear", "cubic"] | None = Field(
+        default=None, description="How the table is made continuous: straight lines, or a cubic spline."
+    )
 
     @model_validator(mode="after")
     def _table_needs_file(self) -> Self:
@@ -68,7 +78,10 @@ class RootStressPart(Part):
         tuple[RootStressName, ...],
         BeforeValidator(_several, json_schema_input_type=RootStressName | list[RootStressName]),
         Field(min_length=1),
-    ] = ("fe",)
+    ] = Field(
+        default=("fe",),
+        description="Finite elements or formulas; of a list the first is the result, the others stand beside it.",
+    )
 
     @model_validator(mode="after")
     def _each_once(self) -> Self:
@@ -80,8 +93,10 @@ class RootStressPart(Part):
 class IsoPart(Part):
     """``iso_6336 = { edition = 2019, accuracy_grade = 4 }``: what ISO 6336-3 asks for beside the geometry."""
 
-    edition: Literal[2006, 2019] = 2006
-    accuracy_grade: Annotated[int, Field(ge=0, le=12)] = 6
+    edition: Literal[2006, 2019] = Field(default=2006, description="Edition of ISO 6336-3 that is followed.")
+    accuracy_grade: Annotated[int, Field(ge=0, le=12)] = Field(
+        default=6, description="Accuracy grade of the gears, 0 to 12; grade 4 or better lets Y_DT relieve deep teeth."
+    )
 
 
 #: How wide the teeth of a loaded pair are: a section, coupled slices of it, or solid gears.
@@ -91,21 +106,55 @@ Width = Literal["plane", "slices", "solid"]
 class PairPart(Part):
     """Two gears in mesh and the load between them."""
 
-    driver: str
-    driven: str
-    centre_distance: PositiveLength | None = None
-    load: PositiveForce | None = None
-    torque: PositiveTorque | None = None
-    loads: Annotated[list[PositiveForce], Field(min_length=1), at_most(1000, "loads")] | None = None
-    speed: PositiveSpeed | None = None
-    width: Width | None = None
-    compliance: CompliancePart = Field(default_factory=CompliancePart)
-    root_stress: RootStressPart = Field(default_factory=RootStressPart)
-    misalignment: MisalignmentPart | None = None
-    line_error: LineErrorPart | None = None
-    modification: ModificationPart | None = None
-    axial_offset: Length = 0.0
-    iso_6336: IsoPart = Field(default_factory=IsoPart)
+    driver: str = Field(description="Name of the driving gear.")
+    driven: str = Field(description="Name of the driven gear; it may be the same.")
+    centre_distance: PositiveLength | None = Field(
+        default=None,
+        description="Working centre distance; without it the one at which the teeth mesh without backlash.",
+    )
+    load: PositiveForce | None = Field(
+        default=None, description="Nominal load along the line of action; give this or `torque`."
+    )
+    torque: PositiveTorque | None = Field(
+        default=None, description="Nominal torque on the driver; give this or `load`."
+    )
+    loads: Annotated[list[PositiveForce], Field(min_length=1), at_most(1000, "loads")] | None = Field(
+        default=None,
+        description="Further loads along the line of action; without `load` and `torque` the largest is the nominal "
+        "one.",
+    )
+    speed: PositiveSpeed | None = Field(
+        default=None, description="Speed of the driver, for the time column of root-stress histories."
+    )
+    width: Width | None = Field(
+        default=None,
+        description="How wide the loaded teeth are: one plane section, coupled slices of it, or solid gears; without "
+        "it plane for spur and solid for helical gears.",
+    )
+    compliance: CompliancePart = Field(
+        default_factory=CompliancePart, description="Where the tooth compliances come from."
+    )
+    root_stress: RootStressPart = Field(default_factory=RootStressPart, description="Where root stresses come from.")
+    misalignment: MisalignmentPart | None = Field(
+        default=None, description="How the shafts and the pinion's flank deviate; it needs the effect `misalignment`."
+    )
+    line_error: LineErrorPart | None = Field(
+        default=None,
+        description="What keeps the unloaded flanks apart over the face; it needs the effect `misalignment`.",
+    )
+    modification: ModificationPart | None = Field(
+        default=None,
+        description="How the pinion's flank is localised for tooth contact analysis; loaded flanks count it with the "
+        "effect `relief`.",
+    )
+    axial_offset: Length = Field(
+        default=0.0,
+        description="Height of the driven gear's mid face above the driver's, toward end I; only the common face "
+        "bears.",
+    )
+    iso_6336: IsoPart = Field(
+        default_factory=IsoPart, description="What ISO 6336-3 asks for beside the geometry, for the crosscheck."
+    )
     lubricant: LubricantPart | None = Field(
         default=None, description="the oil of the pair, for film thickness, scuffing, micropitting and friction"
     )

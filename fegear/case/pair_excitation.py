@@ -20,14 +20,35 @@ class MeshErrorPart(Part):
     ``shuttling`` adds the moment about x of a force that wanders over the face.
     """
 
-    pair: str | None = None
-    flanks: Literal["rigid", "loaded"] | None = None
-    shuttling: bool = False
-    file: str | None = None
-    amplitude: Length | None = None
-    harmonic: Annotated[int, Field(ge=1, le=20_000)] | None = None
-    harmonics: Annotated[int, Field(ge=1, le=64)] | None = None
-    along: Coordinate = "y"
+    pair: str | None = Field(
+        default=None,
+        description="A pair of the case whose transmission error it is; give this, a `file` or an `amplitude`.",
+    )
+    flanks: Literal["rigid", "loaded"] | None = Field(
+        default=None,
+        description="Whether that of rigid or of loaded flanks is taken; without it loaded for plane teeth and where "
+        "the mesh is the pair's, else rigid.",
+    )
+    shuttling: bool = Field(
+        default=False, description="Whether the moment about x of the force that wanders over the face is added."
+    )
+    file: str | None = Field(
+        default=None, description="CSV file with `n`, `cosine [um]`, `sine [um]`, or `amplitude [um]`."
+    )
+    amplitude: Length | None = Field(default=None, description="One amplitude, 0-peak.")
+    harmonic: Annotated[int, Field(ge=1, le=20_000)] | None = Field(
+        default=None, description="The mesh harmonic of `amplitude`; without it the first."
+    )
+    harmonics: Annotated[int, Field(ge=1, le=64)] | None = Field(
+        default=None,
+        description="Harmonics taken of a pair or file; without it 8, of loaded flanks at most half as many as "
+        "`load_distribution.positions`.",
+    )
+    along: Coordinate = Field(
+        default="y",
+        description="Coordinate in which the error acts; angles count as a length at half the face width or at the "
+        "base radius.",
+    )
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
@@ -52,15 +73,17 @@ class MeshErrorPart(Part):
 class ExternalForcePart(Part):
     """A force on a gear: 0-peak amplitudes that are in phase, at an order of its gear's shaft or at a frequency."""
 
-    on: Literal["driver", "driven"]
-    order: PositiveNumber | None = None
-    frequency: Frequency | None = None
-    phase: Angle = 0.0
-    y: Force = 0.0
-    z: Force = 0.0
-    theta_x: Torque = 0.0
-    theta_y: Torque = 0.0
-    theta_z: Torque = 0.0
+    on: Literal["driver", "driven"] = Field(description="The gear on which the force acts.")
+    order: PositiveNumber | None = Field(
+        default=None, description="Order of that gear's shaft; give this or `frequency`."
+    )
+    frequency: Frequency | None = Field(default=None, description="Frequency of the force; give this or `order`.")
+    phase: Angle = Field(default=0.0, description="Phase of the force.")
+    y: Force = Field(default=0.0, description="Force along the transverse line of action, 0-peak.")
+    z: Force = Field(default=0.0, description="Force along the axis, 0-peak.")
+    theta_x: Torque = Field(default=0.0, description="Moment about x, 0-peak.")
+    theta_y: Torque = Field(default=0.0, description="Moment about y, 0-peak.")
+    theta_z: Torque = Field(default=0.0, description="Moment about the axis, 0-peak.")
 
     @model_validator(mode="after")
     def _one_frequency(self) -> Self:
@@ -83,11 +106,17 @@ class ExternalForcePart(Part):
 class ExcitationPart(Part):
     """Speeds of the driver, its teeth, and what excites."""
 
-    speeds: SpeedsPart
-    speed: PositiveSpeed | None = None
-    teeth: Annotated[int, Field(ge=1, le=100_000)] | None = None
-    transmission_error: MeshErrorPart | None = None
-    external: list[ExternalForcePart] = Field(default_factory=list, max_length=100)
+    speeds: SpeedsPart = Field(description="Speeds of the driver: a list, or a range.")
+    speed: PositiveSpeed | None = Field(
+        default=None, description="Speed whose spectrum is drawn; without it that of the largest mesh force."
+    )
+    teeth: Annotated[int, Field(ge=1, le=100_000)] | None = Field(
+        default=None, description="Teeth of the driver, where the transmission error is not a pair's."
+    )
+    transmission_error: MeshErrorPart | None = Field(default=None, description="The transmission error that excites.")
+    external: list[ExternalForcePart] = Field(
+        default_factory=list, max_length=100, description="Forces and moments on the gears."
+    )
 
     @model_validator(mode="after")
     def _something(self) -> Self:

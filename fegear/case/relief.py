@@ -35,13 +35,29 @@ def several(part: type[Part]) -> BeforeValidator:
 class EndReliefPart(Part):
     """Tip or root relief: amount, start and shape."""
 
-    amount: Length | None = None
-    amount_over_delta: Number | None = None
-    start_roll_angle: Angle | None = None
-    start_radius: PositiveLength | None = None
-    length: PositiveLength | None = None
-    normalised_length: PositiveNumber | None = None
-    shape: Shape = "linear"
+    amount: Length | None = Field(
+        default=None, description="Material removed at the end of the relief; give this or `amount_over_delta`."
+    )
+    amount_over_delta: Number | None = Field(
+        default=None,
+        description="The amount in units of Welbourn's Delta: deflection at the HPSTC plus twice the largest spacing "
+        "error.",
+    )
+    start_roll_angle: Angle | None = Field(
+        default=None, description="Where the relief starts, as a roll angle of the gear; give one of the four starts."
+    )
+    start_radius: PositiveLength | None = Field(
+        default=None, description="Where the relief starts, as a radius of the gear; give one of the four starts."
+    )
+    length: PositiveLength | None = Field(
+        default=None, description="Length of the relief along the line of action; give one of the four starts."
+    )
+    normalised_length: PositiveNumber | None = Field(
+        default=None, description="Length of a tip relief in L_n of TM-89901: 1 reaches from the tip to the HPSTC."
+    )
+    shape: Shape = Field(
+        default="linear", description="How the removal grows from the start: straight, or as a parabola."
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -63,7 +79,9 @@ class EndReliefPart(Part):
 class TipReliefPart(EndReliefPart):
     """``tip = { amount, start_roll_angle | start_radius | length | normalised_length, shape, at_radius }``."""
 
-    at_radius: PositiveLength | None = None
+    at_radius: PositiveLength | None = Field(
+        default=None, description="Radius at which the amount is measured; without it where the involute ends."
+    )
 
     @model_validator(mode="after")
     def _measured_at_the_tip(self) -> Self:
@@ -75,7 +93,9 @@ class TipReliefPart(EndReliefPart):
 class RootReliefPart(EndReliefPart):
     """``root = { amount, start_..., shape, end_radius }``; it ends where contact starts unless given otherwise."""
 
-    end_radius: PositiveLength | None = None
+    end_radius: PositiveLength | None = Field(
+        default=None, description="Radius at which the amount is measured; without it where contact starts."
+    )
 
     @model_validator(mode="after")
     def _no_tip_measures(self) -> Self:
@@ -87,19 +107,36 @@ class RootReliefPart(EndReliefPart):
 class CrowningPart(Part):
     """``crowning = { amount, start_radius, end_radius }``; over the active profile unless given otherwise."""
 
-    amount: Length
-    start_radius: PositiveLength | None = None
-    end_radius: PositiveLength | None = None
+    amount: Length = Field(description="Material removed at both ends of the crowned profile.")
+    start_radius: PositiveLength | None = Field(
+        default=None, description="Lower end of the crowned profile; without it that of the active profile."
+    )
+    end_radius: PositiveLength | None = Field(
+        default=None, description="Upper end of the crowned profile; without it that of the active profile."
+    )
 
 
 class ReliefTablePart(Part):
     """``table = { roll_angles | radii, removals }`` or ``{ file }``, and how to interpolate."""
 
-    roll_angles: Annotated[list[Angle], Field(min_length=2)] | None = None
-    radii: Annotated[list[PositiveLength], Field(min_length=2)] | None = None
-    removals: Annotated[list[Length], Field(min_length=2)] | None = None
-    file: str | None = None
-    interpolation: Literal["linear", "cubic"] = "linear"
+    roll_angles: Annotated[list[Angle], Field(min_length=2)] | None = Field(
+        default=None, description="Roll angles of the table, rising; give these or `radii`, with `removals`."
+    )
+    radii: Annotated[list[PositiveLength], Field(min_length=2)] | None = Field(
+        default=None, description="Radii of the table, rising; give these or `roll_angles`, with `removals`."
+    )
+    removals: Annotated[list[Length], Field(min_length=2)] | None = Field(
+        default=None,
+        description="Material removed at each place of the table; held at its first and last value beyond them.",
+    )
+    file: str | None = Field(
+        default=None,
+        description="CSV file with `roll_angle [deg]` or `radius [mm]` and `relief [um]`, such as a table "
+        "`relief_<pair>_<gear>` of an earlier run.",
+    )
+    interpolation: Literal["linear", "cubic"] = Field(
+        default="linear", description="What lies between the entries: straight lines, or a cubic spline."
+    )
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
@@ -120,10 +157,19 @@ class ReliefTablePart(Part):
 class ReliefPart(Part):
     """Profile modification of every tooth of a gear; parts of any kind add up."""
 
-    tip: Annotated[list[TipReliefPart], several(TipReliefPart)] = Field(default_factory=list)
-    root: Annotated[list[RootReliefPart], several(RootReliefPart)] = Field(default_factory=list)
-    crowning: Annotated[list[CrowningPart], several(CrowningPart)] = Field(default_factory=list)
-    table: Annotated[list[ReliefTablePart], several(ReliefTablePart)] = Field(default_factory=list)
+    tip: Annotated[list[TipReliefPart], several(TipReliefPart)] = Field(
+        default_factory=list, description="Tip relief: a table, or a list of several that add up."
+    )
+    root: Annotated[list[RootReliefPart], several(RootReliefPart)] = Field(
+        default_factory=list, description="Root relief: a table, or a list of several that add up."
+    )
+    crowning: Annotated[list[CrowningPart], several(CrowningPart)] = Field(
+        default_factory=list, description="Profile crowning: a table, or a list of several that add up."
+    )
+    table: Annotated[list[ReliefTablePart], several(ReliefTablePart)] = Field(
+        default_factory=list,
+        description="Removal by a table over roll angle or radius, or a list of several that add up.",
+    )
 
     @model_validator(mode="after")
     def _something(self) -> Self:
@@ -137,8 +183,12 @@ class SpacingErrorsPart(Part):
 
     model_config = spelt_also(lambda table: table["properties"]["values"])
 
-    values: Annotated[list[Length], Field(min_length=1)] | None = None
-    file: str | None = None
+    values: Annotated[list[Length], Field(min_length=1)] | None = Field(
+        default=None, description="One error for each tooth, in the order of meshing."
+    )
+    file: str | None = Field(
+        default=None, description="CSV file with a column `spacing_error [um]`, one line for each tooth."
+    )
 
     @model_validator(mode="before")
     @classmethod

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from fegear.case.model import Case
 from fegear.case.part import QUANTITY
+from fegear.case.schema_nodes import unit_note
 from fegear.units import DIMENSIONS, EVERYDAY
 
 if TYPE_CHECKING:
@@ -51,11 +52,19 @@ def _plain(node: Any) -> Any:
         del made["title"]  # the key once more, with blanks; a table of properties may have one of that name
     if QUANTITY in made:
         dimension = made.pop(QUANTITY)
-        made |= _quantity(dimension)
+        made = _told(made, _quantity(dimension))
         default = default if default is None else _written(default, dimension)
     if len(made.get("anyOf", ())) == 1:
-        made |= made.pop("anyOf")[0]
+        made = _told(made, made.pop("anyOf")[0])
     return made if default is None else {**made, "default": default}
+
+
+def _told(made: dict[str, Any], kind: dict[str, Any]) -> dict[str, Any]:
+    """A key and what it may hold in one: what the key means stands first, units after it."""
+    joined = made | kind
+    if "description" in made:
+        joined["description"] = made["description"] + unit_note(kind)
+    return joined
 
 
 def _quantity(dimension: str) -> dict[str, Any]:
@@ -63,7 +72,8 @@ def _quantity(dimension: str) -> dict[str, Any]:
     return {
         "type": "string",
         "pattern": _PATTERN,
-        "description": f"{name} with its unit: {', '.join(EVERYDAY[dimension])}, ...",
+        "title": (told := f"{name} with its unit: {', '.join(EVERYDAY[dimension])}, ..."),
+        "description": told,
         "examples": [example],
     }
 

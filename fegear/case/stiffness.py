@@ -29,14 +29,36 @@ FacePositions = Annotated[
 class StiffnessPart(Part):
     """Which gear, at which radii, under how wide a contact; with face positions as a solid, band by band."""
 
-    gear: str | None = None
-    radii: Annotated[list[PositiveLength], Field(min_length=1), at_most(100_000, "load positions")] | None = None
-    positions: Annotated[int, Field(ge=2, le=100_000)] = 100
-    contact_half_width: PositiveLength | None = None
-    load: PositiveLineLoad | None = None
-    pair: str | None = None
-    face_positions: FacePositions | None = None
-    source: Literal["solid", "slices"] = "solid"
+    gear: str | None = Field(default=None, description="Which gear the table is of; without it every gear has one.")
+    radii: Annotated[list[PositiveLength], Field(min_length=1), at_most(100_000, "load positions")] | None = Field(
+        default=None, description="Radii at which the flank is loaded; give these or `positions`."
+    )
+    positions: Annotated[int, Field(ge=2, le=100_000)] = Field(
+        default=100,
+        description="Load positions, equally spaced in roll angle over the active profile (without a pair over the "
+        "whole involute); with `face_positions` 12 unless given.",
+    )
+    contact_half_width: PositiveLength | None = Field(
+        default=None, description="Half-width of the contact; without it and `load` 0.02 modules."
+    )
+    load: PositiveLineLoad | None = Field(
+        default=None,
+        description="Line load from which Hertz gives the half-width, together with a pair; give this or "
+        "`contact_half_width`.",
+    )
+    pair: str | None = Field(
+        default=None, description="The pair in which the gear is loaded, where it has several; without it the first."
+    )
+    face_positions: FacePositions | None = Field(
+        default=None,
+        description="Solve the gear with its width: places along the face from its middle, or how many from end to "
+        "end; without it the table is plane.",
+    )
+    source: Literal["solid", "slices"] = Field(
+        default="solid",
+        description="With `face_positions`: solid gears, or coupled slices of the plane section, cheaper and some "
+        "per cent off.",
+    )
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:

@@ -16,11 +16,18 @@ Shares = Annotated[list[Annotated[Number, Field(ge=0.0, le=1.0)]], Field(min_len
 class StudyPart(Part):
     """Every combination of the lists is computed; a list that is not given keeps the gear's own value."""
 
-    gear: str | None = None
-    teeth: Teeth | None = None
-    profile_shift: Numbers | None = None
-    rack_tip_radius: Numbers | None = None
-    load_position: Shares = Field(default_factory=lambda: [0.1, 0.4, 0.7, 1.0])
+    gear: str | None = Field(default=None, description="The gear whose tooth is varied; without it the only gear.")
+    teeth: Teeth | None = Field(default=None, description="Numbers of teeth; without it the gear's own.")
+    profile_shift: Numbers | None = Field(
+        default=None, description="Profile shift coefficients; without it the gear's own."
+    )
+    rack_tip_radius: Numbers | None = Field(
+        default=None, description="Tip radii of the generating rack in modules; without it the gear's own."
+    )
+    load_position: Shares = Field(
+        default_factory=lambda: [0.1, 0.4, 0.7, 1.0],
+        description="Where the load acts, as shares of the roll angle between start (0) and end (1) of the involute.",
+    )
 
     @model_validator(mode="after")
     def _feasible(self) -> Self:

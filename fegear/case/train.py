@@ -29,8 +29,13 @@ Ratio = Annotated[Number, Field(ge=0.0)]
 class BodyPart(Part):
     """A body that turns: its inertia, or the gears that it is made of (discs with their bores, density by material)."""
 
-    inertia: PositiveInertia | None = None
-    gears: Annotated[list[str], Field(min_length=1)] | None = None
+    inertia: PositiveInertia | None = Field(
+        default=None, description="Moment of inertia, which adds to that of `gears`."
+    )
+    gears: Annotated[list[str], Field(min_length=1)] | None = Field(
+        default=None,
+        description="Gears that the body is made of: discs of pitch radius with their bores, density by material.",
+    )
 
     @model_validator(mode="after")
     def _some_inertia(self) -> Self:
@@ -45,16 +50,20 @@ class BodyPart(Part):
 class ShaftPart(Part):
     """A shaft between two bodies: stiffness, or length, diameter and shear modulus; or rigid."""
 
-    a: str
-    b: str
-    stiffness: TorsionalStiffness | None = None
-    length: PositiveLength | None = None
-    diameter: PositiveLength | None = None
-    bore_diameter: LengthOrZero = 0.0
-    shear_modulus: PositivePressure = 79.5e9
-    rigid: bool = False
-    damping: TorsionalDamping | None = None
-    damping_ratio: Ratio | None = None
+    a: str = Field(description="Body at one end.")
+    b: str = Field(description="Body at the other end.")
+    stiffness: TorsionalStiffness | None = Field(
+        default=None, description="Torsional stiffness; give this, or `length` and `diameter`, or `rigid`."
+    )
+    length: PositiveLength | None = Field(default=None, description="Length of the shaft, with `diameter`.")
+    diameter: PositiveLength | None = Field(default=None, description="Outer diameter of the shaft, with `length`.")
+    bore_diameter: LengthOrZero = Field(default=0.0, description="Diameter of the shaft's bore.")
+    shear_modulus: PositivePressure = Field(default=79.5e9, description="Shear modulus of the shaft.")
+    rigid: bool = Field(default=False, description="Whether the shaft is rigid.")
+    damping: TorsionalDamping | None = Field(
+        default=None, description="Torsional damping; give this or `damping_ratio`."
+    )
+    damping_ratio: Ratio | None = Field(default=None, description="Damping ratio of the shaft; give this or `damping`.")
 
     @model_validator(mode="after")
     def _one_stiffness(self) -> Self:
@@ -79,23 +88,35 @@ class ShaftPart(Part):
 class LikePart(Part):
     """``like = { pair = "I", width_ratio = 6.0 }``: teeth of another pair, unmodified, so many times as wide."""
 
-    pair: str
-    width_ratio: PositiveNumber = 1.0
+    pair: str = Field(description="The pair whose teeth these are like, unmodified.")
+    width_ratio: PositiveNumber = Field(default=1.0, description="Their face width over that of the pair.")
 
 
 class TrainMeshPart(Part):
     """A gear pair between two bodies; the pair of the same name unless given otherwise."""
 
-    pair: str | None = None
-    driver: str
-    driven: str
-    like: LikePart | None = None
-    stiffness: PositiveStiffness | None = None
-    damping: MeshDamping | None = None
-    damping_ratio: Ratio | None = None
-    damping_law: Literal["constant", "momentary"] = "constant"
-    backlash: LengthOrZero | None = None
-    phase: Number = 0.0
+    pair: str | None = Field(
+        default=None, description="The pair of the case that meshes here; without it the one of this name."
+    )
+    driver: str = Field(description="Body that drives.")
+    driven: str = Field(description="Body that is driven.")
+    like: LikePart | None = Field(default=None, description="Teeth of another pair, unmodified.")
+    stiffness: PositiveStiffness | None = Field(
+        default=None, description="Mean mesh stiffness, in place of that of the tooth compliances."
+    )
+    damping: MeshDamping | None = Field(
+        default=None, description="Damping along the line of action; give this or `damping_ratio`."
+    )
+    damping_ratio: Ratio | None = Field(default=None, description="Damping ratio of the mesh; give this or `damping`.")
+    damping_law: Literal["constant", "momentary"] = Field(
+        default="constant",
+        description="Damping that is constant, from the mean stiffness, or that follows the stiffness of the teeth "
+        "that touch (TM-100180).",
+    )
+    backlash: LengthOrZero | None = Field(
+        default=None, description="Backlash along the line of action; without it that of the gears."
+    )
+    phase: Number = Field(default=0.0, description="Phase of the mesh at time zero, in base pitches.")
 
     @model_validator(mode="after")
     def _one_damping(self) -> Self:
@@ -111,20 +132,32 @@ class TrainMeshPart(Part):
 class DamperPart(Part):
     """A viscous damper between two bodies, or between one and the ground."""
 
-    a: str
-    b: str | None = None
-    damping: TorsionalDamping
+    a: str = Field(description="Body at one end.")
+    b: str | None = Field(default=None, description="Body at the other end; without it the ground.")
+    damping: TorsionalDamping = Field(description="Torsional damping.")
 
 
 class TrainPart(Part):
     """A gear train as a graph; angles and torques of all bodies count in one sense of rotation."""
 
-    body: Annotated[dict[str, BodyPart], Field(min_length=1)]
-    shaft: dict[str, ShaftPart] = Field(default_factory=dict)
-    mesh: Annotated[dict[str, TrainMeshPart], Field(min_length=1)]
-    damper: dict[str, DamperPart] = Field(default_factory=dict)
-    torque: Annotated[dict[str, TorqueValue], Field(min_length=1)]
-    balance: str | None = None
+    body: Annotated[dict[str, BodyPart], Field(min_length=1)] = Field(
+        description="Bodies that turn, each by a name of your choice; the first is the reference for speeds."
+    )
+    shaft: dict[str, ShaftPart] = Field(
+        default_factory=dict, description="Shafts between bodies, each by a name of your choice."
+    )
+    mesh: Annotated[dict[str, TrainMeshPart], Field(min_length=1)] = Field(
+        description="Gear meshes between bodies, each by a name of your choice."
+    )
+    damper: dict[str, DamperPart] = Field(
+        default_factory=dict, description="Dampers between bodies, or from a body to the ground."
+    )
+    torque: Annotated[dict[str, TorqueValue], Field(min_length=1)] = Field(
+        description="Constant torques by body; the loads of the pairs must agree with them."
+    )
+    balance: str | None = Field(
+        default=None, description="Body whose torque balances the others; without it they must balance by themselves."
+    )
 
     @model_validator(mode="after")
     def _balanced_by_a_free_body(self) -> Self:

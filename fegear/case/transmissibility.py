@@ -46,13 +46,25 @@ class MeshStiffnessPart(Part):
     ``mesh = { pair = "I" }`` takes all of it from the loaded flanks of a pair of the case with its width.
     """
 
-    pair: str | None = None
-    stiffness: PositiveStiffness | None = None
-    kappa: Number = 0.0
-    mu: Number | None = None
-    base_helix_angle: Angle = 0.0
-    distribution: str | None = None
-    face_width: PositiveLength | None = None
+    pair: str | None = Field(default=None, description="A pair of the case whose loaded flanks give K_M, kappa and mu.")
+    stiffness: PositiveStiffness | None = Field(
+        default=None, description="Mesh stiffness K_M; give this, a `distribution` or a `pair`."
+    )
+    kappa: Number = Field(
+        default=0.0,
+        description="Axial distance of the centre of the mesh stiffness from the gear's centre of mass, over half "
+        "the face width.",
+    )
+    mu: Number | None = Field(
+        default=None,
+        description="Rotary stiffness about x over K_M times the square of half the face width, at least kappa^2; "
+        "without it that of a uniform contact that reaches one end of the face.",
+    )
+    base_helix_angle: Angle = Field(default=0.0, description="Helix angle on the base cylinder.")
+    distribution: str | None = Field(
+        default=None, description="CSV file with `z [mm]`, `load [N/mm]` and `deflection [um]` over the face."
+    )
+    face_width: PositiveLength | None = Field(default=None, description="Face width that goes with `distribution`.")
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
@@ -77,11 +89,15 @@ class MeshStiffnessPart(Part):
 class BearingPart(Part):
     """Bearing stiffness of one gear: the diagonal by name, or the whole matrix in SI over (y, z, three angles)."""
 
-    y: StiffnessOrZero = 0.0
-    z: StiffnessOrZero = 0.0
-    theta_x: TorsionalStiffnessOrZero = 0.0
-    theta_y: TorsionalStiffnessOrZero = 0.0
-    matrix: Matrix | None = None
+    y: StiffnessOrZero = Field(default=0.0, description="Stiffness along the transverse line of action.")
+    z: StiffnessOrZero = Field(default=0.0, description="Stiffness along the axis.")
+    theta_x: TorsionalStiffnessOrZero = Field(default=0.0, description="Stiffness against turning about x.")
+    theta_y: TorsionalStiffnessOrZero = Field(default=0.0, description="Stiffness against turning about y.")
+    matrix: Matrix | None = Field(
+        default=None,
+        description="The whole stiffness matrix over (y, z, theta_x, theta_y, theta_z) in SI, five rows of five "
+        "numbers.",
+    )
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -103,14 +119,18 @@ OF_THE_GEAR = ("mass", "inertia_x", "inertia_y", "inertia_z", "base_radius", "ha
 class RigidGearPart(Part):
     """One gear: mass, inertia, size and bearing; where the mesh is a pair's, what is left out is that of its gear."""
 
-    mass: PositiveMass | None = None
-    inertia_x: PositiveInertia | None = None
-    inertia_y: PositiveInertia | None = None
-    inertia_z: PositiveInertia | None = None
-    base_radius: PositiveLength | None = None
-    half_face_width: PositiveLength | None = None
-    bearing: BearingPart = Field(default_factory=BearingPart)
-    damping: Matrix | None = None
+    mass: PositiveMass | None = Field(default=None, description="Mass of the gear.")
+    inertia_x: PositiveInertia | None = Field(default=None, description="Moment of inertia about x.")
+    inertia_y: PositiveInertia | None = Field(default=None, description="Moment of inertia about y.")
+    inertia_z: PositiveInertia | None = Field(default=None, description="Moment of inertia about the axis.")
+    base_radius: PositiveLength | None = Field(default=None, description="Base radius.")
+    half_face_width: PositiveLength | None = Field(default=None, description="Half the face width.")
+    bearing: BearingPart = Field(default_factory=BearingPart, description="Stiffness of the bearing.")
+    damping: Matrix | None = Field(
+        default=None,
+        description="Damping matrix over (y, z, theta_x, theta_y, theta_z) in SI, five rows of five numbers; without "
+        "it zero.",
+    )
 
     def build(self) -> RigidGear:
         """Make the gear."""
@@ -128,12 +148,12 @@ class RigidGearPart(Part):
 class UnityRatioPart(Part):
     """The unity-ratio pair by its dimensionless numbers."""
 
-    mass: PositiveMass
-    aspect_ratio: Number
-    alpha_y: Number
-    alpha_z: Number
-    alpha_theta: Number
-    base_radius: PositiveLength | None = None
+    mass: PositiveMass = Field(description="Mass of either gear.")
+    aspect_ratio: Number = Field(description="Half face width over base radius.")
+    alpha_y: Number = Field(description="Bearing stiffness ratio along the transverse line of action.")
+    alpha_z: Number = Field(description="Bearing stiffness ratio along the axis.")
+    alpha_theta: Number = Field(description="Bearing stiffness ratio against tilting.")
+    base_radius: PositiveLength | None = Field(default=None, description="Base radius, for moments in `pair-forces`.")
 
 
 #: Parameters of the unity-ratio pair alone.
@@ -143,16 +163,39 @@ _OF_UNITY_RATIO = {"alpha_y", "alpha_z", "alpha_theta", "aspect_ratio"}
 class TransmissibilityPart(Part):
     """One pair and the range of Lambda = frequency / sqrt(K_M/m_eq) to look at."""
 
-    mesh: MeshStiffnessPart
-    driver: RigidGearPart | None = None
-    driven: RigidGearPart | None = None
-    unity_ratio: UnityRatioPart | None = None
-    damping_ratio: Annotated[Number, Field(ge=0.0)] = 0.0
-    lambda_from: Annotated[Number, Field(ge=0.0)] = 0.01
-    lambda_to: Annotated[Number, Field(gt=0.0)] = 2.0
-    frequencies: Annotated[int, Field(ge=2, le=1_000_000)] = 400
-    follow: FollowPart | None = None
-    excitation: ExcitationPart | None = None
+    mesh: MeshStiffnessPart = Field(
+        description="The mesh between the gears: its stiffness and how that spreads over the face."
+    )
+    driver: RigidGearPart | None = Field(
+        default=None,
+        description="The driver as a rigid gear on its bearing; where the mesh is a pair's, what is left out is that "
+        "of its gear.",
+    )
+    driven: RigidGearPart | None = Field(
+        default=None,
+        description="The driven gear as a rigid one on its bearing; where the mesh is a pair's, what is left out is "
+        "that of its gear.",
+    )
+    unity_ratio: UnityRatioPart | None = Field(
+        default=None,
+        description="A pair of two like gears by its dimensionless numbers, in place of `driver` and `driven`.",
+    )
+    damping_ratio: Annotated[Number, Field(ge=0.0)] = Field(
+        default=0.0, description="Damping ratio of every flexible mode."
+    )
+    lambda_from: Annotated[Number, Field(ge=0.0)] = Field(
+        default=0.01, description="Lowest frequency over sqrt(K_M/m_eq)."
+    )
+    lambda_to: Annotated[Number, Field(gt=0.0)] = Field(
+        default=2.0, description="Highest frequency over sqrt(K_M/m_eq)."
+    )
+    frequencies: Annotated[int, Field(ge=2, le=1_000_000)] = Field(
+        default=400, description="Frequencies of the range; pictures are refined wherever a curve bends."
+    )
+    follow: FollowPart | None = Field(
+        default=None, description="Parameters over which the modes are followed, for `followed-modes`."
+    )
+    excitation: ExcitationPart | None = Field(default=None, description="What shakes the pair, for `pair-forces`.")
 
     @model_validator(mode="after")
     def _one_model(self) -> Self:

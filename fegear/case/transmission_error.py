@@ -12,8 +12,13 @@ from fegear.case.part import Part, refuse
 class TransmissionErrorPart(Part):
     """``method = "mark-series"`` adds Mark's series with so many terms."""
 
-    method: Literal["quadrature", "mark-series"] = "quadrature"
-    terms: Annotated[int, Field(ge=0, le=200)] = 3
+    method: Literal["quadrature", "mark-series"] = Field(
+        default="quadrature",
+        description="The exact quadrature alone, or Mark's series and closed forms beside it, with what they miss.",
+    )
+    terms: Annotated[int, Field(ge=0, le=200)] = Field(
+        default=3, description="M of Mark's series, 0 to 200; the report advises 3 at least."
+    )
 
     @model_validator(mode="after")
     def _terms_of_a_series(self) -> Self:

@@ -7,6 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.case.schema import case_schema
+from fegear.case.schema_nodes import SchemaNodes, help_of
 from fegear.results.catalogue import STAGES
 from fegear.window.case_text import as_typed, literal, value_at
 
@@ -41,6 +42,8 @@ class Field:
     choices : mapping of str to str
         Values with what each means.
     required : bool
+    about : str
+        What it means, in one sentence.
     """
 
     path: Path
@@ -51,6 +54,7 @@ class Field:
     hint: str
     choices: Mapping[str, str]
     required: bool
+    about: str = ""
 
     @property
     def key(self) -> str:
@@ -102,29 +106,8 @@ class Section:
 
 
 @cache
-def _schema() -> dict[str, Any]:
-    return case_schema({name: stage.about for stage in STAGES for name in stage.results})
-
-
-def _meant(node: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A part of the schema with its references followed."""
-    while "$ref" in node:
-        node = {
-            **_schema()["$defs"][str(node["$ref"]).rpartition("/")[2]],
-            **{k: v for k, v in node.items() if k != "$ref"},
-        }
-    return node
-
-
-def _kinds(node: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """What a value may be, where it may be several things."""
-    node = _meant(node)
-    return [kind for one in node["anyOf"] for kind in _kinds(one)] if "anyOf" in node else [node]
-
-
-def _table(node: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """The table that a value may be."""
-    return next((kind for kind in _kinds(node) if "properties" in kind), None)
+def _nodes() -> SchemaNodes:
+    return SchemaNodes(case_schema({name: stage.about for stage in STAGES for name in stage.results}))
 
 
 def form(document: Mapping[str, Any]) -> tuple[Section, ...]:
@@ -140,7 +123,7 @@ def form(document: Mapping[str, Any]) -> tuple[Section, ...]:
     tuple of Section
         First what stands outside of all tables, then the tables in the order of the model.
     """
-    top = _schema()["properties"]
+    top = _nodes().top
     plain = [
         _field((key,), node, document, required=key == "results") for key, node in top.items() if not _tabular(node)
     ]
@@ -149,56 +132,64 @@ def form(document: Mapping[str, Any]) -> tuple[Section, ...]:
         value = document.get(key)
         if key in NAMED:
             named = value if isinstance(value, dict) else {}
-            each = _meant(node)["additionalProperties"]
+            each = _nodes().meant(node)["additionalProperties"]
             found += [
-                _section((key, name), _meant(each), document) for name, one in named.items() if isinstance(one, dict)
+                _section((key, name), _nodes().meant(each), document)
+                for name, one in named.items()
+                if isinstance(one, dict)
             ]
         elif _tabular(node) and isinstance(value, dict):
-            table = _table(node)
-            found += [_section((key,), table, document)] if table else []
+            table = _nodes().table(node)
+            found += [_section((key,), table, document, help_of(node))] if table else []
     return tuple(found)
 
 
 def tables_to_add(document: Mapping[str, Any]) -> dict[str, str]:
     """Tables that a case may have besides, with what each is."""
-    top = _schema()["properties"]
+    top = _nodes().top
     found = {}
     for key, node in top.items():
         if key not in NAMED and _tabular(node) and key not in document:
-            found[key] = str((_table(node) or {}).get("description", "")).replace("``", "")
+            found[key] = help_of(node).replace("`", "")
     return found
 
 
 def _tabular(node: Mapping[str, Any]) -> bool:
-    return _table(node) is not None or "additionalProperties" in _meant(node)
+    return _nodes().table(node) is not None or "additionalProperties" in _nodes().meant(node)
 
 
-def _section(path: Path, table: Mapping[str, Any], document: Mapping[str, Any]) -> Section:
+def _section(path: Path, table: Mapping[str, Any], document: Mapping[str, Any], about: str = "") -> Section:
     fields, sections = [], []
     required = table.get("required", ())
     for key, node in table["properties"].items():
         here, value = (*path, key), value_at(document, (*path, key))
-        inner = _table(node)
-        if isinstance(value, dict) and inner is not None and "additionalProperties" not in _meant(node).get("type", ""):
-            sections.append(_section(here, inner, document))
-        elif isinstance(value, dict) and isinstance(_meant(node).get("additionalProperties"), dict):
-            each = _table(_meant(node)["additionalProperties"])
+        inner = _nodes().table(node)
+        if (
+            isinstance(value, dict)
+            and inner is not None
+            and "additionalProperties" not in _nodes().meant(node).get("type", "")
+        ):
+            sections.append(_section(here, inner, document, help_of(node)))
+        elif isinstance(value, dict) and isinstance(_nodes().meant(node).get("additionalProperties"), dict):
+            each = _nodes().table(_nodes().meant(node)["additionalProperties"])
             sections += [_section((*here, name), each, document) for name in value] if each else []
             if each is None:
                 fields.append(_field(here, node, document, required=key in required))
         else:
             fields.append(_field(here, node, document, required=key in required))
     fields.sort(key=lambda one: not (one.given or one.required))
-    return Section(path, str(table.get("description", "")).replace("``", ""), tuple(fields), tuple(sections))
+    about = (about or str(table.get("description", ""))).replace("`", "")
+    return Section(path, about, tuple(fields), tuple(sections))
 
 
 def _field(path: Path, node: Mapping[str, Any], document: Mapping[str, Any], *, required: bool) -> Field:
-    kinds, value = _kinds(node), value_at(document, path)
-    default = _meant(node).get("default")
+    kinds, value = _nodes().kinds(node), value_at(document, path)
+    default = _nodes().meant(node).get("default")
     shown = "" if default is None else default if isinstance(default, str) else literal(default)
     return Field(
         path, _kind(kinds), value is not None, default if value is None else value, shown,
-        "; ".join(dict.fromkeys(filter(None, map(_hint, kinds)))), _choices(kinds), required,
+        "; ".join(dict.fromkeys(filter(None, map(_nodes().hint, kinds)))), _nodes().choices(kinds), required,
+        help_of(node).replace("`", ""),
     )  # fmt: skip
 
 
@@ -206,40 +197,11 @@ def _kind(kinds: list[Mapping[str, Any]]) -> Kind:
     types = {kind.get("type", "string" if "enum" in kind or "const" in kind else "") for kind in kinds}
     if types == {"boolean"}:
         return "switch"
-    if types == {"array"} and any("const" in one for one in _kinds(kinds[0]["items"])):
+    if types == {"array"} and any("const" in one for one in _nodes().kinds(kinds[0]["items"])):
         return "several"
     if types == {"string"}:
         return "choice" if all("enum" in kind or "const" in kind for kind in kinds) else "text"
     return "number" if types <= {"integer", "number"} else "toml"
-
-
-def _choices(kinds: list[Mapping[str, Any]]) -> dict[str, str]:
-    found: dict[str, str] = {}
-    for kind in kinds:
-        found |= dict.fromkeys(map(str, kind.get("enum", ())), "")
-        found |= {str(kind["const"]): str(kind.get("description", ""))} if "const" in kind else {}
-        if kind.get("type") == "array":
-            found |= _choices(_kinds(kind["items"]))
-    return found
-
-
-def _hint(kind: Mapping[str, Any]) -> str:
-    """What may be typed, in a few words."""
-    if "properties" in kind:
-        return f"a table of {', '.join(kind['properties'])}"
-    if kind.get("type") == "array":
-        inside = _hint(_kinds(kind["items"])[0])
-        return f"a list{f': {inside}' if inside else ''}"
-    words = [str(kind.get("description", ""))]
-    if "exclusiveMinimum" in kind:
-        words.append(f"greater than {kind['exclusiveMinimum']:g}")
-    if "minimum" in kind or "maximum" in kind:
-        low, high = kind.get("minimum"), kind.get("maximum")
-        words.append(f"{low:g} to {high:g}" if low is not None and high is not None else
-                     f"at least {low:g}" if low is not None else f"at most {high:g}")  # fmt: skip
-    if kind.get("type") == "integer":
-        words.append("a whole number")
-    return ", ".join(filter(None, words))
 
 
 def fields(sections: tuple[Section, ...]) -> Iterator[Field]:

@@ -105,27 +105,31 @@ class Inputs:
         commit = partial(self._typed, field)
         made: Any
         if field.kind == "switch":
-            made = ui.switch(field.label, value=bool(field.value)).props("dense")
+            with ui.element("div").classes("switch"):
+                made = ui.switch(field.label, value=bool(field.value)).props("dense")
+                ui.label(field.about).classes("about")
             made.on_value_change(lambda event: self._set(field, "true" if event.value else "false"))
         elif field.kind == "several":
             made = ui.select(list(field.choices), value=known(field), multiple=True, label=field.label)
-            made.props("outlined dense options-dense use-chips").style("width: 100%")
+            made.props("outlined dense options-dense use-chips hide-hint hide-bottom-space").style("width: 100%")
             made.on_value_change(lambda event: self._set(field, _listed(event.value)))
         elif field.kind == "choice":
             options = {"": f"({field.default or 'not given'})"} | {name: name for name in field.choices}
             made = ui.select(options, value=field.shown if field.shown in options else "", label=field.label)
-            made.props("outlined dense options-dense").style("width: 100%")
+            made.props("outlined dense options-dense hide-hint hide-bottom-space").style("width: 100%")
             made.on_value_change(lambda event: self._set(field, event.value or ""))
         else:
             made = ui.input(field.label, value=field.shown, placeholder=field.default or None)
             made.props("outlined dense hide-hint hide-bottom-space autocomplete=off").style("width: 100%")
             if field.default:
                 made.props("stack-label")
-            made.props["hint"] = field.hint
             made.on("keydown.enter", commit).on("blur", commit)
             for key, way in (("up", 1), ("down", -1)):
                 made.on(f"keydown.{key}.prevent", partial(self._step, field, way), args=["shiftKey"])
         made.classes("given" if field.given else "absent").props["data-key"] = field.key
+        if field.kind != "switch":  # below the field while it has the focus, beside the pointer while that is on it
+            made.props["hint"] = told(field)
+            made.props["title"] = told(field)
         self._elements[field.path] = made
         self._held[field.path] = field
 
@@ -218,6 +222,11 @@ class Inputs:
 def more_labels(tables: dict[str, str]) -> dict[str, str]:
     """Tables to add with what each is, on one line."""
     return {name: f"{name.replace('_', ' ')}: {about}" for name, about in tables.items()}
+
+
+def told(field: Field) -> str:
+    """What a field means, and what may be typed into it."""
+    return " ".join(filter(None, [field.about, field.hint and f"{field.hint[0].upper()}{field.hint[1:]}"]))
 
 
 def known(field: Field) -> list[str]:

@@ -128,21 +128,6 @@ def test_without_rights_the_scripts_name_the_apt_get_line(missing, tmp_path):
     assert not (tmp_path / "venv").exists()
 
 
-def test_the_case_file_page_names_every_key():
-    from fegear.case import Case
-    from fegear.case.keys import part_models
-
-    page = (ROOT / "docs" / "case-files.md").read_text(encoding="utf-8")
-    parts = [Case]
-    while parts:
-        part = parts.pop()
-        for name, field in part.model_fields.items():
-            models = part_models(field.annotation)
-            parts += models
-            named = (f"`{name}`", f"`[{name}]`", f"`[{name}.NAME]`")
-            assert any(form in page for form in named), f"{part.__name__}.{name} is not on the page"
-
-
 def test_the_case_file_page_s_example_is_a_case(tmp_path):
     import tomllib
 
