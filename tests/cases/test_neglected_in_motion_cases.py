@@ -39,8 +39,8 @@ def factors(results) -> np.ndarray:
     [
         (1500.0, "false", "contact_loss", contact_loss_changes),
         (8890.0, "false", "contact_loss", contact_loss_changes),
-        (8890.0, "true", "contact_loss", contact_loss_changes),
-        (1500.0, "true", "friction", friction_changes),
+        pytest.param(8890.0, "true", "contact_loss", contact_loss_changes, marks=pytest.mark.long),
+        pytest.param(1500.0, "true", "friction", friction_changes, marks=pytest.mark.long),
         (8890.0, "true", "friction", friction_changes),
         (8890.0, "false", "friction", friction_changes),
     ],

@@ -188,7 +188,7 @@ def test_corners_that_never_touch_change_nothing(amount, load, ratio):
         assert (first.largest == second.largest).all()
 
 
-@pytest.mark.parametrize("coupled", [True, False])
+@pytest.mark.parametrize("coupled", [pytest.param(True, marks=pytest.mark.long), False])
 def test_corners_that_hardly_touch_hardly_change_a_force(coupled):
     """Coupled or not, the largest force on a tooth moves little as the corner begins to bear."""
     plain, cornered = (engagement(14e-6, coupled, corner_contact=corner) for corner in (False, True))
@@ -265,7 +265,10 @@ def integrated(e, rig, speed, coupled):
     return float(carried.max())
 
 
-@pytest.mark.parametrize(("coupled", "ratio"), [(True, 0.7), (True, 1.0), (False, 0.7), (False, 0.85)])
+@pytest.mark.parametrize(
+    ("coupled", "ratio"),
+    [(True, 1.0), (False, 0.85), *(pytest.param(c, 0.7, marks=pytest.mark.long) for c in (True, False))],
+)
 def test_relieved_teeth_part_or_not_alike_while_none_does(coupled, ratio):
     """Little relief, heavy damping: every pair keeps bearing where it bears at rest, and carries what it must."""
     e = engagement(8e-6, coupled)

@@ -159,7 +159,9 @@ def test_full_fillets_lower_the_root_stress_of_every_gear(teeth):
     assert (rounded > 0.5 * sharp).all()
 
 
-@pytest.mark.parametrize("rack", [BasicRack(1.213, 0.34, 0.0, math.radians(19.07)), BasicRack(1.0, 1.25, 0.0)])
+@pytest.mark.parametrize("rack", [
+    BasicRack(1.213, 0.34, 0.0, math.radians(19.07)), pytest.param(BasicRack(1.0, 1.25, 0.0), marks=pytest.mark.long),
+])  # fmt: skip
 def test_a_sharp_rack_tip_leaves_a_mesh_that_can_be_solved(rack):
     """The fillet of a sharp tool turns 70 degrees however short it is; few edges along it turned elements over."""
     for factor in (1.0, 1.6, 4.0):

@@ -216,6 +216,7 @@ def outline(path) -> np.ndarray:
     return np.array([point[:2] for point in line.get_points()])
 
 
+@pytest.mark.long
 def test_a_drawing_carries_the_relief_and_a_mesh_says_that_it_does_not(tmp_path, pair):
     relief = {"tip": {"amount": "200 um", "start_radius": "36 mm"}}
     relieved = fegear.Pair(pair.driver.changed(relief=relief), pair.driven, compliance="weber-banaschek")
