@@ -1,0 +1,255 @@
+"""Geometry of a pair as ISO 6336-1 uses it: diameters, angles, contact ratios, curvature at the pitch point.
+
+`PairGeometry` holds plain numbers, so that a published example can be typed in; `of_pair` takes them from two gears.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.errors import RangeError
+
+if TYPE_CHECKING:
+    from fegear.formulas.iso6336.rated import Both
+    from fegear.geometry import Gear, GearPair
+    from fegear.geometry.pair import Member
+
+
+@dataclass(frozen=True, slots=True)
+class GearShape:
+    """Geometry of one gear as ISO 6336 sees it; lengths [m].
+
+    Parameters
+    ----------
+    teeth : int
+    profile_shift : float
+        x, nominal.
+    tip_diameter, root_diameter, face_width : float
+    dedendum, tip_radius : float
+        h_fP and rho_fP of the basic rack [modules].
+    residual_undercut : float
+        s_pr, what protuberance leaves [modules].
+    bore_diameter : float
+        d_i, inside diameter of the body (of the rim, where it has a web).
+    generating_shift : float
+        x_E, thinned for backlash, for the root; NaN: the nominal one.
+    active_tip_diameter : float
+        d_Na, where the involute ends; NaN: the tip diameter.
+    rim_thickness, web_ratio : float, optional
+        s_R; b_s/b. None for a solid gear.
+    young_modulus, poisson_ratio, density : float
+        [Pa], 1, [kg/m^3].
+    """
+
+    teeth: int
+    profile_shift: float
+    tip_diameter: float
+    root_diameter: float
+    face_width: float
+    dedendum: float = 1.25
+    tip_radius: float = 0.38
+    residual_undercut: float = 0.0
+    bore_diameter: float = 0.0
+    generating_shift: float = math.nan
+    active_tip_diameter: float = math.nan
+    rim_thickness: float | None = None
+    web_ratio: float | None = None
+    young_modulus: float = 206e9
+    poisson_ratio: float = 0.3
+    density: float = 7830.0
+
+    def __post_init__(self) -> None:
+        """Fill in what follows from the rest; refuse what no external gear has."""
+        if not self.teeth > 0:
+            raise RangeError("teeth", self.teeth, "must be positive: internal gears are not rated")
+        for name in ("face_width", "root_diameter", "young_modulus", "density"):
+            if not getattr(self, name) > 0.0:
+                raise RangeError(name, getattr(self, name), "must be positive")
+        if not self.tip_diameter > self.root_diameter > self.bore_diameter >= 0.0:
+            diameters = f"{self.tip_diameter:.6g}, {self.root_diameter:.6g}, {self.bore_diameter:.6g} m"
+            raise RangeError("tip, root and bore diameter", diameters, "must fall in this order")
+        if math.isnan(self.generating_shift):
+            object.__setattr__(self, "generating_shift", self.profile_shift)
+        if math.isnan(self.active_tip_diameter):
+            object.__setattr__(self, "active_tip_diameter", self.tip_diameter)
+
+    @property
+    def depth(self) -> float:
+        """h, tooth depth from tip to root [m]."""
+        return 0.5 * (self.tip_diameter - self.root_diameter)
+
+
+@dataclass(frozen=True, slots=True)
+class PairGeometry:
+    """Two external gears on parallel axes; lengths [m], angles [rad].
+
+    Parameters
+    ----------
+    gears : (GearShape, GearShape)
+        Pinion (fewer teeth) and wheel.
+    module, pressure_angle, helix_angle : float
+        m_n, alpha_n, beta.
+    centre_distance : float
+        a.
+    members : (Member, Member)
+        Which of driver and driven pinion and wheel are.
+    contact_ratio : float
+        epsilon_alpha; NaN: from the active tip diameters.
+    face_width : float
+        b that carries; NaN: the smaller one.
+
+    Raises
+    ------
+    RangeError
+        If the first gear has more teeth, or the gears do not meet.
+    """
+
+    gears: tuple[GearShape, GearShape]
+    module: float
+    pressure_angle: float
+    helix_angle: float
+    centre_distance: float
+    members: tuple[Member, Member] = ("driver", "driven")
+    contact_ratio: float = math.nan
+    face_width: float = math.nan
+
+    def __post_init__(self) -> None:
+        """Fill in face width and contact ratio; refuse what is no pair."""
+        if self.gears[0].teeth > self.gears[1].teeth:
+            given = f"{self.gears[0].teeth}, {self.gears[1].teeth}"
+            raise RangeError(
+                "teeth of pinion and wheel", given, "must not fall", "name the gear with fewer teeth first"
+            )
+        if not self.module > 0.0:
+            raise RangeError("module", self.module, "must be positive")
+        if not 0.0 <= self.helix_angle < math.pi / 2:
+            raise RangeError("helix angle", self.helix_angle, "must lie between 0 and 90 deg, without the hand's sign")
+        if math.isnan(self.face_width):
+            object.__setattr__(self, "face_width", min(g.face_width for g in self.gears))
+        if not self.centre_distance > 0.5 * sum(self.base_diameters):
+            raise RangeError(
+                "centre distance", f"{self.centre_distance:.6g} m", "must exceed the sum of the base radii"
+            )
+        if math.isnan(self.contact_ratio):
+            object.__setattr__(self, "contact_ratio", self._contact_ratio())
+
+    def _contact_ratio(self) -> float:
+        reach = sum(
+            0.5 * math.sqrt(max(g.active_tip_diameter**2 - d_b**2, 0.0))
+            for g, d_b in zip(self.gears, self.base_diameters, strict=True)
+        )
+        path = reach - self.centre_distance * math.sin(self.working_pressure_angle)
+        if not path > 0.0:
+            raise RangeError(
+                "centre distance", f"{self.centre_distance:.6g} m", "is so large that the teeth never meet"
+            )
+        return path / self.base_pitch
+
+    @property
+    def ratio(self) -> float:
+        """Gear ratio u = z_2 / z_1, at least 1."""
+        return self.gears[1].teeth / self.gears[0].teeth
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """alpha_t."""
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @property
+    def base_helix_angle(self) -> float:
+        """beta_b: sin(beta_b) = sin(beta) cos(alpha_n)."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
+
+    @property
+    def diameters(self) -> Both:
+        """d_1, d_2: reference diameters."""
+        d_1, d_2 = (g.teeth * self.module / math.cos(self.helix_angle) for g in self.gears)
+        return d_1, d_2
+
+    @property
+    def base_diameters(self) -> Both:
+        """d_b1, d_b2."""
+        d_1, d_2 = self.diameters
+        c = math.cos(self.transverse_pressure_angle)
+        return d_1 * c, d_2 * c
+
+    @property
+    def base_pitch(self) -> float:
+        """p_bt."""
+        return math.pi * self.base_diameters[0] / self.gears[0].teeth
+
+    @property
+    def working_pressure_angle(self) -> float:
+        """alpha_wt."""
+        return math.acos(0.5 * sum(self.base_diameters) / self.centre_distance)
+
+    @property
+    def overlap_ratio(self) -> float:
+        """epsilon_beta = b sin(beta) / (pi m_n)."""
+        return self.face_width * math.sin(self.helix_angle) / (math.pi * self.module)
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """epsilon_gamma."""
+        return self.contact_ratio + self.overlap_ratio
+
+    @property
+    def virtual_contact_ratio(self) -> float:
+        """epsilon_alpha_n = epsilon_alpha / cos^2(beta_b) (ISO 6336-3, 6.2)."""
+        return self.contact_ratio / math.cos(self.base_helix_angle) ** 2
+
+    @property
+    def relative_curvature_radius(self) -> float:
+        """rho_red at the pitch point, in the transverse section: rho_1 rho_2 / (rho_1 + rho_2)."""
+        rho = [0.5 * d * math.tan(self.working_pressure_angle) for d in self.base_diameters]
+        return rho[0] * rho[1] / (rho[0] + rho[1])
+
+    def pitch_line_velocity(self, speed: float) -> float:
+        """v at the reference circle [m/s] for a speed of the pinion [rad/s]."""
+        return 0.5 * self.diameters[0] * speed
+
+
+def _shape(gear: Gear, rim_thickness: float | None) -> GearShape:
+    tooth = gear.tooth
+    return GearShape(
+        teeth=gear.teeth,
+        profile_shift=tooth.profile_shift,
+        tip_diameter=2.0 * gear.tip_radius,
+        root_diameter=2.0 * gear.root_radius,
+        face_width=gear.face_width,
+        dedendum=tooth.rack.dedendum,
+        tip_radius=tooth.rack.tip_radius,
+        residual_undercut=tooth.rack.residual_undercut,
+        bore_diameter=2.0 * gear.bore_radius,
+        generating_shift=tooth.generating_shift,
+        active_tip_diameter=2.0 * gear.involute_tip_radius,
+        rim_thickness=rim_thickness,
+        young_modulus=gear.material.young_modulus,
+        poisson_ratio=gear.material.poisson_ratio,
+        density=gear.material.density,
+    )
+
+
+def of_pair(pair: GearPair, rim_thickness: tuple[float | None, float | None] = (None, None)) -> PairGeometry:
+    """Geometry of a gear pair; the pinion is the gear with fewer teeth, of equal ones the driver.
+
+    Parameters
+    ----------
+    pair : GearPair
+    rim_thickness : (float or None, float or None)
+        s_R of driver and driven [m]; None for a solid gear.
+    """
+    driver, driven = (_shape(g, s) for g, s in zip((pair.driver, pair.driven), rim_thickness, strict=True))
+    first = driver.teeth <= driven.teeth
+    return PairGeometry(
+        gears=(driver, driven) if first else (driven, driver),
+        module=pair.driver.module,
+        pressure_angle=pair.driver.normal_pressure_angle,
+        helix_angle=pair.driver.helix_angle,
+        centre_distance=pair.centre_distance,
+        members=("driver", "driven") if first else ("driven", "driver"),
+        contact_ratio=pair.contact_ratio,
+        face_width=pair.face_width,
+    )

@@ -1,0 +1,186 @@
+"""ISO 6336-1, 7.5: K_Hbeta by method C, from the pinion shaft's deformation, manufacture, modification and running in.
+
+Source: ISO 6336-1:2006 with technical corrigendum 1:2008, 7.5; the edition of 2019 keeps the method. The constants K'
+and B_1, B_2 of rows 1, 2, 4, 5 and 6 were checked against python-gearbox (E. M. Firvida Donestevez,
+doi:10.5281/zenodo.3660527), which types them from the standard. Lengths in m, line loads F_m/b in N/m.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fegear.errors import RangeError
+from fegear.formulas.iso6336 import part1_running_in as running_in
+from fegear.formulas.iso6336.part1_face_load import face_load_factor
+
+if TYPE_CHECKING:
+    from fegear.formulas.iso6336.alignment import Alignment, Arrangement, HelixModification, PinionShaft
+    from fegear.formulas.iso6336.pair_geometry import PairGeometry
+    from fegear.formulas.iso6336.rated import Quality, Strength
+
+#: .023 mm um/N of f_sh and .005 mm um/N of F_betaxmin, in m^2/N.
+_BENDING, _LEAST = 0.023e-9, 0.005e-9
+#: K' where the pinion stiffens its shaft and where it does not, and the s/l below which they hold.
+_SEAT: dict[Arrangement, tuple[float, float, float]] = {
+    "a": (0.48, 0.8, 0.3),
+    "b": (-0.48, -0.8, 0.3),
+    "c": (1.33, 1.33, 0.5),
+    "d": (-0.36, -0.6, 0.3),
+    "e": (-0.6, -1.0, 0.3),
+}
+#: d_1/d_sh from which a pinion stiffens its shaft.
+STIFFENING = 1.15
+#: B_1 and B_2.
+MODIFICATIONS: dict[HelixModification, tuple[float, float]] = {
+    "none": (1.0, 1.0),
+    "crowned for manufacture": (1.0, 0.5),
+    "crowned": (0.5, 0.5),
+    "helix corrected": (0.1, 1.0),
+    "helix corrected and crowned": (0.1, 0.5),
+    "end relief": (0.7, 0.7),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Misalignment:
+    """K_Hbeta by method C and what it is made of; [m].
+
+    Parameters
+    ----------
+    deformation, manufacture : float
+        f_sh, f_ma; NaN where K_Hbeta was given.
+    constants : (float, float)
+        B_1, B_2.
+    initial, least : float
+        F_betax and its lower bound F_betaxmin.
+    run_in : float
+        y_beta.
+    effective : float
+        F_betay.
+    K_Hbeta : float
+    remark : str
+        What lies outside the range that the standard states; empty where nothing does.
+    """
+
+    deformation: float
+    manufacture: float
+    constants: tuple[float, float]
+    initial: float
+    least: float
+    run_in: float
+    effective: float
+    K_Hbeta: float
+    remark: str = ""
+
+
+def shaft_deformation(shaft: PinionShaft, line_load: float, width: float, diameter: float) -> tuple[float, str]:
+    """f_sh [m] of spur and single helical gears, and a remark (ISO 6336-1:2006, 7.5.2.4, Eq. 57 and figure 13).
+
+    Parameters
+    ----------
+    shaft : PinionShaft
+    line_load : float
+        F_m/b [N/m].
+    width, diameter : float
+        b, d_1 [m].
+    """
+    for name, value in (("F_m/b", line_load), ("b", width), ("d_1", diameter)):
+        if not value > 0.0:
+            raise RangeError(name, value, "must be positive")
+    stiff, free, most = _SEAT[shaft.arrangement]
+    k = stiff if diameter / shaft.diameter >= STIFFENING else free
+    torque = 1.0 + 2.0 * (1.0 - shaft.power_share) / shaft.power_share  # B*
+    bending = k * shaft.bearing_span * shaft.offset / diameter**2 * (diameter / shaft.diameter) ** 4
+    deformation = line_load * _BENDING * (abs(torque + bending - 0.3) + 0.3) * (width / diameter) ** 2
+    place = shaft.offset / shaft.bearing_span
+    if place < most:
+        return deformation, ""
+    return (
+        deformation,
+        f"f_sh: s/l = {place:.3g} is not below {most:g}, for which arrangement {shaft.arrangement} is stated",
+    )
+
+
+def manufacturing(quality: tuple[Quality, Quality]) -> float:
+    """f_ma of a pair that nothing adjusts [m]: sqrt(f_Hbeta1^2 + f_Hbeta2^2) (ISO 6336-1:2006, 7.5.2.5)."""
+    return math.hypot(quality[0].helix_slope, quality[1].helix_slope)
+
+
+def initial_misalignment(
+    alignment: Alignment, deformation: float, manufacture: float, least: float, helix_slope_5: float
+) -> float:
+    """F_betax before running in [m] (ISO 6336-1:2006, 7.5.2.2 and 7.5.2.3, Eqs. 52 to 54, with corrigendum 1).
+
+    Parameters
+    ----------
+    alignment : Alignment
+    deformation, manufacture, least, helix_slope_5 : float
+        f_sh, f_ma, F_betaxmin, f_Hbeta5 [m]; the last counts where the contact pattern is favourable.
+    """
+    b_1, b_2 = MODIFICATIONS[alignment.modification]
+    if alignment.contact_pattern == "verified":
+        return least
+    if alignment.contact_pattern == "favourable":
+        return max(abs(1.33 * b_1 * deformation - helix_slope_5), least)
+    return max(1.33 * b_1 * deformation + b_2 * manufacture, least)
+
+
+def method_c(
+    pair: PairGeometry,
+    alignment: Alignment,
+    strength: tuple[Strength, Strength],
+    quality: tuple[Quality, Quality],
+    line_load: float,
+    stiffness: float,
+    velocity: float,
+) -> Misalignment:
+    """K_Hbeta by method C (ISO 6336-1:2006, 7.5).
+
+    Parameters
+    ----------
+    pair : PairGeometry
+    alignment : Alignment
+    strength, quality : pairs
+        Of pinion and wheel.
+    line_load : float
+        F_m/b = F_t K_A K_gamma K_v / b [N/m].
+    stiffness : float
+        c_gamma_beta [Pa].
+    velocity : float
+        v at the reference circle [m/s].
+
+    Raises
+    ------
+    RangeError
+        If neither the shaft nor f_sh nor K_Hbeta is given, or f_Hbeta5 is missing where it counts.
+    """
+    nan = math.nan
+    if alignment.face_load_factor is not None:
+        if not alignment.face_load_factor >= 1.0:
+            raise RangeError("K_Hbeta", alignment.face_load_factor, "must be at least 1")
+        return Misalignment(nan, nan, (nan, nan), nan, nan, nan, nan, alignment.face_load_factor, "K_Hbeta: as given")
+    remark = ""
+    if alignment.deformation is not None:
+        deformation = alignment.deformation
+    elif alignment.shaft is not None:
+        deformation, remark = shaft_deformation(alignment.shaft, line_load, pair.face_width, pair.diameters[0])
+    else:
+        raise RangeError(
+            "alignment",
+            "no shaft",
+            "K_Hbeta by method C asks for the pinion's shaft or f_sh",
+            "give the shaft, f_sh or K_Hbeta",
+        )
+    slope_5 = alignment.helix_slope_5
+    if alignment.contact_pattern == "favourable" and slope_5 is None:
+        raise RangeError("f_Hbeta5", "missing", "a favourable contact pattern asks for the tolerance of grade 5")
+    manufacture = manufacturing(quality) if alignment.manufacture is None else alignment.manufacture
+    least = max(_LEAST * line_load, 0.5 * max(q.helix_slope for q in quality))
+    initial = initial_misalignment(alignment, deformation, manufacture, least, slope_5 or 0.0)
+    one, other = (running_in.helix_allowance(s, initial, velocity) for s in strength)
+    worn = running_in.mean((one, other))
+    factor = face_load_factor(initial - worn, stiffness, line_load)
+    constants = MODIFICATIONS[alignment.modification]
+    return Misalignment(deformation, manufacture, constants, initial, least, worn, initial - worn, factor, remark)
