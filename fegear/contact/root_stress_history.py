@@ -10,6 +10,8 @@ import numpy as np
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fegear.arrays import Array
     from fegear.contact.compliance import RootStressInfluence, Side
     from fegear.contact.engagement import Engagement, Loaded
@@ -115,18 +117,34 @@ def root_stress_history(
     contacts = loaded.grid.contacts
     if kernels is None:
         kernels = root_stress_kernels(engagement, contacts, member, side, beyond)
-    n, positions = contacts.x.shape
+    signed = np.max if side == "tension" else np.min
+    stress = np.stack(
+        [signed(total, axis=0) for total in superposed_stress(engagement, loaded, member, beyond, kernels)]
+    )
+    teeth = np.arange(-beyond, contacts.x.shape[0] + beyond)
+    return RootStressHistory(member, side, contacts.x[0] + teeth[:, None] * engagement.pair.base_pitch, stress)
+
+
+def superposed_stress(
+    engagement: Engagement, loaded: Loaded, member: Member, beyond: int, kernels: Kernels
+) -> Iterator[Array]:
+    """Stress along the fillet of one tooth after the other, from its own load and its neighbours', (points, P, L) [Pa].
+
+    Parameters
+    ----------
+    engagement, loaded, member, beyond
+        See `root_stress_history`; teeth come in its order.
+    kernels : dict
+        From `root_stress_kernels` at the contacts of `loaded`.
+    """
+    n = loaded.loads.shape[0]
     towards_load = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
     line_load = loaded.loads / engagement.compliance.face_width
     carrying = [other for other in range(n) if (line_load[other] > 0.0).any()]
-    teeth = range(-beyond, n + beyond)
-    stress = np.empty((len(teeth), *line_load.shape[1:]))
-    for row, tooth in enumerate(teeth):
-        total = np.zeros((kernels[0].shape[0], positions, line_load.shape[2]))
+    for tooth in range(-beyond, n + beyond):
+        total = np.zeros((kernels[0].shape[0], *line_load.shape[1:]))
         for other in carrying:
             k = towards_load * (tooth - other)
             if k in kernels:
                 total += kernels[k][:, other, :, None] * line_load[other][None]
-        stress[row] = total.max(axis=0) if side == "tension" else total.min(axis=0)
-    x = contacts.x[0] + np.array(teeth)[:, None] * engagement.pair.base_pitch
-    return RootStressHistory(member, side, x, stress)
+        yield total

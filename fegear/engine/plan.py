@@ -51,13 +51,15 @@ def _straight(scene: Scene) -> str:
     return ": it may be about spur gears, and those of this case are helical" if alone else ""
 
 
-def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
+def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) -> Plan:
     """Derive the tasks from the wanted results.
 
     Parameters
     ----------
     scene : Scene
     stages : sequence of Stage
+    more : sequence of Task
+        Wanted beside the case's results, after them: what a page shows on request.
 
     Raises
     ------
@@ -99,6 +101,9 @@ def make_plan(scene: Scene, stages: Sequence[Stage]) -> Plan:
             )
         for stage, subject in wanted:
             require(Task(stage.name, subject), f'requested by results = ["{result}"]')
+
+    for task in more:
+        require(task, "shown on request")
 
     on = scene.case.effects.on()
     steps = tuple(

@@ -84,3 +84,16 @@ def rack_in_gear(tooth: Tooth, rolled: float) -> Array:
     u, v = rack_tooth(tooth)
     placed = np.stack([u + tooth.pitch_radius * rolled, v + tooth.pitch_radius])
     return turned(placed, math.pi / tooth.teeth - rolled)
+
+
+def tool_in_space(tooth: Tooth, count: int) -> Array:
+    """Positions of the tool as it rolls through the space right of the tooth, shape (count, 2, N) [modules].
+
+    Parameters
+    ----------
+    tooth : Tooth
+    count : int
+        Even steps of the roll, from before the first touch to after the last.
+    """
+    reach = 1.6 * math.pi / tooth.teeth + 0.6 / math.sqrt(tooth.teeth)
+    return np.stack([rack_in_gear(tooth, rolled) for rolled in np.linspace(-reach, reach, count).tolist()])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.figure import Axis, Figure, MeshField, Panel, TriangleField, edges, outline, polylines
-from fegear.geometry.outline import rack_in_gear, tooth_outline, turned
+from fegear.geometry.outline import rack_in_gear, tool_in_space, tooth_outline, turned
 
 if TYPE_CHECKING:
     from fegear.arrays import Array, Index
@@ -31,7 +31,6 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
     """The tooth with the positions of its tool, and the mesh of its sector."""
     tooth, m = gear.tooth, gear.module * 1e3
     shape, pitch = tooth_outline(tooth, _CHORD) * m, 2.0 * math.pi / tooth.teeth
-    reach = 1.6 * math.pi / tooth.teeth + 0.6 / math.sqrt(tooth.teeth)
     height, radius = float(np.ptp(shape[1])), gear.pitch_radius * 1e3
     around = np.linspace(-1.6 * pitch, 1.6 * pitch, 121)
 
@@ -39,7 +38,7 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
         return np.stack([r * np.sin(around), r * np.cos(around)])
 
     lines = (
-        outline(polylines(rack_in_gear(tooth, p) * m for p in np.linspace(-reach, reach, _TOOL_POSITIONS)),
+        outline(polylines(tool_in_space(tooth, _TOOL_POSITIONS) * m),
               "positions of the tool", "sky", width=0.6),
         outline(rack_in_gear(tooth, 0.0) * m, "tool (rack)", "tool"),
         outline(polylines(turned(shape, k * pitch) for k in (-1, 1)), "", "outline", width=1.0),

@@ -58,13 +58,34 @@ def in_mesh(pair: GearPair, member: Member, teeth: int = 2) -> Array:
         One line, from tooth to tooth.
     """
     gear = pair.gear(member)
-    working = _working_radius(pair, gear)
     shape = tooth_outline(gear.tooth, _CHORD) * gear.module
-    half = float(gear.tooth.half_thickness_angle(working / gear.module))
-    pitch = 2.0 * math.pi / gear.teeth
     count = min(teeth, (gear.teeth - 1) // 2)
-    line = np.hstack([turned(shape, k * pitch - half) for k in range(-count, count + 1)])
-    line[1] -= working
+    way = (
+        1 if member == "driver" else -1
+    )  # from left to right below the pitch point: the line goes on from tooth to tooth
+    return np.hstack([placed_in_mesh(pair, member, shape, way * k) for k in range(-count, count + 1)])
+
+
+def placed_in_mesh(pair: GearPair, member: Member, points: Array, number: int, *, moved: bool = False) -> Array:
+    """Points of one tooth where it stands while the flanks of pair 0 touch at the pitch point, the origin.
+
+    Parameters
+    ----------
+    pair : GearPair
+    member : {"driver", "driven"}
+    points : ndarray, shape (2, ...)
+        In the tooth's own frame: from the gear's centre, the centre line along +y, the loaded flank at x > 0.
+    number : int
+        Of the tooth's pair; higher ones are ahead.
+    moved : bool
+        Whether these are displacements, which are turned alone.
+    """
+    gear = pair.gear(member)
+    working = _working_radius(pair, gear)
+    half = float(gear.tooth.half_thickness_angle(working / gear.module))
+    ahead = number if member == "driver" else -number
+    x, y = turned(points, ahead * 2.0 * math.pi / gear.teeth - half)
+    line = np.stack([x, y if moved else y - working])
     return line if member == "driver" else -line
 
 

@@ -1,0 +1,172 @@
+"""The moving picture of a pair: colours of the fillets, deformed teeth, the tool that leaves the profile."""
+
+import numpy as np
+import pytest
+
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
+from fegear.errors import InputError
+from fegear.fem.outline_motion import half_plane_dent
+from fegear.geometry import BasicRack, Tooth
+from fegear.geometry.outline import tool_in_space, tooth_outline
+from fegear.geometry.pair import MEMBERS
+from fegear.results.catalogue import STAGES
+from fegear.results.drawn_pair import placed_in_mesh
+from fegear.solution_cache import SolutionCache
+
+CASE = {
+    "results": ["root-stress-history"],
+    "gear": {"a": {
+        "teeth": 23, "module": "3 mm", "face_width": "10 mm", "bore_radius": "15 mm", "profile_shift": 0.3,
+        "relief": {"tip": {"amount": "9 um", "length": "1.4 mm"}},
+    }},
+    "pair": {"I": {"driver": "a", "driven": "a", "load": "2500 N"}},
+    "effects": {"neighbour_coupling": True, "hertz": "load-dependent", "relief": True},
+    "accuracy": {"tolerance": 0.03},
+}  # fmt: skip
+STRESS, DEFORMED = Task("stress-in-mesh", "I"), Task("deformed-in-mesh", "I")
+
+
+@pytest.fixture(scope="module")
+def cache():
+    return SolutionCache()
+
+
+@pytest.fixture(scope="module")
+def ran(cache):
+    scene = build_scene(CASE, "case", None)
+    return run_plan(scene, make_plan(scene, STAGES, [STRESS, DEFORMED]), cache=cache)
+
+
+def test_colours_of_the_fillets_are_the_root_stress_through_the_mesh(ran):
+    found = ran.outcomes[STRESS].data
+    for member, table in (("driver", "root_stress_history_I_a"), ("driven", "root_stress_history_I_a_driven")):
+        x, largest = (ran.tables[table].column(name).si for name in ("x", "stress"))
+        # Every tooth at every roll position, and the largest of all.
+        for t, j in enumerate(found.pairs.tolist()):
+            own = found.roll + j * found.pair.base_pitch
+            on = (own > x[0]) & (own < x[-1])
+            near = np.abs(x[:, None] - own[on]).argmin(axis=0)
+            assert np.abs(x[near] - own[on]).max() < 1e-12
+            np.testing.assert_allclose(
+                found.gears[member].stress["tension"][on, t].max(axis=1), largest[near], rtol=1e-12
+            )
+    value = max(ran.values[f"I.{member}.largest_root_tension"].si for member in MEMBERS)
+    assert found.largest.value == pytest.approx(value, rel=1e-12)
+    # Where it is marked it is.
+    one = found.gears[found.largest.member]
+    p, t = np.flatnonzero(found.roll == found.largest.roll)[0], list(found.pairs).index(found.largest.pair)
+    at = one.stress["tension"][p, t].argmax()
+    assert one.stress["tension"][p, t, at] == found.largest.value
+    np.testing.assert_array_equal(one.places["tension"][t, :, at], found.largest.place)
+    # Compression lies on the other fillet of the same tooth: on its other side.
+    middle = placed_in_mesh(found.pair, "driver", np.array([[0.0], [3e-2]]), 0)
+    sides = [
+        np.sign(found.gears["driver"].places[side][list(found.pairs).index(0), 0] - middle[0])
+        for side in ("tension", "compression")
+    ]
+    assert (sides[0] > 0).all()
+    assert (sides[1] < 0).all()
+
+
+def test_deformed_flanks_touch_where_the_load_is_shared(ran):
+    """Once the driver is ahead by the transmission error, the gap of every loaded pair is closed: to 0.2 %."""
+    found, e = ran.outcomes[DEFORMED].data, ran.outcomes[Task("loaded-pair", "I")].data.pair.engagement
+    state = e.solve(e.grid(found.roll), [2500.0])
+    contacts, te = state.grid.contacts, found.transmission_error
+    np.testing.assert_allclose(te, state.transmission_error[:, 0], rtol=1e-12)
+    along = np.array([np.cos(found.pair.working_pressure_angle), np.sin(found.pair.working_pressure_angle)])
+    room, kinks = 0.3 * 3e-3, [k * found.pair.driver.base_radius for k in e.driver_relief.kinks]
+    looked = 0
+    for row, j in enumerate(contacts.number.tolist()):
+        for p in np.flatnonzero(state.loads[row, :, 0] > 0.0).tolist():
+            x, line_load = contacts.x[row, p], state.loads[row, p, 0] / e.compliance.face_width
+            rolls = [contacts.roll_driver[row, p], contacts.roll_driven[row, p]]
+            near = [abs(roll * found.pair.driver.base_radius - kink) for roll in rolls for kink in kinks]
+            if min(x - found.pair.x_start, found.pair.x_end - x, *near) < room:
+                continue  # a spline through points 0.05 modules apart follows no corner
+            width = e.compliance.half_width(state.loads[row, p, 0], contacts.relative_radius[row, p])
+            closed = sum(_toward(found, member, p, j, x, along, line_load, width) for member in MEMBERS)
+            assert closed == pytest.approx(te[p], rel=2e-3)
+            looked += 1
+    assert looked > 40
+
+
+def _toward(found, member, p, j, x, along, line_load, width):
+    """How far the flank gives way at x on the line of action, from the points of the outline beside it."""
+    from scipy.interpolate import CubicSpline
+
+    sign = 1.0 if member == "driver" else -1.0
+    gear = found.pair.gear(member)
+    centre = np.array([[0.0], [-sign * gear.base_radius / np.cos(found.pair.working_pressure_angle)]])
+    turn = sign * found.roll[p] / gear.base_radius  # clockwise
+    t = j + 3
+    points, moved = (_turned(one, turn) for one in (found.places[member][t] - centre, found.moved[member][p, t]))
+    off = points + centre - (x * along)[:, None]
+    tangent = np.array([-along[1], along[0]])
+    beside = np.flatnonzero((np.abs(tangent @ off) < 1.0e-3) & (np.abs(along @ off) < 0.4e-3))
+    order = beside[np.argsort(tangent @ off[:, beside])]
+    kappa = 2.0 * (1.0 - 0.3**2) / (np.pi * gear.material.young_modulus) * line_load
+    if gear.plane_assumption == "stress":
+        kappa /= 1.0 - 0.3**2
+    distance = np.hypot(*off[:, order])
+    smooth = -sign * (along @ moved[:, order]) - kappa * half_plane_dent(distance, np.array(width))
+    return float(CubicSpline(tangent @ off[:, order], smooth)(0.0)) + kappa * float(
+        half_plane_dent(np.zeros(1), np.array(width))[0]
+    )
+
+
+def _turned(points, angle):
+    s, c = np.sin(angle), np.cos(angle)
+    return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
+
+
+def test_what_carries_nothing_stays_and_the_rest_grows_with_the_load(ran, cache):
+    data = ran.outcomes[DEFORMED].data
+    points = np.hypot(*(data.places["driver"][3] + np.array([[0.0], [data.pair.centre_distance / 2]])))
+    fillet = points < data.pair.driver.form_radius  # no relief there
+    scene = build_scene({**CASE, "pair": {"I": {**CASE["pair"]["I"], "load": "1e-3 N"}}}, "case", None)
+    light = run_plan(scene, make_plan(scene, STAGES, [DEFORMED]), cache=cache).outcomes[DEFORMED].data
+    assert (
+        np.abs(light.moved["driver"][:, 3][..., fillet]).max()
+        < 1e-6 * np.abs(data.moved["driver"][:, 3][..., fillet]).max()
+    )
+    assert light.largest == pytest.approx(9e-6, rel=0.05)  # what the relief takes off the tips
+
+
+def test_a_half_plane_gives_way_by_the_mean_logarithm_of_the_distance():
+    theta = np.pi * (np.arange(20_000) + 0.5) / 20_000
+    for s in (0.0, 0.3, 0.99, 1.01, 2.0, 50.0):
+        mean = float(np.mean(2.0 * np.sin(theta) ** 2 * np.log(np.abs(0.7 * s - 0.7 * np.cos(theta)))))
+        assert half_plane_dent(np.array([0.7 * s]), np.array([0.7]))[0] == pytest.approx(-mean, abs=2e-4)
+
+
+@pytest.mark.parametrize(("teeth", "shift"), [(12, 0.0), (28, 0.0), (23, 0.5), (90, -0.3)])
+def test_the_tool_touches_the_profile_and_never_cuts_it(teeth, shift):
+    tooth = Tooth(teeth, BasicRack(1.0, 1.25, 0.25), shift)
+    corners = tool_in_space(tooth, 601)
+    share = np.linspace(0.0, 1.0, 40)  # straight between its points
+    at = (corners[..., -1:, None] * (1.0 - share) + corners[..., -2:-1, None] * share).reshape(601, 2, -1)
+    at = (
+        np.concatenate([at, corners[..., -26:]], axis=2).transpose(1, 0, 2).reshape(2, -1)
+    )  # one flank and its rounding
+    profile = tooth_outline(tooth, 1e-6)
+    radius = np.hypot(*profile)
+    between = (profile[0] > 0.0) & (radius > tooth.root_radius + 1e-6) & (radius < tooth.tip_radius - 1e-6)
+    order = np.flatnonzero(between)[np.argsort(radius[between])]
+    inside = (np.hypot(*at) < radius[order[-1]]) & (np.hypot(*at) > radius[order[0]])
+    r, phi = np.hypot(*at[:, inside]), np.arctan2(*at[:, inside])
+    # In the space: no nearer to the tooth's centre line than its own outline at that radius.
+    assert (phi - np.interp(r, radius[order], np.arctan2(*profile[:, order]))).min() * tooth.pitch_radius > -2e-5
+    places = profile[:, order[:: max(1, order.size // 60)]]
+    assert max(float(np.hypot(*(at - one[:, None])).min()) for one in places.T) < 0.03
+    assert float(np.hypot(*at).min()) == pytest.approx(tooth.root_radius, abs=1e-6)
+
+
+def test_deformed_teeth_need_finite_elements():
+    pair = {**CASE["pair"]["I"], "compliance": {"source": "weber-banaschek"}}
+    scene = build_scene({**CASE, "pair": {"I": pair}, "effects": {"neighbour_coupling": False}}, "case", None)
+    with pytest.raises(InputError, match="not how a tooth deforms"):
+        make_plan(scene, STAGES, [DEFORMED])
