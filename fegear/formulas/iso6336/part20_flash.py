@@ -1,0 +1,173 @@
+"""ISO/TS 6336-20: scuffing by the flash temperature method.
+
+Source: ISO/TR 13989-1:2000, Calculation of scuffing load capacity - Part 1: Flash temperature method, from which ISO/TS
+6336-20 was made; clauses and equations are numbered as there, and known here from secondary sources. External gears,
+unmodified profiles: a relief counts in the approach factor, and in the computed load sharing beside the standard's.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.formulas.flash_temperature import flash_temperature
+from fegear.formulas.friction_mean import FASTEST, mean_friction
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.arrays import Array
+    from fegear.formulas.iso6336.rated_surface import RatedSurface
+    from fegear.geometry import GearPair
+
+#: Share of the mean flash temperature by which the teeth are warmer than the oil (Eq. 22).
+_BULK = 0.47
+#: Scuffing temperature: 80 degC + (0.85 + 1.4 X_W) X_L S_FZG^2 (Eq. 99).
+_TEST_OIL, _BASE, _BY_STRUCTURE = 80.0, 0.85, 1.4
+#: Approach factor: one per 50 um of missing relief (Eqs. 46 and 48) [m].
+_APPROACH = 50e-6
+#: Positions over which the mean flash temperature is taken.
+_POSITIONS = 401
+
+
+@dataclass(frozen=True)
+class FlashTemperatures:
+    """Temperatures along the path of contact and the safety against scuffing.
+
+    Parameters
+    ----------
+    x : ndarray
+        Places on the path [m].
+    load_sharing, approach : ndarray
+        X_Gamma and X_J.
+    flash, contact : ndarray
+        Flash temperature [K] and contact temperature [degC].
+    friction : float
+        mu_m.
+    mean_flash : float
+        [K].
+    bulk, largest : float
+        Bulk temperature Theta_M and largest contact temperature Theta_Bmax [degC].
+    optimal_relief : float
+        C_eff [m].
+    """
+
+    x: Array
+    load_sharing: Array
+    approach: Array
+    flash: Array
+    contact: Array
+    friction: float
+    mean_flash: float
+    bulk: float
+    largest: float
+    optimal_relief: float
+
+
+def load_sharing_factor(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
+    """X_Gamma of unmodified profiles (clause 9, Eqs. 49 to 60 and 76).
+
+    Rises from (Q - 2)/15 at A to 1 at B, is 1 from B to D, falls to (Q - 2)/15 at E, with Q the tolerance class, at
+    least 7. Helical pairs with epsilon_gamma above 2 have 1/epsilon_alpha; helical teeth count the buttressing of their
+    ends besides. A transverse contact ratio of 2 or more lies outside the clause: 1 everywhere, on the safe side.
+
+    Parameters
+    ----------
+    pair : GearPair
+    x : array_like
+        [m].
+    grade : int
+    """
+    place, start, end = np.asarray(x, dtype=float), pair.x_start, pair.x_end
+    buttress = _buttressing(pair, place)
+    if pair.driver.helix_angle != 0.0 and pair.total_contact_ratio > 2.0:
+        return buttress / pair.contact_ratio
+    least = (max(grade, 7) - 2.0) / 15.0
+    first, last = end - pair.base_pitch, start + pair.base_pitch
+    share = np.ones_like(place)
+    if pair.contact_ratio < 2.0:
+        rising = least + (1.0 - least) * (place - start) / max(first - start, np.finfo(float).tiny)
+        falling = least + (1.0 - least) * (end - place) / max(end - last, np.finfo(float).tiny)
+        share = np.where(place < first, rising, np.where(place > last, falling, 1.0))
+    share = np.where((place < start) | (place > end), 0.0, share)
+    return np.asarray(share * buttress)
+
+
+def _buttressing(pair: GearPair, x: Array) -> Array:
+    """X_but (Eqs. 49 to 56): the ends of helical teeth bear up to 1.3 times more; 1 for spur teeth."""
+    if pair.driver.helix_angle == 0.0:
+        return np.ones_like(x)
+    pinion = min((pair.driver, pair.driven), key=lambda gear: gear.teeth)
+    unit = pinion.base_radius * math.tan(pair.working_pressure_angle)
+    width = 0.2 * math.sin(abs(pair.driver.base_helix_angle)) * unit
+    peak = 1.3 if pair.overlap_ratio >= 1.0 else 1.0 + 0.3 * pair.overlap_ratio
+    at_start = peak - (x - pair.x_start) / width * (peak - 1.0)
+    at_end = peak - (pair.x_end - x) / width * (peak - 1.0)
+    return np.asarray(np.maximum(1.0, np.maximum(np.minimum(at_start, peak), np.minimum(at_end, peak))))
+
+
+def optimal_relief(rated: RatedSurface) -> float:
+    """C_eff = K_A F_t / (b cos(alpha_t) c_gamma) [m] (Eq. B.1)."""
+    return rated.factors.application * rated.load / (rated.pair.face_width * rated.mesh_stiffness)
+
+
+def approach_factor(rated: RatedSurface, x: ArrayLike) -> Array:
+    """X_J, shock at the start of engagement: 1 + (C_eff - C_a) / 50 um (x / g_alpha)^3 before C (Eqs. 45 to 48)."""
+    place = np.asarray(x, dtype=float)
+    missing = (optimal_relief(rated) - rated.tip_relief[1]) / _APPROACH
+    before = np.clip(-place / rated.pair.path_length, 0.0, None)
+    return np.asarray(np.maximum(1.0, 1.0 + missing * before**3))
+
+
+def friction(rated: RatedSurface) -> float:
+    """mu_m = 0.060 (w_Bt / (v_SigmaC rho_relC))^0.2 X_L X_R (Eqs. 25 to 28)."""
+    angle = rated.pair.working_pressure_angle
+    rolling = 2.0 * min(rated.pitch_line_speed, FASTEST) * math.sin(angle)
+    radius = float(rated.at(0.0).relative_radius) * math.cos(rated.pair.driver.base_helix_angle)
+    return float(mean_friction("iso-6336-20", rated.surface, rated.unit_load, rolling, radius))
+
+
+def flash_temperatures(rated: RatedSurface, x: ArrayLike) -> FlashTemperatures:
+    """The standard's temperatures with its own load sharing.
+
+    Parameters
+    ----------
+    rated : RatedSurface
+    x : array_like
+        Places at which they are told [m]; mean and largest are taken over the whole path.
+    """
+    mu = friction(rated)
+
+    def flash(at: Array) -> Array:
+        share = load_sharing_factor(rated.pair, at, rated.grade)
+        rise = flash_temperature(rated.at(at), share * rated.line_load, mu, rated.modulus)
+        return np.asarray(rise * approach_factor(rated, at))
+
+    place = np.asarray(x, dtype=float)
+    whole = flash(np.linspace(rated.pair.x_start, rated.pair.x_end, _POSITIONS))
+    mean = float(np.trapezoid(whole) / (_POSITIONS - 1))
+    bulk = bulk_temperature(rated, mean)
+    own = flash(place)
+    return FlashTemperatures(
+        place, load_sharing_factor(rated.pair, place, rated.grade), approach_factor(rated, place), own, bulk + own,
+        mu, mean, bulk, bulk + float(whole.max()), optimal_relief(rated),
+    )  # fmt: skip
+
+
+def bulk_temperature(rated: RatedSurface, mean_flash: float) -> float:
+    """Theta_M = Theta_oil + 0.47 X_S X_mp Theta_flm [degC], one mating gear (Eqs. 22 and 23)."""
+    return rated.surface.temperature + _BULK * rated.supply * mean_flash
+
+
+def scuffing_temperature(rated: RatedSurface, load_stage: int) -> float:
+    """Theta_S = 80 + (0.85 + 1.4 X_W) X_L S_FZG^2 [degC] from the failure load stage of FZG A/8.3/90 (Eq. 99)."""
+    x_l = rated.surface.oil.factor * rated.surface.thickness
+    return _TEST_OIL + (_BASE + _BY_STRUCTURE * rated.structure) * x_l * load_stage**2
+
+
+def safety(scuffing: float, largest: float, oil: float) -> float:
+    """S_B = (Theta_S - Theta_oil) / (Theta_Bmax - Theta_oil) (Eq. 100); infinite where nothing becomes warmer."""
+    return (scuffing - oil) / (largest - oil) if largest > oil else math.inf

@@ -1,0 +1,219 @@
+"""ISO/TS 6336-22: micropitting, by the thickness of the lubricant film beside the roughness.
+
+Source: ISO/TR 15144-1:2014, Calculation of micropitting load capacity of cylindrical spur and helical gears - Part 1,
+from which ISO/TS 6336-22:2018 was made; formulas are numbered as there, and known here from secondary sources.
+lambda_GF,Y = h_Y / Ra with the film of Dowson and Higginson, thinned by the heat of the contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.errors import RangeError
+from fegear.formulas.flank_speeds import FlankSpeeds, contact_ratios
+from fegear.formulas.friction_mean import Surface, helical_load_factor, mean_friction
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.arrays import Array
+    from fegear.formulas.iso6336.rated_surface import RatedSurface
+    from fegear.formulas.lubricant import Oil
+    from fegear.geometry import GearPair
+
+#: Steel of Table 2: density, specific heat, conductivity; B_M = sqrt of their product [N/(m s^0.5 K)] (Formula 82).
+STEEL_HEAT = math.sqrt(7800.0 * 440.0 * 45.0)
+#: Bulk temperature: 7400 (P mu H_v / (a b))^0.72 X_S / (1.2 X_Ca) in kW and mm (Formula 84).
+_BULK, _POWER, _RELIEF = 7400.0, 0.72, 1.2
+#: Permissible film over that of the test gears (clause 5).
+_OF_TEST = 1.4
+#: Torque on the pinion of the FZG gears type C at the load stages of FVA 54/7 [N m], its speed, and the flanks' Ra.
+_TEST_TORQUES = {5: 70.0, 6: 98.9, 7: 132.5, 8: 171.6, 9: 215.6, 10: 265.1}
+_TEST_SPEED, _TEST_ROUGHNESS = 2250.0 * math.pi / 30.0, 0.5e-6
+
+
+@dataclass(frozen=True)
+class Film:
+    """The film at places on the path of contact; arrays of one shape.
+
+    Parameters
+    ----------
+    flash, contact : ndarray
+        Local flash temperature [K] and contact temperature [degC] (Formulae 79 and 80).
+    thickness : ndarray
+        h_Y [m] (Formula 4).
+    ratio : ndarray
+        lambda_GF,Y (Formula 2); infinite where nothing presses.
+    """
+
+    flash: Array
+    contact: Array
+    thickness: Array
+    ratio: Array
+
+
+def loss_factor(pair: GearPair) -> float:
+    """H_v of the standard (Formulae 91 and 92)."""
+    one, two = contact_ratios(pair)
+    scale = math.pi * (1.0 / pair.driver.teeth + 1.0 / pair.driven.teeth) / math.cos(pair.driver.base_helix_angle)
+    whole = one + two
+    return scale * (one * one + two * two + 1.0 - whole if whole < 2.0 else 0.5 * whole)
+
+
+def friction(rated: RatedSurface) -> float:
+    """mu_m = 0.045 (K F_bt K_Bgamma / (b v_SigmaC rho_nC))^0.2 (1e3 eta_oil)^-0.05 X_R X_L (Formulae 86 and 87)."""
+    at_pitch = rated.at(0.0)
+    load = rated.line_load * helical_load_factor(rated.pair.total_contact_ratio)
+    return float(mean_friction("iso-6336-22", rated.surface, load, at_pitch.sum, at_pitch.relative_radius))
+
+
+def relief_factor(rated: RatedSurface) -> float:
+    """X_Ca: 1 + 0.24 e + 0.71 e^2 for flanks of class 6 or better with the relief C_eff, else 1 (100 and 101)."""
+    best = rated.factors.application * rated.load / (rated.pair.face_width * rated.mesh_stiffness)
+    if rated.grade > 6 or min(rated.tip_relief) < best:
+        return 1.0
+    e = max(contact_ratios(rated.pair))
+    return 1.0 + 0.24 * e + 0.71 * e * e
+
+
+def bulk_temperature(rated: RatedSurface, mu: float, losses: float) -> float:
+    """theta_M = theta_oil + 7400 (P mu_m H_v / (a b))^0.72 X_S / (1.2 X_Ca) [degC] (Formula 84).
+
+    Parameters
+    ----------
+    rated : RatedSurface
+    mu : float
+        Mean friction coefficient.
+    losses : float
+        H_v, of the standard or computed.
+    """
+    area = rated.pair.centre_distance * rated.pair.face_width * 1e6
+    warm = (rated.power * 1e-3 * mu * losses / area) ** _POWER
+    return rated.surface.temperature + _BULK * warm * rated.supply / (_RELIEF * relief_factor(rated))
+
+
+def load_sharing_factor(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
+    """X_Y of unmodified profiles (Formulae 46 to 48): (Q - 2)/15 at A and E, a third more beside B and D, 1 between.
+
+    Helical teeth are taken as spur ones here; a transverse contact ratio of 2 or more is for method A: 1 everywhere.
+    """
+    place, start, end = np.asarray(x, dtype=float), pair.x_start, pair.x_end
+    first, last = end - pair.base_pitch, start + pair.base_pitch
+    if pair.contact_ratio >= 2.0:
+        return np.ones_like(place)
+    least, tiny = (max(grade, 7) - 2.0) / 15.0, np.finfo(float).tiny
+    rising = least + (place - start) / max(first - start, tiny) / 3.0
+    falling = least + (end - place) / max(end - last, tiny) / 3.0
+    return np.asarray(np.where(place < first, rising, np.where(place > last, falling, 1.0)))
+
+
+def pressure(speeds: FlankSpeeds, line_load: ArrayLike, modulus: float) -> Array:
+    """Local Hertzian pressure sqrt(w E_r / (2 pi rho_n)) [Pa], w in the plane of action per length (25 and 26)."""
+    radius = np.maximum(speeds.relative_radius, np.finfo(float).tiny)
+    return np.asarray(np.sqrt(np.maximum(np.asarray(line_load), 0.0) * modulus / (2.0 * math.pi * radius)))
+
+
+def film(
+    surface: Surface,
+    speeds: FlankSpeeds,
+    pressed: ArrayLike,
+    mu: ArrayLike,
+    bulk: float,
+    modulus: float,
+    heat: float = STEEL_HEAT,
+) -> Film:
+    """Film thickness at places on the path of contact.
+
+    Parameters
+    ----------
+    surface : Surface
+    speeds : FlankSpeeds
+    pressed : array_like
+        p_dyn,Y, local Hertzian pressure with all load factors [Pa].
+    mu : array_like
+        Friction coefficient.
+    bulk : float
+        theta_M [degC].
+    modulus : float
+        E_r [Pa].
+    heat : float
+        B_M of both gears [N/(m s^0.5 K)].
+    """
+    p, oil, tiny = np.maximum(np.asarray(pressed, dtype=float), 0.0), surface.oil, np.finfo(float).tiny
+    through = heat * (np.sqrt(speeds.rolling_driver) + np.sqrt(speeds.rolling_driven))
+    flash = (
+        0.5 * math.sqrt(math.pi) * np.asarray(mu) * p * np.abs(speeds.sliding) / np.maximum(through, tiny)
+        * np.sqrt(8.0 * speeds.relative_radius * p / modulus)
+    )  # fmt: skip
+    contact = bulk + flash
+    alpha, eta = float(oil.pressure_viscosity(bulk)), float(oil.dynamic(bulk))
+    g = alpha * modulus
+    u = eta * speeds.sum / (2.0 * modulus * np.maximum(speeds.relative_radius, tiny))
+    w = 2.0 * math.pi * (p / modulus) ** 2
+    s = np.maximum(oil.pressure_viscosity(contact) * oil.dynamic(contact) / (alpha * eta), tiny)
+    with np.errstate(divide="ignore"):
+        thick = 1.6 * speeds.relative_radius * g**0.6 * u**0.7 * np.where(w > 0.0, w, np.nan) ** -0.13 * s**0.22
+    thick = np.where(np.isnan(thick), np.inf, thick)  # nothing presses
+    return Film(np.asarray(flash), np.asarray(contact), thick, thick / surface.roughness)
+
+
+@lru_cache(maxsize=64)
+def film_of_test(oil: Oil, load_stage: int, temperature: float = 90.0) -> float:
+    """lambda_GFT: least film ratio of the FZG gears type C at the failure load stage of FVA 54/7 C/8.3/90.
+
+    The same formulas on the test gears (16/24 teeth, module 4.5 mm, centre distance 91.5 mm, face 14 mm, no relief,
+    2250 1/min, Ra 0.5 um, spray) with the oil of the case.
+
+    Raises
+    ------
+    RangeError
+        If the load stage is none of 5 to 10.
+    """
+    from fegear.formulas.iso6336.rated_surface import SUPPLY_FACTOR, LoadFactors, RatedSurface
+    from fegear.formulas.iso6336.test_gears import fzg_type_c
+
+    if load_stage not in _TEST_TORQUES:
+        raise RangeError("load stage", load_stage, "must be 5 to 10")
+    pair = fzg_type_c()
+    load = _TEST_TORQUES[load_stage] / pair.driver.base_radius
+    rated = RatedSurface(
+        pair, _TEST_SPEED, load, LoadFactors(), Surface(oil, temperature, _TEST_ROUGHNESS), SUPPLY_FACTOR["spray"]
+    )
+    return least_ratio(rated)[0]
+
+
+def rated_film(rated: RatedSurface, x: ArrayLike) -> tuple[Film, float, float]:
+    """The standard's film with its own load sharing, mu_m and theta_M [degC]."""
+    mu = friction(rated)
+    bulk, at = bulk_temperature(rated, mu, loss_factor(rated.pair)), rated.at(x)
+    share = load_sharing_factor(rated.pair, x, rated.grade)
+    return (
+        film(rated.surface, at, pressure(at, share * rated.line_load, rated.modulus), mu, bulk, rated.modulus),
+        mu,
+        bulk,
+    )
+
+
+def least_ratio(rated: RatedSurface) -> tuple[float, str]:
+    """lambda_GF,min of method B, and at which of the points A, AB, B, C, D, DE, E (clause 8.2)."""
+    pair = rated.pair
+    first, last = pair.x_end - pair.base_pitch, pair.x_start + pair.base_pitch
+    tiny = 1e-9 * pair.base_pitch
+    points = {
+        "A": pair.x_start, "AB": 0.5 * (pair.x_start + first), "B": first + tiny, "C": 0.0, "D": last - tiny,
+        "DE": 0.5 * (last + pair.x_end), "E": pair.x_end,
+    }  # fmt: skip
+    inside = {name: x for name, x in points.items() if pair.x_start <= x <= pair.x_end}
+    ratios = rated_film(rated, np.array(list(inside.values())))[0].ratio
+    least = int(np.argmin(ratios))
+    return float(ratios[least]), list(inside)[least]
+
+
+def permissible_ratio(oil: Oil, load_stage: int, temperature: float = 90.0, material: float = 1.0) -> float:
+    """lambda_GFP = 1.4 W_W lambda_GFT: from a test in another gear pair, W_W 1 for carburized steel."""
+    return _OF_TEST * material * film_of_test(oil, load_stage, temperature)

@@ -1,0 +1,34 @@
+"""The FZG test gears of scuffing and micropitting tests.
+
+Source: ISO 14635-1 (type A) and FVA information sheet 54/7 (type C); the dimensions as published reports of tests give
+them. Centre distance 91.5 mm, 16 and 24 teeth, module 4.5 mm, 20 deg.
+"""
+
+from __future__ import annotations
+
+import math
+
+from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+
+_MODULE, _DISTANCE = 4.5e-3, 91.5e-3
+#: Of the tooth thickness [modules]: the shifts, rounded as they are printed, would jam by 0.1 um.
+_ALLOWANCE = 0.01
+
+
+def _pair(shifts: tuple[float, float], tips: tuple[float, float], widths: tuple[float, float]) -> GearPair:
+    steel, gears = Material(206e9, 0.3), []
+    for teeth, shift, tip, width in zip((16, 24), shifts, tips, widths, strict=True):
+        rack = BasicRack.named("A", math.radians(20.0))
+        tooth = Tooth(teeth, rack, profile_shift=shift, thickness_allowance=_ALLOWANCE, tip_radius=0.5 * tip / _MODULE)
+        gears.append(Gear(tooth, _MODULE, 0.5 * tooth.root_radius * _MODULE, width, steel))
+    return GearPair(gears[0], gears[1], _DISTANCE)
+
+
+def fzg_type_c() -> GearPair:
+    """FZG gears type C: x = 0.1817 and 0.1715, tips 82.46 and 118.36 mm, face 14 mm."""
+    return _pair((0.1817, 0.1715), (82.46e-3, 118.36e-3), (14e-3, 14e-3))
+
+
+def fzg_type_a() -> GearPair:
+    """FZG gears type A: x = 0.8532 and -0.5, tips 88.77 and 112.5 mm, face 20 mm: much sliding at the pinion's tip."""
+    return _pair((0.8532, -0.5), (88.77e-3, 112.5e-3), (20e-3, 20e-3))
