@@ -18,6 +18,8 @@ from fegear.window.sent import whole
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from fegear.results.relief_for_case import How
+
 #: Accuracy against time: factor of the case's own tolerance.
 LEVELS = {"draft": 10.0, "normal": 1.0, "fine": 0.1}
 #: Figures and values of so many tasks are kept for pages that open later.
@@ -100,7 +102,7 @@ class Bench:
         for content in self._found.values():
             told.append(("found", {key: value for key, value in content.items() if key != "pictures"}))
             told += [("picture", picture) for picture in content.get("pictures", {}).values()]
-        return [*told, *((what, self._last[what]) for what in ("done", "compared") if what in self._last)]
+        return [*told, *((what, self._last[what]) for what in ("done", "designed", "compared") if what in self._last)]
 
     # ---- the case ------------------------------------------------------------------------------------------------
 
@@ -156,10 +158,11 @@ class Bench:
         if self._computing is not None:
             self._computing.ask(Export(next(self._numbers), self.asked()._replace(loosened=1.0), what, target))
 
-    def design(self, pair: str) -> None:
-        """Ask for the reliefs that remove the transmission error of a pair."""
+    def design(self, pair: str, how: How = "exact") -> None:
+        """Ask for the reliefs that remove the transmission error of a pair, or the nearest to them to grind."""
         if self._computing is not None:
-            self._computing.ask(Design(next(self._numbers), self.asked(), pair))
+            self._computing.ask(Design(next(self._numbers), self.asked(), pair, how))
+            self.tell("asked")
 
     def pin(self) -> None:
         """Keep the present state as variant A."""
@@ -202,12 +205,14 @@ class Bench:
         self._put(with_value(self._on_desk().text, ("gear", gear, "relief"), None), moving=False)
 
     def _take_reliefs(self, reliefs: dict[str, Any]) -> None:
+        """Give gears other reliefs; the case before is pinned, so that both are shown over each other."""
         text = self._on_desk().text
-        for gear, found in reliefs.items():
-            table = {"roll_angles": [f"{one:g} deg" for one in found["roll"]],
-                     "removals": [f"{one:g} um" for one in found["removal"]]}  # fmt: skip
+        for gear, relief in reliefs.items():
             text = with_value(text, ("gear", gear, "relief"), None)
-            text = with_value(text, ("gear", gear, "relief"), literal({"table": table}))
+            if relief is not None:
+                text = with_value(text, ("gear", gear, "relief"), literal(relief))
+        if self.pinned is None:
+            self.pin()
         self._put(with_value(text, ("effects", "relief"), "true"), moving=False)
 
     def _on_desk(self) -> Desk:
@@ -231,6 +236,8 @@ class Bench:
     def _hear(self, said: Said) -> None:
         what, content = said.what, said.content
         if what == "designed":
+            self._last["designed"] = content
+            self.tell(what, content)
             self._take_reliefs(content["reliefs"])
             return
         if what in ("exported", "compared"):

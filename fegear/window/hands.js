@@ -125,7 +125,10 @@ const fegearHands = (() => {
       kept.mesh.set(content.mesh);
       kept.load.set(content.load);
       const tools = kept.host.querySelector(".pair-tools");
-      tools.replaceChildren(...(content.reliefs.length > 1 && content.load ? [button("Remove the transmission error", "Reliefs of both gears that leave none at this load (Mark, Eq. 4.6)", () => emitEvent("design", { pair }))] : []));
+      tools.replaceChildren(...(content.reliefs.length > 1 && content.load ? [
+        button("Remove the transmission error", "Reliefs of both gears that leave none at this load (Mark, Eq. 4.6), as tables of the case", () => emitEvent("design", { pair, how: "exact" })),
+        button("Nearest that can be ground", "Linear or parabolic tip reliefs of both gears that leave the least at this load", () => emitEvent("design", { pair, how: "ground" })),
+      ] : []));
       for (const relief of content.reliefs) {
         const key = relief.figure.key, text = JSON.stringify(relief);
         if (section.shown.get(key) === text) continue;

@@ -5,9 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
-from fegear.errors import InputError
 from fegear.output.draw_plotly import darker, plotly_json
 from fegear.results.relief_handles import handled_relief
 from fegear.window.case_text import value_at
@@ -17,11 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.case.reading import Scene
-    from fegear.engine.run import Results
 
 _MEMBERS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
-#: Points of a designed relief that a case is given: straight lines between them stay within its own error.
-_POINTS = 61
 
 
 def hands_of(scene: Scene) -> dict[str, Any]:
@@ -68,30 +62,3 @@ def _load(document: Mapping[str, Any], name: str) -> dict[str, str] | None:
         if isinstance(given, str):
             return {"key": key, "text": given}
     return None
-
-
-def designed_reliefs(results: Results, pair: str) -> dict[str, dict[str, list[float]]]:
-    """Designed reliefs by gear: roll angles [deg] and removals [um], for a table of the case.
-
-    Raises
-    ------
-    InputError
-        If driver and driven are one gear, which cannot have two reliefs.
-    """
-    part = results.scene.case.pair[pair]
-    if part.driver == part.driven:
-        raise InputError(
-            f"pair.{pair}.driven", f'"{part.driven}"', "is the driver as well, and a design gives each its own relief",
-            "give the driven gear a name of its own",
-        )  # fmt: skip
-    found = {}
-    for gear in (part.driver, part.driven):
-        table = results.tables[f"relief_{pair}_{gear}"]
-        roll, removal = (np.asarray(table[name], dtype=float) for name in ("roll_angle", "relief"))
-        order = np.argsort(roll)
-        places = np.linspace(roll.min(), roll.max(), _POINTS)
-        found[gear] = {
-            "roll": [float(f"{one:.6g}") for one in places],
-            "removal": [float(f"{one:.4g}") for one in np.interp(places, roll[order], removal[order])],
-        }
-    return found

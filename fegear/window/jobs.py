@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 
 class Asked(NamedTuple):
@@ -61,11 +61,16 @@ class Compare:
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """Find the reliefs of a pair that remove its transmission error (Mark, Eq. 4.6), as the result ``relief`` does."""
+    """Find reliefs of a pair by theory, as the result ``relief`` does.
+
+    ``exact``: those that remove its transmission error (Mark, Eq. 4.6); ``ground``: the tip reliefs to grind that leave
+    the least.
+    """
 
     number: int
     asked: Asked
     pair: str
+    how: Literal["exact", "ground"] = "exact"
 
 
 Job = Compute | Export | Compare | Design

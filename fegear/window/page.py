@@ -80,6 +80,7 @@ class Page:
                 with ui.element("main").classes("outputs").props('aria-label="Results"'):
                     ui.element("ul").props("id=remarks")
                     ui.element("div").props("id=hands")
+                    ui.element("div").props("id=designed")
                     ui.element("div").props("id=compared")
                     ui.element("div").props("id=results")
         for what, content in self._bench.shown_now():

@@ -149,12 +149,25 @@ const fegear = (() => {
       }
       for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
     },
+    async designed({ pair, told, figures, darker }) {
+      const key = `hand design ${pair}`;
+      if (!sections.get(key)?.element.isConnected) {
+        const element = made("section", "task design");
+        element.append(made("h2", "", `Relief of pair ${pair} by theory`), made("p"), made("div", "figures"));
+        $("designed").append(element);
+        sections.set(key, { element, specs: new Map(), shown: new Map(), darker: {} });
+      }
+      const kept = sections.get(key);
+      kept.element.querySelector("p").textContent = told;
+      kept.darker = darker;
+      for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
+    },
     unpinned() { sections.get("compared")?.element.remove(); sections.delete("compared"); },
     laid() {
       sections.clear();
       seen.clear();
       sight.disconnect();
-      document.querySelectorAll("#results, #remarks, #compared, #hands").forEach((one) => one.replaceChildren());
+      document.querySelectorAll("#results, #remarks, #compared, #designed, #hands").forEach((one) => one.replaceChildren());
     },
   };
 

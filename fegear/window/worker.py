@@ -10,8 +10,8 @@ from fegear.engine.processes import settle
 from fegear.errors import FegearError, InputError
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
-from fegear.window.case_text import literal, with_value
-from fegear.window.hands import designed_reliefs, hands_of
+from fegear.window.designs import design_asked, designed
+from fegear.window.hands import hands_of
 from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Compare, Compute, Design, Export, Said
 from fegear.window.order import in_order
@@ -246,10 +246,8 @@ class Worker:
         )
 
     def _design(self, job: Design) -> None:
-        text = with_value(job.asked.text, ("results",), '["relief"]')
-        text = with_value(text, ("design", "pair"), literal(job.pair))
-        results = self._results(job.asked._replace(text=text))
-        self._say("designed", reliefs=designed_reliefs(results, job.pair))
+        results = self._results(design_asked(job.asked, job.pair, job.how))
+        self._say("designed", **designed(results, job.pair, job.how))
 
 
 def scene_of(asked: Asked) -> Scene:

@@ -146,6 +146,16 @@ def test_inputs_that_mean_the_same_are_the_same():
     assert keys["gear.b.teeth"].second == 30
 
 
+def test_a_table_that_one_case_lacks_is_told_by_its_own_keys_alone():
+    first = {"results": ["geometry"], "gear": {"a": {"teeth": 20, "module": "3 mm"}}}
+    relief = {"tip": {"amount": "10 um", "length": "2 mm"}}
+    second = {"results": ["geometry"], "gear": {"a": {"teeth": 20, "module": "3 mm", "relief": relief}}}
+    assert [(one.key, one.first, one.second) for one in different_inputs(first, second)] == [
+        ("gear.a.relief.tip[0].amount", None, "10 um"),
+        ("gear.a.relief.tip[0].length", None, "2 mm"),
+    ]
+
+
 def test_rows_that_only_one_table_has_are_counted_and_kept():
     def table(names, places, loads):
         return Table("t", (Column("x", np.array(places), "mm"), Column("name", np.array(names)),

@@ -34,14 +34,17 @@ def different_inputs(first: Mapping[str, object], second: Mapping[str, object]) 
     meant = meaning_of(first), meaning_of(second)
     keys = dict.fromkeys([*meant[0], *meant[1]])
     found = [key for key in keys if not _same(meant[0].get(key), meant[1].get(key))]
-    return tuple(Input(key, *(_written(key, text) for text in written)) for key in found)
+    told = [Input(key, *(_written(key, text) for text in written)) for key in found]
+    # What neither writes are defaults within a table that one of them has, which its own keys tell.
+    return tuple(one for one in told if one.first is not None or one.second is not None)
 
 
 def _written(key: str, written: Mapping[str, object]) -> object:
     """What a case writes for a key, or for the table that it stands in (``rack = "ISO 53 A"``)."""
     while key:
-        if key in written:
-            return written[key]
+        for form in (key, key.replace("[0]", "")):  # one table stands for a list of one
+            if form in written:
+                return written[form]
         key = key.rpartition(".")[0]
     return None
 
