@@ -97,22 +97,26 @@ class CornerContact:
         )
         return low, max(top + self.rounding, low)
 
+    def _angles(self, length: Array) -> tuple[Array, Array]:
+        """Angles of the tip's and the flank's gear for contact at a roll length of the (offset) flank."""
+        a, r, rbf = self.pair.centre_distance, self._corner_radius, self.pair.gear(self.flank_of).base_radius
+        rho = np.hypot(rbf, length)
+        # arccos of the law of cosines, written with half angles so that flat triangles keep their digits
+        s = 0.5 * (a + r + rho)
+        at_f = 2.0 * np.arctan2(np.sqrt(np.maximum((s - a) * (s - rho), 0)), np.sqrt(np.maximum(s * (s - r), 0)))
+        at_t = 2.0 * np.arctan2(np.sqrt(np.maximum((s - a) * (s - r), 0)), np.sqrt(np.maximum(s * (s - rho), 0)))
+        return at_t, at_f - polar_angle(length / rbf)
+
+    @cached_property
+    def _start(self) -> tuple[Array, Array]:
+        """Where the path ends."""
+        return self._angles(np.asarray(self._span[0]))
+
     def _rolled(self, length: Array) -> tuple[Array, Array]:
         """Both gears' rolled lengths u_T, u_F for contact at a roll length of the (offset) flank."""
-        a, r = self.pair.centre_distance, self._corner_radius
-        rbf, rbt = self.pair.gear(self.flank_of).base_radius, self.pair.gear(self.tip_of).base_radius
-
-        def angles(ell: Array) -> tuple[Array, Array]:
-            rho = np.hypot(rbf, ell)
-            # arccos of the law of cosines, written with half angles so that flat triangles keep their digits
-            s = 0.5 * (a + r + rho)
-            at_f = 2.0 * np.arctan2(np.sqrt(np.maximum((s - a) * (s - rho), 0)), np.sqrt(np.maximum(s * (s - r), 0)))
-            at_t = 2.0 * np.arctan2(np.sqrt(np.maximum((s - a) * (s - r), 0)), np.sqrt(np.maximum(s * (s - rho), 0)))
-            return at_t, at_f - polar_angle(ell / rbf)
-
-        start_t, start_f = angles(np.asarray(self._span[0]))
-        now_t, now_f = angles(length)
-        return rbt * (now_t - start_t), rbf * (now_f - start_f)
+        (start_t, start_f), (now_t, now_f) = self._start, self._angles(length)
+        of_tip, of_flank = self.pair.gear(self.tip_of), self.pair.gear(self.flank_of)
+        return of_tip.base_radius * (now_t - start_t), of_flank.base_radius * (now_f - start_f)
 
     @cached_property
     def reach(self) -> float:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 #: share is below its own size.
 _SMALLEST_SHARE = 1e-20
 _MOST_STEPS = 40
+#: Of a share: the whole load is one.
+_ROUND_OFF = 1e-15
 #: Exponent of the load in Palmgren's contact deflection.
 _PALMGREN = 0.9
 
@@ -125,9 +127,25 @@ def share_load(
             "has no tooth pair in reach of the line of action",
             "raise the contact ratio above 1 or allow corner contact",
         )
-    kappa = np.broadcast_to(np.asarray(log_slope, dtype=float), (n, positions))[:, :, None]
-    at = np.broadcast_to(np.asarray(reference_load, dtype=float), (n, positions))[:, :, None]
-    bent = np.broadcast_to(np.asarray(power, dtype=float), (n, positions))[:, :, None]
+    near = reach.any(axis=(1, 2))  # pairs that are nowhere in reach would only cost time
+    slope, reference, bent = (
+        np.broadcast_to(np.asarray(one, dtype=float), (n, positions))[near]
+        for one in (log_slope, reference_load, power)
+    )
+    narrow = None if tilt is None else np.asarray(tilt, dtype=float)[near]
+    shared = _share(c[np.ix_(near, near)], e[near], total, slope, reference, bent, narrow)
+    loads = np.zeros((n, positions, cases))
+    loads[near] = shared.loads
+    return SharedLoad(loads, shared.transmission_error, shared.steps)
+
+
+def _share(
+    c: Array, e: Array, total: Array, log_slope: Array, reference_load: Array, power: Array, tilt: Array | None
+) -> SharedLoad:
+    """`share_load` of arrays of full shape and of pairs that are in reach somewhere."""
+    n, positions, cases = e.shape
+    reach = e < np.inf
+    kappa, at, bent = (one[:, :, None] for one in (log_slope, reference_load, power))
     # In shares v = W_j / W every load is the same problem: only the diagonal and the separations change with W.
     diagonal = c[np.arange(n), np.arange(n)][:, :, None] - 0.5 * kappa * np.log(total / at)
     _refuse_wide_contact(np.where(reach, diagonal, np.inf), kappa, total)
@@ -146,7 +164,7 @@ def share_load(
         half_slope=flat(0.5 * kappa) if kappa.any() else None,
         gap=flat(np.where(reach, e - nearest, 0.0) / total),
         reach=flat(reach.astype(float)) > 0.5,
-        tilt=None if tilt is None else flat(np.asarray(tilt, dtype=float)[:, :, None] * np.sqrt(at / total)),
+        tilt=None if tilt is None else flat(tilt[:, :, None] * np.sqrt(at / total)),
         power=flat(bent * total ** (_PALMGREN - 1.0)) if bent.any() else None,
     )
     v, z, steps = _solve(problem)
@@ -263,8 +281,9 @@ def _solve(problem: _Problem) -> tuple[Array, Array, int]:
         touching = -1e-15 * (np.abs(z) + np.abs(problem.gap))
         enters = problem.reach & ~active & (_gap(problem, np.where(active, new, 0.0), z) < touching)
         settled = (stays | enters) == active
-        # Newton squares the relative error: a last step of 1e-8 leaves nothing but round-off.
-        close = (np.abs(new - v) <= 1e-8 * np.abs(new) + 1e-17).all(axis=0, where=active)
+        # Newton squares the relative error: a last step of 1e-8 leaves nothing but round-off, which is that of the
+        # whole load: the share of a pair that just touches keeps moving by it.
+        close = (np.abs(new - v) <= 1e-8 * np.abs(new) + _ROUND_OFF).all(axis=0, where=active)
         straight = problem.half_slope is None and problem.power is None
         done = settled.all(axis=0) & (close | straight)
         if done.any():

@@ -180,12 +180,13 @@ class PairCompliance:
         the driven gear's, since tooth +1 is the one on the side that the load comes from.
         """
         n = at.x.shape[0]
-        for j in range(n):
-            for other in range(j + 1, n):
-                both = at.present[j] & at.present[other]
-                if not both.any():
-                    continue
-                k = j - other
-                value = self.driver.neighbour(k, at.radius_driver[j, both], at.radius_driver[other, both])
-                value = value + self.driven.neighbour(-k, at.radius_driven[j, both], at.radius_driven[other, both])
-                c[j, other, both] = c[other, j, both] = value / self.face_width
+        for k in range(1, n):  # all pairs that are k apart at once
+            both = at.present[: n - k] & at.present[k:]
+            if not both.any():
+                continue
+            (driver, driver_ahead), (driven, driven_ahead) = (
+                (radius[: n - k][both], radius[k:][both]) for radius in (at.radius_driver, at.radius_driven)
+            )
+            value = self.driver.neighbour(-k, driver, driver_ahead) + self.driven.neighbour(k, driven, driven_ahead)
+            j, p = np.nonzero(both)
+            c[j, j + k, p] = c[j + k, j, p] = value / self.face_width

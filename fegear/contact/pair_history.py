@@ -73,9 +73,10 @@ def pair_history(engagement: Engagement, load: ArrayLike, positions: int = 200, 
     here = (index, np.arange(x.size))
     loads = np.atleast_1d(np.asarray(load, dtype=float))
     picked = []
-    for k in np.unique(number):
+    uneven = engagement.driver_spacing.size or engagement.driven_spacing.size
+    for k in np.unique(number) if uneven else (0,):
         # Pair j is on teeth cycle - j: this pair keeps its own teeth while the base pitches pass.
-        rows = number == k
+        rows = number == k if uneven else np.ones(x.size, dtype=bool)
         part = engagement.solve(
             grid if rows.all() else engagement.grid((x - number * pitch)[rows]), loads, cycle + int(k)
         )

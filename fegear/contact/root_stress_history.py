@@ -57,6 +57,8 @@ def root_stress_kernels(
 ) -> Kernels:
     """Stress along the fillet of tooth k per unit line load at each contact, (points, n, P) for each k [1/m].
 
+    It is zero where the pair is out of reach and carries nothing.
+
     Parameters
     ----------
     engagement, contacts, member, side, beyond
@@ -71,11 +73,11 @@ def root_stress_kernels(
     """
     source = source or engagement.compliance.source(member)
     radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
-    n, positions = radius.shape
+    n = radius.shape[0]
     reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
     kernels: Kernels = {}
     for k in range(-reach, reach + 1):
-        kernel = source.root_stress(k, radius.ravel(), side)
+        kernel = source.root_stress(k, radius[contacts.present], side)
         if kernel is None:
             raise InputError(
                 "results",
@@ -83,7 +85,8 @@ def root_stress_kernels(
                 "cannot come from a compliance source that knows deflections alone",
                 'set pair.root_stress.source = "fe" or a formula',
             )
-        kernels[k] = kernel.reshape(kernel.shape[0], n, positions)
+        kernels[k] = np.zeros((kernel.shape[0], *radius.shape))
+        kernels[k][:, contacts.present] = kernel
     return kernels
 
 

@@ -61,6 +61,8 @@ def tooth_stress(
     x: ArrayLike,
     member: Member,
     source: RootStressInfluence | None = None,
+    *,
+    estimates: bool = True,
 ) -> ToothStress:
     """Follow one tooth of a gear from a base pitch before its contact to one after it.
 
@@ -76,6 +78,8 @@ def tooth_stress(
     member : {"driver", "driven"}
     source : RootStressInfluence, optional
         Where the gear's root stress comes from; by default where its compliance does, which must be finite elements.
+    estimates : bool
+        Whether the error is estimated; else it is not known.
 
     Raises
     ------
@@ -101,7 +105,7 @@ def tooth_stress(
             for other in shifted:
                 again = solve_again(other, state)
                 off = off + np.abs(root_stress_history(e, again, member, "tension", 1, pull).stress - pulled.stress)
-            off[1:-1] += _own_error(e, member, state, source)
+            off[1:-1] += _own_error(e, member, state, source) if estimates else np.nan
             known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
         for found, values in zip((xs, tension, compression, error), known[id(state)], strict=True):
             found.append(values[row])

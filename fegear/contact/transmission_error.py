@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.contact.engagement import Engagement, Loaded
 
+#: Contact changes are bracketed by so many divisions into so many parts each.
+_PASSES, _PARTS = 3, 32
+
 
 @dataclass(frozen=True)
 class TransmissionError:
@@ -71,7 +74,8 @@ def contact_changes(engagement: Engagement, load: float, cycle: int = 0, samples
     """Roll positions [m] at which a pair comes into or out of contact between the geometric break points.
 
     Found as events: between two neighbouring sample points with different loaded pairs the change is bracketed by
-    bisection, to 1e-9 of the base pitch; a misplaced kink costs the quadrature its square.
+    division, to 1e-6 of the base pitch; a misplaced kink costs the quadrature its square, a misplaced jump of the
+    local stiffness 1e-7 of its mean. Every pass cuts all brackets into 32 parts: as fast as cutting them in two.
     """
     pitch, start = engagement.pair.base_pitch, engagement.pair.x_start
     edges = np.concatenate([[start], [b for b in engagement.breaks if start < b < start + pitch], [start + pitch]])
@@ -89,10 +93,13 @@ def contact_changes(engagement: Engagement, load: float, cycle: int = 0, samples
     low, high, state = x[:-1][changed], x[1:][changed], active[:, :-1][:, changed]
     if not low.size:
         return low
-    for _ in range(25):
-        middle = 0.5 * (low + high)
-        same = (_active(engagement, middle, load, cycle) == state).all(axis=0)
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    every, inside = np.arange(low.size), np.arange(1, _PARTS) / _PARTS
+    for _ in range(_PASSES):
+        ends = np.concatenate([low[None], low + inside[:, None] * (high - low), high[None]])
+        found = _active(engagement, ends[1:-1].ravel(), load, cycle).reshape(-1, _PARTS - 1, low.size)
+        differs = np.concatenate([(found != state[:, None]).any(axis=0), np.ones((1, low.size), dtype=bool)])
+        first = differs.argmax(axis=0)
+        low, high = ends[first, every], ends[first + 1, every]
     return np.asarray(0.5 * (low + high))
 
 

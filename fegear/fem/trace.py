@@ -17,6 +17,8 @@ import numpy as np
 from fegear.errors import RangeError
 
 if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
     from fegear.arrays import Array, Index
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.tooth import Tooth
@@ -200,14 +202,40 @@ class LoadedFlank:
             (a patch that reaches over a tip rounding must not turn with it). As a left factor it is the
             pressure-weighted mean deflection.
         """
+        edge, position, along = self._pushed(arc, half_width)
+        count = np.size(arc)
+        return np.concatenate([self._summed(edge, position, one, count) for one in along])
+
+    def few_patches(self, arc: Array, half_width: Array) -> csr_array:
+        """As `patches`, transposed and without its zeros: a contact presses on some seventeen of five hundred nodes.
+
+        Parameters
+        ----------
+        arc, half_width : ndarray, shape (P,)
+
+        Returns
+        -------
+        csr_array, shape (P, 2 nodes)
+        """
+        from scipy.sparse import csr_array
+
+        edge, position, along = self._pushed(arc, half_width)
+        node = edge[:, None] * self.order + np.arange(self.order + 1)
+        column = np.stack([node, node + self.nodes])
+        row = np.broadcast_to(position[:, None], column.shape)
+        values = np.moveaxis(along.sum(axis=3), 1, 2)
+        shape = (np.size(arc), 2 * self.nodes)
+        return csr_array((values.ravel(), (row.ravel(), column.ravel())), shape=shape)
+
+    def _pushed(self, arc: Array, half_width: Array) -> tuple[Index, Index, Array]:
+        """Edges and contacts as of `_pressed`, and what Gauss points give their nodes, shape (2, order + 1, n, q)."""
         edge, position, xi, weight = self._pressed(arc, half_width)
         inward = self._normal(edge, xi)
         # of the flank's last edge: a small rounding may be a single edge, whose own tangent there is degrees off
         last = self._normal(np.array([self.after_flank_edge - 1]), np.array([1.0]))
         inward[:, edge >= self.after_flank_edge] = last[:, :, None]
         shape = lagrange(self.order, xi) * weight
-        count = np.size(arc)
-        return np.concatenate([self._summed(edge, position, shape * along, count) for along in inward])
+        return edge, position, shape * inward[:, None]
 
     def normal_patches(self, arc: Array, half_width: Array) -> Array:
         """Shares of the run's nodes in unit contacts, shape (nodes, P): loads on unknowns against the flank's normal.

@@ -78,6 +78,8 @@ class RootStressInputs:
         Of the pair.
     labels, gears : mapping of str to str
         Names of the tables and of the gears by member.
+    estimates : bool
+        Whether errors are estimated.
     """
 
     rate: float | None
@@ -87,6 +89,7 @@ class RootStressInputs:
     name: str = field(compare=False)
     labels: Mapping[Member, str] = field(compare=False)
     gears: Mapping[Member, str] = field(compare=False)
+    estimates: bool = True
 
 
 def _inputs(scene: Scene, name: str) -> RootStressInputs:
@@ -95,7 +98,8 @@ def _inputs(scene: Scene, name: str) -> RootStressInputs:
     gears, effects = {member: gear_name(scene, name, member) for member in MEMBERS}, scene.case.effects
     sources = stress_sources(scene, name)
     labels = table_names(scene, name)
-    return RootStressInputs(rate, sources, effects.neighbour_coupling, effects.corner_contact, name, labels, gears)
+    coupled, tips = effects.neighbour_coupling, effects.corner_contact
+    return RootStressInputs(rate, sources, coupled, tips, name, labels, gears, scene.estimates)
 
 
 def _compute(asked: RootStressInputs, upstream: Upstream, work: Work) -> RootStressData:
@@ -114,7 +118,9 @@ def _compute(asked: RootStressInputs, upstream: Upstream, work: Work) -> RootStr
             source = root_stress_source(
                 name, asked.name, gear, pair.engagement.pair, member, solved, tips=asked.tips
             )  # fmt: skip
-            stress[member][name] = tooth_stress(pair.engagement, pair.shifted, pair.loads, x, member, source)
+            stress[member][name] = tooth_stress(
+                pair.engagement, pair.shifted, pair.loads, x, member, source, estimates=asked.estimates
+            )
             notes[member][name] = source.remarks
         work.progress((number + 1) / len(MEMBERS))
     return RootStressData(pair, stress, notes)

@@ -155,6 +155,23 @@ def test_fourier_coefficients_converge_with_the_quadrature_although_there_are_ki
     assert errors[1] < errors[0]
 
 
+def test_contact_changes_are_where_bisection_finds_them():
+    e, load = relieved(engaged(STANDARD), 20e-6), 1500.0
+    pitch = STANDARD.base_pitch
+
+    def loaded(x):
+        return e.solve(e.grid([x]), [load]).loads[:, 0, 0] > 0.0
+
+    for change in contact_changes(e, load):
+        low, high = change - 2e-6 * pitch, change + 2e-6 * pitch
+        before = loaded(low)
+        assert (loaded(high) != before).any()
+        for _ in range(20):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if (loaded(middle) == before).all() else (low, middle)
+        assert abs(change - low) < 1e-6 * pitch
+
+
 def test_a_light_load_shows_the_profile_itself():
     """As the load vanishes the transmission error is the least modification of the pairs in reach."""
     e = relieved(engaged(STANDARD))

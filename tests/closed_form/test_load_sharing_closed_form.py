@@ -144,3 +144,26 @@ def test_wrong_questions_are_refused():
         share_load(np.ones((1, 1, 2)), [[0.0, np.inf]], [1.0])
     with pytest.raises(RangeError, match="so wide"):
         share_load(np.ones((1, 1, 1)), [[0.0]], [1e30], 0.1, 1.0)
+
+
+def test_a_pair_that_only_just_touches_is_settled_like_any_other():
+    """Its share keeps moving by the round-off of the whole load; that once cost forty steps and all sets in turn."""
+    c, kappa, ref, total = np.array([[2.1e-9, 3.3e-10], [3.3e-10, 1.9e-9]]), 3.7e-10, 1000.0, 1234.5
+    apart = own(total, c[0, 0], kappa, ref) - c[1, 0] * total  # the second pair is just not reached
+    short = apart * (1.0 - 10.0 ** -np.linspace(4.0, 13.0, 200))
+    found = share_load(np.tile(c[:, :, None], short.size), np.stack([np.zeros(short.size), short]), [total], kappa, ref)
+    assert found.steps < 15
+    w, z = found.loads[:, :, 0], found.transmission_error[:, 0]
+    assert (w[1] > 0.0).sum() > 150
+    assert (np.diff(w[1]) <= 1e-15 * total).all()
+    deflected = np.array([own(one, c[1, 1], kappa, ref) for one in w[1]]) + c[1, 0] * w[0] + short
+    np.testing.assert_allclose(deflected[w[1] > 0.0], z[w[1] > 0.0], rtol=1e-13)
+    # pairs that are nowhere in reach change nothing
+    wide = np.zeros((4, 4, short.size))
+    wide[1:3, 1:3] = c[:, :, None]
+    wide[0, 0] = wide[3, 3] = 1.0
+    far = np.full((1, short.size), np.inf)
+    again = share_load(wide, np.concatenate([far, np.zeros((1, short.size)), short[None], far]), [total], kappa, ref)
+    assert (again.loads[1:3] == found.loads).all()
+    assert not again.loads[[0, 3]].any()
+    assert (again.transmission_error == found.transmission_error).all()

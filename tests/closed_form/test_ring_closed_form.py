@@ -162,6 +162,7 @@ def test_moments_and_forces_of_every_patch_are_exact():
     flank = four_square(2, 1.0).flank
     arc = np.linspace(flank.flank_start, flank.arc[-1], 17)
     loads = flank.patches(arc, np.full(17, 0.01))
+    assert (flank.few_patches(arc, np.full(17, 0.01)).toarray() == loads.T).all()
     normal = four_square(2, 1.0).tooth.involute
     roll = np.sqrt(normal.start**2 + 2.0 * (arc - flank.flank_start) / normal.base_radius)
     total = loads.reshape(2, -1, 17).sum(axis=1)
