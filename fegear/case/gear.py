@@ -168,7 +168,7 @@ class GearPart(Part):
         default_factory=MaterialPart, description="Elasticity and density of the gear; without it steel."
     )
     strength: StrengthPart | None = Field(
-        default=None, description="what the material bears, for the result rating: kind, quality and hardness"
+        default=None, description="What the material bears, for the result rating: kind, quality and hardness."
     )
     tooth_mesh: str | None = Field(
         default=None,

@@ -18,6 +18,7 @@ from fegear.case.load_distribution import LoadDistributionPart
 from fegear.case.loading import LoadingPart
 from fegear.case.pair import PairPart
 from fegear.case.part import Part
+from fegear.case.rating import RatingPart
 from fegear.case.stiffness import StiffnessPart
 from fegear.case.study import StudyPart
 from fegear.case.train import TrainPart
@@ -72,4 +73,5 @@ class Case(Part):
         default_factory=EffectsPart, description="The physical effects that count; each is off unless named."
     )
     accuracy: AccuracyPart = Field(default_factory=AccuracyPart, description="How exact the finite elements shall be.")
+    rating: RatingPart = Field(default_factory=RatingPart, description="What stands beside the rating by ISO 6336.")
     cost: CostPart = Field(default_factory=CostPart, description="What `fegear cost` studies; a run does not read it.")

@@ -7,7 +7,6 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fegear.case.part import (
-    Length,
     LengthOrZero,
     Number,
     Part,
@@ -22,6 +21,10 @@ from fegear.case.part import (
 
 NumberOrZero = Annotated[Number, Field(ge=0.0)]
 Factor = Annotated[Number, Field(ge=1.0)]
+#: What is done to the flanks along the face: rows of ISO 6336-1's table of B_1 and B_2.
+HelixModification = Literal[
+    "none", "crowned", "crowned for manufacture", "helix corrected", "helix corrected and crowned", "end relief"
+]
 #: Shares of a spectrum may miss their sum of 1 by so much: they are often given in percent of one decimal.
 _SHARES = 2e-3
 
@@ -29,15 +32,15 @@ _SHARES = 2e-3
 class SpectrumPart(Part):
     """One bin of ``spectrum = [{ torque or load_factor, speed, share or time }, ...]``."""
 
-    torque: TorqueOrZero | None = Field(default=None, description="torque of the driver in this bin")
+    torque: TorqueOrZero | None = Field(default=None, description="Torque of the driver in this bin.")
     load_factor: NumberOrZero | None = Field(
-        default=None, description="load of this bin as a multiple of the pair's load or torque, in place of torque"
+        default=None, description="Load of this bin as a multiple of the pair's load, in place of torque."
     )
-    speed: PositiveSpeed | None = Field(default=None, description="speed of the driver in this bin; the pair's without")
+    speed: PositiveSpeed | None = Field(default=None, description="Speed of the driver here; the pair's without.")
     share: NumberOrZero | None = Field(
-        default=None, description="share of the time spent in this bin; they add up to 1"
+        default=None, description="Share of the time spent in this bin; they add up to 1."
     )
-    time: PositiveTime | None = Field(default=None, description="time spent in this bin, in place of share")
+    time: PositiveTime | None = Field(default=None, description="Time spent in this bin, in place of share.")
 
     @model_validator(mode="after")
     def _one_of_each(self) -> Self:
@@ -54,36 +57,41 @@ class OperationPart(Part):
     """``operation = { application_factor, life, spectrum, ... }``: loads and life that a rating is for."""
 
     application_factor: PositiveNumber = Field(
-        default=1.0, description="K_A, what driving and driven machine add to the nominal load; 1 with a spectrum"
+        default=1.0,
+        description="Application factor K_A: what both machines add to the nominal load; 1 with a spectrum.",
     )
     mesh_load_factor: Factor = Field(
-        default=1.0, description="K_gamma, what uneven sharing between several paths, as planets, adds to the load"
+        default=1.0,
+        description="Mesh load factor K_gamma: what uneven sharing between several paths adds to the load.",
     )
     dynamic_factor: Factor | None = Field(
-        default=None, description="own K_v in place of that of ISO 6336-1 method B, e.g. from result dynamic-factor"
+        default=None,
+        description="Own K_v in place of that of ISO 6336-1 method B, for example from the result dynamic-factor.",
     )
-    face_load_factor: Factor | None = Field(default=None, description="own K_Hbeta in place of that of ISO 6336-1")
+    face_load_factor: Factor | None = Field(default=None, description="Own K_Hbeta in place of that of ISO 6336-1.")
     transverse_load_factor: Factor | None = Field(
-        default=None, description="own K_Halpha = K_Falpha in place of that of ISO 6336-1"
+        default=None, description="Own K_Halpha = K_Falpha in place of that of ISO 6336-1."
     )
-    life: PositiveTime | None = Field(default=None, description="required life at the pair's speed or of the spectrum")
+    life: PositiveTime | None = Field(
+        default=None, description="Required life at the pair's speed or under the spectrum; unlimited without."
+    )
     load_cycles: PositiveNumber | None = Field(
-        default=None, description="load cycles that a flank of the driver must bear, in place of life"
+        default=None, description="Load cycles that a flank of the driver must bear, in place of life."
     )
     contacts: list[Annotated[int, Field(ge=1, le=100)]] = Field(
         default=[1, 1],
-        description="how often a flank of the driver and of the driven gear is loaded per revolution: 3 for a sun "
-        "gear with three planets",
+        description="How often a flank of the driver and of the driven gear is loaded per revolution: 3 for a sun "
+        "gear with three planets.",
     )
     idler: Literal["driver", "driven", "both"] | None = Field(
-        default=None, description="gear whose teeth are bent to either side once per revolution, as those of an idler"
+        default=None, description="Gear whose teeth are bent to either side once per revolution, as those of an idler."
     )
     spectrum: Annotated[list[SpectrumPart], Field(min_length=1), at_most(1000, "bins")] | None = Field(
-        default=None, description="loads of the life in bins, which are added up by Miner's rule (ISO 6336-6)"
+        default=None, description="Loads of the life in bins, which are added up by Miner's rule (ISO 6336-6)."
     )
-    safety_contact: PositiveNumber = Field(default=1.0, description="S_Hmin, safety against pitting that is required")
+    safety_contact: PositiveNumber = Field(default=1.0, description="Required safety against pitting S_Hmin.")
     safety_root: PositiveNumber = Field(
-        default=1.4, description="S_Fmin, safety against breakage of the tooth root that is required"
+        default=1.4, description="Required safety against breakage of the tooth root S_Fmin."
     )
 
     @model_validator(mode="after")
@@ -115,25 +123,47 @@ class ShaftsPart(Part):
     The pinion is the gear with fewer teeth; the standard's formula knows its shaft alone.
     """
 
-    arrangement: Literal["a", "b", "c", "d", "e"] = Field(
-        description="where the pinion sits and the torque enters: letter of the figure of ISO 6336-1 for K'"
+    arrangement: Literal["a", "b", "c", "d", "e"] | None = Field(
+        default=None,
+        description="Where the pinion sits and the torque enters: letter of the figure of ISO 6336-1 for K'.",
     )
-    bearing_span: PositiveLength = Field(description="l, distance of the bearings of the pinion shaft")
-    offset: LengthOrZero = Field(description="s, distance of the pinion's middle from the middle of the bearing span")
-    diameter: PositiveLength = Field(description="d_sh, outer diameter of the pinion shaft where it bends")
-    stiffened: bool = Field(
-        default=True,
-        description="whether the pinion's body stiffens its shaft: of one piece with it, or shrunk on",
+    bearing_span: PositiveLength | None = Field(default=None, description="Distance l of the pinion shaft's bearings.")
+    offset: LengthOrZero = Field(
+        default=0.0,
+        description="Distance s of the pinion's middle from that of the bearings, as drawn for the arrangement.",
+    )
+    diameter: PositiveLength | None = Field(
+        default=None, description="Outer diameter d_sh of the pinion shaft where it bends."
     )
     power_share: Annotated[Number, Field(gt=0.0, le=1.0)] = Field(
-        default=1.0, description="share of the input power that goes through this one mesh, k% of ISO 6336-1"
+        default=1.0, description="Share of the input power that goes through this one mesh, k% of ISO 6336-1."
     )
-    misalignment: Length | None = Field(
+    deformation: LengthOrZero | None = Field(
         default=None,
-        description="f_ma, misalignment of the mesh from manufacture over the face; from the tolerance classes without",
+        description="Misalignment f_sh of the loaded shafts over the face, where it is known better; then without "
+        "arrangement, bearing_span and diameter.",
     )
-    pattern: Literal["unproved", "favourable"] = Field(
-        default="unproved",
-        description="whether the contact pattern is proved to lie so that shaft deflection and manufacture make up for "
-        "each other",
+    misalignment: LengthOrZero | None = Field(
+        default=None,
+        description="Misalignment f_ma from manufacture over the face; from the tolerance classes without.",
     )
+    modification: HelixModification | None = Field(
+        default=None,
+        description="What is done to the flanks along the face against misalignment (B_1, B_2 of ISO 6336-1); "
+        "from lead of the gears without.",
+    )
+    contact_pattern: Literal["unknown", "favourable", "verified"] = Field(
+        default="unknown",
+        description="Whether the contact pattern is known: deformation and manufacture offset each other, or it fits.",
+    )
+
+    @model_validator(mode="after")
+    def _whole_shaft(self) -> Self:
+        shaft = ("arrangement", "bearing_span", "diameter")
+        missing = [key for key in shaft if getattr(self, key) is None]
+        if self.deformation is None and missing:
+            raise refuse("is missing", "give arrangement, bearing_span and diameter, or deformation", key=missing[0])
+        if self.deformation is not None and len(missing) < len(shaft):
+            key = next(key for key in shaft if key not in missing)
+            raise refuse("contradicts deformation", "give either the shaft or f_sh", key=key)
+        return self

@@ -162,10 +162,11 @@ class PairPart(Part):
         default=None, description="friction law of tooth-loss; Schlenk's where the lubricant is known"
     )
     operation: OperationPart = Field(
-        default_factory=OperationPart, description="loads, life and required safeties that the result rating is for"
+        default_factory=OperationPart, description="Loads, life and required safeties that the result rating is for."
     )
     shafts: ShaftsPart | None = Field(
-        default=None, description="what carries the pinion, for the face load factor of ISO 6336-1 in the result rating"
+        default=None,
+        description="What carries the pinion, for the face load factor of ISO 6336-1 in the result rating.",
     )
 
     @model_validator(mode="after")

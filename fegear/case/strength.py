@@ -17,6 +17,7 @@ MaterialName = Literal[
     "normalized-cast-steel",
     "malleable-iron",
     "nodular-iron",
+    "ferritic-nodular-iron",
     "grey-iron",
     "through-hardened-carbon-steel",
     "through-hardened-alloy-steel",
@@ -69,49 +70,50 @@ class StrengthPart(Part):
     """
 
     material: MaterialName = Field(
-        description="kind of material of ISO 6336-5, which allowable stresses, life factors and notch factors depend on"
+        description="Kind of material of ISO 6336-5, on which allowable stresses, life and notch factors depend."
     )
     quality: Literal["ML", "MQ", "ME"] = Field(
         default="MQ",
-        description="quality of material and heat treatment (ISO 6336-5): ML lowest, MQ usual, ME highest",
+        description="Quality of material and heat treatment (ISO 6336-5): ML lowest, MQ usual, ME highest.",
     )
     hardness: Hardness | None = Field(
-        default=None, description="surface hardness in HV, HBW or HRC; the middle of the material's range without"
+        default=None,
+        description="Hardness of the surface in HV, HBW or HRC; the middle of the material's range without.",
     )
     core_hardness: Hardness | None = Field(
         default=None,
-        description="hardness of the core of case-hardened teeth of quality MQ: 25 HRC at least; from 30 HRC the root "
-        "bears more",
+        description="Hardness of the core of case-hardened teeth of quality MQ: 25 HRC at least; from 30 HRC the root "
+        "bears more.",
     )
     jominy_12: Hardness | None = Field(
         default=None,
-        description="hardenability of case-hardened steel of quality MQ, hardness 12 mm from the quenched end of a "
-        "Jominy bar: from 28 HRC the root bears more",
+        description="Hardness 12 mm from the quenched end of a Jominy bar, of case-hardened steel of quality MQ: from "
+        "28 HRC the root bears more.",
     )
     contact: PositivePressure | None = Field(
-        default=None, description="own allowable stress number (contact) sigma_Hlim in place of that of ISO 6336-5"
+        default=None, description="Own allowable stress number (contact) sigma_Hlim in place of that of ISO 6336-5."
     )
     bending: PositivePressure | None = Field(
-        default=None, description="own nominal stress number (bending) sigma_Flim in place of that of ISO 6336-5"
+        default=None, description="Own nominal stress number (bending) sigma_Flim in place of that of ISO 6336-5."
     )
     bending_allowable: PositivePressure | None = Field(
-        default=None, description="own allowable stress number (bending) sigma_FE = 2 sigma_Flim, in place of bending"
+        default=None, description="Own allowable stress number (bending) sigma_FE = 2 sigma_Flim, in place of bending."
     )
     yield_strength: PositivePressure | None = Field(
         default=None,
-        description="yield point sigma_S or proof stress sigma_0.2, on which the notch sensitivity of steels that are "
-        "not surface-hardened depends; estimated from the hardness without",
+        description="Yield point sigma_S or proof stress sigma_0.2, on which the notch sensitivity of steels that are "
+        "not surface-hardened depends; the least favourable without.",
     )
     tensile_strength: PositivePressure | None = Field(
-        default=None, description="tensile strength sigma_B of cast iron, on which its notch sensitivity depends"
+        default=None, description="Tensile strength sigma_B of cast iron, on which its notch sensitivity depends."
     )
     long_life: Annotated[float, Field(ge=0.85, le=1.0)] = Field(
         default=0.85,
-        description="life factors Z_NT and Y_NT at 1e10 load cycles: 0.85, or up to 1 for the best material, "
-        "manufacture and lubrication with experience",
+        description="Life factors Z_NT and Y_NT at 1e10 load cycles: 0.85, or up to 1 for the best material, "
+        "manufacture and lubrication with experience.",
     )
     pitting_allowed: bool = Field(
-        default=False, description="whether some pitting may be seen, which Z_NT of limited life lets bear more"
+        default=False, description="Whether some pitting may be seen, for which Z_NT of a limited life is larger."
     )
 
     @model_validator(mode="after")
