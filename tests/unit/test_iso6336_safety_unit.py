@@ -57,12 +57,17 @@ def test_computed_values_stand_in_and_say_so():
         for i, s in enumerate(plain["sigma_F0"].values)
     )
     same = Replacement(
-        plain["K_Hbeta"].value, plain["K_Halpha"].value, plain["K_Fbeta"].values, plain["K_Falpha"].values, factor
+        plain["K_v"].value,
+        plain["K_Hbeta"].value,
+        plain["K_Halpha"].value,
+        plain["K_Fbeta"].values,
+        plain["K_Falpha"].values,
+        factor,
     )
     again = rate_pair(c, same)
     assert again.contact_safety == pytest.approx(plain.contact_safety, rel=1e-12)
     assert again.bending_safety == pytest.approx(plain.bending_safety, rel=1e-12)
-    assert len([r for r in again.remarks if "computed" in r]) == 5
+    assert len([r for r in again.remarks if "computed" in r]) == 6
     doubled = rate_pair(c, Replacement(K_Hbeta=4.0 * plain["K_Hbeta"].value, K_Halpha=plain["K_Halpha"].value))
     assert doubled.contact_stress[0] == pytest.approx(2.0 * plain.contact_stress[0], rel=1e-12)
 

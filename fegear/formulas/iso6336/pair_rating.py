@@ -16,12 +16,13 @@ class Replacement:
 
     Parameters
     ----------
-    K_Hbeta, K_Halpha : float, optional
+    K_v, K_Hbeta, K_Halpha : float, optional
     K_Fbeta, K_Falpha : (float, float), optional
     root_factor : (float, float), optional
         sigma_F0 b m_n / F_t of each gear: stands for Y_F Y_S Y_beta Y_B Y_DT together.
     """
 
+    K_v: float | None = None
     K_Hbeta: float | None = None
     K_Halpha: float | None = None
     K_Fbeta: Both | None = None

@@ -96,16 +96,23 @@ def running_in_relief(contact: Both) -> float:
     return 0.5e-6 * sum((s / 97e6 - 18.45) ** 2 / 18.0 + 1.5 for s in contact)
 
 
-def reduced_mass(pair: PairGeometry) -> float:
+def reduced_mass(pair: PairGeometry, meshes: tuple[int, int] = (1, 1)) -> float:
     """m_red of discs per face width [kg/m] (ISO 6336-1:2006, 6.5.9, Eq. 30).
 
-    The discs have the mean diameter d_m = (d_a + d_f)/2 and a bore of d_i; a web counts for nothing.
+    The discs have the mean diameter d_m = (d_a + d_f)/2 and a bore of d_i; a web counts for nothing. Of a gear with
+    several mates, as a sun has planets, each mesh moves its part.
+
+    Parameters
+    ----------
+    pair : PairGeometry
+    meshes : (int, int)
+        How many mates pinion and wheel have.
     """
     masses = []
-    for gear, d_b in zip(pair.gears, pair.base_diameters, strict=True):
+    for gear, d_b, mates in zip(pair.gears, pair.base_diameters, meshes, strict=True):
         d_m = 0.5 * (gear.tip_diameter + gear.root_diameter)
         hollow = 1.0 - (gear.bore_diameter / d_m) ** 4
-        masses.append(math.pi / 8.0 * gear.density * hollow * d_m**4 / d_b**2)
+        masses.append(math.pi / 8.0 * gear.density * hollow * d_m**4 / d_b**2 / mates)
     return masses[0] * masses[1] / (masses[0] + masses[1])
 
 
@@ -175,7 +182,12 @@ def of_resonance_ratio(
 
 
 def method_b(
-    pair: PairGeometry, stiffness: tuple[float, float], line_load: float, speed: float, errors: DynamicErrors
+    pair: PairGeometry,
+    stiffness: tuple[float, float],
+    line_load: float,
+    speed: float,
+    errors: DynamicErrors,
+    meshes: tuple[int, int] = (1, 1),
 ) -> DynamicFactor:
     """K_v by method B (ISO 6336-1:2006, 6.5).
 
@@ -189,11 +201,13 @@ def method_b(
     speed : float
         Of the pinion [rad/s].
     errors : DynamicErrors
+    meshes : (int, int)
+        How many mates pinion and wheel have.
     """
     for name, value in (("line load", line_load), ("speed", speed)):
         if not value > 0.0:
             raise RangeError(name, value, "must be positive")
-    mass = reduced_mass(pair)
+    mass = reduced_mass(pair, meshes)
     resonance = math.sqrt(stiffness[1] / mass) / pair.gears[0].teeth
     limit = lower_limit(line_load)
     c = coefficients(pair.total_contact_ratio)

@@ -117,6 +117,8 @@ class Duty:
         K_A; K_gamma, for load paths in parallel.
     mean_stress : (float, float)
         Y_M: 1 for pulsating loads, see `part3_strength.mean_stress_factor`.
+    meshes : (int, int)
+        With how many mates each gear meshes at once: (3, 1) for a sun with three planets.
     """
 
     tangential: float
@@ -126,6 +128,7 @@ class Duty:
     application_factor: float = 1.0
     mesh_load_factor: float = 1.0
     mean_stress: Both = (1.0, 1.0)
+    meshes: tuple[int, int] = (1, 1)
 
     def __post_init__(self) -> None:
         """Refuse loads, speeds and lives that are not positive."""
@@ -133,7 +136,7 @@ class Duty:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise RangeError(name, value, "must be positive and finite")
-        for name, values in (("N_L", self.cycles), ("Y_M", self.mean_stress)):
+        for name, values in (("N_L", self.cycles), ("Y_M", self.mean_stress), ("meshes", self.meshes)):
             for value in values:
                 if not value > 0.0:
                     raise RangeError(name, value, "must be positive")

@@ -163,7 +163,9 @@ def _stiffness(table: _Table, conditions: Conditions, line_load: float) -> Stiff
     return found
 
 
-def _dynamic(table: _Table, conditions: Conditions, stiff: Stiffness, line_load: float) -> tuple[float, float, float]:
+def _dynamic(
+    table: _Table, conditions: Conditions, computed: Replacement, stiff: Stiffness, line_load: float
+) -> tuple[float, float, float]:
     """K_v, and f_pb and y_alpha of the worse gear."""
     pair, quality, duty = conditions.geometry, conditions.quality, conditions.duty
     velocity = pair.pitch_line_velocity(duty.speed)
@@ -182,6 +184,9 @@ def _dynamic(table: _Table, conditions: Conditions, stiff: Stiffness, line_load:
     table.add("f_falpha", profile, "ISO 1328-1, the worse gear", "m")
     table.add("y_alpha", y_p, "ISO 6336-1:2006, 8.3.5.1, Eq. 75", "m")
     grade = max(q.grade for q in quality)
+    if computed.K_v is not None:
+        table.add("K_v", computed.K_v, "ISO 6336-1, clause 6", remark=f"K_v: {_COMPUTED}")
+        return computed.K_v, pitch, y_p
     if conditions.dynamic_method == "C":
         found = dynamic.method_c(pair, line_load, velocity, grade)
         table.add("K_v", found.K_v, "ISO 6336-1:2019, 6.6, method C", remark=found.remark)
@@ -190,7 +195,7 @@ def _dynamic(table: _Table, conditions: Conditions, stiff: Stiffness, line_load:
     if relief == 0.0:
         relief = dynamic.running_in_relief((conditions.strength[0].contact, conditions.strength[1].contact))
     errors = dynamic.DynamicErrors(pitch, profile, y_p, y_f, relief, coarse=grade >= 6)
-    found = dynamic.method_b(pair, (stiff.single, stiff.mesh_alpha), line_load, duty.speed, errors)
+    found = dynamic.method_b(pair, (stiff.single, stiff.mesh_alpha), line_load, duty.speed, errors, duty.meshes)
     table.add("m_red", found.reduced_mass, "ISO 6336-1:2006, 6.5.9, Eq. 30", "kg/m")
     table.add("n_E1", found.resonance_speed, "ISO 6336-1:2006, 6.5.3, Eq. 6", "rad/s")
     table.add("N", found.resonance_ratio, "ISO 6336-1:2006, 6.5.3, Eq. 9")
@@ -210,7 +215,7 @@ def _load_factors(table: _Table, conditions: Conditions, computed: Replacement) 
     pair, duty = conditions.geometry, conditions.duty
     applied = duty.tangential * duty.application_factor * duty.mesh_load_factor / pair.face_width
     stiff = _stiffness(table, conditions, applied)
-    k_v, pitch, worn = _dynamic(table, conditions, stiff, applied)
+    k_v, pitch, worn = _dynamic(table, conditions, computed, stiff, applied)
     k_hb = _face_load(table, conditions, computed, applied * k_v, stiff.mesh_beta)
     width = (pair.gears[0].face_width, pair.gears[1].face_width)
     depth = (pair.gears[0].depth, pair.gears[1].depth)

@@ -1,0 +1,217 @@
+"""Published numbers of ISO 6336, ``docs/rating/<example>.toml``: read, rated by fegear, set beside what is printed.
+
+A file holds what its source prints and nothing else: conditions, ``[printed]`` factors with the digits as they stand,
+and ``[judgement]``, why a factor does not fall within half a unit of its last digit. ``python docs/rating_rows.py``
+writes the tables of ``docs/rating-examples.md`` anew; ``test_rating_examples_literature.py`` holds them.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fegear.formulas.iso6336 import part1_transverse as transverse
+from fegear.formulas.iso6336.alignment import Alignment
+from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
+from fegear.formulas.iso6336.pair_rating import Replacement
+from fegear.formulas.iso6336.rated import Duty, Quality, Strength
+from fegear.formulas.iso6336.safety import Conditions, rate_pair
+from fegear.units import registry
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.formulas.iso6336.pair_rating import Factor
+
+DOCS = Path(__file__).resolve().parent
+FOLDER, PAGE = DOCS / "rating", DOCS / "rating-examples.md"
+#: Printed units in SI.
+UNITS = {
+    "": 1.0, "N": 1.0, "m/s": 1.0, "MPa": 1e6, "mm": 1e-3, "um": 1e-6, "deg": math.radians(1.0), "rpm": math.pi / 30.0,
+    "N/(mm um)": 1e9, "kg/mm": 1e3, "sqrt(MPa)": 1e3,
+}  # fmt: skip
+_START, _END = "<!-- made by docs/rating_rows.py -->", "<!-- end -->"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A printed number, fegear's, and what is to be said of the difference."""
+
+    symbol: str
+    clause: str
+    unit: str
+    printed: tuple[str, ...]
+    found: tuple[float, ...]
+    moved: tuple[float, ...]
+    reason: str
+
+    @property
+    def same(self) -> bool:
+        """Whether every value falls within half a unit of the last printed digit."""
+        return all(abs(f - float(p)) <= (0.5 + 1e-6) * digit(p) for p, f in zip(self.printed, self.found, strict=True))
+
+    @property
+    def rounded(self) -> bool:
+        """Whether the rounding of the inputs, as printed, explains what lies beyond."""
+        room = ((0.5 + 1e-6) * digit(p) + m for p, m in zip(self.printed, self.moved, strict=True))
+        return all(abs(f - float(p)) <= r for p, f, r in zip(self.printed, self.found, room, strict=True))
+
+
+def digit(printed: str) -> float:
+    """A unit of the last printed digit."""
+    return float(10.0 ** -len(printed.partition(".")[2]))
+
+
+def examples() -> dict[str, dict[str, Any]]:
+    """Every example by its name."""
+    return {path.stem: tomllib.loads(path.read_text("utf-8")) for path in sorted(FOLDER.glob("*.toml"))}
+
+
+def _si(value: Any) -> Any:
+    return float(registry().Quantity(value).to_base_units().magnitude) if isinstance(value, str) else value
+
+
+def conditions(example: dict[str, Any]) -> tuple[Conditions, Replacement]:
+    """What an example's source rates, and what its program put in place of formulas."""
+    shapes, strengths, qualities = [], [], []
+    for gear in example["gear"]:
+        g = {k: v if k == "group" else _si(v) for k, v in gear.items()}
+        keys = GearShape.__dataclass_fields__.keys() & g.keys()
+        shapes.append(GearShape(**{k: g[k] for k in keys}))
+        strengths.append(Strength(g["group"], g["contact"], g["bending"]))
+        keys = Quality.__dataclass_fields__.keys() & g.keys()
+        qualities.append(Quality(**{"helix_slope": 0.0, **{k: g[k] for k in keys}}))
+    e = {k: v if k in {"title", "source", "kind"} else _si(v) for k, v in example.items() if not isinstance(v, dict)}
+    pair = PairGeometry(
+        (shapes[0], shapes[1]), e["module"], e["pressure_angle"], e["helix_angle"], e["centre_distance"]
+    )
+    tangential = e["tangential"] if "tangential" in e else 2.0 * e["torque"] / pair.diameters[0]
+    duty = Duty(
+        tangential, e["speed"], tuple(g["cycles"] for g in example["gear"]), e["viscosity"],
+        e["application_factor"], e.get("mesh_load_factor", 1.0), tuple(e.get("mean_stress", (1.0, 1.0))),
+        tuple(e.get("meshes", (1, 1))),
+    )  # fmt: skip
+    asked = Conditions(
+        pair, (strengths[0], strengths[1]), (qualities[0], qualities[1]), duty,
+        Alignment(face_load_factor=e["face_load_factor"]), e["edition"],
+    )  # fmt: skip
+    given = Replacement(K_v=e.get("stress_dynamic_factor"))
+    deviation = e.get("stress_sharing_deviation")
+    return asked, given if deviation is None else _with_deviation(asked, given, deviation)
+
+
+def _with_deviation(asked: Conditions, given: Replacement, deviation: float) -> Replacement:
+    """K_Halpha and K_Falpha with another deviation than f_pb, as a program took it."""
+    plain, pair, duty = rate_pair(asked, given), asked.geometry, asked.duty
+    load = duty.tangential * duty.application_factor * duty.mesh_load_factor / pair.face_width
+    found = transverse.method_b(
+        pair.contact_ratio, pair.overlap_ratio, plain["c_gamma_alpha"].value, deviation - plain["y_alpha"].value,
+        load * plain["K_v"].value * plain["K_Hbeta"].value, plain["Z_epsilon"].value,
+    )  # fmt: skip
+    return Replacement(given.K_v, None, found.K_Halpha, None, (found.K_Falpha, found.K_Falpha))
+
+
+def factors(example: dict[str, Any]) -> dict[str, Factor]:
+    """fegear's factors of an example; K_v and K_Halpha are its own, stresses have those that the source took."""
+    asked, given = conditions(example)
+    plain = {f.symbol: f for f in rate_pair(asked).factors}
+    own = {"K_v", "K_Halpha", "K_Falpha"}
+    return plain | {f.symbol: f for f in rate_pair(asked, given).factors if f.symbol not in own}
+
+
+def _nudged(example: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """The example with one of its rounded inputs half a unit of its last digit up."""
+    for key in ("tangential", "speed", "stress_dynamic_factor"):
+        if isinstance(example.get(key), str):
+            yield example | {key: _up(example[key])}
+    for i, gear in enumerate(example["gear"]):
+        for key in ("tip_diameter", "root_diameter", "bore_diameter", "profile_shift"):
+            if isinstance(gear.get(key), str):
+                gears = list(example["gear"])
+                gears[i] = gear | {key: _up(gear[key])}
+                yield example | {"gear": gears}
+
+
+def _up(text: str) -> str:
+    number, _, unit = text.partition(" ")
+    return f"{float(number) + 0.5 * digit(number)!r} {unit}"
+
+
+def rows(example: dict[str, Any]) -> list[Row]:
+    """The printed factors of an example beside fegear's, in the rating's order."""
+    rated, nudged = factors(example), [factors(e) for e in _nudged(example)]
+    found = []
+    for symbol, factor in rated.items():
+        if symbol not in example["printed"]:
+            continue
+        entry = example["printed"][symbol]
+        texts, scale = tuple(entry["values"]), UNITS[entry.get("unit", "")]
+        values = tuple(v / scale for v in factor.values[: len(texts)])
+        moved = tuple(
+            sum(abs(other[symbol].values[i] - factor.values[i]) for other in nudged) / scale for i in range(len(texts))
+        )
+        reason = example["judgement"].get(symbol, "")
+        found.append(Row(symbol, factor.clause, entry.get("unit", ""), texts, values, moved, reason))
+    return found
+
+
+def faults(name: str, example: dict[str, Any]) -> list[str]:
+    """What does not hold: numbers off without a reason, reasons without need, printed symbols that nothing answers."""
+    held = rows(example)
+    symbols = {row.symbol for row in held}
+    wrong = [f"{name}: nothing answers {symbol}" for symbol in example["printed"].keys() - symbols]
+    wrong += [
+        f"{name}: a reason for {symbol}, which is not printed" for symbol in example["judgement"].keys() - symbols
+    ]
+    for row in held:
+        if row.rounded == bool(row.reason):
+            verb = "falls on the printed digits and has a reason" if row.rounded else "is off without a reason"
+            wrong.append(f"{name}: {row.symbol} {verb}: printed {row.printed}, found {row.found}")
+    return wrong
+
+
+def _line(row: Row) -> str:
+    found = [f"{f:.{len(p.partition('.')[2]) + 2}f}" for p, f in zip(row.printed, row.found, strict=True)]
+    apart = max((f / float(p) - 1.0 for p, f in zip(row.printed, row.found, strict=True)), key=abs)
+    verdict = (
+        "printed digits"
+        if row.same
+        else "printed digits, but for the rounding of inputs"
+        if row.rounded
+        else row.reason
+    )
+    unit = f" [{row.unit}]" if row.unit else ""
+    cells = (row.symbol + unit, row.clause, " / ".join(row.printed), " / ".join(found), f"{apart:+.1e}", verdict)
+    return f"| {' | '.join(cells)} |"
+
+
+def table() -> str:
+    """The tables of the page."""
+    parts = []
+    for example in examples().values():
+        held = rows(example)
+        same = sum(row.rounded for row in held)
+        parts += [
+            f"## {example['title']}\n",
+            f"Source: {example['source']} ({example['kind']}).\n",
+            f"Of {len(held)} printed factors {same} fall on the printed digits.\n",
+            "| factor | clause | printed | fegear | largest relative difference | judgement |",
+            "|---|---|---|---|---|---|",
+            *map(_line, held),
+            "",
+        ]
+    return "\n".join(parts)
+
+
+def page() -> str:
+    """The page with its tables made anew."""
+    text = PAGE.read_text("utf-8")
+    head, tail = text.partition(_START)[0], text.partition(_END)[2]
+    return f"{head}{_START}\n\n{table()}\n{_END}{tail}"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), "utf-8")
