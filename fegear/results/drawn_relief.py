@@ -8,7 +8,8 @@ import numpy as np
 
 from fegear.engine.figure import Axis, Curve, Figure, Panel, View, Zone
 from fegear.results.drawn_pair import roll_marks
-from fegear.results.loaded_pair import BASE_PITCH, drawn_loads, pitch_marks
+from fegear.results.harris_map import harris_panel
+from fegear.results.loaded_pair import BASE_PITCH, pitch_marks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -118,18 +119,8 @@ def _harris_figure(name: str, data: ReliefData) -> Figure:
     order = sorted(data.design.curves, key=lambda label: places.index(label) if label in places else len(places))
     for label in order:
         curve = data.design.curves[label]
-        loads, marks = [float(w) for w in curve.load], pitch_marks(data.pair.engagement.pair, curve.x)
-        curves = tuple(
-            Curve(
-                curve.x * 1e3,
-                curve.transmission_error[:, i] * 1e6,
-                text,
-                role,
-                width=3.0 if loads[i] == data.design.task.load else 1.4,
-            )
-            for i, text, role in drawn_loads(loads, data.design.task.load, "design")
-        )
-        views.append(View(label, (Panel(BASE_PITCH, Axis("transmission error", "um", zero=True), curves, marks),)))
+        panel = harris_panel(curve, data.pair.engagement.pair, data.design.task.load, "design")
+        views.append(View(label, (panel,)))
     return Figure(
         f"harris_map_{name}",
         f"Harris map of pair {name}",

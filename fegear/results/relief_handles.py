@@ -11,7 +11,7 @@ import numpy as np
 from fegear.engine.figure import Axis, Curve, Figure, Panel, Points
 from fegear.errors import InputError
 from fegear.geometry.path_of_contact import active_profile
-from fegear.geometry.relief import CombinedRelief, EndRelief
+from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief
 from fegear.models.described_relief import described_relief
 from fegear.models.pair_inputs import gear_name
 from fegear.results.drawn_pair import roll_marks
@@ -20,15 +20,29 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.geometry.pair import Member
 
+#: Parts of a relief that can be moved, in the order in which `build_relief` takes them.
+ENDS: tuple[Literal["tip"], Literal["root"], Literal["crowning"]] = ("tip", "root", "crowning")
 #: Places at which the curve is drawn, and the least height of its axis [um].
 _PLACES, _LEAST = 201, 20.0
 
 
 @dataclass(frozen=True, slots=True)
 class Handle:
-    """An end relief that can be moved: where it starts [deg], its amount [um] and where that is measured [deg]."""
+    """A part of a relief that can be moved.
 
-    end: Literal["tip", "root"]
+    Parameters
+    ----------
+    end : {"tip", "root", "crowning"}
+    index : int
+        Which of several of that kind, as the case lists them.
+    start, at : float
+        Where it starts and where its amount is measured [deg]; a crowning's ends.
+    amount : float
+        [um].
+    """
+
+    end: Literal["tip", "root", "crowning"]
+    index: int
     start: float
     amount: float
     at: float
@@ -46,7 +60,7 @@ class HandledRelief:
     usual : dict
         For each end, where a relief usually starts: the highest or lowest point of single contact [deg].
     handles : tuple of Handle
-        Tip and root relief, where each is one table of the case with an amount of its own.
+        Tip and root reliefs and crownings.
     figure : Figure
     """
 
@@ -77,7 +91,7 @@ def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
     roll = np.linspace(ends[0], ends[1], _PLACES)
     removal = np.zeros(_PLACES) if relief is None else relief.removal(np.radians(roll)) * 1e6
     handles = tuple(_handles(scene, gear, relief))
-    points = [(handle.start, 0.0) for handle in handles] + [(handle.at, handle.amount) for handle in handles]
+    points = [(one.start, 0.0) for one in handles if one.end != "crowning"] + [(one.at, one.amount) for one in handles]
     items: list[Curve | Points] = [Curve(roll, removal, "", "designed", markers=False)]
     if points:
         x, y = np.array(points).T
@@ -111,13 +125,11 @@ def _handles(scene: Scene, gear: str, relief: object) -> list[Handle]:
     part = scene.case.gear[gear].relief
     if part is None or not isinstance(relief, CombinedRelief):
         return []
-    found = [one for one in relief.parts if isinstance(one, EndRelief)]
-    ends: list[Literal["tip", "root"]] = []
-    ends += ["tip"] * len(part.tip)
-    ends += ["root"] * len(part.root)
-    several = {"tip": len(part.tip) > 1, "root": len(part.root) > 1}
+    kinds: list[tuple[Literal["tip", "root", "crowning"], int]] = []
+    for end in ENDS:
+        kinds += [(end, index) for index in range(len(getattr(part, end)))]
+    found = [one for one in relief.parts if isinstance(one, (EndRelief, Crowning))]  # in the order of the keys
     return [
-        Handle(end, math.degrees(one.start), one.amount * 1e6, math.degrees(one.end))
-        for end, one in zip(ends, found, strict=False)
-        if not several[end]
+        Handle(end, index, math.degrees(one.start), one.amount * 1e6, math.degrees(one.end))
+        for (end, index), one in zip(kinds, found, strict=True)
     ]

@@ -13,6 +13,7 @@ from fegear.window.case_text import literal, with_value
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.jobs import Asked, Compare, Compute, Design, Export, Said
+from fegear.window.reliefs import moved_relief, own_name
 from fegear.window.sent import whole
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ class Bench:
     def shown_now(self) -> list[tuple[str, _Content]]:
         """What a page that opens now has to be told."""
         told: list[tuple[str, _Content]] = [
-            (what, self._last[what]) for what in ("plan", "hands") if what in self._last
+            (what, self._last[what]) for what in ("plan", "hands", "harris") if what in self._last
         ]
         for content in self._found.values():
             told.append(("found", {key: value for key, value in content.items() if key != "pictures"}))
@@ -180,8 +181,8 @@ class Bench:
         before = self._last.get("hands", {}).get("pairs", {})
         return {name: {**one, "mesh": one["mesh"] or before.get(name, {}).get("mesh")} for name, one in pairs.items()}
 
-    def move_relief(self, gear: str, end: str, start: float, amount: float, *, moving: bool) -> None:
-        """Have a tip or root relief start at a roll angle [deg] with an amount [um]; the others stay.
+    def move_relief(self, gear: str, end: str, start: float, amount: float, *, moving: bool, index: int = 0) -> None:
+        """Have a part of a relief start at a roll angle [deg] with an amount [um]; the others stay.
 
         Raises
         ------
@@ -189,12 +190,12 @@ class Bench:
             If the text cannot be changed there.
         """
         desk = self._on_desk()
-        text, table = desk.text, ("gear", gear, "relief", end)
-        text = with_value(text, (*table, "amount"), f'"{amount:.2f} um"')
-        text = with_value(text, (*table, "start_roll_angle"), f'"{start:.3f} deg"')
-        for key in ("start_radius", "length", "normalised_length", "amount_over_delta"):
-            text = with_value(text, (*table, key), None)
-        self._put(with_value(text, ("effects", "relief"), "true"), moving=moving)
+        self._put(moved_relief(desk.text, desk.document, gear, end, start, amount, index), moving=moving)
+
+    def name_driven(self, pair: str) -> None:
+        """Make the driven gear of a pair a gear of its own, where it was the driver as well."""
+        desk = self._on_desk()
+        self._put(own_name(desk.text, desk.document, pair), moving=False)
 
     def move_load(self, pair: str, key: str, text: str, *, moving: bool) -> None:
         """Give a pair another load or torque, a quantity with its unit."""
@@ -257,7 +258,7 @@ class Bench:
             self._found[content["task"]] = {**whole(content, self._found.get(content["task"])), "pictures": {}}
         elif what == "picture":
             self._found[content["task"]]["pictures"][content["key"]] = content
-        if what in ("plan", "hands", "done"):
+        if what in ("plan", "hands", "harris", "done"):
             self._last[what] = content
         self.tell(what, content)
         if what == "done" and not content["moving"] and self.pinned is not None and self._computing is not None:

@@ -22,28 +22,32 @@ const fegearHands = (() => {
     const plot = figure.querySelector(".plot"), layout = plot._fullLayout;
     let layer = plot.querySelector(".handles");
     if (!layer) { layer = document.createElement("div"); layer.className = "handles"; plot.append(layer); }
-    const wanted = relief.handles.flatMap((handle) => [{ handle, part: "start" }, { handle, part: "amount" }]);
+    const wanted = relief.handles.flatMap((handle) => handle.end === "crowning" ? [{ handle, part: "amount" }] : [{ handle, part: "start" }, { handle, part: "amount" }]);
+    const alone = (handle) => relief.handles.filter((one) => one.end === handle.end).length === 1;
     const buttons = [...layer.children];
     while (buttons.length > wanted.length) buttons.pop().remove();
     wanted.forEach(({ handle, part }, i) => {
       let one = buttons[i];
       if (!one) { one = document.createElement("button"); one.type = "button"; layer.append(one); }
       one.className = `handle ${part}`;
-      one.dataset.handle = `${relief.gear} ${handle.end} ${part}`;
+      const kind = handle.end === "crowning" ? "crowning" : `${handle.end} relief`;
+      const which = alone(handle) ? kind : `${kind} ${handle.index + 1}`;
+      one.dataset.handle = `${relief.gear} ${handle.end}${alone(handle) ? "" : ` ${handle.index + 1}`} ${part}`;
       const value = () => part === "start" ? `${handle.start.toFixed(3)} deg` : `${handle.amount.toFixed(2)} µm`;
-      one.setAttribute("aria-label", `${handle.end} relief of gear ${relief.gear}: ${part}, ${value()}`);
-      one.title = `${handle.end} relief, ${part}: ${value()}; drag it, or use the arrow keys`;
+      one.setAttribute("aria-label", `${which} of gear ${relief.gear}: ${part}, ${value()}`);
+      one.title = `${which}, ${part}: ${value()}; drag it, or use the arrow keys`;
       const put = () => {
         const x = part === "start" ? handle.start : handle.at, y = part === "start" ? 0 : handle.amount;
         one.style.left = `${layout.xaxis._offset + layout.xaxis.l2p(x)}px`;
         one.style.top = `${layout.yaxis._offset + layout.yaxis.l2p(y)}px`;
       };
-      const send = (moving) => sendRelief({ gear: relief.gear, end: handle.end, start: handle.start, amount: handle.amount, moving });
+      const send = (moving) => sendRelief({ gear: relief.gear, end: handle.end, index: handle.index, start: handle.start, amount: handle.amount, moving });
       const room = 0.01 * (relief.high - relief.low);
       const within = () => {
+        handle.amount = Math.max(handle.amount, 0);
+        if (handle.end === "crowning") return;
         const ends = handle.end === "tip" ? [relief.low, Math.min(handle.at, relief.high) - room] : [Math.max(handle.at, relief.low) + room, relief.high];
         handle.start = Math.min(Math.max(handle.start, ends[0]), ends[1]);
-        handle.amount = Math.max(handle.amount, 0);
       };
       one.onpointerdown = (event) => { one.setPointerCapture(event.pointerId); held = one; event.preventDefault(); one.focus(); };
       one.onpointermove = (event) => {
@@ -74,6 +78,7 @@ const fegearHands = (() => {
         gear: relief.gear, end, start: relief.usual[end], amount: 10, moving: false })));
     }
     if (relief.given.length) tools.append(button("Without relief", "Leave the relief of this gear out", () => emitEvent("drop", { gear: relief.gear })));
+    if (relief.given.includes("table")) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "Its table is part of the curve, and is changed in the form or the text." }));
     if (relief.given.length && !relief.on) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "The effect relief is off: it changes no result." }));
   }
 
@@ -107,7 +112,7 @@ const fegearHands = (() => {
 
   async function show({ pairs }, { made, paint, sections }) {
     for (const [pair, kept] of shown) {
-      if (!(pair in pairs) || !kept.host.isConnected) { kept.host.remove(); shown.delete(pair); sections.delete(`hand ${pair}`); }
+      if (!(pair in pairs) || !kept.host.isConnected) { kept.host.remove(); shown.delete(pair); sections.delete(`hand ${pair}`); sections.delete(`hand map ${pair}`); }
     }
     for (const [pair, content] of Object.entries(pairs)) {
       if (!shown.has(pair)) {
@@ -116,16 +121,22 @@ const fegearHands = (() => {
         const kept = { host };
         kept.mesh = meshOf(pair, host);
         kept.load = loadOf(pair, host);
-        host.append(made("div", "figures"), made("p", "tools pair-tools"));
+        kept.map = made("div", "map");
+        kept.map.append(made("div", "figures"));
+        kept.reliefs = made("div", "reliefs");
+        kept.reliefs.append(made("div", "figures"), made("p", "tools pair-tools"));
+        host.append(kept.map, kept.reliefs);
         document.getElementById("hands").append(host);
         shown.set(pair, kept);
-        sections.set(`hand ${pair}`, { element: host, specs: new Map(), shown: new Map(), darker: {} });
+        sections.set(`hand ${pair}`, { element: kept.reliefs, specs: new Map(), shown: new Map(), darker: {} });
       }
       const kept = shown.get(pair), section = sections.get(`hand ${pair}`);
       kept.mesh.set(content.mesh);
       kept.load.set(content.load);
       const tools = kept.host.querySelector(".pair-tools");
-      tools.replaceChildren(...(content.reliefs.length > 1 && content.load ? [
+      tools.replaceChildren(...(content.reliefs.length === 1 && content.load ? [
+        button("Give the driven gear a name of its own", "Driver and driven are one gear of the case; relief by theory gives each its own", () => emitEvent("name_driven", { pair })),
+      ] : content.reliefs.length > 1 && content.load ? [
         button("Remove the transmission error", "Reliefs of both gears that leave none at this load (Mark, Eq. 4.6), as tables of the case", () => emitEvent("design", { pair, how: "exact" })),
         button("Nearest that can be ground", "Linear or parabolic tip reliefs of both gears that leave the least at this load", () => emitEvent("design", { pair, how: "ground" })),
       ] : []));
@@ -136,17 +147,40 @@ const fegearHands = (() => {
         section.darker = { ...section.darker, ...relief.darker };
         section.specs.set(key, relief.figure);
         await paint(section, key);
-        const figure = [...kept.host.querySelectorAll("figure")].find((one) => one.dataset.key === key);
+        const figure = [...kept.reliefs.querySelectorAll("figure")].find((one) => one.dataset.key === key);
         const plot = figure.querySelector(".plot");
         if (!(held && figure.contains(held))) placeHandles(figure, relief);
         reliefTools(figure, relief);
         plot.removeAllListeners?.("plotly_afterplot");
         plot.on?.("plotly_afterplot", () => { if (!held) placeHandles(figure, relief); });
       }
-      for (const figure of [...kept.host.querySelectorAll(".figures figure")]) {
+      for (const figure of [...kept.reliefs.querySelectorAll(".figures figure")]) {
         if (!content.reliefs.some((one) => one.figure.key === figure.dataset.key)) figure.remove();
       }
     }
   }
-  return { show };
+  // ---- the Harris map: made at rest, its present load followed while the slider moves -----------------------------------
+  async function harris({ pairs }, { paint, sections }) {
+    for (const [pair, kept] of shown) {
+      const content = pairs[pair], key = `hand map ${pair}`;
+      if (!content) { kept.map.querySelector(".figures").replaceChildren(); sections.delete(key); kept.now = null; continue; }
+      const section = sections.get(key) ?? { element: kept.map, specs: new Map(), shown: new Map(), darker: {} };
+      sections.set(key, section);
+      section.darker = content.darker;
+      const { figure } = content, text = JSON.stringify(figure);
+      kept.now = { label: content.now, key: figure.key };
+      if (section.shown.get(figure.key) === text) continue;
+      section.shown.set(figure.key, text);
+      section.specs.set(figure.key, figure);
+      await paint(section, figure.key);
+    }
+  }
+  function follow({ pair, load, x, te }) {
+    const kept = shown.get(pair), plot = kept?.now && kept.map.querySelector(".js-plotly-plot");
+    if (!plot) return;
+    const at = plot.data.flatMap((one, i) => one.name === kept.now.label ? [i] : []);
+    if (at.length !== 2) return;
+    return Plotly.restyle(plot, { x: [x, [load]], y: [te, [Math.max(...te) - Math.min(...te)]] }, at);
+  }
+  return { show, harris, follow };
 })();

@@ -47,7 +47,7 @@ def _reliefs(scene: Scene, name: str) -> list[dict[str, Any]]:
         figure = relief.figure
         made.append({
             "gear": relief.gear, "low": relief.low, "high": relief.high, "usual": relief.usual,
-            "handles": [asdict(handle) for handle in relief.handles if isinstance(document.get(handle.end), dict)],
+            "handles": [asdict(handle) for handle in relief.handles],
             "given": sorted(document), "on": scene.case.effects.relief,
             "figure": {"key": figure.key, "heading": figure.heading, "caption": figure.caption, **plotly_json(figure)},
             "darker": darker([figure]),

@@ -59,6 +59,7 @@ class Page:
         ui.on("relief", lambda event: self._by_hand(lambda: bench.move_relief(**event.args)))
         ui.on("load", lambda event: self._by_hand(lambda: bench.move_load(**event.args)))
         ui.on("drop", lambda event: self._by_hand(lambda: bench.drop_relief(**event.args)))
+        ui.on("name_driven", lambda event: self._by_hand(lambda: bench.name_driven(**event.args)))
         ui.on("design", lambda event: self._by_hand(lambda: bench.design(**event.args)))
         ui.on("sight", lambda event: bench.see(event.args["tasks"]))
         self._client.run_javascript(f"fegear.begin({json.dumps(template())})")

@@ -78,6 +78,8 @@ const fegear = (() => {
 
   const heard = {
     hands(content) { return fegearHands.show(content, { made, paint, sections }); },
+    harris(content) { return fegearHands.harris(content, { paint, sections }); },
+    load_now(content) { return fegearHands.follow(content); },
     asked() { document.body.classList.add("computing"); },
     plan({ tasks }) {
       for (const [task, kept] of sections) {
@@ -173,7 +175,7 @@ const fegear = (() => {
 
   let line = Promise.resolve(); // one after the other: a figure is not painted twice at a time
   const newest = new Map(); // what is overtaken before its turn is not shown
-  const OVERTAKEN = new Set(["found", "hands", "plan"]);
+  const OVERTAKEN = new Set(["found", "hands", "plan", "harris", "load_now"]);
   function hear(what, content) {
     if (!heard[what]) return line;
     const kind = `${what} ${content?.task ?? ""}`, number = (newest.get(kind) ?? 0) + 1;

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from fegear.engine.processes import settle
 from fegear.errors import FegearError, InputError
+from fegear.results.loaded_pair import LoadedPairData
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
 from fegear.window.designs import design_asked, designed
 from fegear.window.hands import hands_of
+from fegear.window.harris import HarrisMaps, load_now_of
 from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Compare, Compute, Design, Export, Said
 from fegear.window.order import in_order
@@ -54,6 +56,7 @@ class Worker:
         self._number, self._begun, self._wait_before = 0, 0.0, 0
         self._asked: Asked | None = None
         self._laid, self._sent = 0, Sent()
+        self._maps = HarrisMaps()
 
     def serve(self) -> None:
         """Answer jobs until nobody is there to ask."""
@@ -131,6 +134,7 @@ class Worker:
         if told:
             if asked.laid != self._laid:
                 self._laid, self._sent, self._meshes = asked.laid, Sent(), {}
+                self._maps = HarrisMaps()
             tasks = [str(step.task) for step in plan.steps]
             self._say("plan", tasks=tasks)
             self._sent.forget_others(tasks)
@@ -159,6 +163,7 @@ class Worker:
             tolerance=tolerance, moving=asked.moving,
         )  # fmt: skip
         if not asked.moving:
+            self._say("harris", pairs=self._maps.at_rest(results))
             self._pictures(results)
 
     def _found(self, scene: Scene, plan: Plan, task: Task, outcome: Outcome) -> None:
@@ -167,6 +172,8 @@ class Worker:
         from fegear.output.report.blocks import Values
         from fegear.output.report.rendering import fragment
 
+        if isinstance(outcome.data, LoadedPairData) and self._asked is not None and self._asked.moving:
+            self._say("load_now", **load_now_of(task.subject, outcome.data))
         title = next(step.stage.title for step in plan.steps if step.task == task)
         figures = [one for one in outcome.figures if isinstance(one, Figure) and one.drawable_in_page]
         values = Values(outcome.values, scene.case.accuracy.tolerance)

@@ -26,15 +26,19 @@ from fegear.errors import InputError
 from fegear.output.report.blocks import Values
 from fegear.output.report.rendering import fragment
 from fegear.results.catalogue import STAGES
+from fegear.results.harris_map import NOW, load_now, slider_map
+from fegear.results.loaded_pair import LoadedPairData
 from fegear.results.relief_handles import handled_relief
 from fegear.solution_cache import SolutionCache
 from fegear.window import inbox as inbox_module
 from fegear.window.bench import Bench
+from fegear.window.case_text import value_at
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.doorkeeper import Doorkeeper
 from fegear.window.form import fields, form, tables_to_add
 from fegear.window.hands import hands_of
+from fegear.window.harris import HarrisMaps
 from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Asked, Compute, Design, Export, Said
 from fegear.window.journal import journal_folder
@@ -247,8 +251,80 @@ def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
             for handle in one["handles"]:
                 bench = Bench(None)
                 bench.desk = Desk(asked.text, asked.name, Path(asked.folder))
-                bench.move_relief(one["gear"], handle["end"], handle["start"], handle["amount"], moving=False)
+                bench.move_relief(
+                    one["gear"], handle["end"], handle["start"], handle["amount"], moving=False, index=handle["index"]
+                )
                 assert bench.desk.refusal is None, path.stem
+
+
+SEVERAL = """
+[gear.a.relief]
+tip = [{ amount = "10 um", start_radius = "42.5 mm" }, { amount = "4 um", length = "2 mm", shape = "parabolic" }]
+root = { amount = "6 um", length = "1.5 mm" }
+crowning = { amount = "3 um" }
+"""
+
+
+def test_every_part_of_a_relief_has_its_handle_and_moves_alone(tmp_path):
+    desk = Desk(TWO + SEVERAL, "c", tmp_path)
+    bench = Bench(None)
+    bench.lay(desk)
+
+    def handles():
+        return {(one.end, one.index): one for one in handled_relief(scene_of(bench.asked()), "I", "driver").handles}
+
+    before = handles()
+    assert sorted(before) == [("crowning", 0), ("root", 0), ("tip", 0), ("tip", 1)]
+    for (end, index), one in before.items():
+        start = one.start + (0.5 if end != "root" else -0.25)
+        bench.move_relief("a", end, start, one.amount + 1.5, moving=False, index=index)
+        after = handles()
+        assert after[end, index].amount == pytest.approx(one.amount + 1.5, abs=0.01)
+        assert after[end, index].start == pytest.approx(one.start if end == "crowning" else start, abs=1e-3)
+        for other in set(before) - {(end, index)}:
+            assert (after[other].start, after[other].amount) == pytest.approx(
+                (before[other].start, before[other].amount)
+            )
+        assert value_at(desk.document, ("gear", "a", "relief", "tip"))[1]["shape"] == "parabolic"
+        desk.undo()
+    assert desk.text == TWO + SEVERAL
+
+
+def test_a_gear_that_meets_its_like_gets_a_name_of_its_own(tmp_path):
+    bench = Bench(None)
+    bench.lay(Desk(TEXT, "c", tmp_path))
+    assert len(hands_of(scene_of(bench.asked()))["I"]["reliefs"]) == 1
+    first = scene_of(bench.asked()).pairs["I"]
+    bench.name_driven("I")
+    assert bench.desk.refusal is None
+    scene = scene_of(bench.asked())
+    assert scene.case.pair["I"].driven == "a_driven"
+    assert scene.case.gear["a_driven"] == scene.case.gear["a"]
+    assert scene.pairs["I"] == first
+    assert "# z" in bench.desk.text
+
+
+def test_the_map_beside_the_slider_is_that_of_runs_at_its_loads(tmp_path):
+    scene = scene_of(Asked(TWO, "c", str(tmp_path)))
+    results = run_plan(scene, make_plan(scene, STAGES))
+    maps = HarrisMaps()
+    found = maps.at_rest(results)["I"]
+    json.dumps(found, allow_nan=False)
+    data = next(one.data for one in results.outcomes.values() if isinstance(one.data, LoadedPairData))
+    figure = slider_map("I", data, 10_000.0)
+    drawn = {one.name: one for one in figure.panels[0].items}
+    (_, x, te), now = load_now(data), drawn[NOW]
+    assert np.interp(x, now.x, now.y) == pytest.approx(te, abs=0.02 * np.ptp(te) + 1e-9)
+    other = scene_of(Asked(TWO.replace('"5 kN"', '"7 kN"'), "c", str(tmp_path)))
+    there = run_plan(other, make_plan(other, STAGES))
+    at_7 = next(one.data for one in there.outcomes.values() if isinstance(one.data, LoadedPairData))
+    at_7_now = {one.name: one for one in slider_map("I", at_7, 10_000.0).panels[0].items}[NOW]
+    assert drawn["7000 N"].y == pytest.approx(at_7_now.y)
+    # The range stays while the slider is within it, and follows a load beyond it.
+    assert "up to 10000 N" in found["figure"]["caption"]
+    assert "up to 10000 N" in maps.at_rest(there)["I"]["figure"]["caption"]
+    far = scene_of(Asked(TWO.replace('"5 kN"', '"11 kN"'), "c", str(tmp_path)))
+    assert "up to 22000 N" in maps.at_rest(run_plan(far, make_plan(far, STAGES)))["I"]["figure"]["caption"]
 
 
 # ---- doorkeeper ------------------------------------------------------------------------------------------------------
