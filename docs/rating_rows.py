@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fegear.formulas.iso6336 import part1_transverse as transverse
 from fegear.formulas.iso6336.alignment import Alignment
 from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
 from fegear.formulas.iso6336.pair_rating import Replacement
@@ -98,28 +97,14 @@ def conditions(example: dict[str, Any]) -> tuple[Conditions, Replacement]:
         pair, (strengths[0], strengths[1]), (qualities[0], qualities[1]), duty,
         Alignment(face_load_factor=e["face_load_factor"]), e["edition"],
     )  # fmt: skip
-    given = Replacement(K_v=e.get("stress_dynamic_factor"))
-    deviation = e.get("stress_sharing_deviation")
-    return asked, given if deviation is None else _with_deviation(asked, given, deviation)
-
-
-def _with_deviation(asked: Conditions, given: Replacement, deviation: float) -> Replacement:
-    """K_Halpha and K_Falpha with another deviation than f_pb, as a program took it."""
-    plain, pair, duty = rate_pair(asked, given), asked.geometry, asked.duty
-    load = duty.tangential * duty.application_factor * duty.mesh_load_factor / pair.face_width
-    found = transverse.method_b(
-        pair.contact_ratio, pair.overlap_ratio, plain["c_gamma_alpha"].value, deviation - plain["y_alpha"].value,
-        load * plain["K_v"].value * plain["K_Hbeta"].value, plain["Z_epsilon"].value,
-    )  # fmt: skip
-    return Replacement(given.K_v, None, found.K_Halpha, None, (found.K_Falpha, found.K_Falpha))
+    return asked, Replacement(K_v=e.get("stress_dynamic_factor"))
 
 
 def factors(example: dict[str, Any]) -> dict[str, Factor]:
-    """fegear's factors of an example; K_v and K_Halpha are its own, stresses have those that the source took."""
+    """fegear's factors of an example; K_v is its own, stresses have the one that the source took."""
     asked, given = conditions(example)
     plain = {f.symbol: f for f in rate_pair(asked).factors}
-    own = {"K_v", "K_Halpha", "K_Falpha"}
-    return plain | {f.symbol: f for f in rate_pair(asked, given).factors if f.symbol not in own}
+    return plain | {f.symbol: f for f in rate_pair(asked, given).factors if f.symbol != "K_v"}
 
 
 def _nudged(example: dict[str, Any]) -> Iterator[dict[str, Any]]:

@@ -28,7 +28,7 @@ class PinionShaft:
     bearing_span : float
         l [m].
     offset : float
-        s, of the pinion's middle from that of the bearings (from the nearer bearing for c to e, as drawn) [m].
+        s, of the pinion's middle from that of the span; of an overhung pinion (c) from the nearer bearing [m].
     diameter : float
         d_sh, nominal outside diameter of the shaft that bends [m].
     power_share : float

@@ -1,6 +1,8 @@
 """ISO 6336-1, clause 6: internal dynamic factor K_v by methods B and C.
 
-Source: ISO 6336-1:2006 with technical corrigendum 1:2008, clause 6; the edition of 2019 keeps its formulas (6.5, 6.6).
+Source: ISO 6336-1:2006 with technical corrigendum 1:2008, clause 6 (method B: 6.4, method C: 6.5); the edition of 2019
+keeps the formulas. Equation numbers of clauses 6 to 8 were checked in a public program that types the standard with
+them (mekanika.org, MechanicalCalculatorWeb, Services/Iso6336*.cs).
 Method B takes the pair as two masses on the mean stiffness of their teeth; method C is a fit for pairs that run well
 below their resonance. Method C's numbers are those of IACS UR M56 (Rev. 4), 1.6.3, which reproduces ISO 6336-1:2019.
 Lengths in m, line loads in N/m, stiffnesses per face width in Pa.
@@ -91,13 +93,13 @@ def running_in_relief(contact: Both) -> float:
     Parameters
     ----------
     contact : (float, float)
-        sigma_Hlim of both gears [Pa] (ISO 6336-1:2006, 6.5.4, C_ay).
+        sigma_Hlim of both gears [Pa] (ISO 6336-1:2006, table 4).
     """
     return 0.5e-6 * sum((s / 97e6 - 18.45) ** 2 / 18.0 + 1.5 for s in contact)
 
 
 def reduced_mass(pair: PairGeometry, meshes: tuple[int, int] = (1, 1)) -> float:
-    """m_red of discs per face width [kg/m] (ISO 6336-1:2006, 6.5.9, Eq. 30).
+    """m_red of discs per face width [kg/m] (ISO 6336-1:2006, 6.4.8, Eqs. 30 to 32).
 
     The discs have the mean diameter d_m = (d_a + d_f)/2 and a bore of d_i; a web counts for nothing. Of a gear with
     several mates, as a sun has planets, each mesh moves its part.
@@ -117,7 +119,7 @@ def reduced_mass(pair: PairGeometry, meshes: tuple[int, int] = (1, 1)) -> float:
 
 
 def coefficients(total_contact_ratio: float) -> tuple[float, ...]:
-    """C_v1 to C_v7 of epsilon_gamma (ISO 6336-1:2006, table 8).
+    """C_v1 to C_v7 of epsilon_gamma (ISO 6336-1:2006, table 4).
 
     Raises
     ------
@@ -126,7 +128,7 @@ def coefficients(total_contact_ratio: float) -> tuple[float, ...]:
     """
     e = total_contact_ratio
     if not e > 1.0:
-        raise RangeError("total contact ratio", f"{e:.4g}", "must exceed 1 (ISO 6336-1, 6.5.4)")
+        raise RangeError("total contact ratio", f"{e:.4g}", "must exceed 1 (ISO 6336-1, table 4)")
     if e <= 2.0:
         first = (0.32, 0.34, 0.23, 0.90, 0.47, 0.47)
     else:
@@ -141,12 +143,12 @@ def coefficients(total_contact_ratio: float) -> tuple[float, ...]:
 
 
 def lower_limit(line_load: float) -> float:
-    """N_S, where the main resonance begins: .85, less below 100 N/mm (ISO 6336-1:2006, 6.5.3, Eqs. 11 and 12)."""
+    """N_S, where the main resonance begins: .85, less below 100 N/mm (ISO 6336-1:2006, 6.4.2, Eqs. 11 and 12)."""
     return 0.85 if line_load >= _LEAST_LOAD else 0.5 + 0.35 * math.sqrt(line_load / _LEAST_LOAD)
 
 
 def load_parameters(errors: DynamicErrors, single_stiffness: float, line_load: float) -> tuple[float, float, float]:
-    """B_p, B_f, B_k (ISO 6336-1:2006, 6.5.4, Eqs. 15 to 17); line load F_t K_A K_gamma / b [N/m], c' [Pa]."""
+    """B_p, B_f, B_k (ISO 6336-1:2006, 6.4.3, Eqs. 15 to 19); line load F_t K_A K_gamma / b [N/m], c' [Pa]."""
     per_length = single_stiffness / line_load
     b_p = per_length * (errors.base_pitch - errors.run_in_pitch)
     b_f = per_length * (errors.profile - errors.run_in_profile)
@@ -156,7 +158,7 @@ def load_parameters(errors: DynamicErrors, single_stiffness: float, line_load: f
 def of_resonance_ratio(
     ratio: float, limit: float, c: tuple[float, ...], b: tuple[float, float, float]
 ) -> tuple[str, float]:
-    """Range and K_v (ISO 6336-1:2006, 6.5.4 to 6.5.7, Eqs. 13, 14, 20, 21, 22).
+    """Range and K_v (ISO 6336-1:2006, 6.4.3 to 6.4.6, Eqs. 13, 14, 20, 21, 22).
 
     The standard's K_v jumps at N_S; at 1.15 and 1.5 it is continuous.
 
@@ -189,7 +191,7 @@ def method_b(
     errors: DynamicErrors,
     meshes: tuple[int, int] = (1, 1),
 ) -> DynamicFactor:
-    """K_v by method B (ISO 6336-1:2006, 6.5).
+    """K_v by method B (ISO 6336-1:2006, 6.4).
 
     Parameters
     ----------
@@ -220,13 +222,13 @@ def method_b(
 
 
 def speed_parameter(pair: PairGeometry, velocity: float) -> float:
-    """v z_1 / 100 sqrt(u^2 / (1 + u^2)) [m/s] (ISO 6336-1:2006, 6.3.2 and 6.6)."""
+    """v z_1 / 100 sqrt(u^2 / (1 + u^2)) [m/s] (ISO 6336-1:2006, 6.3.2 and 6.5)."""
     u = pair.ratio
     return velocity * pair.gears[0].teeth / 100.0 * u / math.sqrt(1.0 + u * u)
 
 
 def method_c(pair: PairGeometry, line_load: float, velocity: float, grade: int) -> DynamicFactor:
-    """K_v by method C (ISO 6336-1:2006, 6.6), for solid steel discs of accuracy grade 3 to 8 below the resonance.
+    """K_v by method C (ISO 6336-1:2006, 6.5), for solid steel discs of accuracy grade 3 to 8 below the resonance.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """ISO 6336-1, 7.5: K_Hbeta by method C, from the pinion shaft's deformation, manufacture, modification and running in.
 
 Source: ISO 6336-1:2006 with technical corrigendum 1:2008, 7.5; the edition of 2019 keeps the method. The constants K'
-and B_1, B_2 of rows 1, 2, 4, 5 and 6 were checked against python-gearbox (E. M. Firvida Donestevez,
-doi:10.5281/zenodo.3660527), which types them from the standard. Lengths in m, line loads F_m/b in N/m.
+and B_1, B_2 were checked against two public programs that type them from the standard: python-gearbox (E. M. Firvida
+Donestevez, doi:10.5281/zenodo.3660527) and MechanicalCalculatorWeb (mekanika.org). Lengths in m, F_m/b in N/m.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _SEAT: dict[Arrangement, tuple[float, float, float]] = {
 }
 #: d_1/d_sh from which a pinion stiffens its shaft.
 STIFFENING = 1.15
-#: B_1 and B_2.
+#: B_1 and B_2: table 8.
 MODIFICATIONS: dict[HelixModification, tuple[float, float]] = {
     "none": (1.0, 1.0),
     "crowned for manufacture": (1.0, 0.5),
@@ -104,14 +104,14 @@ def shaft_deformation(shaft: PinionShaft, line_load: float, width: float, diamet
 
 
 def manufacturing(quality: tuple[Quality, Quality]) -> float:
-    """f_ma of a pair that nothing adjusts [m]: sqrt(f_Hbeta1^2 + f_Hbeta2^2) (ISO 6336-1:2006, 7.5.2.5)."""
+    """f_ma of a pair that nothing adjusts [m]: sqrt(f_Hbeta1^2 + f_Hbeta2^2) (ISO 6336-1:2006, Eq. 64)."""
     return math.hypot(quality[0].helix_slope, quality[1].helix_slope)
 
 
 def initial_misalignment(
     alignment: Alignment, deformation: float, manufacture: float, least: float, helix_slope_5: float
 ) -> float:
-    """F_betax before running in [m] (ISO 6336-1:2006, 7.5.2.2 and 7.5.2.3, Eqs. 52 to 54, with corrigendum 1).
+    """F_betax before running in [m] (ISO 6336-1:2006, 7.5.2.2 and 7.5.2.3, Eqs. 52, 53, 55 and 56, with corrigendum 1).
 
     Parameters
     ----------

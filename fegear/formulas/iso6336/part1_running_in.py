@@ -1,6 +1,6 @@
 """ISO 6336-1: what running in takes off misalignment (y_beta) and pitch and profile deviations (y_alpha, y_p, y_f).
 
-Source: ISO 6336-1:2006 with technical corrigendum 1:2008, 7.5.3 (method B) and 8.3.5.1; limits by pitch line velocity.
+Source: ISO 6336-1:2006 with technical corrigendum 1:2008, 7.5.2.1 and 8.3.5.1; limits by pitch line velocity.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def _share_and_limit(
 
 
 def helix_allowance(strength: Strength, misalignment: float, velocity: float) -> float:
-    """y_beta of one material [m] (ISO 6336-1:2006, 7.5.3); 1 - y_beta/F_betax is x_beta.
+    """y_beta of one material [m] (ISO 6336-1:2006, 7.5.2.1, Eqs. 44 to 48); 1 - y_beta/F_betax is x_beta.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def helix_allowance(strength: Strength, misalignment: float, velocity: float) ->
 
 
 def pitch_allowance(strength: Strength, deviation: float, velocity: float) -> float:
-    """y_alpha of one material [m] (ISO 6336-1:2006, 8.3.5.1, Eq. 75); y_p is that of f_pb, y_f that of f_falpha.
+    """y_alpha of one material [m] (ISO 6336-1:2006, 8.3.5.1, Eqs. 75 to 77); y_p is that of f_pb, y_f that of f_falpha.
 
     Parameters
     ----------
@@ -67,5 +67,5 @@ def pitch_allowance(strength: Strength, deviation: float, velocity: float) -> fl
 
 
 def mean(values: tuple[float, float]) -> float:
-    """Of two materials: half the sum of both allowances (ISO 6336-1:2006, 7.5.3 and 8.3.5.1)."""
+    """Of two materials: half the sum of both allowances (ISO 6336-1:2006, 7.5.2.1 and 8.3.5.1)."""
     return 0.5 * (values[0] + values[1])

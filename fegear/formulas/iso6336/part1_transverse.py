@@ -1,7 +1,8 @@
 """ISO 6336-1, clause 8: transverse load factors K_Halpha and K_Falpha by method B.
 
 Source: ISO 6336-1:2006, 8.3; the edition of 2019 keeps the formulas. How unevenly several tooth pairs share the load
-follows from the base pitch deviation that running in leaves, beside what the load deflects.
+follows from the base pitch deviation that running in leaves, beside what the load deflects; a form deviation of the
+profile that is larger stands for it (footnote 12).
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def method_b(
     line_load: float,
     contact_ratio_factor: float,
 ) -> TransverseFactors:
-    """K_Halpha and K_Falpha (ISO 6336-1:2006, 8.3.2 to 8.3.4).
+    """K_Halpha and K_Falpha (ISO 6336-1:2006, 8.3.2 to 8.3.4, Eqs. 71 to 74).
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ def method_b(
     stiffness : float
         c_gamma_alpha [Pa].
     deviation : float
-        f_pb - y_alpha, of the gear with the larger f_pb [m].
+        f_pb - y_alpha of the gear with the larger f_pb, or f_falpha - y_alpha where that is larger [m].
     line_load : float
         F_tH / b = F_t K_A K_gamma K_v K_Hbeta / b [N/m].
     contact_ratio_factor : float
@@ -64,7 +65,7 @@ def method_b(
         if not value > 0.0:
             raise RangeError(name, value, "must be positive")
     if deviation < 0.0:
-        raise RangeError("f_pb - y_alpha", deviation, "must not be negative")
+        raise RangeError("deviation less y_alpha", deviation, "must not be negative")
     total = contact_ratio + overlap_ratio
     relative = stiffness * deviation / line_load
     if total <= 2.0:

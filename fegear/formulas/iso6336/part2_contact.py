@@ -38,7 +38,9 @@ def tip_relief_factor(relief: TipRelief, edition: int) -> float:
 
 
 def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Both, Both]:
-    """M_1, M_2 and Z_B, Z_D (ISO 6336-2, 6.2): from the pitch point to the inner points of single pair contact.
+    """M_1, M_2 and Z_B, Z_D: from the pitch point to the inner points of single pair contact.
+
+    ISO 6336-2, 6.2; Eqs. 17 and 18 of 2006.
 
     Parameters
     ----------
@@ -78,7 +80,7 @@ def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Bo
 
 
 def elasticity_factor(pair: PairGeometry) -> float:
-    """Z_E [sqrt(Pa)] = sqrt(1 / (pi sum((1 - nu^2)/E))) (ISO 6336-2, clause 7); 189.8 sqrt(N/mm^2) for steel."""
+    """Z_E [sqrt(Pa)] = sqrt(1 / (pi sum((1 - nu^2)/E))) (ISO 6336-2, clause 7; Eq. 19 of 2006)."""
     return math.sqrt(1.0 / (math.pi * sum((1.0 - g.poisson_ratio**2) / g.young_modulus for g in pair.gears)))
 
 

@@ -60,7 +60,7 @@ class RootStrength:
 
 
 def life_knots(strength: Strength) -> Knots:
-    """Y_NT of a material: static, 3e6, 1e10 cycles (ISO 6336-3:2006, table 2)."""
+    """Y_NT of a material: static, 3e6, 1e10 cycles (ISO 6336-3:2006, table 1)."""
     end = strength.long_life[1]
     if strength.group == "NV (nitrocar.)":
         return Knots((1e3, REFERENCE, LONG), (1.1, 1.0, end))
@@ -98,13 +98,13 @@ def slip_layer(strength: Strength) -> tuple[float, str]:
 
 
 def notch_sensitivity(notch: float, layer: float) -> float:
-    """Y_deltarelT at reference of q_s and rho' [m] (ISO 6336-3, 13.3.2)."""
+    """Y_deltarelT at reference of q_s and rho' [m] (ISO 6336-3, clause 13; Eq. 49 of 2006)."""
     gradient, reference = 0.2e3 * (1.0 + 2.0 * notch), 0.2e3 * (1.0 + 2.0 * _REFERENCE_NOTCH)
     return (1.0 + math.sqrt(layer * gradient)) / (1.0 + math.sqrt(layer * reference))
 
 
 def static_notch_sensitivity(strength: Strength, stress_correction: float) -> float:
-    """Y_deltarelT of static strength, of Y_S (ISO 6336-3:2006, 13.3.3); yield strengths not known count as 1000 MPa."""
+    """Y_deltarelT of static strength, of Y_S (ISO 6336-3:2006, clause 13); unknown yield: 1000 MPa."""
     group = strength.group
     if group in groups.CASE_HARDENED:
         return 0.44 * stress_correction + 0.12
@@ -118,7 +118,7 @@ def static_notch_sensitivity(strength: Strength, stress_correction: float) -> fl
 
 
 def surface_factor(group: Group, roughness: float) -> tuple[float, str]:
-    """Y_RrelT of the root's Rz [m], and a remark beyond 40 um (ISO 6336-3, 14.3)."""
+    """Y_RrelT of the root's Rz [m], and a remark beyond 40 um (ISO 6336-3, clause 14; table 4 of 2006)."""
     rz = roughness * 1e6
     remark = f"Y_RrelT: Rz = {rz:.3g} um of the root lies above 40 um" if rz > 40.0 else ""
     if group in groups.NORMALIZED:
@@ -131,7 +131,7 @@ def surface_factor(group: Group, roughness: float) -> tuple[float, str]:
 
 
 def size_factor(group: Group, module: float) -> float:
-    """Y_X at reference of m_n [m]; 1 up to 5 mm and for static strength (ISO 6336-3, 15.3)."""
+    """Y_X at reference of m_n [m]; 1 up to 5 mm and for static strength (ISO 6336-3, clause 15; table 5 of 2006)."""
     mm = module * 1e3
     if mm <= 5.0:
         return 1.0

@@ -92,6 +92,8 @@ class _Loads:
 
 
 _COMPUTED = "computed in place of the formula"
+#: Equations of K_v in the ranges of the resonance ratio.
+_EQUATION = {"subcritical": 13, "main resonance": 20, "supercritical": 21, "intermediate": 22}
 
 
 def rate_pair(conditions: Conditions, computed: Replacement | None = None) -> PairRating:
@@ -166,7 +168,7 @@ def _stiffness(table: _Table, conditions: Conditions, line_load: float) -> Stiff
 def _dynamic(
     table: _Table, conditions: Conditions, computed: Replacement, stiff: Stiffness, line_load: float
 ) -> tuple[float, float, float]:
-    """K_v, and f_pb and y_alpha of the worse gear."""
+    """K_v, the deviation that shares the load among tooth pairs, and y_alpha."""
     pair, quality, duty = conditions.geometry, conditions.quality, conditions.duty
     velocity = pair.pitch_line_velocity(duty.speed)
     pitch = max(q.base_pitch for q in quality)
@@ -182,40 +184,46 @@ def _dynamic(
     )
     table.add("f_pb", pitch, "ISO 1328-1, the worse gear", "m")
     table.add("f_falpha", profile, "ISO 1328-1, the worse gear", "m")
-    table.add("y_alpha", y_p, "ISO 6336-1:2006, 8.3.5.1, Eq. 75", "m")
+    shared = max(pitch, profile)  # footnote 12 of 8.3.2: a larger form deviation stands for f_pb
+    table.add("y_alpha", y_p, "ISO 6336-1:2006, 8.3.5.1, Eqs. 75 to 77", "m")
     grade = max(q.grade for q in quality)
     if computed.K_v is not None:
         table.add("K_v", computed.K_v, "ISO 6336-1, clause 6", remark=f"K_v: {_COMPUTED}")
-        return computed.K_v, pitch, y_p
+        return computed.K_v, shared, y_p
     if conditions.dynamic_method == "C":
         found = dynamic.method_c(pair, line_load, velocity, grade)
-        table.add("K_v", found.K_v, "ISO 6336-1:2019, 6.6, method C", remark=found.remark)
-        return found.K_v, pitch, y_p
+        table.add("K_v", found.K_v, "ISO 6336-1:2006, 6.5, method C", remark=found.remark)
+        return found.K_v, shared, y_p
     relief = min(q.tip_relief for q in quality)
     if relief == 0.0:
         relief = dynamic.running_in_relief((conditions.strength[0].contact, conditions.strength[1].contact))
     errors = dynamic.DynamicErrors(pitch, profile, y_p, y_f, relief, coarse=grade >= 6)
     found = dynamic.method_b(pair, (stiff.single, stiff.mesh_alpha), line_load, duty.speed, errors, duty.meshes)
-    table.add("m_red", found.reduced_mass, "ISO 6336-1:2006, 6.5.9, Eq. 30", "kg/m")
-    table.add("n_E1", found.resonance_speed, "ISO 6336-1:2006, 6.5.3, Eq. 6", "rad/s")
-    table.add("N", found.resonance_ratio, "ISO 6336-1:2006, 6.5.3, Eq. 9")
-    table.add("N_S", found.lower_limit, "ISO 6336-1:2006, 6.5.3, Eqs. 11 and 12")
-    table.add("y_p", y_p, "ISO 6336-1:2006, 6.5.4", "m")
-    table.add("y_f", y_f, "ISO 6336-1:2006, 6.5.4", "m")
-    table.add("C_a", relief, "ISO 6336-1:2006, 6.5.4", "m")
+    table.add("m_red", found.reduced_mass, "ISO 6336-1:2006, 6.4.8, Eq. 30", "kg/m")
+    table.add("n_E1", found.resonance_speed, "ISO 6336-1:2006, 6.4.2, Eq. 6", "rad/s")
+    table.add("N", found.resonance_ratio, "ISO 6336-1:2006, 6.4.2, Eq. 9")
+    table.add("N_S", found.lower_limit, "ISO 6336-1:2006, 6.4.2, Eqs. 11 and 12")
+    table.add("y_p", y_p, "ISO 6336-1:2006, 6.4.3, Eq. 18", "m")
+    table.add("y_f", y_f, "ISO 6336-1:2006, 6.4.3, Eq. 19", "m")
+    table.add("C_a", relief, "ISO 6336-1:2006, 6.4.3 and table 4", "m")
     for name, value, equation in zip(("B_p", "B_f", "B_k"), found.load_parameters, (15, 16, 17), strict=True):
-        table.add(name, value, f"ISO 6336-1:2006, 6.5.4, Eq. {equation}")
+        table.add(name, value, f"ISO 6336-1:2006, 6.4.3, Eq. {equation}")
     for i, value in enumerate(found.coefficients, 1):
-        table.add(f"C_v{i}", value, "ISO 6336-1:2006, 6.5.4, table 8")
-    table.add("K_v", found.K_v, f"ISO 6336-1:2006, 6.5.4 to 6.5.7, method B, {found.range}", remark=found.remark)
-    return found.K_v, pitch, y_p
+        table.add(f"C_v{i}", value, "ISO 6336-1:2006, 6.4.3, table 4")
+    table.add(
+        "K_v",
+        found.K_v,
+        f"ISO 6336-1:2006, 6.4, Eq. {_EQUATION[found.range]}, method B, {found.range}",
+        remark=found.remark,
+    )
+    return found.K_v, shared, y_p
 
 
 def _load_factors(table: _Table, conditions: Conditions, computed: Replacement) -> _Loads:
     pair, duty = conditions.geometry, conditions.duty
     applied = duty.tangential * duty.application_factor * duty.mesh_load_factor / pair.face_width
     stiff = _stiffness(table, conditions, applied)
-    k_v, pitch, worn = _dynamic(table, conditions, computed, stiff, applied)
+    k_v, shared, worn = _dynamic(table, conditions, computed, stiff, applied)
     k_hb = _face_load(table, conditions, computed, applied * k_v, stiff.mesh_beta)
     width = (pair.gears[0].face_width, pair.gears[1].face_width)
     depth = (pair.gears[0].depth, pair.gears[1].depth)
@@ -225,11 +233,11 @@ def _load_factors(table: _Table, conditions: Conditions, computed: Replacement) 
     else:
         exponent = root_exponent(width, depth)
         k_fb = (k_hb**exponent, k_hb**exponent)
-        table.add("N_F", exponent, "ISO 6336-1:2006, 7.6")
-        table.add("K_Fbeta", k_fb, "ISO 6336-1:2006, 7.6")
+        table.add("N_F", exponent, "ISO 6336-1:2006, 7.6, Eq. 70")
+        table.add("K_Fbeta", k_fb, "ISO 6336-1:2006, 7.6, Eq. 69")
     z_e = contact.contact_ratio_factor(pair.contact_ratio, pair.overlap_ratio)
     across = transverse.method_b(
-        pair.contact_ratio, pair.overlap_ratio, stiff.mesh_alpha, pitch - worn, applied * k_v * k_hb, z_e
+        pair.contact_ratio, pair.overlap_ratio, stiff.mesh_alpha, shared - worn, applied * k_v * k_hb, z_e
     )
     k_ha, k_fa = across.K_Halpha, (across.K_Falpha, across.K_Falpha)
     marks = ["", ""]
@@ -237,8 +245,8 @@ def _load_factors(table: _Table, conditions: Conditions, computed: Replacement) 
         k_ha, marks[0] = computed.K_Halpha, f"K_Halpha: {_COMPUTED}"
     if computed.K_Falpha is not None:
         k_fa, marks[1] = computed.K_Falpha, f"K_Falpha: {_COMPUTED}"
-    table.add("K_Halpha", k_ha, "ISO 6336-1:2006, 8.3.2 to 8.3.4, method B", remark=marks[0])
-    table.add("K_Falpha", k_fa, "ISO 6336-1:2006, 8.3.2 to 8.3.4, method B", remark=marks[1])
+    table.add("K_Halpha", k_ha, "ISO 6336-1:2006, 8.3.2 and 8.3.3, Eqs. 71 to 73, method B", remark=marks[0])
+    table.add("K_Falpha", k_fa, "ISO 6336-1:2006, 8.3.2 and 8.3.4, Eqs. 71, 72, 74, method B", remark=marks[1])
     return _Loads(k_v, k_hb, k_fb, k_ha, k_fa)
 
 
@@ -257,14 +265,14 @@ def _face_load(
     table.add("F_m/b", line_load, "ISO 6336-1:2006, 7.2", "N/m")
     if not math.isnan(found.initial):
         table.add("f_sh", found.deformation, "ISO 6336-1:2006, 7.5.2.4, Eq. 57", "m", found.remark)
-        table.add("f_ma", found.manufacture, "ISO 6336-1:2006, 7.5.2.5", "m")
+        table.add("f_ma", found.manufacture, "ISO 6336-1:2006, 7.5.2, Eq. 64", "m")
         table.add("B_1", found.constants[0], "ISO 6336-1:2006, 7.5.2.2, table 8")
         table.add("B_2", found.constants[1], "ISO 6336-1:2006, 7.5.2.2, table 8")
-        table.add("F_betaxmin", found.least, "ISO 6336-1:2006, 7.5.2.2", "m")
-        table.add("F_betax", found.initial, "ISO 6336-1:2006, 7.5.2.2, Eqs. 52 to 54", "m")
-        table.add("y_beta", found.run_in, "ISO 6336-1:2006, 7.5.3", "m")
-        table.add("F_betay", found.effective, "ISO 6336-1:2006, 7.5.3", "m")
-        table.add("K_Hbeta", found.K_Hbeta, "ISO 6336-1:2006, 7.5.1, method C")
+        table.add("F_betaxmin", found.least, "ISO 6336-1:2006, 7.5.2, Eqs. 55 and 56", "m")
+        table.add("F_betax", found.initial, "ISO 6336-1:2006, 7.5.2.2, Eqs. 52 and 53", "m")
+        table.add("y_beta", found.run_in, "ISO 6336-1:2006, 7.5.2.1, Eqs. 44 to 48", "m")
+        table.add("F_betay", found.effective, "ISO 6336-1:2006, 7.5.2.1, Eq. 43", "m")
+        table.add("K_Hbeta", found.K_Hbeta, "ISO 6336-1:2006, 7.5, Eqs. 39 and 41, method C")
     else:
         table.add("K_Hbeta", found.K_Hbeta, "ISO 6336-1, clause 7", remark=found.remark)
     return found.K_Hbeta
@@ -400,7 +408,7 @@ def _root_factors(
     remark = "; ".join(dict.fromkeys(r for r in (one.remark, two.remark) if r))
     table.add("sigma_Flim", (conditions.strength[0].bending, conditions.strength[1].bending), "ISO 6336-5", "Pa")
     table.add("Y_ST", strength_of_root.STANDARD_GEAR, f"{part}, 5.3")
-    table.add("Y_NT", (one.Y_NT, two.Y_NT), f"{part}, clause 12, table 2")
+    table.add("Y_NT", (one.Y_NT, two.Y_NT), f"{part}, clause 12, table 1")
     table.add("Y_deltarelT", (one.Y_deltarelT, two.Y_deltarelT), f"{part}, clause 13", remark=remark)
     table.add("Y_RrelT", (one.Y_RrelT, two.Y_RrelT), f"{part}, clause 14")
     table.add("Y_X", (one.Y_X, two.Y_X), f"{part}, clause 15")
