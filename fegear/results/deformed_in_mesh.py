@@ -78,6 +78,8 @@ class DeformedInMeshData:
     pair : GearPair
     roll : ndarray, shape (P,)
         x of pair 0 [m].
+    pairs : ndarray of int, shape (T,)
+        Pairs that the teeth belong to.
     transmission_error : ndarray, shape (P,)
         By which the driver is ahead, along the line of action [m].
     places : mapping of str to ndarray, shape (T, 2, N)
@@ -90,6 +92,7 @@ class DeformedInMeshData:
 
     pair: GearPair
     roll: Array
+    pairs: Array
     transmission_error: Array
     places: Mapping[Member, Array]
     moved: Mapping[Member, Array]
@@ -114,7 +117,7 @@ def _deformed(asked: MeshInputs, upstream: Upstream, _work: Work) -> DeformedInM
         places[member] = np.stack([placed_in_mesh(pair, member, one.points, j) for j in teeth])
         moved[member] = _in_gear(pair, member, one)
         largest = max(largest, one.largest)
-    return DeformedInMeshData(pair, state.x, state.transmission_error[:, 0], places, moved, largest)
+    return DeformedInMeshData(pair, state.x, np.array(teeth), state.transmission_error[:, 0], places, moved, largest)
 
 
 def _in_gear(pair: GearPair, member: Member, one: MovedOutline) -> Array:

@@ -65,6 +65,8 @@ class Bench:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._number = self._first = self._laid = 0
         self._sight: tuple[str, ...] = ()
+        self._shows: tuple[tuple[str, str], ...] = ()
+        self._meshed: dict[tuple[str, str], _Content] = {}
         self._found: dict[str, _Content] = {}
         self._last: dict[str, _Content] = {}
 
@@ -90,6 +92,13 @@ class Bench:
         """Note which results are in sight on the page that was scrolled last."""
         self._sight = tuple(tasks)
 
+    def show(self, pair: str, kind: str, *, on: bool) -> None:
+        """Have something shown at the gears in mesh of a pair, or no longer."""
+        others = tuple(one for one in self._shows if one != (pair, kind))
+        self._shows = (*others, (pair, kind)) if on else others
+        if on:
+            self.compute()
+
     def tell(self, what: str, content: _Content | None = None) -> None:
         """Tell every page."""
         for listener in list(self._listeners):
@@ -103,6 +112,9 @@ class Bench:
         for content in self._found.values():
             told.append(("found", {key: value for key, value in content.items() if key != "pictures"}))
             told += [("picture", picture) for picture in content.get("pictures", {}).values()]
+        told += [
+            ("meshed", content) for key, content in self._meshed.items() if key[1] == "pressure" or key in self._shows
+        ]
         return [*told, *((what, self._last[what]) for what in ("done", "designed", "compared") if what in self._last)]
 
     # ---- the case ------------------------------------------------------------------------------------------------
@@ -112,6 +124,8 @@ class Bench:
         self.desk, self.pinned, self._laid, self._sight = desk, None, self._laid + 1, ()
         self._found.clear()
         self._last.clear()
+        self._shows = ()
+        self._meshed.clear()
         self._first = self._number + 1
         self.tell("laid")
         self.compute()
@@ -151,7 +165,7 @@ class Bench:
             return
         self._number = next(self._numbers)
         self.tell("asked")
-        asked = self.asked()._replace(moving=moving, sight=self._sight, laid=self._laid)
+        asked = self.asked()._replace(moving=moving, sight=self._sight, shows=self._shows, laid=self._laid)
         self._computing.ask(Compute(self._number, asked))
 
     def export(self, what: str, target: str) -> None:
@@ -252,17 +266,26 @@ class Bench:
             return
         if what == "hands":
             content = {"pairs": self._with_gears(content["pairs"])}
+        self._keep(what, content)
+        self.tell(what, content)
+        if what == "done" and not content["moving"] and self.pinned is not None and self._computing is not None:
+            self._computing.ask(Compare(next(self._numbers), self.pinned, self.asked()))
+
+    def _keep(self, what: str, content: _Content) -> None:
+        """Remember what a page that opens later has to be told."""
         if what == "plan":
             self._found = {task: one for task, one in self._found.items() if task in content["tasks"]}
+            for key in [key for key in self._meshed if key[1] == "pressure"]:
+                if f"loaded-flanks of {key[0]}" not in content["tasks"]:
+                    del self._meshed[key]
         elif what == "found":
             self._found[content["task"]] = {**whole(content, self._found.get(content["task"])), "pictures": {}}
+        elif what == "meshed":
+            self._meshed[content["pair"], content["kind"]] = content
         elif what == "picture":
             self._found[content["task"]]["pictures"][content["key"]] = content
         if what in ("plan", "hands", "harris", "done"):
             self._last[what] = content
-        self.tell(what, content)
-        if what == "done" and not content["moving"] and self.pinned is not None and self._computing is not None:
-            self._computing.ask(Compare(next(self._numbers), self.pinned, self.asked()))
 
 
 #: What a template is for, by the name of its kind.

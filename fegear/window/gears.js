@@ -4,6 +4,11 @@ const fegearGears = (() => {
   const SVG = "http://www.w3.org/2000/svg";
   const shown = new Map(); // pair -> what is drawn of it
   const loadsOf = new Map(); // pair -> { x, load }
+  const KINDS = { // what can be switched on
+    stress: ["Root stress", "Root stress along the fillets of all teeth, in colour"],
+    deformed: ["Deformed", "Teeth as the load deforms them, displacements many times as large"],
+    tool: ["Tool", "Positions of the rack tool that generates the teeth, in one space of either gear"],
+  };
 
   const svg = (tag, attributes, parent) => {
     const one = document.createElementNS(SVG, tag);
@@ -18,8 +23,11 @@ const fegearGears = (() => {
   };
 
   function meshOf(pair, host) {
-    const kept = { place: 0, playing: false, data: null };
+    const kept = { place: 0, playing: false, data: null, on: {}, sent: {}, factor: null };
+    const stage = document.createElement("div"), canvas = document.createElement("canvas");
+    stage.className = "mesh-stage";
     const picture = svg("svg", { class: "mesh", role: "img", "aria-label": `Gears of pair ${pair} in mesh` });
+    stage.append(canvas, picture);
     const tools = document.createElement("p");
     tools.className = "mesh-tools";
     const scrub = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 1000, value: 0 });
@@ -30,10 +38,14 @@ const fegearGears = (() => {
     told.className = "quiet";
     tools.append(play, button("◀", "A step back", step(-1)), button("▶", "A step on", step(1)), scrub, told);
     scrub.oninput = () => { kept.place = scrub.value / 1000; draw(); };
-    host.append(picture, tools);
+    const more = layersOf(pair, kept, () => draw());
+    host.append(stage, tools, ...more.elements);
     let last = 0;
+    const frames = kept.frames = []; // when they were drawn [ms]
     function turn(time) {
       if (!kept.playing || !picture.isConnected) return;
+      frames.push(time);
+      if (frames.length > 200) frames.shift();
       kept.place = (kept.place + Math.min(100, time - last) / 6000) % 1; // a base pitch in six seconds
       last = time;
       draw();
@@ -47,6 +59,7 @@ const fegearGears = (() => {
       picture.replaceChildren();
       picture.setAttribute("viewBox", `${-wide} ${-tall} ${2 * wide} ${2 * tall}`);
       kept.unit = m;
+      kept.view = { wide, tall, data };
       const up = svg("g", { transform: "scale(1,-1)" }, picture);
       const line = (points) => `M${points[0].map((x, i) => `${(x * 1e3).toFixed(4)},${(points[1][i] * 1e3).toFixed(4)}`).join("L")}`;
       kept.driver = svg("path", { d: line(data.driver), class: "driver" }, up);
@@ -73,6 +86,10 @@ const fegearGears = (() => {
       const d = kept.data;
       if (!d) return;
       scrub.value = Math.round(kept.place * 1000);
+      const layers = more.now();
+      picture.classList.toggle("at-rest", !!layers.deformed);
+      fegearLayers.gears(canvas, kept.view, layers);
+      more.draw();
       const first = d.start + kept.place * d.base_pitch; // the pair that came into contact last
       const degrees = (x, base) => x / base * 180 / Math.PI;
       kept.driver.setAttribute("transform", `rotate(${-degrees(first, d.driver_base)} 0 ${-d.driver_radius * 1e3})`);
@@ -83,7 +100,7 @@ const fegearGears = (() => {
       for (let k = -1; first + k * d.base_pitch <= d.end + d.base_pitch; k += 1) {
         const x = first + k * d.base_pitch, load = loadAt(x), on = x >= d.start && x <= d.end;
         if (!on && !(load > 0)) continue;
-        const px = x * 1e3 * c, py = x * 1e3 * s;
+        const [px, py] = fegearLayers.contactMoved(d, layers, k, x * 1e3 * c, x * 1e3 * s);
         svg("circle", { cx: px, cy: py, r: 0.13 * kept.unit, class: "contact" }, kept.arrows);
         if (load > 0) {
           const length = 2.6 * kept.unit * load / largest, tip = 0.22 * kept.unit;
@@ -95,13 +112,141 @@ const fegearGears = (() => {
       }
       told.textContent = found.length ? found.join(", ") : `roll position ${(first * 1e3).toFixed(3)} mm`;
     }
+    new ResizeObserver(() => draw()).observe(stage);
     kept.draw = draw;
+    kept.take = more.take;
+    kept.retell = more.tell;
+    kept.canvasIsThere = () => canvas.isConnected;
     shown.set(pair, kept);
+    for (const content of waiting.get(pair)?.values() ?? []) kept.take(content);
+    waiting.delete(pair);
     return kept;
   }
+
+  // ---- what is switched on -----------------------------------------------------------------------------------------
+  function layersOf(pair, kept, draw) {
+    const switches = document.createElement("p"), told = document.createElement("p"), scale = document.createElement("p");
+    const flanks = document.createElement("canvas"), pressed = document.createElement("p");
+    switches.className = "mesh-tools";
+    told.className = pressed.className = "quiet mesh-told";
+    scale.className = "mesh-scale";
+    flanks.className = "flanks";
+    flanks.setAttribute("role", "img");
+    flanks.setAttribute("aria-label", `Pressure on both flanks of pair ${pair} along the contact lines`);
+    scale.hidden = flanks.hidden = pressed.hidden = true;
+    const buttons = {};
+    for (const [kind, [words, title]] of Object.entries(KINDS)) {
+      buttons[kind] = button(words, title, () => turn(kind, !kept.on[kind]));
+      buttons[kind].setAttribute("aria-pressed", "false");
+      switches.append(buttons[kind]);
+    }
+    const label = document.createElement("label"), words = document.createElement("span"), value = document.createElement("b");
+    const slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 300, value: 0 });
+    slider.setAttribute("aria-label", "Displacements drawn so many times as large");
+    label.className = "mesh-factor";
+    label.hidden = true;
+    words.textContent = "magnified";
+    label.append(words, slider, value);
+    switches.append(label);
+    slider.oninput = () => {
+      const power = 10 ** Math.floor(slider.value / 100), exact = 10 ** (slider.value / 100);
+      kept.factor = Math.min(1000, Math.round(exact / power * 10) / 10 * power);
+      tell();
+      draw();
+    };
+    const factor = () => kept.factor ?? kept.sent.deformed?.factor ?? 1;
+    function turn(kind, on) {
+      kept.on[kind] = on;
+      buttons[kind].setAttribute("aria-pressed", String(on));
+      emitEvent("shows", { pair, kind, on });
+      tell();
+      draw();
+    }
+    const has = (kind) => (kept.on[kind] && kept.sent[kind] && !kept.sent[kind].refused ? kept.sent[kind] : null);
+    function bar(kind, low, high, unit) { // a scale of colours with its ends
+      const strip = document.createElement("i"), ends = [low, high].map((one) => {
+        const end = document.createElement("span");
+        end.textContent = `${one} ${unit}`;
+        return end;
+      });
+      strip.style.background = `linear-gradient(to right, ${fegearLayers.stops(kind).join()})`;
+      return [ends[0], strip, ends[1]];
+    }
+    function tell() {
+      const stress = has("stress"), deformed = has("deformed"), lines = [];
+      scale.hidden = !stress;
+      label.hidden = !kept.on.deformed;
+      if (stress) {
+        const { largest, limit } = stress, number = limit.toPrecision(4), title = document.createElement("span");
+        title.textContent = "tangential root stress:";
+        scale.replaceChildren(title, ...bar("stress", `−${number}`, number, "MPa"));
+        lines.push(`Largest root tension over the mesh cycle: ${largest.value.toPrecision(5)} MPa in the ${largest.member} gear, at radius `
+          + `${largest.radius.toFixed(3)} mm, while its pair touches at x = ${largest.x.toFixed(3)} mm (ring).`);
+      }
+      if (deformed) {
+        slider.value = Math.round(100 * Math.log10(factor()));
+        value.textContent = `${factor()} ×`;
+        lines.push(`Displacements, transmission error and relief are drawn ${factor()} times as large (largest: `
+          + `${deformed.largest.toPrecision(3)} µm); pale lines show the gears at rest. Flanks that carry load touch at the dots; `
+          + "beside them, and where teeth do not touch, they may seem to overlap, for gaps are drawn as they are.");
+      }
+      if (has("tool")) lines.push("The profile is the envelope of the tool's positions.");
+      for (const kind of Object.keys(KINDS)) {
+        if (!kept.on[kind]) continue;
+        if (kept.sent[kind]?.refused) lines.push(`${KINDS[kind][0]}: ${kept.sent[kind].refused}`);
+        else if (!kept.sent[kind]) lines.push(`${KINDS[kind][0]}: being computed.`);
+      }
+      told.textContent = lines.join(" ");
+      told.hidden = !lines.length;
+      const pressure = kept.sent.pressure;
+      flanks.hidden = pressed.hidden = !pressure;
+      if (pressure) {
+        const title = document.createElement("span");
+        title.textContent = "Hertzian pressure:";
+        pressed.replaceChildren(title, ...bar("pressure", "0", pressure.limit.toPrecision(4), "MPa"), now);
+      }
+    }
+    const now = document.createElement("span");
+    pressed.classList.add("mesh-scale");
+    return {
+      tell,
+      elements: [switches, scale, told, flanks, pressed],
+      now: () => ({ place: kept.place, factor: factor(), stress: has("stress"), deformed: has("deformed"), tool: has("tool") }),
+      draw() {
+        const pressure = kept.sent.pressure;
+        if (!pressure || !kept.data) return;
+        const found = fegearLayers.flanks(flanks, kept.data, pressure, kept.place);
+        now.textContent = `at this position up to ${found.largest.toPrecision(4)} MPa; the scale leaves tips and form circles out. All flanks in contact are laid over each other.`;
+      },
+      take(content) {
+        const { kind } = content, made = content.refused ? content : { stress: fegearLayers.stressOf, deformed: fegearLayers.deformedOf }[kind]?.(content) ?? content;
+        kept.sent[kind] = content.gone ? null : made;
+        if (kind in KINDS && kept.on[kind] === undefined) { // a page that opened later
+          kept.on[kind] = true;
+          buttons[kind].setAttribute("aria-pressed", "true");
+        }
+        tell();
+        draw();
+      },
+    };
+  }
+  const waiting = new Map(); // pair -> what was told of it before it was drawn
+  function meshed(content) {
+    if (shown.has(content.pair) && shown.get(content.pair).canvasIsThere()) return shown.get(content.pair).take(content);
+    if (!waiting.has(content.pair)) waiting.set(content.pair, new Map());
+    waiting.get(content.pair).set(content.kind, content);
+  }
+  fegearFigure.dark.addEventListener("change", () => { for (const kept of shown.values()) { kept.retell(); kept.draw(); } });
   return {
     button,
     meshOf,
+    meshed,
+    plan(tasks) { // what is computed no longer is shown no longer
+      for (const [pair, kept] of shown) {
+        if (kept.sent.pressure && !tasks.includes(`loaded-flanks of ${pair}`)) kept.take({ kind: "pressure", gone: true });
+      }
+    },
+    frames: (pair) => shown.get(pair)?.frames ?? [],
     loads({ pair, x, load }) { loadsOf.set(pair, { x, load }); shown.get(pair)?.draw(); },
   };
 })();

@@ -1,4 +1,4 @@
-"""The gears in mesh for the page: outlines and how they turn; what is shown on them follows in messages of its own."""
+"""The gears in mesh for the page: outlines and how they turn, and what is switched on at them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fegear.engine.plan import make_plan
+from fegear.engine.stage import Task
+from fegear.errors import FegearError
+from fegear.results.catalogue import STAGES
 from fegear.results.moving_pair import moving_pair
+from fegear.results.tool_envelope import tool_envelope
+from fegear.window.on_gears import millimetres
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from fegear.case.reading import Scene
+
+#: What is switched on at the gears, and the stage that computes it.
+STAGES_OF = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
 
 
 def _plain(value: Any) -> Any:
@@ -29,3 +40,40 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
         Of the pair.
     """
     return {key: _plain(value) for key, value in asdict(moving_pair(scene.pairs[name])).items()}
+
+
+def wanted_on_gears(scene: Scene, shows: Iterable[tuple[str, str]]) -> tuple[list[Task], list[dict[str, Any]]]:
+    """What is switched on at the gears: tasks that compute it, and what can be told of it at once.
+
+    Parameters
+    ----------
+    scene : Scene
+    shows : iterable of (str, str)
+        Pair and kind: ``stress``, ``deformed`` or ``tool``.
+
+    Returns
+    -------
+    tasks : list of Task
+    told : list of dict
+        For the page: the tool's positions, and why a kind cannot be had.
+    """
+    tasks: list[Task] = []
+    told: list[dict[str, Any]] = []
+    for pair, kind in shows:
+        if pair not in scene.pairs:
+            continue
+        if kind == "tool":
+            gears = scene.pairs[pair]
+            lines = {member: millimetres(at) for member, at in tool_envelope(gears).items()}
+            tips = {member: gears.gear(member).tip_radius * 1e3 for member in lines}
+            told.append({"pair": pair, "kind": kind, "lines": lines, "tips": tips})
+        elif scene.pairs[pair].driver.helix_angle or pair not in scene.plane_pairs:
+            told.append({"pair": pair, "kind": kind, "refused": "It is shown of pairs of plane teeth."})
+        else:
+            task = Task(STAGES_OF[kind], pair)
+            try:
+                make_plan(scene, STAGES, [task])
+                tasks.append(task)
+            except FegearError as error:
+                told.append({"pair": pair, "kind": kind, "refused": str(error)})
+    return tasks, told

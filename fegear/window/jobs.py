@@ -19,6 +19,8 @@ class Asked(NamedTuple):
         Whether a value of it is being moved: its numbers are wanted at once, their errors when it stands still.
     sight : tuple of str
         Tasks whose results are in sight on a page: they are wanted before those that are not.
+    shows : tuple of (str, str)
+        Pair and kind of what is switched on at the gears in mesh.
     laid : int
         How many cases have lain on the desk before it: what was told of those is forgotten.
     """
@@ -29,6 +31,7 @@ class Asked(NamedTuple):
     loosened: float = 1.0
     moving: bool = False
     sight: tuple[str, ...] = ()
+    shows: tuple[tuple[str, str], ...] = ()
     laid: int = 0
 
 
@@ -86,8 +89,8 @@ class Said:
         The job's.
     what : str
         ``plan`` (tasks, in order), ``hands`` (gears in mesh, reliefs and loads that are changed by hand), ``begin`` (a
-        task), ``found`` (a task's results), ``picture``, ``done``, ``refused``, ``exported``, ``compared``,
-        ``designed`` or ``dropped`` (another is wanted).
+        task), ``found`` (a task's results), ``meshed`` (what is shown on the gears in mesh), ``picture``, ``done``,
+        ``refused``, ``exported``, ``compared``, ``designed`` or ``dropped`` (another is wanted).
     content : dict
         Plain data for the page.
     """

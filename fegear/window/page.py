@@ -34,6 +34,7 @@ def _serve_files() -> None:
         (report, "figure.js"),
         (report, "page.css"),
         (own, "window.js"),
+        (own, "layers.js"),
         (own, "gears.js"),
         (own, "hands.js"),
         (own, "window.css"),
@@ -61,6 +62,7 @@ class Page:
         ui.on("drop", lambda event: self._by_hand(lambda: bench.drop_relief(**event.args)))
         ui.on("name_driven", lambda event: self._by_hand(lambda: bench.name_driven(**event.args)))
         ui.on("design", lambda event: self._by_hand(lambda: bench.design(**event.args)))
+        ui.on("shows", lambda event: bench.show(**event.args))
         ui.on("sight", lambda event: bench.see(event.args["tasks"]))
         self._client.run_javascript(f"fegear.begin({json.dumps(template())})")
         self._client.on_delete(bench.listen(self._hear))
@@ -116,6 +118,6 @@ def show(bench: Bench) -> None:
     _serve_files()
     for name in ("page.css", "window.css"):
         ui.add_head_html(f'<link rel="stylesheet" href="{_AT}/{name}">')
-    for name in ("plotly.js", "figure.js", "window.js", "gears.js", "hands.js"):
+    for name in ("plotly.js", "figure.js", "window.js", "layers.js", "gears.js", "hands.js"):
         ui.add_head_html(f'<script src="{_AT}/{name}"></script>')
     Page(bench)

@@ -80,8 +80,10 @@ const fegear = (() => {
     hands(content) { return fegearHands.show(content, { made, paint, sections }); },
     harris(content) { return fegearHands.harris(content, { paint, sections }); },
     load_now(content) { return fegearHands.follow(content); },
+    meshed(content) { fegearGears.meshed(content); },
     asked() { document.body.classList.add("computing"); },
     plan({ tasks }) {
+      fegearGears.plan(tasks);
       for (const [task, kept] of sections) {
         if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { sight.unobserve(kept.element); seen.delete(task); kept.element.remove(); sections.delete(task); }
       }
@@ -175,10 +177,10 @@ const fegear = (() => {
 
   let line = Promise.resolve(); // one after the other: a figure is not painted twice at a time
   const newest = new Map(); // what is overtaken before its turn is not shown
-  const OVERTAKEN = new Set(["found", "hands", "plan", "harris", "load_now"]);
+  const OVERTAKEN = new Set(["found", "hands", "plan", "harris", "load_now", "meshed"]);
   function hear(what, content) {
     if (!heard[what]) return line;
-    const kind = `${what} ${content?.task ?? ""}`, number = (newest.get(kind) ?? 0) + 1;
+    const kind = `${what} ${content?.task ?? ""} ${content?.pair ?? ""} ${content?.kind ?? ""}`, number = (newest.get(kind) ?? 0) + 1;
     newest.set(kind, number);
     line = line.then(() => {
       if (!OVERTAKEN.has(what) || newest.get(kind) === number) return heard[what](content);

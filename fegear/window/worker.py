@@ -12,10 +12,12 @@ from fegear.results.loaded_pair import LoadedPairData
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
 from fegear.window.designs import design_asked, designed
+from fegear.window.gears import wanted_on_gears
 from fegear.window.hands import hands_of
 from fegear.window.harris import HarrisMaps, load_now_of
 from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Compare, Compute, Design, Export, Said
+from fegear.window.on_gears import on_the_gears
 from fegear.window.order import in_order
 from fegear.window.sent import Sent
 
@@ -52,6 +54,7 @@ class Worker:
     def __init__(self, connection: Connection, folder: Path) -> None:
         self._inbox, self._cache = Inbox(connection), SolutionCache(Store(folder), _MOST)
         self._meshes: dict[str, object] = {}
+        self._on_gears: dict[Task, object] = {}
         self._seconds: dict[str, float] = {}
         self._number, self._begun, self._wait_before = 0, 0.0, 0
         self._asked: Asked | None = None
@@ -130,15 +133,16 @@ class Worker:
         from fegear.results.catalogue import STAGES
 
         scene = scene_of(asked)
-        plan = make_plan(scene, STAGES)
+        more, at_once_told = wanted_on_gears(scene, asked.shows)
+        plan = make_plan(scene, STAGES, more)
         if told:
             if asked.laid != self._laid:
-                self._laid, self._sent, self._meshes = asked.laid, Sent(), {}
+                self._laid, self._sent, self._meshes, self._on_gears = asked.laid, Sent(), {}, {}
                 self._maps = HarrisMaps()
             tasks = [str(step.task) for step in plan.steps]
             self._say("plan", tasks=tasks)
             self._sent.forget_others(tasks)
-            plan, at_once = in_order(plan, scene, asked.sight, self._seconds)
+            plan, at_once = in_order(plan, scene, (*asked.sight, *map(str, more)), self._seconds)
             self._wait_before = at_once + 1 if asked.moving and at_once < len(plan.steps) else 0
             pairs = hands_of(scene)
             meshes = {name: one["mesh"] for name, one in pairs.items()}
@@ -147,6 +151,9 @@ class Worker:
                     one["mesh"] = None
             self._meshes = meshes
             self._say("hands", pairs=pairs)
+            for content in () if asked.moving else at_once_told:
+                self._say("meshed", **content)
+            self._on_gears = {task: data for task, data in self._on_gears.items() if str(task) in tasks}
         return run_plan(
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,
@@ -191,6 +198,9 @@ class Worker:
             },
         }  # fmt: skip
         self._say("found", **self._sent.news(found))
+        if self._on_gears.get(task) is not outcome.data and (shown := on_the_gears(task, outcome.data)) is not None:
+            self._on_gears[task] = outcome.data  # what is recalled is on the page already
+            self._say("meshed", **shown)
 
     def _pictures(self, results: Results) -> None:
         """Draw what a page cannot draw itself, after all numbers are there."""

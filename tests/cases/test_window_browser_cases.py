@@ -167,6 +167,14 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.click(button("Undo"))
     browser.until("document.querySelector('textarea').value.includes('load = \"7 kN\"')")
 
+    # At the gears: the tool is drawn, what these compliances cannot tell is said.
+    drawn = "document.querySelector('.mesh-stage canvas').toDataURL()"
+    empty = browser.run(drawn)
+    browser.click(button("Tool"))
+    browser.until(f"{drawn}.length > {len(empty)} + 2000")
+    browser.click(button("Deformed"))
+    browser.until("document.querySelector('.mesh-told').textContent.includes('not how a tooth deforms')")
+
     # The server is killed; its successor has what was not saved, and writes it where it belongs.
     served.end(signal.SIGKILL)
     assert path.read_text() == TEXT

@@ -1,5 +1,8 @@
 """The moving picture of a pair: colours of the fillets, deformed teeth, the tool that leaves the profile."""
 
+import base64
+import json
+
 import numpy as np
 import pytest
 
@@ -15,6 +18,8 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
 from fegear.results.drawn_pair import placed_in_mesh
 from fegear.solution_cache import SolutionCache
+from fegear.window.gears import wanted_on_gears
+from fegear.window.on_gears import on_the_gears
 
 CASE = {
     "results": ["root-stress-history"],
@@ -170,3 +175,40 @@ def test_deformed_teeth_need_finite_elements():
     scene = build_scene({**CASE, "pair": {"I": pair}, "effects": {"neighbour_coupling": False}}, "case", None)
     with pytest.raises(InputError, match="not how a tooth deforms"):
         make_plan(scene, STAGES, [DEFORMED])
+
+
+def test_what_the_page_is_sent_is_small_and_keeps_the_largest_value(ran):
+    stress, deformed = (on_the_gears(task, ran.outcomes[task].data) for task in (STRESS, DEFORMED))
+    assert len(json.dumps(stress)) < 150e3
+    assert len(json.dumps(deformed)) < 600e3
+    data = ran.outcomes[STRESS].data
+    assert stress["largest"]["value"] == pytest.approx(data.largest.value * 1e-6)
+    assert stress["limit"] >= stress["largest"]["value"]
+    assert stress["largest"]["at"] in stress["roll"]
+    values = np.stack([_unpacked(one["stress"]) for one in stress["fillets"]])
+    assert values.shape[1:3] == (len(stress["roll"]), len(stress["pairs"]))
+    assert values.max() == pytest.approx(
+        stress["largest"]["value"], rel=5e-3
+    )  # points of a fillet between the solved ones
+    moved = _unpacked(deformed["gears"]["driven"]["moved"])
+    assert np.hypot(moved[:, :, 0], moved[:, :, 1]).max() == pytest.approx(
+        ran.outcomes[DEFORMED].data.largest * 1e3, rel=0.02
+    )
+    drawn = deformed["factor"] * deformed["largest"] * 1e-3
+    assert 0.04 * 3.0 < drawn <= 0.1 * 3.0
+    assert np.all(np.diff(stress["roll"]) > 0.0)
+    assert np.diff(deformed["roll"]).max() < 0.03
+
+
+def _unpacked(sent):
+    return np.frombuffer(base64.b64decode(sent["data"]), "<i2").reshape(sent["shape"]) * sent["step"]
+
+
+def test_what_cannot_be_shown_is_said_and_stops_nothing():
+    pair = {**CASE["pair"]["I"], "compliance": {"source": "weber-banaschek"}}
+    scene = build_scene({**CASE, "pair": {"I": pair}, "effects": {"neighbour_coupling": False}}, "case", None)
+    tasks, told = wanted_on_gears(scene, [("I", "stress"), ("I", "deformed"), ("I", "tool"), ("J", "stress")])
+    assert tasks == [STRESS]
+    refused, tool = told
+    assert "not how a tooth deforms" in refused["refused"]
+    assert np.shape(tool["lines"]["driver"])[:2] == (31, 2)

@@ -1,0 +1,246 @@
+"use strict";
+// What is drawn over the gears in mesh: root stress in colour, deformed teeth, the tool; and flanks with their pressure.
+const fegearLayers = (() => {
+  const STOPS = { // of the scales of colours, on light and on dark ground
+    stress: { light: ["#08519c", "#4292c6", "#c4c8cc", "#ef6548", "#990000"], dark: ["#9ecbff", "#3f8ae0", "#4b5158", "#f0603f", "#ffc2a8"] },
+    pressure: { light: ["#fdd49e", "#fc8d59", "#d7301f", "#7f0000"], dark: ["#5b2a12", "#c8441c", "#ff9a3d", "#fff0b8"] },
+  };
+  const stops = (kind) => STOPS[kind][fegearFigure.theme()];
+  const kept = new Map(); // palettes
+  function shades(kind) { // 128 steps of a scale
+    const key = `${kind} ${fegearFigure.theme()}`;
+    if (!kept.has(key)) {
+      const rgb = stops(kind).map((one) => [1, 3, 5].map((i) => parseInt(one.slice(i, i + 2), 16)));
+      kept.set(key, Array.from({ length: 128 }, (_, i) => {
+        const at = i / 127 * (rgb.length - 1), k = Math.min(Math.floor(at), rgb.length - 2);
+        return `rgb(${rgb[k].map((one, c) => Math.round(one + (rgb[k + 1][c] - one) * (at - k))).join()})`;
+      }));
+    }
+    return kept.get(key);
+  }
+  const shade = (scale, share) => scale[Math.max(0, Math.min(127, Math.round(127 * share)))];
+
+  function unpack({ step, shape, data }) {
+    const bytes = Uint8Array.from(atob(data), (one) => one.charCodeAt(0));
+    return { step, shape, data: new Int16Array(bytes.buffer) };
+  }
+  function between(roll, place) { // number of the roll position before a place, and how far it is on to the next
+    let low = 0, high = roll.length - 1;
+    while (high - low > 1) { const middle = (low + high) >> 1; if (roll[middle] <= place) low = middle; else high = middle; }
+    const share = (place - roll[low]) / (roll[high] - roll[low] || 1);
+    return [low, high, Math.max(0, Math.min(1, share))];
+  }
+
+  // ---- what was sent, ready to be drawn ------------------------------------------------------------------------------
+  function stressOf(sent) {
+    return { ...sent, fillets: sent.fillets.map((one) => ({ ...one, stress: unpack(one.stress) })) };
+  }
+  function deformedOf(sent) {
+    const gears = {};
+    for (const [member, one] of Object.entries(sent.gears)) gears[member] = { places: one.places, moved: unpack(one.moved) };
+    return { ...sent, gears };
+  }
+  function besides(deformed, member, pair, [xs, ys]) { // for points of a tooth: number of a point of its outline, and the share of the next
+    const tooth = deformed.gears[member].places[deformed.pairs.indexOf(pair)], found = [];
+    for (let i = 0; i < xs.length; i += 1) {
+      let best = [0, 0], least = Infinity;
+      for (let n = 0; n + 1 < tooth[0].length; n += 1) {
+        const ax = tooth[0][n], ay = tooth[1][n], bx = tooth[0][n + 1] - ax, by = tooth[1][n + 1] - ay;
+        const t = Math.max(0, Math.min(1, ((xs[i] - ax) * bx + (ys[i] - ay) * by) / (bx * bx + by * by || 1)));
+        const off = (xs[i] - ax - t * bx) ** 2 + (ys[i] - ay - t * by) ** 2;
+        if (off < least) { least = off; best = [n, t]; }
+      }
+      found.push(best);
+    }
+    return found;
+  }
+  function mover(deformed, member, factor, place) { // displacement of the outline's point n of tooth t, drawn
+    const { moved } = deformed.gears[member], [low, high, share] = between(deformed.roll, place);
+    const [, teeth, , points] = moved.shape, { data } = moved;
+    return (t, c, n) => {
+      const i = ((low * teeth + t) * 2 + c) * points + n, j = ((high * teeth + t) * 2 + c) * points + n;
+      return factor * moved.step * (data[i] + (data[j] - data[i]) * share);
+    };
+  }
+  function aheadAt(deformed, place) {
+    const [low, high, share] = between(deformed.roll, place);
+    return deformed.ahead[low] + (deformed.ahead[high] - deformed.ahead[low]) * share;
+  }
+
+  // ---- gears ---------------------------------------------------------------------------------------------------------
+  function gears(canvas, view, shown) { // view: half width and height [mm] and the pair; shown: what is on, and the place
+    const box = canvas.getBoundingClientRect(), ratio = devicePixelRatio || 1;
+    const wide = Math.round(box.width * ratio), tall = Math.round(box.height * ratio);
+    if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, { width: wide, height: tall });
+    const context = canvas.getContext("2d");
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, wide, tall);
+    const { stress, deformed, tool, place, factor } = shown;
+    if (!stress && !deformed && !tool) return;
+    const scale = Math.min(wide / (2 * view.wide), tall / (2 * view.tall)), pixel = ratio / scale;
+    const look = getComputedStyle(canvas), line = { driver: look.getPropertyValue("--driver"), driven: look.getPropertyValue("--driven") };
+    const d = view.data, first = d.start + place * d.base_pitch;
+    context.lineJoin = context.lineCap = "round";
+    for (const member of ["driver", "driven"]) {
+      const driver = member === "driver", centre = driver ? -d.driver_radius * 1e3 : d.driven_radius * 1e3;
+      const base = driver ? d.driver_base : d.driven_base;
+      const ahead = driver && deformed ? factor * aheadAt(deformed, place) / (base * 1e3) : 0;
+      const turn = driver ? -first / base - ahead : first / base; // anticlockwise
+      context.setTransform(scale, 0, 0, -scale, wide / 2, tall / 2);
+      context.translate(0, centre);
+      context.rotate(turn);
+      context.translate(0, -centre);
+      if (tool) {
+        context.strokeStyle = look.getPropertyValue("--tool");
+        context.lineWidth = 0.7 * pixel;
+        context.save();
+        context.beginPath(); // the tool ends where the gear does
+        context.arc(0, centre, 1.004 * tool.tips[member], 0, 2 * Math.PI);
+        context.clip();
+        context.beginPath();
+        for (const [xs, ys] of tool.lines[member]) xs.forEach((x, i) => i ? context.lineTo(x, ys[i]) : context.moveTo(x, ys[i]));
+        context.stroke();
+        context.restore();
+      }
+      const move = deformed && mover(deformed, member, factor, place);
+      if (deformed) {
+        context.strokeStyle = line[member];
+        context.lineWidth = 2 * pixel;
+        deformed.gears[member].places.forEach(([xs, ys], t) => {
+          context.beginPath();
+          for (let n = 0; n < xs.length; n += 1) {
+            const x = xs[n] + move(t, 0, n), y = ys[n] + move(t, 1, n);
+            if (n) context.lineTo(x, y); else context.moveTo(x, y);
+          }
+          context.stroke();
+        });
+      }
+      if (stress) fillets(context, stress, deformed, move, member, place, pixel, look);
+    }
+  }
+  function fillets(context, stress, deformed, move, member, place, pixel, look) {
+    const scale = shades("stress"), [low, high, share] = between(stress.roll, place);
+    context.lineWidth = 6 * pixel;
+    context.lineCap = "butt";
+    for (const fillet of stress.fillets) {
+      if (fillet.member !== member) continue;
+      const { data, step, shape: [, teeth, points] } = fillet.stress;
+      for (let t = 0; t < teeth; t += 1) {
+        const [xs, ys] = fillet.places[t], tooth = deformed ? deformed.pairs.indexOf(stress.pairs[t]) : -1;
+        let beside = null;
+        if (tooth >= 0) {
+          fillet.beside ??= new Map();
+          if (fillet.of !== deformed) { fillet.beside.clear(); fillet.of = deformed; }
+          if (!fillet.beside.has(t)) fillet.beside.set(t, besides(deformed, member, stress.pairs[t], fillet.places[t]));
+          beside = fillet.beside.get(t);
+        }
+        const at = (i, c) => {
+          const rest = c ? ys[i] : xs[i];
+          if (!beside) return rest;
+          const [n, far] = beside[i];
+          return rest + move(tooth, c, n) * (1 - far) + move(tooth, c, n + 1) * far;
+        };
+        let x = at(0, 0), y = at(0, 1);
+        for (let i = 1; i < points; i += 1) {
+          const nx = at(i, 0), ny = at(i, 1), a = (low * teeth + t) * points + i, b = (high * teeth + t) * points + i;
+          const value = 0.5 * step * ((data[a] + data[a - 1]) * (1 - share) + (data[b] + data[b - 1]) * share);
+          context.strokeStyle = shade(scale, 0.5 + 0.5 * value / stress.limit);
+          context.beginPath();
+          context.moveTo(x, y);
+          context.lineTo(nx, ny);
+          context.stroke();
+          x = nx; y = ny;
+        }
+      }
+    }
+    context.lineCap = "round";
+    const { largest } = stress;
+    if (largest.member === member) {
+      context.strokeStyle = look.getPropertyValue("--ink");
+      context.lineWidth = (Math.abs(largest.at - place) < 0.01 ? 2.6 : 1.2) * pixel;
+      context.beginPath();
+      let [x, y] = largest.place;
+      const tooth = deformed ? deformed.pairs.indexOf(largest.pair) : -1;
+      if (tooth >= 0) {
+        const [[n, far]] = besides(deformed, member, largest.pair, [[x], [y]]);
+        x += move(tooth, 0, n) * (1 - far) + move(tooth, 0, n + 1) * far;
+        y += move(tooth, 1, n) * (1 - far) + move(tooth, 1, n + 1) * far;
+      }
+      context.arc(x, y, 8 * pixel, 0, 2 * Math.PI);
+      context.stroke();
+    }
+  }
+
+  function contactMoved(d, { deformed, factor, place }, pair, x, y) { // where a contact stands on the deformed driven gear [mm]
+    const t = deformed ? deformed.pairs.indexOf(pair) : -1;
+    if (t < 0) return [x, y];
+    const centre = d.driven_radius * 1e3, turn = (d.start + place * d.base_pitch) / d.driven_base, c = Math.cos(turn), s = Math.sin(turn);
+    const rest = [[c * x + s * (y - centre)], [c * (y - centre) - s * x + centre]];
+    const [[n, far]] = besides(deformed, "driven", pair, rest), move = mover(deformed, "driven", factor, place);
+    const [ux, uy] = [0, 1].map((i) => move(t, i, n) * (1 - far) + move(t, i, n + 1) * far);
+    return [x + c * ux - s * uy, y + s * ux + c * uy];
+  }
+
+  // ---- flanks --------------------------------------------------------------------------------------------------------
+  function flanks(canvas, data, sent, place) { // both flanks side by side: height over the face, contact lines in colour
+    const box = canvas.getBoundingClientRect(), ratio = devicePixelRatio || 1;
+    const wide = Math.round(box.width * ratio), tall = Math.round(box.height * ratio);
+    if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, { width: wide, height: tall });
+    const context = canvas.getContext("2d"), look = getComputedStyle(canvas), scale = shades("pressure");
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, box.width, box.height);
+    context.font = `13px ${look.fontFamily}`;
+    const count = sent.roll.length, spread = sent.roll.map((one) => Math.abs(((place - one) % 1 + 1.5) % 1 - 0.5));
+    const p = spread.indexOf(Math.min(...spread));
+    const on = (((place - sent.roll[p]) % 1 + 1.5) % 1 - 0.5) * data.base_pitch * 1e3; // since that position, along the line of action
+    const room = { left: 58, right: 14, top: 26, bottom: 40 }, half = box.width / 2;
+    ["driver", "driven"].forEach((member, side) => {
+      const [form, tip, pitch] = sent.ends[member], base = data[`${member}_base`] * 1e3;
+      const x0 = side * half + room.left, x1 = (side + 1) * half - room.right, y0 = box.height - room.bottom, y1 = room.top;
+      const across = (z) => x0 + (z - sent.low) / (sent.high - sent.low) * (x1 - x0);
+      const up = (r) => y0 + (r - form) / (tip - form) * (y1 - y0);
+      context.strokeStyle = look.getPropertyValue("--soft");
+      context.fillStyle = look.getPropertyValue("--paper");
+      context.lineWidth = 1;
+      context.fillRect(x0, y1, x1 - x0, y0 - y1);
+      context.strokeRect(x0, y1, x1 - x0, y0 - y1);
+      context.setLineDash([6, 4]);
+      context.beginPath();
+      context.moveTo(x0, up(pitch));
+      context.lineTo(x1, up(pitch));
+      context.stroke();
+      context.setLineDash([]);
+      context.fillStyle = look.getPropertyValue("--ink");
+      context.textAlign = "left";
+      context.fillText(`${member}: radius over the face [mm]`, x0, y1 - 9);
+      context.fillStyle = look.getPropertyValue("--soft");
+      context.textAlign = "right";
+      for (const r of [form, pitch, tip]) context.fillText(r.toFixed(2), x0 - 6, up(r) + 4);
+      context.textAlign = "center";
+      for (const z of [sent.low, 0.5 * (sent.low + sent.high), sent.high]) context.fillText(z.toFixed(1), Math.min(Math.max(across(z), x0 + 14), x1 - 14), y0 + 17);
+      context.fillText("z [mm]", 0.5 * (x0 + x1), y0 + 33);
+      context.save();
+      context.beginPath();
+      context.rect(x0, y1, x1 - x0, y0 - y1);
+      context.clip();
+      context.lineWidth = 6;
+      context.lineCap = "butt";
+      const way = side ? -on : on; // the contact moves to the driver's tip and to the root of the driven gear
+      for (const line of sent.positions[p]) {
+        const zs = line[1], rs = line[2 + side], values = line[4];
+        const height = rs.map((r) => Math.hypot(base, Math.max(0, Math.sqrt(Math.max(0, r * r - base * base)) + way)));
+        for (let i = 1; i < zs.length; i += 1) {
+          const value = 0.5 * (values[i] + values[i - 1]);
+          context.strokeStyle = shade(scale, value / (sent.limit || 1));
+          context.beginPath();
+          context.moveTo(across(zs[i - 1]), up(height[i - 1]));
+          context.lineTo(across(zs[i]), up(height[i]));
+          context.stroke();
+        }
+      }
+      context.restore();
+    });
+    return { p, count, largest: Math.max(0, ...sent.positions[p].flatMap((line) => line[4])) };
+  }
+  return { stressOf, deformedOf, gears, contactMoved, flanks, stops };
+})();

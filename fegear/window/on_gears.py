@@ -1,0 +1,152 @@
+"""What is shown on the gears in mesh, small enough to be sent: colours of fillets, deformed teeth, pressed flanks."""
+
+from __future__ import annotations
+
+import base64
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array
+    from fegear.engine.stage import Task
+    from fegear.results.deformed_in_mesh import DeformedInMeshData
+    from fegear.results.loaded_flanks import LoadedFlanksData
+    from fegear.results.stress_in_mesh import StressInMeshData
+
+#: Roll positions stand so far apart at least, jumps and the largest value excepted [base pitches].
+_STEP = 0.019
+#: Points along a fillet that are coloured.
+_POINTS = 25
+#: Largest number of sixteen bits.
+_MOST = 32767
+#: The largest displacement is drawn so large, about, where nobody says otherwise [modules].
+_DRAWN = 0.1
+
+
+def on_the_gears(task: Task, data: Any) -> dict[str, Any] | None:
+    """What a task found, if it is shown at the gears of a pair.
+
+    Parameters
+    ----------
+    task : Task
+    data : object
+        As the stage computed it.
+    """
+    if task.stage == "stress-in-mesh":
+        return {"pair": task.subject, "kind": "stress", **_stress(data)}
+    if task.stage == "deformed-in-mesh":
+        return {"pair": task.subject, "kind": "deformed", **_deformed(data)}
+    if task.stage == "loaded-flanks":
+        return {"pair": task.subject, "kind": "pressure", **_pressure(data)}
+    return None
+
+
+def _stress(data: StressInMeshData) -> dict[str, Any]:
+    pitch, largest = data.pair.base_pitch, data.largest
+    few = _few(data.roll, pitch, (largest.roll,))
+    fillets = []
+    for member, gear in data.gears.items():
+        for side, places in gear.places.items():
+            at, values = _along(places, gear.stress[side][few])
+            fillets.append({"member": member, "places": millimetres(at), "stress": packed(values * 1e-6)})
+    limit = max(float(np.abs(s).max()) for gear in data.gears.values() for s in gear.stress.values())
+    return {
+        "roll": _rolled(data.roll[few], data.pair.x_start, pitch), "pairs": data.pairs.tolist(), "fillets": fillets,
+        "limit": limit * 1e-6,
+        "largest": {
+            "value": largest.value * 1e-6, "member": largest.member, "pair": largest.pair, "roll": largest.roll * 1e3,
+            "x": (largest.roll + largest.pair * pitch) * 1e3, "place": millimetres(largest.place),
+            "radius": largest.radius * 1e3, "at": _rolled(np.array([largest.roll]), data.pair.x_start, pitch)[0],
+        },
+    }  # fmt: skip
+
+
+def _deformed(data: DeformedInMeshData) -> dict[str, Any]:
+    few = _few(data.roll, data.pair.base_pitch, ())
+    module = data.pair.driver.module
+    return {
+        "roll": _rolled(data.roll[few], data.pair.x_start, data.pair.base_pitch),
+        "pairs": data.pairs.tolist(),
+        "ahead": np.round(data.transmission_error[few] * 1e3, 8).tolist(),
+        "largest": data.largest * 1e6,
+        "factor": _round_factor(_DRAWN * module / data.largest) if data.largest > 0.0 else 1.0,
+        "gears": {
+            member: {"places": millimetres(data.places[member]), "moved": packed(data.moved[member][few] * 1e3)}
+            for member in data.places
+        },
+    }
+
+
+def _pressure(data: LoadedFlanksData) -> dict[str, Any]:
+    found, i = data.found, data.nominal
+    lines, pair = found.lines, found.pair
+    pressure = found.pressure[:, :, i] * 1e-6
+    inner = np.where(lines.at_edge, 0.0, pressure)
+    places = lines.z, lines.radius(pair, "driver"), lines.radius(pair, "driven")
+    positions = [
+        [
+            [
+                int(lines.pair[p, one.start]),
+                *(millimetres(v[p, one]) for v in places),
+                np.round(pressure[p, one], 2).tolist(),
+            ]
+            for one in lines.at(p)
+        ]
+        for p in range(lines.roll.size)
+    ]
+    ends = {
+        member: [gear.form_radius * 1e3, gear.tip_radius * 1e3, gear.pitch_radius * 1e3]
+        for member, gear in (("driver", pair.driver), ("driven", pair.driven))
+    }
+    return {
+        "roll": _rolled(lines.roll, pair.x_start, pair.base_pitch), "positions": positions, "ends": ends,
+        "low": lines.low * 1e3, "high": lines.high * 1e3, "limit": float(inner.max()),
+    }  # fmt: skip
+
+
+def packed(values: Array) -> dict[str, Any]:
+    """Numbers as sixteen-bit steps of their largest, in base 64: 1.5e-5 of it is a step."""
+    step = float(np.abs(values).max()) / _MOST or 1.0
+    data = np.round(values / step).astype("<i2").tobytes()
+    return {"step": step, "shape": list(values.shape), "data": base64.b64encode(data).decode()}
+
+
+def millimetres(values: Array) -> list[Any]:
+    """To 0.1 um."""
+    found: list[Any] = np.round(values * 1e3, 4).tolist()
+    return found
+
+
+def _rolled(roll: Array, start: float, pitch: float) -> list[float]:
+    """Roll positions as parts of the base pitch."""
+    found: list[float] = np.round((roll - start) / pitch, 8).tolist()
+    return found
+
+
+def _few(roll: Array, pitch: float, kept: tuple[float, ...]) -> Array:
+    """Numbers of the roll positions that are sent: evenly, both sides of every jump, and those that are kept."""
+    chosen = [0]
+    jump = np.diff(roll) < 1e-5 * pitch
+    for i in range(1, roll.size):
+        beside = jump[i - 1] or (i < roll.size - 1 and jump[i])
+        if beside or i == roll.size - 1 or roll[i] in kept or roll[i] - roll[chosen[-1]] >= _STEP * pitch:
+            chosen.append(i)
+    return np.array(chosen)
+
+
+def _along(places: Array, stress: Array) -> tuple[Array, Array]:
+    """Fewer points along fillets of shape (T, 2, n), and the stress (P, T, n) there."""
+    step = np.hypot(*np.diff(places[0], axis=1))
+    arc = np.concatenate([[0.0], np.cumsum(step)])
+    wanted = np.linspace(0.0, arc[-1], _POINTS)
+    after = np.clip(np.searchsorted(arc, wanted), 1, arc.size - 1)
+    share = (wanted - arc[after - 1]) / (arc[after] - arc[after - 1])
+    at, values = (v[..., after - 1] * (1.0 - share) + v[..., after] * share for v in (places, stress))
+    return at, values
+
+
+def _round_factor(value: float) -> float:
+    """1, 2 or 5 times a power of ten, no larger than a value, within 1 and 1000."""
+    power = 10.0 ** np.floor(np.log10(max(value, 1.0)))
+    return float(min(1000.0, power * max(step for step in (1.0, 2.0, 5.0) if step * power <= max(value, 1.0))))
