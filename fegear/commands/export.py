@@ -16,13 +16,15 @@ def export(
     gear: Annotated[list[str] | None, typer.Option("--gear", help="Name of a gear; default all of them.")] = None,
     formats: Annotated[
         str,
-        typer.Option("--format", help="Any of dxf, step, msh, vtu, inp, solid-inp, solid-vtu, separated by commas."),
+        typer.Option(
+            "--format", help="Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, separated by commas."
+        ),
     ] = "dxf,msh,vtu,inp",
     out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_export.")] = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
-    """Write drawings (DXF), solids (STEP) and plane or solid meshes of the whole gear (gmsh, VTU, Abaqus/CalculiX)."""
+    """Write drawings (DXF), solids (STEP), reliefs to grind (CSV), meshes of the whole gear (gmsh, VTU, CalculiX)."""
     from fegear.case.reading import read_scene
     from fegear.output.export import export_gears
     from fegear.output.folder import default_folder, whole_or_nothing

@@ -1,4 +1,4 @@
-"""``fegear export``: drawings and meshes of the gears of a case."""
+"""``fegear export``: drawings, reliefs to grind and meshes of the gears of a case."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from fegear.models.settings import mesh_settings
 from fegear.models.tooth_mesh import own_sector_mesh
 from fegear.output.dxf import AS_GENERATED, write_dxf
 from fegear.output.file_names import file_name
+from fegear.output.grinding import write_relief
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,9 +21,9 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
 
-FORMATS = ("dxf", "step", "msh", "vtu", "inp", "solid-inp", "solid-vtu")
-#: Those that hold the outline with its relief, not a mesh.
-_EXACT = frozenset({"dxf", "step"})
+FORMATS = ("dxf", "step", "relief", "msh", "vtu", "inp", "solid-inp", "solid-vtu")
+#: Those that hold the flanks with their relief, not a mesh.
+_EXACT = frozenset({"dxf", "step", "relief"})
 #: Those that hold a mesh of the solid gear.
 _SOLID = frozenset({"solid-inp", "solid-vtu"})
 #: Those that hold the plane mesh of a spur gear.
@@ -48,9 +49,10 @@ class Exported:
 def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str) -> Exported:
     """Write every format of every named gear.
 
-    Drawings and solid models hold the flanks with the relief that the case gives them; meshes hold the generated
-    flanks, because relief enters fegear's own contact as a distance, not as a change of the mesh. A helical gear is
-    drawn in its section across the axis; its plane mesh would be no gear and is left out.
+    Drawings and solid models hold the flanks with the relief that the case gives them, ``relief`` holds it as tables,
+    whether or not the effect ``relief`` counts it; meshes hold the generated flanks, because relief enters fegear's own
+    contact as a distance, not as a change of the mesh. A helical gear is drawn in its section across the axis; its
+    plane mesh would be no gear and is left out.
 
     Parameters
     ----------
@@ -91,6 +93,11 @@ def export_gears(scene: Scene, folder: Path, names: Sequence[str], formats: str)
         files, left_out = _export_gear(scene, folder, name, wanted)
         written += files
         remarks += left_out
+    if not written:
+        raise InputError(
+            f"gear.{chosen[0]}.relief", "(not given)", "leaves no relief to write: no gear has one of known amount",
+            'give one: relief = { tip = { amount = "10 um", length = "2 mm" } }',
+        )  # fmt: skip
     return Exported(tuple(path.name for path in written), tuple(remarks))
 
 
@@ -119,21 +126,34 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
         write_step(written[-1], gear, None if found.relief is None else relieved_outline(gear, found.relief))
         if scene.case.gear[name].face_width is None:
             remarks.append(f"Gear {name}, STEP: {gear.face_width * 1e3:.6g} mm wide, for the case has no face_width.")
+    if "relief" in wanted and found.relief is not None:
+        written += write_relief(scene, folder, name, found.relief)
+    elif "relief" in wanted and not relieved:
+        remarks.append(f"Gear {name}, RELIEF: the case gives it none, so there is no table.")
+    meshes, left_out = _export_meshes(scene, folder, name, wanted)
+    return [*written, *meshes], [*remarks, *left_out, *_left_out(scene, name)]
+
+
+def _export_meshes(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tuple[list[Path], list[str]]:
+    """Write the wanted meshes of a gear."""
+    gear = scene.gears[name]
+    written: list[Path] = []
     meshes = wanted.intersection(_PLANE if name in scene.spur_gears else ()) | (wanted & _SOLID)
-    if meshes:
-        settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
-        if plane := meshes & _PLANE:
-            from fegear.output.mesh_export import write_meshes
+    if not meshes:
+        return [], []
+    settings, mesh = mesh_settings(scene.case.accuracy), own_sector_mesh(scene, name)
+    if plane := meshes & _PLANE:
+        from fegear.output.mesh_export import write_meshes
 
-            written += write_meshes(gear, folder, file_name(name), plane, settings, mesh)
-        if solid := meshes & _SOLID:
-            from fegear.output.solid_export import write_solid
+        written += write_meshes(gear, folder, file_name(name), plane, settings, mesh)
+    if solid := meshes & _SOLID:
+        from fegear.output.solid_export import write_solid
 
-            written += write_solid(gear, folder, file_name(name), solid, mesh=mesh)
-        if relieved:
-            told = ", ".join(sorted(meshes))
-            remarks.append(f"Gear {name}, {told}: flanks as generated, without the relief of the case.")
-    return written, [*remarks, *_left_out(scene, name)]
+        written += write_solid(gear, folder, file_name(name), solid, mesh=mesh)
+    if scene.case.gear[name].relief is None:
+        return written, []
+    told = ", ".join(sorted(meshes))
+    return written, [f"Gear {name}, {told}: flanks as generated, without the relief of the case."]
 
 
 def _left_out(scene: Scene, name: str) -> list[str]:

@@ -19,6 +19,15 @@ if TYPE_CHECKING:
     from fegear.window.desk import Desk
 
 
+#: What can be written: words of the menu, the job's name for it, ending of the folder that is offered.
+EXPORTS = (
+    ("Report, tables, pictures", "report", ""),
+    ("Tables alone (CSV)", "tables", "_tables"),
+    ("Relief for the grinder (CSV)", "relief", "_relief"),
+    ("Drawings of the gears (DXF)", "drawings", "_export"),
+)
+
+
 class Bar:
     """The bar of one page."""
 
@@ -33,8 +42,9 @@ class Bar:
             self._button("Save as", lambda: self._ask_path("Save as", self._own_path(), self._save_as))
             self._give_up = self._button("Give up changes", self._give_up_changes)
             with ui.button("Export").props("flat dense no-caps"), ui.menu():
-                ui.menu_item("Report, tables, pictures", lambda: self._ask_folder("report", ""))
-                ui.menu_item("Drawings of the gears (DXF)", lambda: self._ask_folder("drawings", "_export"))
+                ui.menu_item("Case (TOML), as it is now", self._download)
+                for words, what, ending in EXPORTS:
+                    ui.menu_item(words, partial(self._ask_folder, what, ending))
             self._pin = self._button("Pin as A", self._pin_or_not)
             self._button("Other case", lambda: bench.lay(None))
             self._level = ui.toggle(list(LEVELS), value=bench.level, on_change=self._level_chosen)
@@ -151,6 +161,10 @@ class Bar:
     def _own_path(self) -> str:
         desk = self._desk
         return str(desk.path or Path.cwd() / f"{desk.name}.toml")
+
+    def _download(self) -> None:
+        """Hand the text to the browser, whether or not it can be read or has a file."""
+        ui.download.content(self._desk.text.encode(), f"{self._desk.name}.toml", "application/toml")
 
     def _ask_folder(self, what: str, ending: str) -> None:
         def chosen(text: str) -> None:

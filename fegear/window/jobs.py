@@ -45,7 +45,11 @@ class Compute:
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """Write what ``fegear run`` (``report``) or ``fegear export`` (``drawings``) writes into a folder."""
+    """Write into a folder what a command writes.
+
+    ``report``: all that ``fegear run`` writes; ``tables``: its tables alone; ``drawings`` and ``relief``: what
+    ``fegear export`` writes as DXF and as tables for who grinds the relief.
+    """
 
     number: int
     asked: Asked

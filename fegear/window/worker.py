@@ -226,14 +226,21 @@ class Worker:
         from fegear.engine.run import Silence
         from fegear.output.export import export_gears
         from fegear.output.folder import whole_or_nothing
+        from fegear.output.tables import write_table
         from fegear.output.write import write_results
 
         target = Path(job.target)
         with whole_or_nothing(target) as scratch:
             if job.what == "report":
                 remarks = write_results(self._results(job.asked), scratch, Silence())
+            elif job.what == "tables":
+                found = self._results(job.asked)
+                for table in found.tables:
+                    write_table(scratch, table)
+                remarks = list(found.remarks)
             else:
-                remarks = list(export_gears(scene_of(job.asked), scratch, (), "dxf").remarks)
+                formats = {"drawings": "dxf", "relief": "relief"}[job.what]
+                remarks = list(export_gears(scene_of(job.asked), scratch, (), formats).remarks)
         self._say("exported", target=str(target.resolve()), remarks=remarks)
 
     def _compare(self, job: Compare) -> None:
