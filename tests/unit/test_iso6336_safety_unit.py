@@ -80,3 +80,23 @@ def test_what_cannot_be_rated_says_why():
         rate_pair(replace(c, alignment=replace(ALIGNED, contact_pattern="favourable")))
     with pytest.raises(RangeError, match="fewer teeth first"):
         replace(c.geometry, gears=c.geometry.gears[::-1])
+
+
+def test_a_high_contact_ratio_is_rated_with_a_remark():
+    def remarks(rack: BasicRack) -> tuple[float, str]:
+        gears = [Gear(Tooth(z, rack), 3e-3, 10e-3, 30e-3) for z in (45, 70)]
+        rating = rate_pair(conditions(of_pair(GearPair(*gears))))
+        return rating["epsilon_alpha_n"].value, rating["Y_F"].remark
+
+    low, high = remarks(BasicRack.named("A")), remarks(BasicRack(1.25, 1.5, 0.2))
+    assert low[0] < 2.0
+    assert low[1] == ""
+    assert high[0] > 2.0
+    assert "2 or more" in high[1]
+
+
+def test_crowned_flanks_bend_no_less_than_they_press():
+    c = conditions(of_pair(pair()))
+    plain, crowned = (rate_pair(replace(c, alignment=replace(ALIGNED, modification=m))) for m in ("none", "crowned"))
+    assert plain["K_Fbeta"].value < plain["K_Hbeta"].value
+    assert crowned["K_Fbeta"].value == crowned["K_Hbeta"].value < plain["K_Hbeta"].value

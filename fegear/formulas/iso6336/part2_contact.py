@@ -40,7 +40,7 @@ def tip_relief_factor(relief: TipRelief, edition: int) -> float:
 def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Both, Both]:
     """M_1, M_2 and Z_B, Z_D: from the pitch point to the inner points of single pair contact.
 
-    ISO 6336-2, 6.2; Eqs. 17 and 18 of 2006.
+    ISO 6336-2, 6.2; Eqs. 17 and 18 of 2006. From a transverse contact ratio of 2 on there are none, and all are 1.
 
     Parameters
     ----------
@@ -56,6 +56,8 @@ def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Bo
     e = pair.contact_ratio
     if not e >= 1.0:
         raise RangeError("contact ratio", f"{e:.4g}", "must be at least 1 (ISO 6336-2, 6.2)")
+    if e >= 2.0:
+        return (1.0, 1.0), (1.0, 1.0)
     tips = [
         math.sqrt(max((g.active_tip_diameter / d_b) ** 2 - 1.0, 0.0))
         for g, d_b in zip(pair.gears, pair.base_diameters, strict=True)
@@ -64,8 +66,6 @@ def single_pair_factors(pair: PairGeometry, tip_relief: float = 1.0) -> tuple[Bo
     factors = []
     for one, other in ((0, 1), (1, 0)):
         product = (tips[one] - steps[one]) * (tips[other] - (e - 1.0) * steps[other])
-        if e >= 2.0 and not product > 0.0:
-            product = math.inf  # no single pair contact there: the pitch point decides
         if not product > 0.0:
             raise RangeError(
                 "single pair contact", f"{product:.4g}", "lies below a base circle: the teeth are too short"

@@ -77,17 +77,22 @@ class ToothLoad:
         epsilon_beta.
     helix_angle : float
         beta [rad].
+    deep : bool
+        Whether a contact ratio from 2 to below 3 is let through: the formula of the load's diameter goes on there, as
+        the standard's Y_DT presumes.
     """
 
     tangential: float
     contact_ratio: float
     overlap_ratio: float = 0.0
     helix_angle: float = 0.0
+    deep: bool = False
 
     def __post_init__(self) -> None:
         """Refuse contact ratios without single pair contact."""
-        if not 1.0 <= self.contact_ratio < 2.0:
-            rule = "must be between 1 and 2 for a single contact point"
+        most = 3 if self.deep else 2
+        if not 1.0 <= self.contact_ratio < most:
+            rule = f"must be between 1 and {most} for a single contact point"
             raise RangeError("contact ratio", f"{self.contact_ratio:.4g}", rule)
 
 

@@ -1,0 +1,73 @@
+"""Single factors of ISO 6336 that published reports print for materials and pairs which the whole examples have not.
+
+Two KISSsoft 03/2017 reports by ISO 6336:2006 method B, published in github.com/gfsReboucas/Drivetrain
+(@NREL_5MW/stage_01.rtf, stage_02.rtf): a case-hardened planet in a through-hardened ring gear, 240 HB.
+"""
+
+import math
+
+import pytest
+
+from fegear.formulas.iso6336 import part1_dynamic as dynamic
+from fegear.formulas.iso6336 import part1_running_in as running_in
+from fegear.formulas.iso6336 import part2_permissible as flank
+from fegear.formulas.iso6336 import part3_strength as root
+from fegear.formulas.iso6336.rated import Strength
+
+HARD = Strength("Eh", 1500e6, 430e6)
+SOFT = Strength("V", 700e6, 290e6, hardness=240.0, yield_strength=1000e6)
+
+
+def half(digits: int) -> float:
+    return 0.51 * 10.0**-digits
+
+
+def test_running_in_of_a_hard_and_a_soft_gear():
+    # second stage: f_pb 20.7 um, f_falpha 27 um, v below 5 m/s; y_p = 3.142, y_f = 4.098 um; C_ay 2.00 and 8.50 um
+    for deviation, printed in ((20.7, 3.142), (27.0, 4.098)):
+        both = tuple(running_in.pitch_allowance(s, deviation * 1e-6, 4.88) for s in (HARD, SOFT))
+        assert running_in.mean(both) * 1e6 == pytest.approx(printed, abs=half(3))
+    assert dynamic.running_in_relief((1500e6, 1500e6)) * 1e6 == pytest.approx(2.00, abs=half(2))
+    assert dynamic.running_in_relief((700e6, 700e6)) * 1e6 == pytest.approx(8.50, abs=0.011)  # 8.511: cut, not rounded
+
+
+@pytest.mark.parametrize(
+    ("diameters", "angle", "v", "printed"),
+    [
+        ((718.865, 2368.025), 17.161, math.pi * 0.855 * 35.6632 / 60.0, (0.916, 1.025)),
+        ((710.408, 1835.220), 15.630, math.pi * 0.378 * 246.776 / 60.0, (0.961, 1.026)),
+    ],
+)
+def test_film_and_work_hardening_of_a_soft_gear(diameters, angle, v, printed):
+    # the ring's base diameter counts as negative
+    rho_1, rho_2 = (0.5e-3 * s * d * math.tan(math.radians(angle)) for s, d in zip((1, -1), diameters, strict=True))
+    rho = rho_1 * rho_2 / (rho_1 + rho_2)
+    assert flank.lubricant_factor(SOFT.contact, 220e-6) == pytest.approx(1.038, abs=half(3))
+    assert flank.velocity_factor(SOFT.contact, v) == pytest.approx(printed[0], abs=half(3))
+    assert flank.roughness_factor(SOFT.contact, (4.8e-6, 8e-6), rho) == pytest.approx(printed[1], abs=half(3))
+    equivalent = flank.equivalent_roughness((4.8e-6, 8e-6), rho, 220e-6, v)
+    assert flank.surface_hardened_factor(240.0, equivalent)[0] == pytest.approx(1.135, abs=half(3))
+
+
+def test_root_of_a_soft_gear():
+    assert root.size_factor("V", 21e-3) == pytest.approx(0.904, abs=half(3))
+    assert root.size_factor("V", 45e-3) == pytest.approx(0.850, abs=half(3))
+    assert root.surface_factor("V", 20e-6)[0] == pytest.approx(0.957, abs=half(3))
+    # q_s of the rings from the printed s_Fn* and rho_F*; yield 1000 MPa
+    layer, remark = root.slip_layer(SOFT)
+    assert remark == ""
+    for chord, radius, printed in ((2.875, 0.494, 1.003), (2.703, 0.418, 1.005)):
+        assert root.notch_sensitivity(chord / (2.0 * radius), layer) == pytest.approx(printed, abs=half(3))
+
+
+def test_life_of_a_soft_gear():
+    for cycles, z_nt, y_nt in ((381.6e6, 0.940, 0.907), (1506.3e6, 0.901, 0.883)):
+        assert flank.life_knots(SOFT).at(cycles) == pytest.approx(z_nt, abs=half(3))
+        assert root.life_knots(SOFT).at(cycles) == pytest.approx(y_nt, abs=half(3))
+
+
+def test_mean_stress_of_an_idler():
+    # a planet's Y_M is printed as .700; annex B gives .714 for R = -1.2 and M = .5 (case-hardened, Y_S = 2)
+    ratio = root.mean_stress_ratio("Eh", 2.0)
+    assert ratio == pytest.approx(0.5)
+    assert root.mean_stress_factor(ratio, -1.2) == pytest.approx(1.0 / 1.4, rel=1e-12)
