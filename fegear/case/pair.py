@@ -93,7 +93,10 @@ class RootStressPart(Part):
 class IsoPart(Part):
     """``iso_6336 = { edition = 2019, accuracy_grade = 4 }``: what ISO 6336-3 asks for beside the geometry."""
 
-    edition: Literal[2006, 2019] = Field(default=2006, description="Edition of ISO 6336-3 that is followed.")
+    edition: Literal[2006, 2019] | None = Field(
+        default=None,
+        description="Edition of ISO 6336 that is followed; without it 2019 in a rating, 2006 in the crosscheck.",
+    )
     accuracy_grade: Annotated[int, Field(ge=0, le=12)] = Field(
         default=6, description="Accuracy grade of the gears, 0 to 12; grade 4 or better lets Y_DT relieve deep teeth."
     )

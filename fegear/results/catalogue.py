@@ -34,6 +34,7 @@ from fegear.results import (
     motion,
     natural_modes,
     pair_forces,
+    rating,
     relief,
     relief_chart,
     relief_curves,
@@ -87,6 +88,7 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
             flank_load_factors.FLANK_LOAD_FACTORS,
             contact_pattern.CONTACT_PATTERN,
             mesh_stiffness_matrix.MESH_STIFFNESS_MATRIX,
+            rating.RATING,
         ),
         "Profile relief": (
             relief.RELIEF,

@@ -39,7 +39,7 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
     from fegear.contact.iso_check import HelicalCheck
     from fegear.formulas.iso6336.part3_pair import RatingChoice
 
-    choice = RatingChoice(part.iso_6336.edition, part.iso_6336.accuracy_grade)
+    choice = RatingChoice(part.iso_6336.edition or 2006, part.iso_6336.accuracy_grade)
     rims = (scene.case.gear[names[0]].rim_thickness, scene.case.gear[names[1]].rim_thickness)
     if name in scene.spur_pairs:
         return IsoInputs(names, choice, rims)

@@ -1,0 +1,184 @@
+"""What computed load distribution and root stress put in the place of ISO 6336's factors, each counted once.
+
+Of a pair with a width all loads are solved at F_t K_A K_gamma K_v, the load at which the standard takes its factors.
+K_Hbeta and K_Halpha are the computed ones. The largest root tension s_1 of the solved load holds face distribution,
+load sharing and helix already: it is split into s_3 (shares of perfect flanks, spread evenly along each contact line),
+K_Fbeta = s_1 / s_2 and K_Falpha = s_2 / s_3, of which s_3 b m_n / (F_t K_A K_gamma K_v) stands for Y_F Y_S Y_beta Y_B
+Y_DT. The product is s_1. Of a plane spur pair the tooth alone is computed: root tension under a load at the outer point
+of single pair contact stands for Y_F Y_S Y_B, and the load factors stay those of the formulas.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.formulas.iso6336.pair_rating import Replacement
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.arrays import Array
+    from fegear.contact.flank.compliance import FlankCompliance
+    from fegear.contact.flank.gaps import FlankGaps
+    from fegear.contact.flank.loaded import FlankPair
+    from fegear.fem import GearInfluence
+    from fegear.fem.solid import SolidInfluence
+    from fegear.formulas.iso6336.rated import Both
+    from fegear.geometry import GearPair
+    from fegear.geometry.pair import Member
+
+
+@dataclass(frozen=True)
+class Computed:
+    """What was computed in the place of formulas.
+
+    Parameters
+    ----------
+    replacement : Replacement
+        Of pinion and wheel.
+    contact_error : float
+        Estimated relative error of the contact stress.
+    bending_error : (float, float)
+        Those of the root stresses, of pinion and wheel.
+    load : float
+        Along the transverse line of action at which it was solved [N]; NaN of a plane pair, whose root stress is
+        proportional to the load.
+    pressure : float
+        Largest pressure over the flanks at that load [Pa]; NaN of a plane pair.
+    """
+
+    replacement: Replacement
+    contact_error: float
+    bending_error: Both
+    load: float = math.nan
+    pressure: float = math.nan
+
+
+def root_width(pair: GearPair, member: Member) -> float:
+    """b that carries at the root: the gear's own, but at most one module beyond the common one on either side [m]."""
+    return min(pair.gear(member).face_width, pair.face_width + 2.0 * pair.driver.module)
+
+
+def computed_plane(
+    pair: GearPair, members: tuple[Member, Member], influences: Mapping[Member, GearInfluence]
+) -> Computed:
+    """Root stress of a plane spur pair at its outer points of single pair contact.
+
+    Parameters
+    ----------
+    pair : GearPair
+        Spur, contact ratio from 1 to below 2.
+    members : (Member, Member)
+        Which of driver and driven pinion and wheel are.
+    influences : mapping of Member to GearInfluence
+    """
+    factor, error = [], []
+    for member in members:
+        gear, known = pair.gear(member), influences[member]
+        place = pair.x_hpstc if member == "driver" else pair.x_lpstc
+        at = np.array([float(pair.radius(place, member))])
+        tension = float(known.largest_root_stress(0, "tension", at)[0][0])
+        off = float(np.asarray(known.root_stress_error(0, "tension", at)).ravel()[0])
+        # Stress per normal line load w = F_t / (b cos alpha).
+        factor.append(tension * gear.module / math.cos(gear.normal_pressure_angle))
+        error.append(off / tension)
+    return Computed(Replacement(root_factor=(factor[0], factor[1])), 0.0, (error[0], error[1]))
+
+
+@dataclass(frozen=True)
+class SolvedFlanks:
+    """Loaded flanks of a pair, ready to be loaded again.
+
+    Parameters
+    ----------
+    flanks : FlankPair
+    gaps : FlankGaps
+    fine, coarse : FlankCompliance
+        Its compliances, and those of coarser solutions for error estimates.
+    influences : mapping of Member to SolidInfluence
+    places : ndarray
+        Along the face at which root stress is looked for [m].
+    coupling : bool
+        Whether neighbouring teeth's loads count.
+    """
+
+    flanks: FlankPair
+    gaps: FlankGaps
+    fine: FlankCompliance
+    coarse: FlankCompliance
+    influences: Mapping[Member, SolidInfluence]
+    places: Array
+    coupling: bool
+
+
+def computed_flanks(solved: SolvedFlanks, members: tuple[Member, Member], load: float, tangential: float) -> Computed:
+    """Load factors and root stresses of a pair with a width.
+
+    Parameters
+    ----------
+    solved : SolvedFlanks
+    members : (Member, Member)
+        Which of driver and driven pinion and wheel are.
+    load : float
+        Along the transverse line of action, with K_A K_gamma K_v [N].
+    tangential : float
+        The same at the reference circle [N].
+    """
+    fine = _factors(solved, load, tangential, solved.fine, coarse=False)
+    again = _factors(solved, load, tangential, solved.coarse, coarse=True)
+
+    def both(values: Mapping[Member, float]) -> Both:
+        return values[members[0]], values[members[1]]
+
+    made = Replacement(
+        K_Hbeta=fine.face, K_Halpha=fine.transverse, K_Fbeta=both(fine.root_face),
+        K_Falpha=both(fine.root_transverse), root_factor=both(fine.root),
+    )  # fmt: skip
+    contact = 0.5 * (abs(again.face / fine.face - 1.0) + abs(again.transverse / fine.transverse - 1.0))
+    root = {m: abs(again.largest(m) / fine.largest(m) - 1.0) for m in MEMBERS}
+    return Computed(made, contact, both(root), load, fine.pressure)
+
+
+@dataclass(frozen=True)
+class _Factors:
+    """Factors of one solution; those of the root by member."""
+
+    face: float
+    transverse: float
+    root_face: Mapping[Member, float]
+    root_transverse: Mapping[Member, float]
+    root: Mapping[Member, float]
+    pressure: float
+
+    def largest(self, member: Member) -> float:
+        """Root stress with all its factors."""
+        return self.root_face[member] * self.root_transverse[member] * self.root[member]
+
+
+def _factors(solved: SolvedFlanks, load: float, tangential: float, known: FlankCompliance, *, coarse: bool) -> _Factors:
+    from fegear.contact.flank.load_factors import root_factors, transverse_load_factor
+    from fegear.contact.flank.root_stress import rooted_lines
+
+    pair = solved.flanks.pair
+    found = solved.flanks.solve([load], solved.gaps, known)
+    perfect = solved.flanks.solve([load], None, known)
+    face: dict[Member, float] = {}
+    transverse: dict[Member, float] = {}
+    root: dict[Member, float] = {}
+    for member in MEMBERS:
+        influence = solved.influences[member]
+        body = (influence.coarse or influence.fine) if coarse else influence.fine
+        rooted = rooted_lines(pair, member, found.lines, body, coupling=solved.coupling)
+        factors = root_factors(found, perfect, rooted, solved.places, 0)
+        face[member], transverse[member] = factors.face, factors.transverse
+        even = factors.largest / (factors.face * factors.transverse)
+        root[member] = even * root_width(pair, member) * pair.gear(member).module / tangential
+    return _Factors(
+        float(found.face_load_factor[0]), float(transverse_load_factor(found, perfect)[0]), face, transverse, root,
+        float(np.nanmax(found.pressure)),
+    )  # fmt: skip

@@ -1,0 +1,266 @@
+"""Result ``rating``: safeties against pitting and tooth breakage by ISO 6336, computed ones and AGMA 2101 beside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.errors import RangeError
+from fegear.geometry.pair import MEMBERS
+from fegear.models.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load
+from fegear.results.drawn_rating import rating_figures
+from fegear.results.gear_solution import needs_solution, solution_of
+from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.rating_tables import factor_table, rating_remarks, rating_values, safety_table, spectrum_table
+from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
+from fegear.results.sources import RING
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.contact.flank.rated import Computed
+    from fegear.engine.stage import Upstream, Work
+    from fegear.formulas.agma2101 import AgmaRating
+    from fegear.formulas.iso6336.pair_rating import PairRating, Replacement
+    from fegear.formulas.iso6336.rated import Duty
+    from fegear.formulas.iso6336.safety import Conditions
+    from fegear.formulas.iso6336.spectrum_rating import Curves, SpectrumRating
+    from fegear.models.agma_pair import AgmaInputs
+    from fegear.models.rated_pair import PairToRate
+
+#: R of an idler's root stress whose meshes carry alike (ISO 6336-3, annex B).
+_IDLER = -1.2
+#: Seconds of the formulas, and of one load on computed flanks.
+_FORMULAS, _FLANKS = 0.02, 1.0
+
+
+@dataclass(frozen=True)
+class RatingInputs:
+    """What the stage reads.
+
+    Parameters
+    ----------
+    asked : PairToRate
+    agma : AgmaInputs or None
+    computed : bool
+        Whether load distribution and root stress are computed.
+    said : tuple of str
+        What AGMA 2101 assumes, or why there is nothing of it.
+    """
+
+    asked: PairToRate
+    agma: AgmaInputs | None
+    computed: bool
+    said: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class RatingData:
+    """What the stage finds.
+
+    Parameters
+    ----------
+    formula : PairRating
+        By ISO 6336 alone.
+    curves : Curves
+        S-N curves at the nominal speed.
+    spectrum : SpectrumRating or None
+    computed : Computed or None
+    by_computed : PairRating or None
+        With what was computed in the place of formulas.
+    spectrum_computed : SpectrumRating or None
+    agma : AgmaRating or None
+    why_not : str
+        Why AGMA 2101 says nothing; empty where it does, or was not asked.
+    """
+
+    formula: PairRating
+    curves: Curves
+    spectrum: SpectrumRating | None
+    computed: Computed | None
+    by_computed: PairRating | None
+    spectrum_computed: SpectrumRating | None
+    agma: AgmaRating | None
+    why_not: str
+
+
+def _inputs(scene: Scene, name: str) -> RatingInputs:
+    from fegear.models.agma_pair import agma_inputs
+    from fegear.models.rated_pair import pair_to_rate
+
+    asked = pair_to_rate(scene, name)
+    beside = scene.case.rating.beside
+    agma, said = agma_inputs(scene, asked) if "agma-2101" in beside else (None, ())
+    return RatingInputs(asked, agma, "computed" in beside, said)
+
+
+def _check(scene: Scene, name: str) -> None:
+    from fegear.models.rated_pair import check_pair_to_rate
+
+    check_pair_to_rate(scene, name)
+    if "computed" in scene.case.rating.beside and _wide(scene, name):
+        check_flanks_to_load(scene, name)
+
+
+def _wide(scene: Scene, name: str) -> bool:
+    return scene.case.pair[name].width_in(scene.pairs[name]) != "plane"
+
+
+def rated(asked: PairToRate) -> Conditions:
+    """Conditions of a pair with the mean-stress factors Y_M of its idlers, which depend on Y_S."""
+    from fegear.formulas.iso6336.part3_strength import mean_stress_factor, mean_stress_ratio
+    from fegear.formulas.iso6336.safety import rate_pair
+
+    if not any(asked.idler):
+        return asked.conditions
+    correction = rate_pair(asked.conditions, given(asked))["Y_S"].values
+    factors = [
+        mean_stress_factor(mean_stress_ratio(one.group, y_s), _IDLER) if bent else 1.0
+        for one, y_s, bent in zip(asked.conditions.strength, correction, asked.idler, strict=True)
+    ]
+    return replace(asked.conditions, duty=replace(asked.conditions.duty, mean_stress=(factors[0], factors[1])))
+
+
+def given(asked: PairToRate) -> Replacement:
+    """Load factors that the case gives in the place of formulas."""
+    from fegear.formulas.iso6336.pair_rating import Replacement
+
+    k_v, across = asked.given.get("K_v"), asked.given.get("K_Halpha")
+    return Replacement(K_v=k_v, K_Halpha=across, K_Falpha=None if across is None else (across, across))
+
+
+def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingData:
+    from fegear.formulas.iso6336.safety import rate_pair
+    from fegear.formulas.iso6336.spectrum_rating import rate_spectrum, sn_curves
+
+    asked, own = inputs.asked, given(inputs.asked)
+    conditions = rated(asked)
+    formula = rate_pair(conditions, own)
+    levels = [(_duty(conditions, level.tangential, level.speed), level.cycles) for level in asked.levels]
+    spectrum = rate_spectrum(conditions, levels, own) if levels else None
+    found = by_found = spectrum_found = None
+    if inputs.computed:
+        found = _computed(asked, formula, upstream)
+        stands = replace(found.replacement, K_v=own.K_v)
+        if stands.K_Halpha is None:
+            stands = replace(stands, K_Halpha=own.K_Halpha, K_Falpha=own.K_Falpha)
+        by_found = rate_pair(conditions, stands)
+        spectrum_found = rate_spectrum(conditions, levels, stands) if levels else None
+    agma, why_not = _agma(inputs)
+    return RatingData(
+        formula, sn_curves(conditions, own), spectrum, found, by_found, spectrum_found, agma, why_not
+    )  # fmt: skip
+
+
+def _duty(conditions: Conditions, tangential: float, speed: float) -> Duty | None:
+    return None if tangential == 0.0 else replace(conditions.duty, tangential=tangential, speed=speed)
+
+
+def _agma(inputs: RatingInputs) -> tuple[AgmaRating | None, str]:
+    from fegear.formulas.agma2101 import rate
+
+    if inputs.agma is None:
+        return None, ""
+    try:
+        return rate(inputs.asked.pair, inputs.agma.service, inputs.agma.allowed), ""
+    except RangeError as error:
+        return None, str(error)
+
+
+def _computed(asked: PairToRate, formula: PairRating, upstream: Upstream) -> Computed:
+    from fegear.contact.flank.rated import SolvedFlanks, computed_flanks, computed_plane
+    from fegear.results.flank_root_stress import places_along
+
+    members = asked.conditions.geometry.members
+    if asked.width == "plane":
+        known = {member: solution_of(upstream, gear) for member, gear in zip(MEMBERS, asked.gears, strict=True)}
+        return computed_plane(asked.pair, members, known)
+    loaded = loaded_flanks(upstream, asked.name)
+    solids = {member: solid_solution_of(upstream, gear) for member, gear in zip(MEMBERS, asked.gears, strict=True)}
+    solved = SolvedFlanks(
+        loaded.flanks, loaded.gaps, loaded.found.known, loaded.error.coarse.known, solids, places_along(loaded),
+        loaded.asked.effects.neighbour_coupling,
+    )  # fmt: skip
+    duty = asked.conditions.duty
+    more = duty.application_factor * duty.mesh_load_factor * formula["K_v"].value
+    found = computed_flanks(solved, members, asked.load * more, duty.tangential * more)
+    return _with_misses(found, asked) if asked.width == "slices" else found
+
+
+def _with_misses(found: Computed, asked: PairToRate) -> Computed:
+    """The same with what slices are known to miss, which no coarser solution shows."""
+    from fegear.fem.solid.slice_laws import missed_by_slices
+
+    missed, face = missed_by_slices(asked.pair.driver.twist), found.replacement.K_Hbeta or 1.0
+    one, other = found.bending_error
+    return replace(
+        found, contact_error=found.contact_error + 0.5 * missed["contact"] * (1.0 - 1.0 / face),
+        bending_error=(one + missed["root_tension"], other + missed["root_tension"]),
+    )  # fmt: skip
+
+
+def _present(data: RatingData, inputs: RatingInputs) -> Outcome:
+    tables = [factor_table(data, inputs.asked), safety_table(data, inputs.asked)]
+    if data.spectrum is not None:
+        tables.append(spectrum_table(data.spectrum, inputs.asked))
+    return Outcome(
+        data, tuple(tables), rating_values(data, inputs.asked), _settings(data, inputs),
+        (*inputs.asked.assumed, *inputs.said, *rating_remarks(data, inputs.asked)), rating_figures(data, inputs.asked),
+    )  # fmt: skip
+
+
+def _settings(data: RatingData, inputs: RatingInputs) -> dict[str, object]:
+    settings: dict[str, object] = {"edition": inputs.asked.conditions.edition}
+    if data.computed is not None and inputs.asked.width != "plane":
+        settings["computed_at_load"] = data.computed.load
+    return settings
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    if "computed" not in scene.case.rating.beside:
+        return ()
+    part = scene.case.pair[name]
+    if not _wide(scene, name):
+        return needs_solution(part.driver, part.driven)
+    return (*needs_flanks(scene, name), *needs_solid_solution(part.driver, part.driven))
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    computed = "computed" in scene.case.rating.beside and _wide(scene, name)
+    return Forecast({}, _FORMULAS + (_FLANKS if computed else 0.0))
+
+
+def _cites(scene: Scene, _name: str) -> tuple[Citation, ...]:
+    found = [
+        Citation("iso-6336-1", "load factors K", "clauses 5 to 9"),
+        Citation("iso-6336-2", "contact stress and what flanks bear"),
+        Citation("iso-6336-3", "root stress and what roots bear"),
+        Citation("iso-6336-5", "stress numbers of materials", "table 1"),
+        Citation("iso-1328-1", "deviations by tolerance class"),
+    ]
+    if any(part.operation.spectrum for part in scene.case.pair.values()):
+        found.append(Citation("iso-6336-6", "load spectra", "clauses 4 and 5, annex A"))
+    if "agma-2101" in scene.case.rating.beside:
+        found.append(Citation("agma-2101", "the same by AGMA"))
+    if "computed" in scene.case.rating.beside:
+        found += citing(*RING)(scene, _name)
+    return tuple(found)
+
+
+RATING = Stage(
+    name="rating",
+    title="Load capacity",
+    results=("rating",),
+    about="safeties against pitting and tooth breakage by ISO 6336, every factor; computed ones and AGMA 2101 beside",
+    subjects=lambda scene: tuple(scene.pairs),
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    needs=_needs,
+    check=_check,
+    effects=FLANK_EFFECTS,
+    cites=_cites,
+    forecast=_forecast,
+)

@@ -1,0 +1,224 @@
+"""Tables, values and remarks of the result ``rating``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.outcome import Column, Table, Value
+from fegear.geometry.pair import MEMBERS
+from fegear.results.rating_meanings import MEANINGS, read_as
+from fegear.results.rating_methods import methods
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.formulas.iso6336.pair_rating import Factor
+    from fegear.formulas.iso6336.spectrum_rating import SpectrumRating
+    from fegear.geometry.pair import Member
+    from fegear.models.rated_pair import PairToRate
+    from fegear.results.rating import RatingData
+
+#: What the formulas remark where a value of the case stands in.
+_STANDS_IN = "computed in place of the formula"
+
+
+def factor_table(data: RatingData, asked: PairToRate) -> Table:
+    """Every factor of ISO 6336 with its clause, and beside it what it is with computed values."""
+    rows = data.formula.factors
+    computed = {} if data.by_computed is None else {one.symbol: one for one in data.by_computed.factors}
+    scales = [read_as(one.symbol, one.unit) for one in rows]
+
+    def of(values: Sequence[Factor | None], member: Member) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        i = asked.of(member)
+        return np.array(
+            [np.nan if one is None else one.values[i] * scale for one, (_, scale) in zip(values, scales, strict=True)]
+        )
+
+    columns = [
+        Column("symbol", np.array([one.symbol for one in rows]), "", "as the standard writes it"),
+        *(Column(member, of(rows, member), "", f"of the {member} gear") for member in MEMBERS),
+    ]
+    if computed:
+        beside = [computed.get(one.symbol) for one in rows]
+        columns += [
+            Column(f"{member}_computed", of(beside, member), "", "with computed load factors and root stress")
+            for member in MEMBERS
+        ]
+    columns += [
+        Column("unit", np.array([unit for unit, _ in scales]), "", "of the numbers in this row"),
+        Column("clause", np.array([one.clause for one in rows]), "", "where the standard gives it"),
+        Column("meaning", np.array([MEANINGS[one.symbol] for one in rows]), "", ""),
+        Column(
+            "remark", np.array([_remark(one, asked) for one in rows]), "", "what lies outside a range, or was given"
+        ),
+    ]
+    return Table(f"rating_{asked.name}", tuple(columns), f"Rating of pair {asked.name} by ISO 6336, factor by factor")
+
+
+def _remark(one: Factor, asked: PairToRate) -> str:
+    given = one.symbol in asked.given or (one.symbol == "K_Falpha" and "K_Halpha" in asked.given)
+    return "as given by the case" if given and _STANDS_IN in one.remark else one.remark
+
+
+def safety_table(data: RatingData, asked: PairToRate) -> Table:
+    """Stresses and safeties of every method, a row each."""
+    rows = methods(data, asked)
+    columns = [Column("method", np.array([row.name for row in rows]), "", "what the stresses come from")]
+    for head, own, unit, meaning in (
+        ("sigma_H", "contact", "MPa", "contact stress"), ("S_H", "s_h", "", "safety against pitting"),
+        ("sigma_F", "bending", "MPa", "root stress"), ("S_F", "s_f", "", "safety against tooth breakage"),
+        ("S_H_error", "s_h_error", "", "estimated relative error of S_H"),
+        ("S_F_error", "s_f_error", "", "estimated relative error of S_F"),
+    ):  # fmt: skip
+        if own.endswith("error") and data.computed is None:
+            continue
+        for member in MEMBERS:
+            found = np.array([getattr(row, own)[asked.of(member)] for row in rows])
+            columns.append(Column(f"{head}_{member}", found, unit, f"{meaning}, {member} gear"))
+    return Table(f"rating_safety_{asked.name}", tuple(columns), f"Safeties of pair {asked.name}", printed=True)
+
+
+def spectrum_table(found: SpectrumRating, asked: PairToRate) -> Table:
+    """Load, stresses and damage of every level."""
+    geometry, levels = asked.conditions.geometry, found.levels
+    driver = asked.of("driver")
+    torque = [level.tangential * 0.5 * geometry.diameters[driver] for level in asked.levels]
+    turn = geometry.gears[0].teeth / geometry.gears[driver].teeth
+
+    def factor(symbol: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        return np.array([np.nan if one.rating is None else one.rating[symbol].value for one in levels])
+
+    columns = [
+        Column("level", np.arange(1, len(levels) + 1), "", "of the spectrum"),
+        Column("torque", np.array(torque), "N.m", "of the driver"),
+        Column("speed", np.array([level.speed * turn for level in asked.levels]), "rpm", "of the driver"),
+        Column("share", np.array([level.share for level in asked.levels]), "", "of the life"),
+        *(Column(one, factor(one), "", MEANINGS[one]) for one in ("K_v", "K_Hbeta", "K_Halpha")),
+    ]
+    for member in MEMBERS:
+        i = asked.of(member)
+        columns += [
+            Column(f"cycles_{member}", np.array([one.contact[i].cycles for one in levels]), "", "load cycles"),
+            Column(f"sigma_H_{member}", np.array([one.contact[i].stress for one in levels]), "MPa", "contact stress"),
+            Column(f"damage_H_{member}", np.array([one.contact[i].damage() for one in levels]), "",
+                   "n/N of the flanks at a safety of 1"),
+            Column(f"sigma_F_{member}", np.array([one.bending[i].stress for one in levels]), "MPa", "root stress"),
+            Column(f"damage_F_{member}", np.array([one.bending[i].damage() for one in levels]), "",
+                   "n/N of the roots at a safety of 1"),
+        ]  # fmt: skip
+    title = f"Load spectrum of pair {asked.name}: stress and damage of every level"
+    return Table(f"rating_spectrum_{asked.name}", tuple(columns), title)
+
+
+def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
+    """Safeties, and the load factors that differ between the methods."""
+    found: list[Value] = []
+    edition, name = asked.conditions.edition, asked.name
+    for member in MEMBERS:
+        i = asked.of(member)
+        key = f"{name}.{member}"
+        found += [
+            Value(f"{key}.S_H", data.formula.contact_safety[i], "", None, f"safety of flanks, ISO 6336:{edition}"),
+            Value(f"{key}.S_F", data.formula.bending_safety[i], "", None,
+                  f"safety of roots, ISO 6336:{edition}"),
+            Value(f"{key}.sigma_H", data.formula.contact_stress[i], "MPa", None, "contact stress, ISO 6336"),
+            Value(f"{key}.sigma_F", data.formula.bending_stress[i], "MPa", None, "root stress, ISO 6336"),
+        ]  # fmt: skip
+        if data.by_computed is not None and data.computed is not None:
+            s_h, s_f = data.by_computed.contact_safety[i], data.by_computed.bending_safety[i]
+            if data.computed.replacement.K_Hbeta is not None:
+                found.append(
+                    Value(f"{key}.S_H_computed", s_h, "", s_h * data.computed.contact_error,
+                          "safety against pitting with the computed load distribution")
+                )  # fmt: skip
+            found.append(
+                Value(f"{key}.S_F_computed", s_f, "", s_f * data.computed.bending_error[i],
+                      "safety against tooth breakage with the computed root stress")
+            )  # fmt: skip
+        if data.agma is not None:
+            j = data.agma.members.index(member)
+            found += [
+                Value(f"{key}.S_H_agma", data.agma.S_H[j], "", None, "safety of stress against pitting, AGMA 2101-D04"),
+                Value(f"{key}.S_F_agma", data.agma.S_F[j], "", None, "safety against bending, AGMA 2101-D04"),
+            ]  # fmt: skip
+        if data.spectrum is not None:
+            found += _of_spectrum(data, data.spectrum, asked, member)
+    for symbol in ("K_v", "K_Hbeta", "K_Halpha"):
+        found.append(
+            Value(f"{name}.{symbol}_rated", data.formula[symbol].value, "", None, f"{MEANINGS[symbol]}, ISO 6336")
+        )
+    if data.computed is not None and data.computed.replacement.K_Hbeta is not None:
+        for symbol in ("K_Hbeta", "K_Halpha"):
+            value = getattr(data.computed.replacement, symbol)
+            found.append(
+                Value(f"{name}.{symbol}_computed", value, "", None,
+                      f"{MEANINGS[symbol]}, computed at the load with K_A, K_gamma and K_v")
+            )  # fmt: skip
+    return tuple(found)
+
+
+def _of_spectrum(data: RatingData, spectrum: SpectrumRating, asked: PairToRate, member: Member) -> list[Value]:
+    """Safeties, damage and equivalent torque of one gear under the spectrum."""
+    from fegear.formulas.iso6336.part6_spectrum import equivalent_torque, wohler_exponent
+
+    i, key = asked.of(member), f"{asked.name}.{member}"
+    radius = 0.5 * asked.conditions.geometry.diameters[asked.of("driver")]
+    torque = np.array([level.tangential * radius for level in asked.levels])
+    cycles = np.array([level.cycles[i] for level in asked.levels])
+    flank, root = data.curves.contact[i], data.curves.bending[i]
+    of_flank = equivalent_torque(torque, cycles, 0.5 * wohler_exponent(flank), flank.cycles[-2])
+    of_root = equivalent_torque(torque, cycles, wohler_exponent(root), root.cycles[-2])
+    return [
+        Value(f"{key}.S_H_spectrum", spectrum.contact_safety[i], "", None, "safety against pitting under the spectrum"),
+        Value(f"{key}.S_F_spectrum", spectrum.bending_safety[i], "", None,
+              "safety against tooth breakage under the spectrum"),
+        Value(f"{key}.damage_H", spectrum.contact_damage[i], "", None, "Miner sum of the flanks at a safety of 1"),
+        Value(f"{key}.damage_F", spectrum.bending_damage[i], "", None, "Miner sum of the roots at a safety of 1"),
+        Value(f"{key}.equivalent_torque_H", of_flank, "N.m", None,
+              f"torque of the driver whose {flank.cycles[-2]:g} load cycles hurt the flanks as the spectrum does"),
+        Value(f"{key}.equivalent_torque_F", of_root, "N.m", None,
+              f"torque of the driver whose {root.cycles[-2]:g} load cycles hurt the roots as the spectrum does"),
+    ]  # fmt: skip
+
+
+def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
+    """What falls short, what lies outside a range, and what the computed safeties count."""
+    told = [f"Pair {asked.name}: {_remark(one, asked)}." for one in data.formula.factors if _shown(one, asked)]
+    if data.why_not:
+        told.append(f"Pair {asked.name}: no rating by AGMA 2101: {data.why_not}")
+    found = data.spectrum
+    contact = data.formula.contact_safety if found is None else found.contact_safety
+    bending = data.formula.bending_safety if found is None else found.bending_safety
+    under = "" if found is None else " under the spectrum"
+    for member, gear in zip(MEMBERS, asked.gears, strict=True):
+        for symbol, safety, least in (("S_H", contact, asked.required[0]), ("S_F", bending, asked.required[1])):
+            value = safety[asked.of(member)]
+            if value < least:
+                told.append(
+                    f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the required "
+                    f"{least:g}."
+                )
+    if data.computed is None:
+        return tuple(dict.fromkeys(told))
+    if asked.width == "plane":
+        told.append(
+            f"Pair {asked.name}: computed is the root stress of the plane teeth at the outer point of single pair "
+            "contact, in the place of Y_F Y_S Y_B; load factors are those of the formulas. Write width = "
+            '"solid" for a computed load distribution.'
+        )
+    else:
+        load, pressure = data.computed.load, data.computed.pressure * 1e-6
+        told.append(
+            f"Pair {asked.name}: load distribution and root stress were computed at {load:.5g} N along the line of "
+            f"action (K_A, K_gamma and K_v included), where the largest pressure is {pressure:.4g} MPa. The computed "
+            "root stress holds load sharing, face distribution and helix already: it stands for Y_F Y_S Y_beta Y_B "
+            "Y_DT K_Fbeta K_Falpha together."
+        )
+    return tuple(dict.fromkeys(told))
+
+
+def _shown(one: Factor, asked: PairToRate) -> bool:
+    """Whether a factor's remark is the reader's: not that the case gave it."""
+    return bool(one.remark) and _remark(one, asked) == one.remark and "as given" not in one.remark
