@@ -15,7 +15,10 @@ from fegear.geometry import Gear, Tooth
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import ArrayLike
+
     from fegear.arrays import Array
+    from fegear.contact.gear_population import Population
     from fegear.fem.settings import MeshSettings
     from fegear.solution_cache import SolutionCache
 
@@ -25,13 +28,17 @@ BAND = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """One gear of the sweep: its numbers, and the gear itself or the reason why there is none."""
+    """One gear of the sweep: its numbers, and the gear itself or the reason why there is none.
+
+    `load_position` is that of this gear alone, where every gear has its own.
+    """
 
     teeth: int
     profile_shift: float
     rack_tip_radius: float
     gear: Gear | None
     reason: str = ""
+    load_position: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +55,8 @@ class VariantStress:
     fe, fe_angle : ndarray
         Largest tangential stress of the fillet below the loaded flank, and its tangent angle [rad].
     answers : dict of str to RootStressAnswers
+    fe_error : ndarray
+        Estimated error of `fe`; NaN where it was not asked for.
     """
 
     variant: Variant
@@ -56,6 +65,7 @@ class VariantStress:
     fe: Array
     fe_angle: Array
     answers: dict[str, RootStressAnswers]
+    fe_error: Array
 
 
 def verdict(ratio: float) -> str:
@@ -88,7 +98,18 @@ def variants(
     return found
 
 
-def load_radii(gear: Gear, position: Sequence[float]) -> Array:
+def of_population(population: Population) -> list[Variant]:
+    """The gears of a population, each with its own load positions."""
+    return [
+        Variant(
+            d.gear.teeth, d.gear.tooth.profile_shift, d.gear.tooth.rack.tip_radius, d.gear,
+            load_position=d.load_position,
+        )
+        for d in population.gears
+    ]  # fmt: skip
+
+
+def load_radii(gear: Gear, position: ArrayLike) -> Array:
     """Radii [m] at shares of the roll angle between start and end of the involute."""
     ends = (gear.form_radius, gear.involute_tip_radius)
     low, high = (np.sqrt(max((r - gear.base_radius) * (r + gear.base_radius), 0.0)) for r in ends)
@@ -101,19 +122,24 @@ def root_stress_study(
     settings: MeshSettings,
     progress: Callable[[float], None] | None = None,
     cache: SolutionCache | None = None,
+    *,
+    estimate_error: bool = False,
 ) -> list[VariantStress]:
-    """Root stress of every gear by finite elements (no neighbours, no second mesh) and by every formula."""
+    """Root stress of every gear by finite elements and by every formula.
+
+    There are no neighbours, and a second mesh only where the error of the finite elements is to be estimated.
+    """
     from fegear.fem import solve_gear
 
     found = []
-    at = np.asarray(position, dtype=float)
-    nothing = np.full(at.shape, np.nan)
     for number, variant in enumerate(gears, start=1):
         gear, reason = variant.gear, variant.reason
+        at = np.asarray(variant.load_position or position, dtype=float)
+        nothing = np.full(at.shape, np.nan)
         if gear is not None:
-            radii = load_radii(gear, position)
+            radii = load_radii(gear, at)
             try:
-                known = solve_gear(gear, settings, reach=0, estimate_error=False, cache=cache)
+                known = solve_gear(gear, settings, reach=0, estimate_error=estimate_error, cache=cache)
             except FegearError as error:
                 gear, reason = None, f"no finite elements: {error}"
             else:
@@ -121,9 +147,12 @@ def root_stress_study(
                 fillet = known.fine.fillets["tension"]
                 angle = np.interp(arc / gear.module, fillet.arc, fillet.tangent_angle)
                 answers = root_stress_answers(gear.tooth, radii / gear.module)
-                found.append(VariantStress(variant, at, radii, value * gear.module, angle, answers))
+                off = known.root_stress_error(0, "tension", radii) * gear.module if estimate_error else nothing
+                found.append(VariantStress(variant, at, radii, value * gear.module, angle, answers, off))
         if gear is None:
-            found.append(VariantStress(replace(variant, gear=None, reason=reason), at, nothing, nothing, nothing, {}))
+            found.append(
+                VariantStress(replace(variant, gear=None, reason=reason), at, nothing, nothing, nothing, {}, nothing)
+            )
         if progress:
             progress(number / len(gears))
     return found

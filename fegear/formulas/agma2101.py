@@ -28,43 +28,19 @@ from fegear.formulas.agma2101_factors import (
     rim_factor,
     work_hardening_factor,
 )
+from fegear.formulas.iso6336.pair_rating import Factor
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from fegear.formulas.agma2101_materials import AllowableStress
+    from fegear.formulas.iso6336.rated import Both
     from fegear.geometry import GearPair
     from fegear.geometry.pair import Member
 
-#: Two values, of pinion and wheel.
-Both = tuple[float, float]
 _STANDARD = "ANSI/AGMA 2101-D04"
 #: Treatments that leave a flank of 48 HRC and more (clause 14.2).
 _HARD_CASES = {"carburized", "induction-hardened", "nitrided-4140", "nitrided-nitralloy", "nitrided-chrome"}
-
-
-@dataclass(frozen=True, slots=True)
-class Factor:
-    """One number on the way to a safety factor.
-
-    Parameters
-    ----------
-    symbol : str
-        As the standard writes it, ASCII.
-    values : (float, float)
-        Of pinion and wheel; equal where the pair has one.
-    unit : str
-        SI; empty for a pure number.
-    clause : str
-        Where the standard gives it.
-    remark : str
-    """
-
-    symbol: str
-    values: Both
-    unit: str
-    clause: str
-    remark: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,13 +15,14 @@ from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
 from fegear.models.settings import mesh_settings, seconds_of_gear
 from fegear.results import forecasts
+from fegear.results.drawn_formula_spread import sentences, spread_figure
 from fegear.results.sources import RING, ROOT_STRESS_FORMULAS
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.case.study import StudyPart
-    from fegear.contact.root_stress_study import VariantStress
+    from fegear.contact.root_stress_study import Variant, VariantStress
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.settings import MeshSettings
     from fegear.geometry import Gear
@@ -60,7 +61,15 @@ def _check(scene: Scene, _subject: str) -> None:
             )
 
 
-def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: float) -> Table:
+def _rack(v: Variant) -> tuple[float, float]:
+    """Dedendum [modules] and pressure angle [rad] of a gear's rack."""
+    if v.gear is None:
+        return math.nan, math.nan
+    rack = v.gear.tooth.rack
+    return rack.dedendum, rack.pressure_angle
+
+
+def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: float, *, drawn: bool) -> Table:
     from fegear.contact.root_stress_study import verdict
 
     rows = []
@@ -86,10 +95,11 @@ def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: flo
                         one.fe_angle[i],
                         verdict(ratio),
                         answers.reasons[i] if answers else v.reason,
+                        *((_rack(v)[0], _rack(v)[1], one.fe_error[i] / module) if drawn else ()),
                     )
                 )
     columns = list(zip(*rows, strict=True))
-    heads = (
+    heads: tuple[tuple[str, str, str], ...] = (
         ("teeth", "", "number of teeth"),
         ("profile_shift", "", "profile shift coefficient"),
         ("rack_tip_radius", "", "of the generating rack, in modules"),
@@ -104,6 +114,12 @@ def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: flo
         ("verdict", "", "high, low, within 5 %, or breaks down"),
         ("reason", "", "why the formula gives nothing; empty where it does"),
     )
+    if drawn:
+        heads += (
+            ("rack_dedendum", "", "of the generating rack, in modules"),
+            ("pressure_angle", "deg", "of the generating rack"),
+            ("stress_fe_error", "MPa.mm/N", "estimated error of the finite elements"),
+        )
     made = (Column(h, np.array(c), unit, meaning) for (h, unit, meaning), c in zip(heads, columns, strict=True))
     return Table("root_stress_study", tuple(made), "Where each root-stress formula is high, low or breaks down")
 
@@ -150,9 +166,14 @@ def _inputs(scene: Scene, _subject: str) -> StudyInputs:
 
 
 def _compute(asked: StudyInputs, _upstream: Upstream, work: Work) -> tuple[VariantStress, ...]:
-    from fegear.contact.root_stress_study import root_stress_study, variants
+    from fegear.contact.gear_population import drawn_gears
+    from fegear.contact.root_stress_study import of_population, root_stress_study, variants
 
     study, tooth = asked.study, asked.base.tooth
+    if study.samples:
+        population = of_population(drawn_gears(asked.base, study.bounds, study.samples, study.seed))
+        settings, progress, cache = asked.settings, work.progress, work.cache
+        return tuple(root_stress_study(population, (), settings, progress, cache, estimate_error=True))
     gears = variants(
         asked.base,
         study.teeth or [tooth.teeth],
@@ -165,8 +186,8 @@ def _compute(asked: StudyInputs, _upstream: Upstream, work: Work) -> tuple[Varia
 def _present(found: tuple[VariantStress, ...], asked: StudyInputs) -> Outcome:
     from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 
-    base, names = asked.base, tuple(ROOT_STRESS_SOURCES)
-    table = _table(found, names, base.module)
+    base, names, drawn = asked.base, tuple(ROOT_STRESS_SOURCES), asked.study.samples is not None
+    table = _table(found, names, base.module, drawn=drawn)
     about = (
         "Study of root stress: one tooth of the whole ring under one load normal to its flank, no friction; FE is the "
         "largest tangential stress of the fillet below the load, radial compression included; ratio of bore to root "
@@ -175,7 +196,16 @@ def _present(found: tuple[VariantStress, ...], asked: StudyInputs) -> Outcome:
     )
     remarks = (about, *(f"{s.name} ({s.citation}): {s.compared}." for s in ROOT_STRESS_SOURCES.values()))
     settings = {**asdict(asked.settings), "gears": len(found)}
+    if drawn:
+        remarks = (about, *sentences(_columns(table)), *remarks[1:])
+        return Outcome(found, (table,), _values(table, names), settings, remarks, (spread_figure(_columns(table)),))
     return Outcome(found, (table,), _values(table, names), settings, remarks, _figures(table, names))
+
+
+def _columns(table: Table) -> dict[str, Array]:
+    """The columns by name, the pressure angle in degrees: in what is read by people."""
+    columns = {column.name: np.asarray(column.values) for column in table.columns}
+    return {**columns, "pressure_angle": np.degrees(columns["pressure_angle"])}
 
 
 def _figures(table: Table, names: tuple[str, ...]) -> tuple[Figure, ...]:
@@ -265,7 +295,11 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
     if study is None:
         return Forecast()
     count = math.prod(len(values or [0]) for values in (study.teeth, study.profile_shift, study.rack_tip_radius))
-    return Forecast({"gears": count, **asdict(settings)}, forecasts.LIBRARIES + 0.3 * count * seconds_of_gear(settings))
+    each = 0.3
+    if study.samples:
+        count, each = study.samples, 0.5
+    seconds = forecasts.LIBRARIES + each * count * seconds_of_gear(settings)
+    return Forecast({"gears": count, **asdict(settings)}, seconds)
 
 
 ROOT_STRESS_STUDY = Stage(

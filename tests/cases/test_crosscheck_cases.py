@@ -309,6 +309,30 @@ def test_gears_that_cannot_be_are_marked_and_the_study_goes_on():
     assert np.isfinite(table["ratio_to_fe"][table["rack_tip_radius"] == 0.25]).all()
 
 
+def test_a_population_ends_with_its_distribution_and_a_sentence_for_each_formula():
+    tables, _, results = run("root_stress_population", "study.samples=2", "study.pressure_angle=['20 deg', '25 deg']")
+    table = tables["root_stress_study"]
+    assert len(table["teeth"]) == 2 * 8 * len(ROOT_STRESS_SOURCES)
+    assert ((table["rack_dedendum"] >= 1.15) & (table["rack_dedendum"] <= 1.4)).all()
+    assert len(set(table["pressure_angle"].tolist())) == 2
+    assert (table["stress_fe_error"] < 0.02 * table["stress_fe"]).all()
+    assert (table["stress_fe_error"] > 0.0).all()
+    assert [figure.key for figure in results.figures] == ["root_stress_spread"]
+    panels = results.figures[0].panels
+    assert [len(panel.items) for panel in panels] == [len(set(table["formula"][np.isfinite(table["ratio_to_fe"])]))] * 2
+    said = [r for r in results.remarks if "nine in ten of its answers" in r or "gives nothing anywhere" in r]
+    assert len(said) == len(ROOT_STRESS_SOURCES)
+    # every row's numbers are those of the gear that they name
+    gear = table["formula"] == "iso-6336-3"
+    i = int(np.flatnonzero(gear)[-1])
+    rack = BasicRack(
+        1.0, table["rack_dedendum"][i], table["rack_tip_radius"][i], math.radians(table["pressure_angle"][i])
+    )
+    tooth = Tooth(int(table["teeth"][i]), rack, table["profile_shift"][i])
+    pure = ROOT_STRESS_SOURCES["iso-6336-3"].formula(tooth, table["load_radius"][i]).stress
+    assert table["stress"][i] == pytest.approx(pure, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("ratio", "word"),
     [(1.06, "high"), (0.94, "low"), (1.04, "within 5 %"), (0.96, "within 5 %"), (math.nan, "breaks down")],
@@ -343,6 +367,9 @@ def test_positions_off_a_flank_keep_their_own_reason():
         (["study={load_position=[1.5]}"], "load_position"),
         (["study={teeth=[]}"], "must not be empty"),
         (["gear.base.tip_diameter=31 mm"], "has no meaning in a study"),
+        (["study={pressure_angle=['20 deg']}"], "give samples"),
+        (["study={samples=4, teeth=[20, 30, 40]}"], "the lowest and the highest"),
+        (["study={samples=4, rack_tip_radius=[0.3, 0.1]}"], "the lowest and the highest"),
     ],
 )
 def test_studies_that_mean_nothing_are_refused(overrides, words):

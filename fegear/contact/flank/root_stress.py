@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fegear.contact.flank.lines import ContactLines
     from fegear.fem.influence import Side
     from fegear.fem.solid.bands import Bands
+    from fegear.fem.solid.fillet import SolidFillet
     from fegear.fem.solid.solution import SolidSolution
     from fegear.geometry.pair import GearPair, Member
 
@@ -118,11 +119,18 @@ class RootedLines:
         shape = places.size, len(self.teeth)
         return StressOverFace(self.x, places, value.reshape(shape).T / m**2, radius.reshape(shape).T)
 
-    def largest(self, side: Side, force: Array, z: ArrayLike) -> float:
-        """Largest value of `stress` [Pa]: curves are laid through the highest of all points alone."""
+    def largest(self, side: Side, force: Array, z: ArrayLike, *, across: bool = False) -> float:
+        """Largest value of `stress` [Pa]: curves are laid through the highest of all points alone.
+
+        With `across` it is that of the stress across the root, at right angles to the helix through the place, which
+        is what a formula for the normal section means, rather than of that along the transverse section.
+        """
         m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
         arc, sign = self.solution.fillets[side].arc, _SIGN[side]
-        total = self._felt(side, force, places / m).reshape(arc.size, -1)
+        felt = self._surface(side, force, places / m)
+        total = (_across(felt, self.solution.fillets[side], self.solution.tau) if across else felt[0]).reshape(
+            arc.size, -1
+        )
         end = self._ends(side, places / m).ravel()
         on = np.maximum(np.searchsorted(arc, end, side="right"), 1) > np.arange(arc.size)[:, None]
         top = np.where(on, sign * total, -np.inf).max(axis=0)
@@ -131,15 +139,19 @@ class RootedLines:
 
     def _felt(self, side: Side, force: Array, zeta: Array) -> Array:
         """Stress up the fillet under forces on the stations, shape (points, Z, T) [1/module^2 times N]."""
+        return np.asarray(self._surface(side, force, zeta)[0])
+
+    def _surface(self, side: Side, force: Array, zeta: Array) -> Array:
+        """The three stresses of `fegear.fem.solid.fillet.surface_stress` of each, shape (3, points, Z, T)."""
         solution, fillet = self.solution, self.solution.fillets[side]
         _, spans = places_of(self.lines)
         on = force[self.lines.present]
         loads = np.stack([self.loads[:, s] @ on[s] for s in spans], axis=1)
-        total = np.zeros((fillet.arc.size, zeta.size, len(self.teeth)))
+        total = np.zeros((3, fillet.arc.size, zeta.size, len(self.teeth)))
         for k, felt in self.sources.items():
             used, column = np.unique(felt[:, 1], return_inverse=True)
-            stress = solution.stress_under(k, side, loads[:, used], zeta)[0]
-            total[:, :, felt[:, 0]] += stress[:, :, column]  # at most one line is k teeth away
+            stress = solution.stress_under(k, side, loads[:, used], zeta)
+            total[..., felt[:, 0]] += stress[..., column]  # at most one line is k teeth away
         return total
 
     def _ends(self, side: Side, zeta: Array) -> Array:
@@ -151,6 +163,19 @@ class RootedLines:
             near = (zeta > own.zeta[0] - own.half_width[0]) & (zeta < own.zeta[-1] + own.half_width[-1])
             found[near, tooth] = np.interp(zeta[near], own.zeta, self.solution.root_end(0, side, own))
         return found
+
+
+def _across(surface: Array, fillet: SolidFillet, tau: float) -> Array:
+    """Stress at right angles to the helix, from those along the section, across it, and the shear between both.
+
+    In the surface the helix through a place leans by its component along the section's tangent.
+    """
+    (x, y), (tx, ty) = fillet.place, fillet.tangent
+    skew = tau * (ty * x - tx * y)
+    across = np.sqrt(1.0 + tau**2 * (x * x + y * y) - skew**2)
+    lean = np.arctan2(skew, across)[:, None, None]
+    c, s = np.cos(lean), np.sin(lean)
+    return np.asarray(c * c * surface[0] + s * s * surface[1] - 2.0 * s * c * surface[2])
 
 
 def rooted_lines(
