@@ -45,6 +45,8 @@ def test_every_factor_has_a_clause_and_its_name_once():
         assert all(f.clause.startswith("ISO ") for f in rating.factors)
         assert all(math.isfinite(v) for f in rating.factors for v in f.values)
         assert rating["S_H"].values == rating.contact_safety
+        for s in ("S_H", "S_F"):
+            assert rating[f"{s}_static"].value > rating[s].value > 0.0
         with pytest.raises(KeyError):
             rating["K_Z"]
 

@@ -48,6 +48,11 @@ def rate_pair(conditions: Conditions, computed: Replacement | None = None) -> Pa
     s_h, s_f = (bear_h[0] / stress_h[0], bear_h[1] / stress_h[1]), (bear_f[0] / stress_f[0], bear_f[1] / stress_f[1])
     table.add("S_H", s_h, "ISO 6336-2, 5.1")
     table.add("S_F", s_f, "ISO 6336-3, 5.1")
+    for symbol, part, bears, stress in (("S_H", 2, flanks, stress_h), ("S_F", 3, roots, stress_f)):
+        static = (bears[0].static / stress[0], bears[1].static / stress[1])
+        reference = (bears[0].reference / stress[0], bears[1].reference / stress[1])
+        table.add(f"{symbol}_static", static, f"ISO 6336-{part}, 5.3, static strength")
+        table.add(f"{symbol}_reference", reference, f"ISO 6336-{part}, 5.3, at the reference number of load cycles")
     return PairRating(tuple(table.rows), pair.members, stress_h, bear_h, s_h, stress_f, bear_f, s_f)
 
 
