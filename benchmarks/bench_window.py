@@ -1,23 +1,31 @@
-"""How soon `fegear open` answers in chromium: a dragged relief point, the load slider, another tooth number, the start.
+"""How soon `fegear open` answers in chromium, beside what was asked for.
 
-    python benchmarks/bench_window.py [ANSWERS]
+    python benchmarks/bench_window.py [--answers 30] [--case NAME] [--against CHECKOUT]
+    python benchmarks/bench_window.py --soak MINUTES [--case NAME]
 
-Every change is made in the page, and its answer counts when load sharing, transmission error and root stress are there
-and what is in sight is painted. Printed: median and 95th percentile of the milliseconds over so many answers (30), the
-delay of the last answer after five seconds of ten changes a second, and the memory of the server and its computing
-process before and after.
+Every change is made in the page, and its answer counts when load sharing, transmission error and root stress of that
+very change are there and what is in sight is painted. Printed: median and 95th percentile of the milliseconds, and the
+processor milliseconds that server, computing process and browser take for one change (a machine that does other things
+as well stretches the first, not the second). `--against` measures another checkout in between, change by change kind,
+and prints the ratios.
+
+The soak makes random changes of every kind for so many minutes and prints how much memory server and computing process
+have grown since the end of the first tenth, and what they leave behind.
 """
 
 from __future__ import annotations
 
+import argparse
+import contextlib
 import importlib.util
 import os
+import random
 import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -26,24 +34,38 @@ WATCH = """
 (() => {
   const wanted = ["load-sharing of I", "transmission-error of I", "root-stress-history of I"];
   const hear = fegear.hear;
-  let seen = new Set(), first = 0, waiting = null;
+  let seen = new Set(), first = 0, waiting = null, number = null, moved = [];
+  const delays = window.delays = [];
   fegear.hear = (what, content) => {
     const line = hear(what, content);
-    if (what === "asked") { seen = new Set(); first = 0; }
+    if (what === "asked" && number === null) { number = content.number ?? 0; seen = new Set(); first = 0; }
+    if (what === "asked") for (const one of moved) one.number ??= content.number ?? 0;
     if (what === "found") line.then(() => requestAnimationFrame(() => {
-      if (content.values) first ||= performance.now();
-      if (wanted.includes(content.task)) seen.add(content.task);
-      if (seen.size === wanted.length && waiting) { waiting([first, performance.now()]); waiting = null; }
+      const now = performance.now();
+      if (content.task === wanted[2]) {
+        for (const one of moved.filter((one) => one.number <= (content.number ?? 0))) delays.push(now - one.at);
+        moved = moved.filter((one) => !(one.number <= (content.number ?? 0)));
+      }
+      if (number === null || (content.number ?? number) < number) return;
+      if (wanted.includes(content.task)) first ||= now;
+      if (wanted.includes(content.task) && !content.draft) seen.add(content.task);
+      if (seen.size === wanted.length && waiting) { waiting([first, now]); waiting = null; }
     }));
     return line;
   };
   window.answer = (change) => new Promise((done) => {
     const start = performance.now();
+    number = null;
     waiting = (times) => done(times.map((one) => one - start));
     change();
   });
+  window.moveOn = (change) => { moved.push({ at: performance.now() }); change(); };
 })()
 """
+IDLE = (
+    "!document.body.classList.contains('computing') && !document.querySelector('#results .stale')"
+    " && document.querySelectorAll('#results .js-plotly-plot').length > 2"
+)
 
 
 def _browser():
@@ -54,75 +76,263 @@ def _browser():
     return module.Browser(shutil.which("chromium") or shutil.which("chromium-browser"))
 
 
-def memory(pid: int) -> float:
-    """Of a process and its children [MB]."""
+def _family(pid: int) -> list[tuple[int, int]]:
+    """A process and those it has started, with their memory [kB]."""
     found = subprocess.run(["ps", "-o", "pid=,ppid=,rss=", "-A"], capture_output=True, text=True, check=True).stdout
     rows = [tuple(map(int, line.split())) for line in found.splitlines()]
     family = {pid}
-    for _ in range(3):
+    for _ in range(4):
         family |= {one for one, parent, _ in rows if parent in family}
-    return sum(size for one, _, size in rows if one in family) / 1024
+    return [(one, size) for one, _, size in rows if one in family]
 
 
-def told(name: str, times: list[list[float]], column: int = 1) -> None:
-    """Print median and 95th percentile of some answers."""
-    found = sorted(one[column] for one in times)
-    print(f"  {name}: {statistics.median(found):.0f} ms, 95 %: {found[int(0.95 * (len(found) - 1))]:.0f} ms")
+def memory(pid: int) -> float:
+    """Of a process and its children [MB]."""
+    return sum(size for _, size in _family(pid)) / 1024
 
 
-def measure(name: str, count: int) -> None:
-    """Print what one case takes."""
-    with tempfile.TemporaryDirectory() as state, _browser() as browser:
-        started = time.monotonic()
-        server = subprocess.Popen(
-            [sys.executable, "-m", "fegear", "open", "--no-browser", str(ROOT / "cases" / f"{name}.toml")],
-            stdout=subprocess.PIPE, text=True, env=os.environ | {"FEGEAR_STATE": state, "PYTHONUNBUFFERED": "1"},
+def processor(pids: list[int]) -> float:
+    """Seconds that processes have taken."""
+    ticks = 0
+    for pid in pids:
+        with contextlib.suppress(OSError):
+            ticks += sum(map(int, Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11:13]))
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
+@dataclass
+class Measured:
+    """Milliseconds of one kind of change."""
+
+    first: list[float] = field(default_factory=list)
+    whole: list[float] = field(default_factory=list)
+    server: float = 0.0
+    browser: float = 0.0
+
+
+def _at(values: list[float], share: float) -> float:
+    return sorted(values)[min(int(share * len(values)), len(values) - 1)] if values else float("nan")
+
+
+class Window:
+    """A server of one checkout with one case, and a browser that looks at it."""
+
+    def __init__(self, checkout: Path, case: str) -> None:
+        self._state = tempfile.TemporaryDirectory()
+        self.browser = _browser()
+        # so that the start measured is that of a machine on which fegear has run before
+        env = os.environ | {"FEGEAR_STATE": self._state.name, "PYTHONUNBUFFERED": "1", "PYTHONPATH": str(checkout)}
+        self.started = time.monotonic()
+        self.server = subprocess.Popen(
+            [sys.executable, "-m", "fegear", "open", "--no-browser", str(ROOT / "cases" / f"{case}.toml")],
+            stdout=subprocess.PIPE, text=True, env=env, cwd=checkout,
         )  # fmt: skip
-        try:
-            browser("Page.navigate", url=server.stdout.readline().split()[-1])
-            browser.until("document.documentElement?.dataset.ready !== undefined")
-            print(f"{name}\n  usable after {time.monotonic() - started:.2f} s")
-            browser.until("!document.body.classList.contains('computing') && window.fegear !== null"
-                          " && document.querySelectorAll('#results .js-plotly-plot').length > 3")  # fmt: skip
-            browser.run(WATCH)
-            gear = browser.run("document.querySelector('[data-key$=\".teeth\"]').dataset.key.split('.')[1]")
-            key = "torque" if "torque" in (ROOT / "cases" / f"{name}.toml").read_text() else "load"
-            unit = "N*m" if key == "torque" else "N"
-            base = 90 if key == "torque" else 1615
+        self.address = self.server.stdout.readline().split()[-1]
+        self.listening = time.monotonic() - self.started
+        self.load()
+        self.usable = time.monotonic() - self.started
+        self.text = (ROOT / "cases" / f"{case}.toml").read_text()
 
-            def relief(amount: float) -> str:
-                content = f"{{gear: '{gear}', end: 'tip', start: 30, amount: {amount}, moving: true}}"
-                return f"emitEvent('relief', {content})"
+    def load(self) -> None:
+        """Open the page and wait until it can be used."""
+        self.browser("Page.navigate", url=self.address)
+        self.browser.until("document.documentElement?.dataset.ready !== undefined"
+                           " && document.querySelector('[data-key]') !== null")  # fmt: skip
 
-            def load(share: float) -> str:
-                return (
-                    f"emitEvent('load', {{pair: 'I', key: '{key}', text: '{base * share:.5g} {unit}', moving: true}})"
+    def rest(self) -> None:
+        """Let go of what was moved, and wait for all of its results."""
+        self.browser.run(self.relief(4.0, moving=False))
+        self.settle()
+
+    def settle(self) -> None:
+        """Wait until everything is computed."""
+        for _ in range(6):
+            with contextlib.suppress(TimeoutError):
+                self.browser.until(IDLE)
+                return
+
+    def ready(self) -> None:
+        """Wait for the first results, and hook in."""
+        self.settle()
+        self.browser.run(WATCH)
+        self.gear = self.browser.run("document.querySelector('[data-key$=\".teeth\"]').dataset.key.split('.')[1]")
+        self.key = "torque" if "torque" in self.text else "load"
+
+    def pids(self) -> tuple[list[int], list[int]]:
+        """Of the server with its computing process, and of the browser."""
+        server = [pid for pid, _ in _family(self.server.pid)]
+        return server, [pid for pid, _ in _family(self.browser.pid)]
+
+    def answers(self, changes: list[str], found: Measured) -> None:
+        """Make changes and add what their answers took; the processor's part is of all of them together."""
+        pids = self.pids()
+        before = [processor(one) for one in pids]
+        for change in changes:
+            first, whole = self.browser.run(f"answer(() => {change})")
+            found.first.append(first)
+            found.whole.append(whole)
+        after = [processor(one) for one in pids]
+        found.server += 1e3 * (after[0] - before[0])
+        found.browser += 1e3 * (after[1] - before[1])
+
+    def relief(self, amount: float, *, moving: bool = True) -> str:
+        """A tip relief of so many micrometres."""
+        now = "true" if moving else "false"
+        return f"emitEvent('relief', {{gear: '{self.gear}', end: 'tip', start: 30, amount: {amount}, moving: {now}}})"
+
+    def load_of(self, share: float, *, moving: bool = True) -> str:
+        """So much of the pair's load."""
+        base, unit = (90, "N*m") if self.key == "torque" else (1615, "N")
+        now, text = "true" if moving else "false", f"{base * share:.5g} {unit}"
+        return f"emitEvent('load', {{pair: 'I', key: '{self.key}', text: '{text}', moving: {now}}})"
+
+    def typed(self, key: str, value: str) -> str:
+        """Something typed into a field and confirmed; what is left out by default is unfolded before."""
+        find = f"document.querySelector('[data-key=\"gear.{self.gear}.{key}\"]')"
+        if not self.browser.run(f"{find} !== null"):
+            self.browser.run(
+                "[...document.querySelectorAll('.q-expansion-item .q-item')].forEach((one) => one.click())"
+            )
+            self.browser.until(f"{find} !== null")
+        return (
+            f"(() => {{ const one = {find}; one.focus(); one.value = '{value}';"
+            "one.dispatchEvent(new InputEvent('input', {bubbles: true}));"
+            "setTimeout(() => one.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true})), 0); })()"
+        )
+
+    def stroke(self, seconds: float) -> list[float]:
+        """Move a relief ten times a second; the delay of every answer [ms]."""
+        self.browser.run("delays.length = 0")
+        end, i = time.monotonic() + seconds, 0
+        while time.monotonic() < end:
+            started = time.monotonic()
+            i += 1
+            self.browser.run(f"moveOn(() => {self.relief(8 + 0.01 * i)})")
+            time.sleep(max(0.0, 0.1 - (time.monotonic() - started)))
+        time.sleep(1.0)
+        return self.browser.run("delays")
+
+    def close(self) -> list[int]:
+        """End both; returns the processes that the server leaves behind."""
+        left = [pid for pid, _ in _family(self.server.pid)]
+        self.server.terminate()
+        self.server.wait(20)
+        self.browser.close()
+        self._state.cleanup()
+        time.sleep(0.5)
+        return [pid for pid in left if Path(f"/proc/{pid}").exists()]
+
+
+KINDS = (
+    ("dragged relief point", lambda w, i: w.relief(6 + 0.1 * i), (None, 100, 200)),
+    ("load slider", lambda w, i: w.load_of(0.5 + 0.01 * i), (None, 100, 200)),
+    ("tooth number", lambda w, i: w.typed("teeth", str(24 + i + 6 * (w.key == "load"))), (600, 1500, 1500)),
+    ("profile shift", lambda w, i: w.typed("profile_shift", f"{0.05 + 0.002 * i:.3f}"), (600, 1500, 1500)),
+    ("pressure angle", lambda w, i: w.typed("pressure_angle", f"{20.1 + 0.05 * i:.2f} deg"), (600, 1500, 1500)),
+)
+
+
+def measure(case: str, count: int, checkouts: list[Path]) -> None:
+    """Print what one case takes, in this checkout and another."""
+    print(case)
+    windows = []
+    for checkout in checkouts:
+        window = Window(checkout, case)
+        window.ready()
+        started = time.monotonic()
+        window.load()
+        again = time.monotonic() - started
+        window.ready()
+        listening = f"listening after {window.listening:.2f}"
+        there = f"with the browser and the server there {again:.2f} s (asked 1)"
+        print(f"  {checkout.name}: usable after {window.usable:.2f} s (asked 3; {listening}), {there}", flush=True)
+        windows.append(window)
+    try:
+        for kind, change, asked in KINDS:
+            found = [Measured() for _ in windows]
+            batches = 3 if asked[0] is None else 2
+            each = count // batches if asked[0] is None else max(2, count // 10)
+            for window in windows:
+                window.answers([change(window, 0)], Measured())
+                window.rest()
+            for batch in range(batches):  # one checkout after the other, so that both meet the same company
+                for window, one in zip(windows, found, strict=True):
+                    steps = range(1 + batch * each, 1 + (batch + 1) * each)
+                    if asked[0] is None:
+                        window.answers([change(window, i) for i in steps], one)
+                    else:
+                        for i in steps:
+                            window.answers([change(window, i)], one)
+                            window.settle()
+            for window, checkout, one in zip(windows, checkouts, found, strict=True):
+                n = len(one.whole)
+                first = f"first {_at(one.first, 0.5):.0f} ms (asked {asked[0]}), " if asked[0] else ""
+                print(
+                    f"  {kind}, {checkout.name}: {first}median {_at(one.whole, 0.5):.0f} ms (asked {asked[1]}), "
+                    f"95 % {_at(one.whole, 0.95):.0f} ms (asked {asked[2]}); "
+                    f"processor: server {one.server / n:.0f} ms, browser {one.browser / n:.0f} ms",
+                    flush=True,
                 )
+                window.rest()
+        for window, checkout in zip(windows, checkouts, strict=True):
+            delays = window.stroke(5.0)
+            half = len(delays) // 2
+            print(f"  ten changes a second, {checkout.name}: {len(delays)} answered, delay first half"
+                  f" {_at(delays[:half], 0.5):.0f} ms, second half {_at(delays[half:], 0.5):.0f} ms,"
+                  f" longest {max(delays, default=0.0):.0f} ms", flush=True)  # fmt: skip
+            window.rest()
+            print(f"  memory, {checkout.name}: {memory(window.server.pid):.0f} MB")
+    finally:
+        for window in windows:
+            window.close()
 
-            browser.run(f"answer(() => {relief(5.0)})")
-            before = memory(server.pid)
-            told("dragged relief point", [browser.run(f"answer(() => {relief(6 + 0.1 * i)})") for i in range(count)])
-            told("load slider", [browser.run(f"answer(() => {load(0.5 + 0.01 * i)})") for i in range(count)])
-            end = time.monotonic() + 5.0
-            i = 0
-            while time.monotonic() < end:
-                i += 1
-                browser.run(relief(8 + 0.01 * i))
-                time.sleep(0.1)
-            last = browser.run(f"answer(() => {relief(3.3)})")
-            print(f"  after {i} changes in 5 s the last is answered within {last[1]:.0f} ms")
-            field = f"document.querySelector('[data-key=\"gear.{gear}.teeth\"]')"
-            browser.run(f"{field}.focus()")
-            press = f"{field}.dispatchEvent(new KeyboardEvent('keydown', {{key: 'ArrowUp', bubbles: true}}))"
-            teeth = [browser.run(f"answer(() => {press})") for _ in range(max(4, count // 6))]
-            told("another tooth number, first answer", teeth, 0)
-            told("another tooth number, all of it", teeth)
-            print(f"  memory {before:.0f} MB, then {memory(server.pid):.0f} MB")
-        finally:
-            server.terminate()
-            server.wait(20)
+
+def soak(case: str, minutes: float) -> None:
+    """Print how much memory random changes leave taken."""
+    window = Window(ROOT, case)
+    window.ready()
+    chance, count, base = random.Random(17), 0, None  # noqa: S311 - no secret
+    begin = told = time.monotonic()
+    end = begin + 60.0 * minutes
+    kinds = (
+        lambda: window.relief(chance.uniform(1, 12)), lambda: window.load_of(chance.uniform(0.3, 1.5)),
+        lambda: window.relief(chance.uniform(1, 12), moving=False),
+        lambda: window.load_of(chance.uniform(0.3, 1.5), moving=False),
+        lambda: window.typed("teeth", str(chance.randint(20, 40))),
+        lambda: window.typed("profile_shift", f"{chance.uniform(-0.1, 0.3):.3f}"),
+    )  # fmt: skip
+    while time.monotonic() < end:
+        window.browser.run(chance.choices(kinds, weights=(6, 6, 2, 2, 1, 1))[0]())
+        count += 1
+        time.sleep(chance.choice((0.05, 0.1, 0.1, 0.4, 1.5)))
+        now = time.monotonic()
+        if base is None and now - begin > 6.0 * minutes:
+            window.settle()
+            base = memory(window.server.pid), memory(window.browser.pid)
+        if now - told > 60.0:
+            told = now
+            print(
+                f"  after {(now - begin) / 60:.0f} min, {count} changes: {memory(window.server.pid):.0f} MB", flush=True
+            )
+    window.settle()
+    grown = memory(window.server.pid) - base[0]
+    page = memory(window.browser.pid) - base[1]
+    left = window.close()
+    print(f"{case}: {count} changes in {minutes:g} min; server and computing process {base[0]:.0f} MB after the first"
+          f" tenth, grown by {grown:.0f} MB (asked: less than 50 in an hour); browser grown by {page:.0f} MB;"
+          f" processes left behind: {len(left)}")  # fmt: skip
 
 
 if __name__ == "__main__":
-    for case in CASES:
-        measure(case, int(sys.argv[1]) if len(sys.argv) > 1 else 30)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--answers", type=int, default=30)
+    parser.add_argument("--case", choices=CASES)
+    parser.add_argument("--against", type=Path)
+    parser.add_argument("--soak", type=float)
+    asked_for = parser.parse_args()
+    for name in [asked_for.case] if asked_for.case else CASES:
+        if asked_for.soak:
+            soak(name, asked_for.soak)
+        else:
+            against = [asked_for.against.resolve()] if asked_for.against else []
+            measure(name, asked_for.answers, [ROOT, *against])

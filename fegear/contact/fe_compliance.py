@@ -122,7 +122,14 @@ class FiniteElementCompliance:
 
 
 def finite_element_compliance(influence: GearInfluence) -> FiniteElementCompliance:
-    """Tabulate the influence functions of a solved gear."""
+    """Tabulate the influence functions of a solved gear, once for each solution."""
+    known: FiniteElementCompliance | None = influence.tabulated.get("compliance")
+    if known is None:
+        known = influence.tabulated["compliance"] = _tabulated(influence)
+    return known
+
+
+def _tabulated(influence: GearInfluence) -> FiniteElementCompliance:
     gear = influence.gear
     rb = gear.base_radius
     bottom = max(influence.lowest_radius, gear.form_radius)

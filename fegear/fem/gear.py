@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -201,6 +201,11 @@ class GearInfluence:
 
     @functools.cached_property
     def _usual(self) -> dict[object, float]:
+        return {}
+
+    @functools.cached_property
+    def tabulated(self) -> dict[str, Any]:
+        """What has been tabulated of it, by name: for every load and relief the same, and kept as long as it is."""
         return {}
 
     def largest_errors(self) -> dict[str, float]:

@@ -49,8 +49,7 @@ class Bar:
             self._button("Other case", lambda: bench.lay(None))
             self._level = ui.toggle(list(LEVELS), value=bench.level, on_change=self._level_chosen)
             self._level.props('dense no-caps unelevated aria-label="Accuracy against time"')
-            self._state = ui.label().classes("state").props("role=status")
-        self._done = ""
+            ui.element("div").classes("state").props("role=status id=state")  # the page writes it: it changes often
         self._told = ui.label().classes("told")
         ui.on("save", self._save)
         self.refresh()
@@ -84,21 +83,9 @@ class Bar:
 
     def hear(self, what: str, content: dict[str, Any]) -> None:
         """Follow what goes on."""
-        if what in ("compared", "exported", "designed"):  # the case itself was done before
-            self._state.set_text(self._done)
         if what in ("changed", "pinned", "unpinned"):
             self.refresh()
             self._level.set_value(self._bench.level)
-        elif what == "asked":
-            self._state.set_text("computing ...")
-        elif what == "begin":
-            self._state.set_text(f"{content['number']} of {content['count']}: {content['title']} ...")
-        elif what == "done":
-            level = "" if self._bench.level == "normal" else f" ({self._bench.level}, not the case's own)"
-            self._done = f"{content['seconds']:.2f} s at tolerance {content['tolerance']:.3g}{level}"
-            self._state.set_text(self._done)
-        elif what == "refused":
-            self._state.set_text(content["sentence"])
         elif what == "designed":
             ui.notify(content["told"], type="positive", multi_line=True, timeout=10_000)
         elif what == "exported":

@@ -151,7 +151,7 @@ class Bench:
 
     def changed(self, *, moving: bool = False) -> None:
         """Show the case as it is now everywhere, and compute it; a value that is moved has its errors later."""
-        self.tell("changed")
+        self.tell("changed", {"moving": moving})
         self.compute(moving=moving)
 
     def asked(self) -> Asked:
@@ -164,7 +164,7 @@ class Bench:
         if self.desk is None or self._computing is None or self.desk.refusal is not None:
             return
         self._number = next(self._numbers)
-        self.tell("asked")
+        self.tell("asked", {"number": self._number})
         asked = self.asked()._replace(moving=moving, sight=self._sight, shows=self._shows, laid=self._laid)
         self._computing.ask(Compute(self._number, asked))
 
@@ -249,7 +249,7 @@ class Bench:
             self._loop.call_soon_threadsafe(self._hear, said)
 
     def _hear(self, said: Said) -> None:
-        what, content = said.what, said.content
+        what, content = said.what, {**said.content, "number": said.number}
         if what == "designed":
             self._last["designed"] = content
             self.tell(what, content)
@@ -265,7 +265,9 @@ class Bench:
         if what in ("refused", "done") and said.number != self._number:
             return
         if what == "hands":
-            content = {"pairs": self._with_gears(content["pairs"])}
+            content["pairs"] = self._with_gears(content["pairs"])
+        if what == "done":
+            content["level"] = "" if self.level == "normal" else f" ({self.level}, not the case's own)"
         self._keep(what, content)
         self.tell(what, content)
         if what == "done" and not content["moving"] and self.pinned is not None and self._computing is not None:

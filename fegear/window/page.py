@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 from importlib import resources
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 
     from fegear.window.bench import Bench
 
+#: What bar and form hear; each change of theirs has the browser go through the whole form.
+_OF_THE_FORM = frozenset({"laid", "pinned", "unpinned", "refused", "exported", "designed"})
+#: A value that has not moved for so long stands still [s].
+_STILL = 0.4
 #: Where the page's own files are served.
 _AT = "/fegear"
 
@@ -57,6 +62,7 @@ class Page:
             pass
         self._bar: Bar | None = None
         self._inputs: Inputs | None = None
+        self._soon: asyncio.TimerHandle | None = None
         ui.on("relief", lambda event: self._by_hand(lambda: bench.move_relief(**event.args)))
         ui.on("load", lambda event: self._by_hand(lambda: bench.move_load(**event.args)))
         ui.on("drop", lambda event: self._by_hand(lambda: bench.drop_relief(**event.args)))
@@ -66,6 +72,7 @@ class Page:
         ui.on("sight", lambda event: bench.see(event.args["tasks"]))
         self._client.run_javascript(f"fegear.begin({json.dumps(template())})")
         self._client.on_delete(bench.listen(self._hear))
+        self._client.on_delete(self._forget)
         self._lay()
 
     def _lay(self) -> None:
@@ -98,6 +105,27 @@ class Page:
             ui.notify(str(error), type="warning", multi_line=True)
 
     def _hear(self, what: str, content: dict[str, Any]) -> None:
+        if what == "changed":
+            self._later(content)
+        elif what in _OF_THE_FORM:
+            self._tell_form(what, content)
+        if what != "laid":
+            self._send(what, content)
+
+    def _forget(self) -> None:
+        if self._soon is not None:
+            self._soon.cancel()
+            self._soon = None
+
+    def _later(self, content: dict[str, Any]) -> None:
+        """Show the changed case in the form: while a value moves not before it stands still, for it takes long."""
+        self._forget()
+        if content.get("moving"):
+            self._soon = asyncio.get_running_loop().call_later(_STILL, self._tell_form, "changed", content)
+        else:
+            self._tell_form("changed", content)
+
+    def _tell_form(self, what: str, content: dict[str, Any]) -> None:
         with self._root:
             if what == "laid":
                 self._send(what, {})
@@ -107,7 +135,6 @@ class Page:
                 self._bar.hear(what, content)
             if self._inputs is not None:
                 self._inputs.hear(what, content)
-        self._send(what, content)
 
     def _send(self, what: str, content: dict[str, Any]) -> None:
         self._client.run_javascript(f"fegear.hear({json.dumps(what)}, {json.dumps(content)})")

@@ -13,15 +13,22 @@ class Sent:
 
     def __init__(self) -> None:
         self._figures: dict[tuple[str, str], str] = {}
+        self._empty: set[str] = set()
 
-    def news(self, content: _Content) -> _Content:
-        """What of a task's results is different from what was sent last.
+    def news(self, content: _Content) -> _Content | None:
+        """What of a task's results is different from what was sent last; None where it has nothing to show, again.
 
         Parameters
         ----------
         content : dict
             Of ``found``; `whole` is the reverse.
         """
+        if not (content["figures"] or content["values"] or content["loads"]):
+            if content["task"] in self._empty:
+                return None
+            self._empty.add(content["task"])
+        else:
+            self._empty.discard(content["task"])
         figures = []
         for one in content["figures"]:
             place, text = (content["task"], one["key"]), json.dumps(one)
@@ -32,6 +39,7 @@ class Sent:
     def forget_others(self, tasks: list[str]) -> None:
         """Forget what is on the page no longer."""
         self._figures = {place: text for place, text in self._figures.items() if place[0] in tasks}
+        self._empty &= set(tasks)
 
 
 def whole(content: _Content, before: _Content | None) -> _Content:

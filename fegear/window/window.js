@@ -14,14 +14,11 @@ const fegear = (() => {
 
   // Figures out of sight are painted when they come near it.
   const MARGIN = 200, owners = new WeakMap(), late = new Set();
-  const near = (figure) => {
-    const { top, bottom } = figure.getBoundingClientRect();
-    return bottom > -MARGIN && top < innerHeight + MARGIN;
-  };
+  const away = new WeakSet();
   const watch = new IntersectionObserver((entries) => {
     for (const { target, isIntersecting } of entries) {
-      if (!isIntersecting) continue;
-      watch.unobserve(target);
+      if (!isIntersecting) { away.add(target); continue; }
+      away.delete(target);
       const { kept, key } = owners.get(target);
       if (late.has(target) && kept.specs.has(key)) line = line.then(() => paint(kept, key));
     }
@@ -61,13 +58,14 @@ const fegear = (() => {
       plot.setAttribute("role", "img");
       figure.append(made("div", "plot-title"), plot, made("figcaption"));
       host.append(figure);
+      watch.observe(figure);
     }
-    figure.querySelector(".plot-title").textContent = spec.heading;
-    figure.querySelector("figcaption").textContent = spec.caption;
     const place = figure.querySelector(".plot"), drawn = place.classList.contains("js-plotly-plot");
     owners.set(figure, { kept, key });
     late.delete(figure);
-    if (drawn && !near(figure)) { late.add(figure); watch.observe(figure); return; } // painted when it comes into sight
+    if (drawn && away.has(figure)) { late.add(figure); return; } // painted when it comes into sight
+    figure.querySelector(".plot-title").textContent = spec.heading;
+    figure.querySelector("figcaption").textContent = spec.caption;
     place.setAttribute("aria-label", `${spec.heading}. ${spec.caption}`);
     const shaded = shadesOf(JSON.stringify({ data: spec.data, layout: spec.layout }), mode, kept.darker);
     const look = shadesOf(JSON.stringify(template), mode, kept.darker);
@@ -76,23 +74,23 @@ const fegear = (() => {
     place.dataset.count = Number(place.dataset.count || 0) + 1;
   }
 
+  let ended = ""; // what the last computation came to
+  const say = (words) => { if ($("state")) $("state").textContent = words; };
   const heard = {
     hands(content) { return fegearHands.show(content, { made, paint, sections }); },
     harris(content) { return fegearHands.harris(content, { paint, sections }); },
     load_now(content) { return fegearHands.follow(content); },
     meshed(content) { fegearGears.meshed(content); },
-    asked() { document.body.classList.add("computing"); },
+    asked() { document.body.classList.add("computing"); say("computing ..."); },
+    begin({ number, count, title }) { say(`${number} of ${count}: ${title} ...`); },
     plan({ tasks }) {
       fegearGears.plan(tasks);
       for (const [task, kept] of sections) {
         if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { sight.unobserve(kept.element); seen.delete(task); kept.element.remove(); sections.delete(task); }
       }
-      const host = $("results");
-      for (const task of tasks) {
-        const { element } = section(task);
-        element.classList.add("stale");
-        host.append(element);
-      }
+      const host = $("results"), wanted = tasks.map((task) => section(task).element);
+      for (const element of wanted) element.classList.add("stale");
+      if (wanted.some((element, i) => host.children[i] !== element)) host.append(...wanted);
     },
     async found({ task, title, values, figures, darker, loads }) {
       const kept = section(task);
@@ -131,14 +129,17 @@ const fegear = (() => {
       kept.element.hidden = false;
       kept.element.classList.remove("stale");
     },
-    done({ remarks, moving }) {
+    done({ remarks, moving, seconds, tolerance, level }) {
+      say(ended = `${seconds.toFixed(2)} s at tolerance ${Number(tolerance.toPrecision(3))}${level}`);
       if (moving) return; // remarks and errors come when it stands still
       document.body.classList.remove("computing");
       for (const { element } of sections.values()) element.classList.remove("stale");
       $("remarks").replaceChildren(...remarks.map((one) => made("li", "", one)));
     },
-    refused() { document.body.classList.remove("computing"); },
+    refused({ sentence }) { document.body.classList.remove("computing"); say(sentence); },
+    exported() { say(ended); },
     async compared({ sections: parts, figures, darker }) {
+      say(ended);
       const host = $("compared");
       const kept = sections.get("compared") ?? { element: made("section", "task"), specs: new Map(), shown: new Map() };
       if (!kept.element.isConnected) {
@@ -154,6 +155,7 @@ const fegear = (() => {
       for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
     },
     async designed({ pair, told, figures, darker }) {
+      say(ended);
       const key = `hand design ${pair}`;
       if (!sections.get(key)?.element.isConnected) {
         const element = made("section", "task design");

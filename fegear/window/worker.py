@@ -108,7 +108,8 @@ class Worker:
             self._wait_before = -1
             self._inbox.wait(_STILL)
         self._inbox.look()
-        self._say("begin", title=title, number=number, count=count)
+        if self._asked is not None and not self._asked.moving:  # who moves a value looks at the results
+            self._say("begin", title=title, number=number, count=count)
 
     def advance(self, _fraction: float) -> None:
         """Look whether another case is wanted."""
@@ -197,7 +198,8 @@ class Worker:
                 "pair": task.subject, "x": loads.column("x").si.tolist(), "load": loads.column("load").si.tolist(),
             },
         }  # fmt: skip
-        self._say("found", **self._sent.news(found))
+        if (news := self._sent.news(found)) is not None:
+            self._say("found", **news)
         if self._on_gears.get(task) is not outcome.data and (shown := on_the_gears(task, outcome.data)) is not None:
             self._on_gears[task] = outcome.data  # what is recalled is on the page already
             self._say("meshed", **shown)

@@ -78,6 +78,11 @@ class Browser:
             self.close()
             raise
 
+    @property
+    def pid(self) -> int:
+        """Of the browser's first process."""
+        return self._process.pid
+
     def __enter__(self) -> Browser:
         return self
 

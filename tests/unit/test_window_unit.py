@@ -238,7 +238,7 @@ def test_answers_to_earlier_places_of_a_moved_value_are_shown_and_end_nothing(tm
     ):  # fmt: skip
         bench._hear(Said(number, what, content))
     assert told == ["plan", "hands", "found", "hands", "done"]
-    assert dict(bench.shown_now())["hands"] == {"pairs": {"I": {"mesh": {"a": 1}}}}
+    assert dict(bench.shown_now())["hands"]["pairs"] == {"I": {"mesh": {"a": 1}}}
 
 
 def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
