@@ -1,0 +1,178 @@
+"""Every number on the page is one that ``fegear run`` writes for the saved case, whatever was computed before."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import Silence, run_plan
+from fegear.output.write import write_results
+from fegear.results.catalogue import STAGES
+from fegear.window.jobs import Asked, Compute, Export
+from fegear.window.sent import whole
+from fegear.window.worker import Worker
+
+if TYPE_CHECKING:
+    from fegear.window.jobs import Said
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+PAIR = """results = ["load-sharing", "transmission-error", "root-stress-history"]
+[gear.a]
+teeth = 28
+module = "3 mm"
+face_width = "20 mm"
+relief = { tip = { amount = "12 um", length = "2.5 mm" } }
+[gear.b]
+teeth = 41
+module = "3 mm"
+face_width = "20 mm"
+[pair.I]
+driver = "a"
+driven = "b"
+load = "5 kN"
+loads = ["2 kN", "7 kN"]
+compliance = { source = "weber-banaschek" }
+root_stress = { source = "iso-6336-3" }
+[effects]
+hertz = "load-dependent"
+relief = true
+"""
+HELICAL = """results = ["tooth-contact"]
+[gear.a]
+teeth = 20
+normal_module = "5 mm"
+helix_angle = "30 deg"
+hand = "left"
+face_width = "40 mm"
+[gear.b]
+teeth = 40
+normal_module = "5 mm"
+helix_angle = "30 deg"
+hand = "right"
+face_width = "40 mm"
+[pair.I]
+driver = "a"
+driven = "b"
+misalignment = { shaft_angle = "3 arcmin" }
+modification = { parabola = "0.002 / mm", crown = "10 um" }
+[effects]
+misalignment = true
+[tooth_contact]
+positions = 12
+"""
+
+
+class Wire:
+    """Stands for the connection to the page: keeps what is said."""
+
+    def __init__(self) -> None:
+        self.said: list[Said] = []
+
+    def send(self, said: Said) -> None:
+        self.said.append(said)
+
+
+def shown(worker: Worker, wire: Wire, asked: Asked, number: int, before: dict) -> dict:
+    """What stands on the page for a case when it is at rest: contents by task, as pages put them together."""
+    wire.said.clear()
+    worker.answer(Compute(number, asked))
+    page: dict = {}
+    for one in wire.said:
+        assert one.what != "refused", one.content
+        if one.what == "found":
+            page[one.content["task"]] = whole(one.content, before.get(one.content["task"]))
+    return page
+
+
+def of_the_run(folder: Path, text: str) -> tuple[Path, str, dict]:
+    """The folder that ``fegear run`` writes for a saved case, its report, and the figures in it by key."""
+    path = folder / "c.toml"
+    path.write_text(text)
+    scene = read_scene(path)
+    target = folder / "run"
+    target.mkdir()
+    write_results(run_plan(scene, make_plan(scene, STAGES)), target, Silence(), plots=False)
+    report = (target / "report.html").read_text()
+    embedded = re.search(r"<script type='application/json' id='figures'>(.*?)</script>", report, re.DOTALL)
+    return target, report, {one["key"]: one for one in json.loads(embedded[1])} if embedded else {}
+
+
+def hold(tmp_path: Path, text: str, changes: list[tuple[str, str]], wire: Wire, worker: Worker) -> None:
+    """Change a case on the page, back and forth, and hold what it shows at the end against the files of a run."""
+    asked, page = Asked(text, "c", str(tmp_path)), {}
+    for number, (old, new) in enumerate(changes, 1):
+        assert old in text
+        for moving in (True, False):
+            other = asked._replace(text=text.replace(old, new), moving=moving)
+            page = shown(worker, wire, other, 2 * number + moving, page)
+    page = shown(worker, wire, asked, 100, page)
+    run, report, figures = of_the_run(tmp_path, text)
+    drawn = {}
+    for content in page.values():
+        assert content["values"] in report, content["task"]
+        drawn |= {one["key"]: one for one in content["figures"]}
+    assert page
+    for key, figure in drawn.items():
+        assert json.loads(json.dumps(figure["data"])) == figures[key]["data"], key
+        assert json.loads(json.dumps(figure["layout"])) == figures[key]["layout"], key
+    for name in json.loads((run / "summary.json").read_text())["results"]:
+        assert any(name in content["values"] for content in page.values()), name
+    worker.answer(Export(101, asked, "tables", str(tmp_path / "tables")))
+    tables = {path.name: path.read_bytes() for path in (run / "tables").iterdir()}
+    assert {path.name: path.read_bytes() for path in (tmp_path / "tables").glob("*.csv")} == tables
+
+
+@pytest.fixture
+def wire():
+    return Wire()
+
+
+@pytest.fixture
+def worker(wire, tmp_path, monkeypatch):
+    monkeypatch.setattr(Worker, "_pictures", lambda _worker, _results: None)  # drawn from the same, and slow
+    return Worker(wire, tmp_path / "shapes")
+
+
+@pytest.mark.parametrize(
+    ("text", "changes"),
+    [
+        (PAIR, [('load = "5 kN"', 'load = "6.5 kN"'), ('amount = "12 um"', 'amount = "20 um"')]),
+        (HELICAL, [('"3 arcmin"', '"1 arcmin"')]),
+    ],
+    ids=["pair", "helical"],
+)
+def test_the_page_at_rest_has_the_numbers_of_the_run(tmp_path, text, changes, wire, worker):
+    hold(tmp_path, text, changes, wire, worker)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_the_page_of_every_case_has_the_numbers_of_its_run(tmp_path, path, wire, worker):
+    folder = tmp_path / "cases"
+    folder.mkdir()
+    for one in (path.parent.parent / "meshes", *path.parent.iterdir()):  # what a case names stands beside it
+        place = tmp_path if one.name == "meshes" else folder
+        if one.suffix != ".toml":
+            (place / one.name).symlink_to(one)
+    hold(folder, path.read_text("utf-8"), [], wire, worker)
+
+
+def test_every_kind_of_export_writes_its_files(tmp_path, wire, worker):
+    text = PAIR.replace(', "transmission-error", "root-stress-history"', "")
+    endings = {"drawings": ".dxf", "relief": ".csv", "tables": ".csv"}
+    for number, (what, ending) in enumerate(endings.items()):
+        worker.answer(Export(number, Asked(text, "c", str(tmp_path)), what, str(tmp_path / what)))
+        assert wire.said[-1].what == "exported", wire.said[-1].content
+        assert any(one.suffix == ending for one in (tmp_path / what).iterdir())
+    assert (tmp_path / "relief" / "a_k_chart.csv").is_file()
+    none = text.replace('relief = { tip = { amount = "12 um", length = "2.5 mm" } }', "")
+    worker.answer(Export(9, Asked(none, "c", str(tmp_path)), "relief", str(tmp_path / "none")))
+    assert wire.said[-1].what == "refused"
+    assert "no gear has one of known amount" in wire.said[-1].content["sentence"]
+    assert not (tmp_path / "none").exists()
