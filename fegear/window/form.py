@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
@@ -12,7 +13,7 @@ from fegear.results.catalogue import STAGES
 from fegear.window.case_text import as_typed, literal, value_at
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from fegear.window.case_text import Path
 
@@ -202,6 +203,36 @@ def _kind(kinds: list[Mapping[str, Any]]) -> Kind:
     if types == {"string"}:
         return "choice" if all("enum" in kind or "const" in kind for kind in kinds) else "text"
     return "number" if types <= {"integer", "number"} else "toml"
+
+
+#: How remarks name a key: "no face_width was given", "Write corner_contact = true", "effects.relief is off".
+_NAMED_KEY = re.compile(r"\bno (\w+) was given|\b(\w+) = |\beffects\.(\w+)|\b(\w+) is off")
+
+
+def fields_told(sections: tuple[Section, ...], remarks: Sequence[str]) -> dict[Path, str]:
+    """Fields that remarks of a run are about, with what is said of them: assumed values, effects that are off.
+
+    Parameters
+    ----------
+    sections : tuple of Section
+    remarks : sequence of str
+
+    Returns
+    -------
+    dict
+        Remarks by the path of the field.
+    """
+    found: dict[Path, str] = {}
+    every = list(fields(sections))
+    for remark in remarks:
+        keys = {key for one in _NAMED_KEY.finditer(remark) for key in one.groups() if key}
+        words = set(re.findall(r"[^\s:;,]+", remark.replace("[", " ").replace("]", " ").replace(".", " ")))
+        for field in every:
+            table = field.path[0]
+            about = field.path[1] in words and table.capitalize() in words if table in NAMED else True
+            if field.path[-1] in keys and len(field.path) == (3 if table in NAMED else 2) and about:
+                found[field.path] = f"{found[field.path]} {remark}" if field.path in found else remark
+    return found
 
 
 def fields(sections: tuple[Section, ...]) -> Iterator[Field]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from nicegui import ui
 
 from fegear.errors import InputError
-from fegear.window.form import Field, Section, fields, form, tables_to_add
+from fegear.window.form import Field, Section, fields, fields_told, form, tables_to_add
 from fegear.window.stepped import stepped
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ class Inputs:
         self._places: dict[Path, Element] = {}
         self._held: dict[Path, Field] = {}
         self._refused_at: Path | None = None
+        self._warned: dict[Path, str] = {}
         with ui.tabs().props("dense no-caps align=left inline-label") as tabs:
             self._as_form, as_text = ui.tab("Form"), ui.tab("Text")
         with ui.tab_panels(tabs, value=self._as_form).props("keep-alive").style("background: transparent"):
@@ -53,6 +54,8 @@ class Inputs:
         """Show the case as it has become, and what the computation says of it."""
         if what == "changed":
             self._refresh()
+        elif what == "done" and not content["moving"] and self._desk is not None:
+            self._warn(fields_told(form(self._desk.document), content["remarks"]))
         elif what == "refused" and self._desk is not None and self._desk.refusal is None:
             self._say(content["sentence"], content["key"])
 
@@ -100,6 +103,8 @@ class Inputs:
                 for field in left:
                     self._places[field.path] = more
                     self._held[field.path] = field
+                if marked := [field.label for field in left if field.path in self._warned]:
+                    more.props["caption"] = f"assumed or left out: {', '.join(marked)}"
 
     def _field(self, field: Field) -> None:
         commit = partial(self._typed, field)
@@ -127,11 +132,33 @@ class Inputs:
             for key, way in (("up", 1), ("down", -1)):
                 made.on(f"keydown.{key}.prevent", partial(self._step, field, way), args=["shiftKey"])
         made.classes("given" if field.given else "absent").props["data-key"] = field.key
-        if field.kind != "switch":  # below the field while it has the focus, beside the pointer while that is on it
-            made.props["hint"] = told(field)
-            made.props["title"] = told(field)
         self._elements[field.path] = made
         self._held[field.path] = field
+        self._tell(field.path)
+
+    def _tell(self, path: Path) -> None:
+        """Say what a field means and what results say of it: below it while it has the focus, beside the pointer."""
+        made, warned = self._elements.get(path), self._warned.get(path, "")
+        if made is None:
+            return
+        words = " ".join(filter(None, [warned, told(self._held[path])]))
+        made.classes(add="warned" if warned else "", remove="" if warned else "warned")
+        made.props["title"] = words
+        if self._held[path].kind != "switch":
+            made.props["hint"] = words
+        made.update()
+
+    def _warn(self, told: dict[Path, str]) -> None:
+        """Mark the fields that results say something of, and the folds in which such fields lie."""
+        before, self._warned = self._warned, told
+        if before == told:
+            return
+        for path in {*before, *told}:
+            self._tell(path)
+        for fold in set(self._places.values()):
+            inside = [path[-1].replace("_", " ") for path in told if self._places.get(path) is fold]
+            fold.props["caption"] = f"assumed or left out: {', '.join(inside)}" if inside else ""
+            fold.update()
 
     # ---- changes -------------------------------------------------------------------------------------------------
 

@@ -129,12 +129,30 @@ const fegear = (() => {
       kept.element.hidden = false;
       kept.element.classList.remove("stale");
     },
-    done({ remarks, moving, seconds, tolerance, level }) {
+    done({ remarks, told, moving, seconds, tolerance, level }) {
       say(ended = `${seconds.toFixed(2)} s at tolerance ${Number(tolerance.toPrecision(3))}${level}`);
       if (moving) return; // remarks and errors come when it stands still
       document.body.classList.remove("computing");
       for (const { element } of sections.values()) element.classList.remove("stale");
-      $("remarks").replaceChildren(...remarks.map((one) => made("li", "", one)));
+      // A remark stands where its result is shown, else with the pair or gear that it is about; the rest above all.
+      document.querySelectorAll(".remarks").forEach((one) => one.remove());
+      const placed = new Set();
+      for (const [task, subject, remark] of told) {
+        const own = sections.get(task)?.element, hand = sections.get(`hand ${subject}`)?.element.closest("section");
+        const place = own && !own.hidden ? own : hand;
+        if (!place || placed.has(remark)) continue;
+        placed.add(remark);
+        if (!place.querySelector(":scope > .remarks")) place.querySelector(":scope > h2").after(made("ul", "remarks"));
+        place.querySelector(":scope > .remarks").append(made("li", "", remark));
+      }
+      const rest = remarks.filter((one) => !placed.has(one)).map((one) => made("li", "", one));
+      if (placed.size) {
+        const all = made("details"), list = made("ul", "all");
+        list.append(...[...placed].map((one) => made("li", "", one)));
+        all.append(made("summary", "", `${placed.size} ${placed.size === 1 ? "remark stands at its result" : "remarks stand at their results"}`), list);
+        rest.push(all);
+      }
+      $("remarks").replaceChildren(...rest);
     },
     refused({ sentence }) { document.body.classList.remove("computing"); say(sentence); },
     exported() { say(ended); },
@@ -155,6 +173,7 @@ const fegear = (() => {
       for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
     },
     async designed({ pair, told, figures, darker }) {
+      say(ended);
       say(ended);
       const key = `hand design ${pair}`;
       if (!sections.get(key)?.element.isConnected) {

@@ -167,8 +167,8 @@ class Worker:
         tolerance = results.scene.case.accuracy.tolerance
         self._seconds.update({str(task): one.when_computed for task, one in results.timings.items()})
         self._say(
-            "done", remarks=list(results.remarks), seconds=time.perf_counter() - started, timings=seconds,
-            tolerance=tolerance, moving=asked.moving,
+            "done", remarks=list(results.remarks), told=_told(results), seconds=time.perf_counter() - started,
+            timings=seconds, tolerance=tolerance, moving=asked.moving,
         )  # fmt: skip
         if not asked.moving:
             self._say("harris", pairs=self._maps.at_rest(results))
@@ -274,6 +274,13 @@ class Worker:
     def _design(self, job: Design) -> None:
         results = self._results(design_asked(job.asked, job.pair, job.how))
         self._say("designed", **designed(results, job.pair, job.how))
+
+
+def _told(results: Results) -> list[tuple[str, str, str]]:
+    """Remarks with the task that makes each, and the gear or pair that the task is about."""
+    return [
+        (str(task), task.subject, remark) for task, outcome in results.outcomes.items() for remark in outcome.remarks
+    ]
 
 
 def scene_of(asked: Asked) -> Scene:

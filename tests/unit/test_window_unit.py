@@ -36,7 +36,7 @@ from fegear.window.case_text import value_at
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.doorkeeper import Doorkeeper
-from fegear.window.form import fields, form, tables_to_add
+from fegear.window.form import fields, fields_told, form, tables_to_add
 from fegear.window.hands import hands_of
 from fegear.window.harris import HarrisMaps
 from fegear.window.inbox import Inbox, Unwanted
@@ -88,6 +88,20 @@ def test_a_field_says_what_may_be_typed_and_what_holds_without_it():
     assert found["results"].kind == "several"
     assert "transmission-error" in found["results"].choices
     assert {"effects", "accuracy"} < set(tables_to_add(tomllib.loads(TEXT)))
+
+
+def test_remarks_of_a_run_find_the_fields_that_they_are_about(tmp_path):
+    text = TWO.replace('face_width = "20 mm"', "").replace('"weber-banaschek"', '"fe"')
+    scene = scene_of(Asked(text + "[accuracy]\ntolerance = 0.1\n", "c", str(tmp_path)))
+    remarks = run_plan(scene, make_plan(scene, STAGES)).remarks
+    told = fields_told(form(scene.document), remarks)
+    assert "the load is carried on 1 mm" in told["gear", "a", "face_width"]
+    assert "held at half the root radius" in told["gear", "b", "bore_radius"]
+    # Fields of tables that the case does not have are not there; effects are, as this case has the table.
+    off = {path[-1] for path in told if path[0] == "effects"}
+    assert off == {"corner_contact"}
+    assert {path[0] for path in told} == {"gear", "effects"}
+    assert fields_told(form(scene.document), ["Pair I: the load on a tooth pair is high."]) == {}
 
 
 @pytest.mark.parametrize("kind", KINDS)
