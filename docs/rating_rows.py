@@ -46,6 +46,7 @@ class Row:
     found: tuple[float, ...]
     moved: tuple[float, ...]
     reason: str
+    used: bool
 
     @property
     def same(self) -> bool:
@@ -139,7 +140,8 @@ def rows(example: dict[str, Any]) -> list[Row]:
             sum(abs(other[symbol].values[i] - factor.values[i]) for other in nudged) / scale for i in range(len(texts))
         )
         reason = example["judgement"].get(symbol, "")
-        found.append(Row(symbol, factor.clause, entry.get("unit", ""), texts, values, moved, reason))
+        used = symbol == "sigma_H" and "stress_dynamic_factor" in example
+        found.append(Row(symbol, factor.clause, entry.get("unit", ""), texts, values, moved, reason, used))
     return found
 
 
@@ -156,6 +158,14 @@ def faults(name: str, example: dict[str, Any]) -> list[str]:
             verb = "falls on the printed digits and has a reason" if row.rounded else "is off without a reason"
             wrong.append(f"{name}: {row.symbol} {verb}: printed {row.printed}, found {row.found}")
     return wrong
+
+
+def _verdict(row: Row) -> str:
+    if row.used:
+        return "K_v of the stresses is taken from it"
+    if row.same:
+        return "printed digits"
+    return "printed digits, but for the rounding of inputs" if row.rounded else row.reason
 
 
 def _line(row: Row) -> str:

@@ -170,6 +170,20 @@ def test_work_hardening_helps_and_is_continuous(hardness, ratio, u):
         assert above - below == pytest.approx({1.2: 0.00249, 1.7: 0.0}[end] * (min(u, 20.0) - 1.0), abs=1e-4)
 
 
+def test_work_hardening_is_of_the_softer_steel():
+    c = rated()
+    cases = {("Eh", "V"): (1.0, 1.1), ("V", "Eh"): (1.1, 1.0), ("Eh", "GG"): (1.0, 1.0), ("Eh", "Eh"): (1.0, 1.0)}
+    for (one, other), at_least in cases.items():
+        found, static, remark = flank.work_hardening(
+            c.geometry, (strength(one), strength(other)), (2e-6, 2e-6), 220e-6, 5.0
+        )
+        assert [f > 1.0 for f in found] == [f > 1.0 for f in static] == [a > 1.0 for a in at_least]
+        assert remark == ""
+    unknown = replace(strength("V"), hardness=math.nan)
+    assert "not known" in flank.work_hardening(c.geometry, (strength("Eh"), unknown), (2e-6, 2e-6), 2e-4, 5.0)[2]
+    assert "not known" in flank.work_hardening(c.geometry, (unknown, unknown), (2e-6, 2e-6), 2e-4, 5.0)[2]
+
+
 @given(f_sh=st.floats(0.0, 60e-6), f_ma=st.floats(0.0, 60e-6), load=st.floats(5e4, 2e6))
 def test_a_worse_alignment_never_lowers_the_face_load_factor(f_sh, f_ma, load):
     c = rated()

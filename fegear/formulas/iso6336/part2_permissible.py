@@ -130,6 +130,8 @@ def work_hardening(
     reference, static, remark = [1.0, 1.0], [1.0, 1.0], ""
     if hard[0] != hard[1]:
         soft = 1 if hard[0] else 0
+        if strength[soft].group not in groups.NORMALIZED | groups.THROUGH_HARDENED:
+            return (1.0, 1.0), (1.0, 1.0), ""  # of steels only
         if math.isnan(strength[soft].hardness):
             return (1.0, 1.0), (1.0, 1.0), "Z_W: 1, for the hardness of the softer gear is not known"
         values = (roughness[1 - soft], roughness[soft])

@@ -56,11 +56,14 @@ def _stiffness(table: FactorTable, conditions: Conditions, line_load: float) -> 
         specific_load=line_load,
         young_modulus=(one.young_modulus, two.young_modulus),
     )
-    table.add("C_R", (blanks[0], blanks[1]), "ISO 6336-1:2006, 9.3.1.3")
-    table.add("c'_th", found.theoretical, "ISO 6336-1:2006, 9.3.1.1, Eqs. 82 and 83", "Pa", found.remark)
-    table.add("c'", found.single, "ISO 6336-1:2006, 9.3.1", "Pa")
-    table.add("c_gamma_alpha", found.mesh_alpha, "ISO 6336-1:2006, 9.3.2", "Pa")
-    table.add("c_gamma_beta", found.mesh_beta, "ISO 6336-1:2006, 9.3.2", "Pa")
+    table.add("C_R", (blanks[0], blanks[1]), "ISO 6336-1:2006, 9.3.1.3, Eqs. 84 and 85")
+    table.add("c'_th", found.theoretical, "ISO 6336-1:2006, 9.3.1.1, Eqs. 81 and 82", "Pa", found.remark)
+    table.add("c'", found.single, "ISO 6336-1:2006, 9.3.1, Eq. 80", "Pa")
+    short = ""
+    if pair.contact_ratio < 1.2:
+        short = f"c_gamma_alpha: up to 10 % lower for a contact ratio below 1.2 ({pair.contact_ratio:.3g})"
+    table.add("c_gamma_alpha", found.mesh_alpha, "ISO 6336-1:2006, 9.3.2, Eq. 91", "Pa", short)
+    table.add("c_gamma_beta", found.mesh_beta, "ISO 6336-1:2006, 9.3.2, Eq. 92", "Pa")
     return found
 
 
