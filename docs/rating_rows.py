@@ -171,15 +171,8 @@ def _verdict(row: Row) -> str:
 def _line(row: Row) -> str:
     found = [f"{f:.{len(p.partition('.')[2]) + 2}f}" for p, f in zip(row.printed, row.found, strict=True)]
     apart = max((f / float(p) - 1.0 for p, f in zip(row.printed, row.found, strict=True)), key=abs)
-    verdict = (
-        "printed digits"
-        if row.same
-        else "printed digits, but for the rounding of inputs"
-        if row.rounded
-        else row.reason
-    )
     unit = f" [{row.unit}]" if row.unit else ""
-    cells = (row.symbol + unit, row.clause, " / ".join(row.printed), " / ".join(found), f"{apart:+.1e}", verdict)
+    cells = (row.symbol + unit, row.clause, " / ".join(row.printed), " / ".join(found), f"{apart:+.1e}", _verdict(row))
     return f"| {' | '.join(cells)} |"
 
 
@@ -188,11 +181,11 @@ def table() -> str:
     parts = []
     for example in examples().values():
         held = rows(example)
-        same = sum(row.rounded for row in held)
+        same, free = sum(row.rounded and not row.used for row in held), sum(not row.used for row in held)
         parts += [
             f"## {example['title']}\n",
             f"Source: {example['source']} ({example['kind']}).\n",
-            f"Of {len(held)} printed factors {same} fall on the printed digits.\n",
+            f"Of {free} printed factors {same} fall on the printed digits.\n",
             "| factor | clause | printed | fegear | largest relative difference | judgement |",
             "|---|---|---|---|---|---|",
             *map(_line, held),

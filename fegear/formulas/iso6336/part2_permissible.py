@@ -2,7 +2,7 @@
 
 Source: ISO 6336-2:2006, clauses 10 to 14; numbers of Z_L, Z_v, Z_R and Z_W as in IACS UR M56 (Rev. 4), M56.2.10 and
 2.11, which reproduces ISO 6336-2:2019. The denominator of Z_W of static strength, misprinted as 680 in the standard,
-is 6800 (Marinkovic et al., springer 978-3-030-33146-7, chapter 15). Stresses in Pa, roughness in m.
+is 6800 (errata in doi:10.1007/978-3-030-33146-7_15). Stresses in Pa, roughness in m.
 """
 
 from __future__ import annotations
