@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -257,3 +258,21 @@ def test_a_page_runs_in_the_folder_that_is_named_and_in_no_other(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["made", "page.md", "thesis"]
     assert (tmp_path / "made" / "here.txt").read_text() == "said\n"
     assert (tmp_path / "thesis" / "chapter.tex").exists()
+
+
+def test_without_a_browser_the_page_of_the_window_says_that_it_has_no_film(monkeypatch):
+    pytest.importorskip("mkdocs")
+    spec = importlib.util.spec_from_file_location("docs_film", DOCS / "film.py")
+    film = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(film)
+    monkeypatch.delenv("FEGEAR_GALLERY", raising=False)
+    monkeypatch.setattr(film.shutil, "which", lambda _program: None)
+    files = SimpleNamespace(get_file_from_path=lambda _path: None)
+    assert film.on_files(files, None) is files
+    page = SimpleNamespace(file=SimpleNamespace(src_uri="how-to/window.md"))
+    text = film.on_page_markdown((DOCS / "how-to" / "window.md").read_text("utf-8"), page, files=files)
+    assert "has no film: chromium is not installed." in text
+    shown = SimpleNamespace(get_file_from_path=lambda _path: "there")
+    assert 'src="window_files/window.webp"' in film.on_page_markdown(
+        text.replace("*", "") + film._LINE, page, files=shown
+    )

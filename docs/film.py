@@ -1,0 +1,319 @@
+"""Hook of mkdocs: the short film of the window on its page, taken from the window itself in Debian's chromium.
+
+The film is kept in ``results/film`` and taken anew when the window or the program changes. Where chromium or NiceGUI is
+missing the site is built without it, and the page says so. ``FEGEAR_GALLERY``, if set, takes it only if it names
+``window``.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import logging
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from mkdocs.exceptions import PluginError
+from mkdocs.structure.files import File
+
+from fegear.plain import code_version, content_key
+
+ROOT = Path(__file__).resolve().parents[1]
+MADE = ROOT / "results" / "film"
+log = logging.getLogger("mkdocs.plugins.film")
+#: The page, and the line of it that becomes the film.
+_PAGE = "how-to/window.md"
+_LINE = "The site that `./docs.sh` builds has a short film here."
+_ABOUT = (
+    "A pair of gears in the window: root stress in colour and teeth deformed while they turn, a tip relief dragged "
+    "until the transmission error is even, the load moved over the Harris map, the case pinned and compared."
+)
+#: Size of the page as it is filmed, and width of the film [pixels].
+_PAGE_SIZE, _WIDTH = (1240, 1210), 880
+_CASE = """title = "Tip relief by hand"
+results = ["transmission-error", "load-sharing"]
+
+[gear.test]
+teeth = 28
+diametral_pitch = "8 / inch"
+pressure_angle = "20 deg"
+rack = { addendum = 1.0, dedendum = 1.25, tip_radius = 0.25 }
+tip_radius_rounding = "0.381 mm"
+bore_radius = "20.240625 mm"
+face_width = "6.35 mm"
+
+[pair.I]
+driver = "test"
+driven = "test"
+load = "1615 N"
+
+[effects]
+neighbour_coupling = true
+hertz = "load-dependent"
+"""
+#: The pointer and the words in the corner, which a picture of a page does not have of itself.
+_OVERLAY = """
+document.body.insertAdjacentHTML('beforeend', `
+  <svg id="film-pointer" viewBox="0 0 24 24" width="34" height="34">
+    <path d="M3 1l16 13h-8l4.500 8-3.500 1.500-4-8-5 5z" fill="#111" stroke="#fff" stroke-width="1.500"/></svg>
+  <div id="film-words"></div>
+  <style>
+    #film-pointer, #film-words { position: fixed; z-index: 99; pointer-events: none; }
+    #film-words { left: 22px; bottom: 22px; width: 330px; background: #14202ce8; color: #fff; padding: .8rem 1.2rem;
+      font-size: 1.500rem; line-height: 1.350; border-radius: .6rem; white-space: pre-line; }
+  </style>`);
+"""
+_RELIEF = "[...document.querySelectorAll('.plot-title')].find(one => one.textContent.startsWith('Relief of'))"
+_IDLE = "!document.body.classList.contains('computing')"
+_ERROR = "document.querySelector('#plot-transmission_error_I')"
+_PEAK_TO_PEAK = f"(y => Math.max(...y) - Math.min(...y))([...{_ERROR}._fullData[0].y])"
+
+
+def why_not() -> str:
+    """Why no film can be taken here; empty if it can."""
+    if _chromium() is None:
+        return "chromium is not installed"
+    if importlib.util.find_spec("nicegui") is None:
+        return "NiceGUI is not installed (pip install 'fegear[workbench]')"
+    return ""
+
+
+def _chromium() -> str | None:
+    return shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+class Camera:
+    """A page that is acted upon and photographed.
+
+    Parameters
+    ----------
+    browser : Browser
+        Of tests/cases/chromium.py.
+    """
+
+    def __init__(self, browser):
+        self.browser, self.frames, self.seconds, self._at = browser, [], [], (0.0, 0.0)
+
+    def shoot(self, seconds: float) -> None:
+        """Take a frame that stands for so long."""
+        from base64 import b64decode
+
+        from PIL import Image
+
+        shot = self.browser("Page.captureScreenshot", format="png", optimizeForSpeed=True)["data"]
+        frame = Image.open(io.BytesIO(b64decode(shot))).convert("RGB")
+        height = round(frame.height * _WIDTH / frame.width)
+        self.frames.append(frame.resize((_WIDTH, height), Image.Resampling.LANCZOS))
+        self.seconds.append(seconds)
+
+    def say(self, words: str) -> None:
+        """Change the words below."""
+        self.browser.run(f"document.getElementById('film-words').textContent = {words!r}")
+
+    def wait(self, script: str, patience: float = 60.0) -> bool:
+        """Until something is so; whether it became so."""
+        end = time.monotonic() + patience
+        while time.monotonic() < end:
+            if self.browser.run(script):
+                return True
+            time.sleep(0.03)
+        return False
+
+    def scroll(self, element: str, above: float) -> None:
+        """Have an element so far below the top edge."""
+        self.browser.run(f"scrollBy({{top: ({element}).getBoundingClientRect().y - {above}, behavior: 'instant'}})")
+        time.sleep(0.4)  # figures out of sight are painted as they come near
+
+    def point(self, place: tuple[float, float], pressed: bool = False) -> None:
+        """Bring the pointer to a place."""
+        x, y = self._at = place
+        self.browser.run(
+            f"Object.assign(document.getElementById('film-pointer').style, {{left: '{x}px', top: '{y}px'}})"
+        )
+        self.browser(
+            "Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, button="left" if pressed else "none",
+            buttons=int(pressed),
+        )  # fmt: skip
+
+    def middle(self, element: str) -> tuple[float, float]:
+        """Where an element is."""
+        x, y = self.browser.run(f"(b => [b.x + b.width / 2, b.y + b.height / 2])(({element}).getBoundingClientRect())")
+        return x, y
+
+    def go(self, place: tuple[float, float], steps: int = 4) -> None:
+        """Move the pointer, seen."""
+        start = self._at
+        for i in range(1, steps + 1):
+            self.point(tuple(a + (b - a) * i / steps for a, b in zip(start, place, strict=True)))
+            self.shoot(0.09)
+
+    def button(self, down: bool) -> None:
+        """Press or let go of the mouse."""
+        x, y = self._at
+        kind = "mousePressed" if down else "mouseReleased"
+        self.browser("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    def click(self, element: str) -> None:
+        """Go to an element and click it."""
+        self.go(self.middle(element))
+        self.button(True)
+        self.button(False)
+
+    def drag(self, element: str, lower: list[float], words: str) -> None:
+        """Drag an element up and down; a frame for every step, once the transmission error has followed."""
+        self.go(self.middle(element))
+        self.button(True)
+        x, y = self._at
+        for by in lower:
+            before = self.browser.run(f"{_ERROR}.dataset.count")
+            self.point((x, y + by), pressed=True)
+            self.wait(f"{_ERROR}.dataset.count !== '{before}'", 1.5)
+            self.say(f"{words}\npeak to peak {self.browser.run(_PEAK_TO_PEAK):.1f} µm")
+            self.shoot(0.13)
+        self.button(False)
+
+    def save(self, path: Path) -> None:
+        """Write the film."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self.frames[0].save(
+            path, "WEBP", save_all=True, append_images=self.frames[1:], loop=0, quality=62, method=4, allow_mixed=True,
+            duration=[round(seconds * 1000) for seconds in self.seconds],
+        )  # fmt: skip
+
+
+def named(words: str) -> str:
+    """The button with some words, for a script."""
+    return f"[...document.querySelectorAll('button')].find(one => one.textContent.trim() === '{words}')"
+
+
+def act(camera: Camera) -> None:
+    """What is seen: everything is done with the mouse."""
+    browser = camera.browser
+    camera.wait(f"{_IDLE} && {_ERROR}?.querySelector('.main-svg') != null")
+    browser.run(_OVERLAY)
+    camera.say("fegear open drive.toml")
+    camera.point((880.0, 700.0))
+    camera.shoot(1.6)
+
+    camera.say("Root stress in colour, teeth deformed, over the path of contact")
+    camera.click(named("Root stress"))
+    camera.click(named("Deformed"))
+    camera.wait(f"{_IDLE} && document.querySelector('.mesh-told').textContent.includes('times as large')")
+    camera.shoot(0.5)
+    scrub = "document.querySelector('.mesh-tools input[type=range]')"
+    for i in range(24):
+        browser.run(f"(one => {{ one.value = {1000 * i / 24}; one.oninput(); }})({scrub})")
+        camera.shoot(0.11)
+    browser.run(f"{named('Root stress')}.click(), {named('Deformed')}.click()")
+
+    camera.scroll(_RELIEF, 60)
+    browser.run(f"void Plotly.relayout({_ERROR}, {{'yaxis.range': [14, 26]}})")
+    words = "A tip relief, dragged: the transmission error follows"
+    camera.say(f"{words}\npeak to peak {browser.run(_PEAK_TO_PEAK):.1f} µm")
+    camera.shoot(1.0)
+    camera.click(named("Add tip relief"))
+    point = "document.querySelector('[data-handle=\"test tip amount\"]')"
+    camera.wait(f"{point} !== null && {_IDLE}")
+    camera.scroll(_RELIEF, 60)
+    camera.shoot(0.5)
+    camera.drag(point, [-18.0 * i for i in range(1, 8)] + [-126.0 + 15.0 * i for i in range(1, 6)], words)
+    camera.wait(_IDLE)
+    camera.shoot(1.8)
+
+    camera.say("The load, over the Harris map")
+    slider = "document.querySelector('[data-slider]')"
+    camera.scroll(slider, 120)
+    camera.wait(_IDLE)
+    camera.shoot(0.6)
+    camera.go(camera.middle(slider))
+    for percent in (*range(96, 44, -8), *range(52, 104, 8)):
+        browser.run(
+            f"(one => {{ one.value = {percent}; one.oninput(); const box = one.getBoundingClientRect();"
+            "document.getElementById('film-pointer').style.left = "
+            f"`${{box.x + 8 + (box.width - 16) * {percent - 2} / 198}}px`; }})({slider})"
+        )
+        time.sleep(0.25)
+        camera.shoot(0.13)
+    browser.run(f"{slider}.onchange()")
+    camera.wait(_IDLE)
+
+    words = "Pinned as A, and compared with the next change"
+    camera.say(words)
+    camera.click(named("Pin as A"))
+    camera.wait(f"{named('Unpin A')} !== undefined")
+    camera.scroll(_RELIEF, 60)
+    camera.shoot(0.6)
+    camera.drag(point, [15.0 * i for i in range(1, 6)], words)
+    camera.wait(f"{_IDLE} && document.querySelector('#compared .main-svg') !== null")
+    camera.scroll("document.querySelector('#compared .figures')", 90)
+    camera.say(words)
+    camera.shoot(3.0)
+
+
+def take(path: Path) -> None:
+    """Open the window in a process of its own and film it.
+
+    Raises
+    ------
+    PluginError
+        If it does not come up.
+    """
+    spec = importlib.util.spec_from_file_location("chromium", ROOT / "tests" / "cases" / "chromium.py")
+    chromium = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(chromium)
+    with tempfile.TemporaryDirectory(prefix="fegear-film-") as folder:
+        case = Path(folder, "drive.toml")
+        case.write_text(_CASE, "utf-8")
+        window = subprocess.Popen(
+            [sys.executable, "-m", "fegear", "open", "--no-browser", str(case)], stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL, text=True, env=os.environ | {"FEGEAR_STATE": folder, "PYTHONUNBUFFERED": "1"},
+        )  # fmt: skip
+        try:
+            address = window.stdout.readline().split()[-1:]
+            if not address:
+                raise PluginError("the window of the film does not come up")
+            with chromium.Browser(_chromium(), *_PAGE_SIZE) as browser:
+                browser("Page.navigate", url=address[0])
+                browser.until("document.documentElement?.dataset.ready !== undefined")
+                camera = Camera(browser)
+                act(camera)
+                camera.save(path)
+        finally:
+            window.send_signal(signal.SIGTERM)
+            window.stdout.close()
+            window.wait(20)
+
+
+def on_files(files, config):
+    """Take the film unless it is there, made by the same program, and add it to the site."""
+    film, stamp = MADE / "window.webp", MADE / "window.key"
+    wanted = os.environ.get("FEGEAR_GALLERY")
+    if wanted is not None and "window" not in wanted.split(","):
+        return files
+    if reason := why_not():
+        log.info("The site has no film of the window: %s", reason)
+        return files
+    own = [Path(__file__), *sorted((ROOT / "fegear" / "window").iterdir())]
+    key = content_key(code_version(), {one.name: one.read_text("utf-8") for one in own if one.is_file()})
+    if not (film.is_file() and stamp.is_file() and stamp.read_text() == key):
+        log.info("Filming the window")
+        take(film)
+        stamp.write_text(key)
+    files.append(File.generated(config, "how-to/window_files/window.webp", abs_src_path=str(film)))
+    return files
+
+
+def on_page_markdown(markdown, page, files, **_others):
+    """Put the film where its page has a line for it, or say why there is none."""
+    if page.file.src_uri != _PAGE:
+        return markdown
+    if files.get_file_from_path("how-to/window_files/window.webp") is None:
+        return markdown.replace(_LINE, f"*This build of the site has no film: {why_not() or 'none was asked for'}.*")
+    picture = f'<img src="window_files/window.webp" alt="{_ABOUT}" width="{_WIDTH}" loading="lazy">'
+    return markdown.replace(_LINE, f"<details open><summary>Film</summary>{picture}</details>")
