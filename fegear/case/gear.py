@@ -208,7 +208,8 @@ class GearPart(Part):
         default=None, description="what was done to the flanks: factor X_W of scuffing; through-hardened unless told"
     )
     tolerance_class: Annotated[int, Field(ge=1, le=11)] | None = Field(
-        default=None, description="flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11"
+        default=None,
+        description="Flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11; it wants a `face_width`.",
     )
     helix_angle: Angle | None = Field(
         default=None, description="Helix angle on the pitch cylinder, up to 60 deg; without it the gear is a spur gear."

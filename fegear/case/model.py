@@ -19,6 +19,7 @@ from fegear.case.loading import LoadingPart
 from fegear.case.pair import PairPart
 from fegear.case.part import Part
 from fegear.case.rating import RatingPart
+from fegear.case.robustness import TolerancePart
 from fegear.case.stiffness import StiffnessPart
 from fegear.case.study import StudyPart
 from fegear.case.train import TrainPart
@@ -57,6 +58,9 @@ class Case(Part):
     )
     flank_design: FlankDesignPart | None = Field(
         default=None, description="Relief over profile and face of a pair that is loaded with its width."
+    )
+    robustness: TolerancePart | None = Field(
+        default=None, description="Deviations of a pair drawn at random inside the tolerances of its gears."
     )
     loading: LoadingPart | None = Field(default=None, description="Tooth loading functions to look at.")
     transmission_error: TransmissionErrorPart = Field(

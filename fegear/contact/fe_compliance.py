@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.contact.compliance import Side
     from fegear.fem.gear import GearInfluence
+    from fegear.geometry import Gear
 
 #: Interpolation points over the flank: splines for the loaded tooth, Chebyshev polynomials for its smooth neighbours.
 _OWN_POINTS = 97
@@ -74,18 +75,7 @@ class FiniteElementCompliance:
         return found
 
     def _roll_length(self, radius: ArrayLike) -> Array:
-        r, rb = np.asarray(radius, dtype=float), self.influence.gear.base_radius
-        length = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
-        slack = 1e-6 * self.influence.gear.module
-        off = (length < self.lowest - slack) | (length > self.highest + slack)
-        if off.any():
-            raise RangeError(
-                "radius",
-                f"{float(r[off].flat[0]) * 1e3:.6g} mm",
-                f"is off the flank, which runs from {math.hypot(rb, self.lowest) * 1e3:.6g} mm "
-                f"to {math.hypot(rb, self.highest) * 1e3:.6g} mm",
-            )
-        return np.clip(length, self.lowest, self.highest)
+        return roll_length(self.influence.gear, radius, self.lowest, self.highest)
 
     def own(self, radius: ArrayLike) -> Array:
         """c_0 at the reference half-width [m^2/N]."""
@@ -99,10 +89,8 @@ class FiniteElementCompliance:
         """c_k(p, q), zero beyond the reach."""
         if abs(k) > self.reach:
             return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
-        middle, half = 0.5 * (self.lowest + self.highest), 0.5 * (self.highest - self.lowest)
-        p, q = ((self._roll_length(r) - middle) / half for r in (radius_p, radius_q))
-        p, q = np.broadcast_arrays(p, q)
-        return np.asarray(np.polynomial.chebyshev.chebval2d(p, q, self.neighbours[k]))
+        p, q = (self._roll_length(r) for r in (radius_p, radius_q))
+        return chebyshev_over(self.lowest, self.highest, p, q, self.neighbours[k])
 
     def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """Tangential stress along the fillet of tooth k [1/m], shape (points, Q); zero beyond the reach."""
@@ -119,6 +107,35 @@ class FiniteElementCompliance:
         """Return what it includes."""
         coupled = f"neighbours up to {self.reach} teeth away" if self.reach else "no neighbours"
         return f"finite elements of the whole gear, {coupled}, contact by the Hertzian half-width"
+
+
+def roll_length(gear: Gear, radius: ArrayLike, lowest: float, highest: float) -> Array:
+    """Roll lengths [m] of radii [m] on a flank between two roll lengths [m].
+
+    Raises
+    ------
+    RangeError
+        If a radius is off the flank.
+    """
+    r, rb = np.asarray(radius, dtype=float), gear.base_radius
+    length = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
+    slack = 1e-6 * gear.module
+    off = (length < lowest - slack) | (length > highest + slack)
+    if off.any():
+        raise RangeError(
+            "radius",
+            f"{float(r[off].flat[0]) * 1e3:.6g} mm",
+            f"is off the flank, which runs from {math.hypot(rb, lowest) * 1e3:.6g} mm "
+            f"to {math.hypot(rb, highest) * 1e3:.6g} mm",
+        )
+    return np.clip(length, lowest, highest)
+
+
+def chebyshev_over(lowest: float, highest: float, p: Array, q: Array, coefficients: Array) -> Array:
+    """A Chebyshev series in two roll lengths [m] between the same ends, shape of p and q broadcast."""
+    middle, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest)
+    first, second = np.broadcast_arrays((p - middle) / half, (q - middle) / half)
+    return np.asarray(np.polynomial.chebyshev.chebval2d(first, second, coefficients))
 
 
 def finite_element_compliance(influence: GearInfluence) -> FiniteElementCompliance:

@@ -103,7 +103,7 @@ def optimise_tip_relief(
     seconds = time.process_time() - begun
     pair = engagement.pair
     tips = [
-        _relief(gear, pair.path_length, found.best[2 * i], found.best[2 * i + 1], power)
+        relief_over_path(gear, pair.path_length, found.best[2 * i], found.best[2 * i + 1], power)
         for i, gear in enumerate((pair.driver, pair.driven))
     ]
     plain = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
@@ -116,8 +116,8 @@ def optimise_tip_relief(
     )  # fmt: skip
 
 
-def _relief(gear: Gear, path: float, amount: float, length: float, power: float) -> EndRelief:
-    """Tip relief of a length over the path of contact."""
+def relief_over_path(gear: Gear, path: float, amount: float, length: float, power: float) -> EndRelief:
+    """Tip relief of an amount [m] and a length over the path of contact [m]; power 1 is straight, 2 parabolic."""
     tip = float(roll_of_radius(gear, gear.involute_tip_radius))
     return EndRelief(float(amount), tip - float(length) * path / gear.base_radius, tip, power)
 

@@ -264,6 +264,11 @@ def _chart_forecast(scene: Scene, name: str) -> Forecast:
     )
 
 
+def _robustness_pairs(scene: Scene) -> tuple[str, ...]:
+    """Those of the design, unless the case asks for draws inside tolerances alone."""
+    return () if scene.case.robustness is not None and scene.case.design is None else design_pairs(scene)
+
+
 def _robustness_forecast(scene: Scene, _name: str) -> Forecast:
     """Every deviation with every other, for each candidate."""
     part = scene.case.design.robustness if scene.case.design else None
@@ -297,7 +302,7 @@ ROBUSTNESS = Stage(
     title="Robustness of the reliefs",
     results=("robustness",),
     about="what is left of a designed relief under other loads, spacing errors and grinding errors",
-    subjects=design_pairs,
+    subjects=_robustness_pairs,
     needs=lambda _scene, name: (Task("relief", name),),
     inputs=_robustness_inputs,
     compute=_compute_robustness,

@@ -1,0 +1,360 @@
+"""Stage ``tolerance-robustness``: a pair whose gears and housing deviate inside the tolerances of the drawing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage
+from fegear.errors import FegearError, InputError
+from fegear.geometry.pair import MEMBERS
+from fegear.models.pair_checks import check_relief
+from fegear.models.pair_inputs import gear_name, pair_inputs
+from fegear.models.root_stress_source import FINITE_ELEMENTS, check_formulas, root_stress_source
+from fegear.models.tooth_influence import gear_to_solve
+from fegear.results.drawn_tolerances import tolerance_figures
+from fegear.results.gear_solution import solution_of
+from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair
+from fegear.results.root_stress_parts import needs_sources, stress_sources
+from fegear.results.sources import HERTZ
+from fegear.results.tolerance_tables import NOMINAL, OWN, ROBUST, tolerance_remarks, tolerance_tables, tolerance_values
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.case.robustness import TolerancePart
+    from fegear.design.deviated_pair import Bench
+    from fegear.design.robust_relief import RobustRelief
+    from fegear.design.tolerance_draws import Deviations, Kind, Limits
+    from fegear.engine.stage import Task, Upstream, Work
+    from fegear.geometry.relief import Relief
+    from fegear.models.pair_inputs import PairInputs
+    from fegear.models.tooth_influence import GearToSolve
+
+#: Draws that a process is given at a time; each is computed alone, so that the number changes no bit.
+_CHUNK = 25
+#: Processor seconds of a draw without and with corner contact, and of the search over its draws.
+_DRAW, _DRAW_CORNERS, _SEARCH = 0.005, 0.014, 0.035
+#: Chunks that are done here sooner than other processes start.
+_FEW = 4
+
+
+@dataclass(frozen=True)
+class DrawInputs:
+    """What the draws of a pair depend on.
+
+    Parameters
+    ----------
+    part : TolerancePart
+    teeth : PairInputs
+    limits : Limits
+    source : str
+        Of root stress.
+    solved : tuple of GearToSolve
+        Gears whose finite elements are behind compliances or root stress.
+    name : str
+        Of the pair.
+    gears : tuple of (str, str)
+        Driver and driven.
+    untold : tuple of str
+        Gears without a tolerance class.
+    """
+
+    part: TolerancePart
+    teeth: PairInputs
+    limits: Limits
+    source: str
+    solved: tuple[GearToSolve, ...]
+    name: str = field(compare=False)
+    gears: tuple[str, str] = field(compare=False)
+    untold: tuple[str, ...] = field(compare=False)
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some draws of one relief: all that a process needs."""
+
+    inputs: DrawInputs
+    relief: tuple[float, ...]
+    bench: Bench
+    deviations: Deviations
+
+
+@dataclass(frozen=True)
+class ToleranceData:
+    """What came of the draws.
+
+    Parameters
+    ----------
+    deviations : Deviations
+    values : mapping of str to ndarray, shape (D, outcomes)
+        By the state of relief; NaN for draws without a result.
+    nominal : mapping of str to ndarray, shape (outcomes,)
+        Without deviations.
+    reasons : mapping of int to str
+        Why draws have no result.
+    exact : float
+        Peak-to-peak transmission error of the nominal pair, integrated between its jumps [m].
+    relief : RobustRelief or None
+    nominal_relief : tuple of floats
+        Numbers of the nominal optimum, see `RobustRelief`; empty where none is asked for.
+    """
+
+    deviations: Deviations
+    values: Mapping[str, Array]
+    nominal: Mapping[str, Array]
+    reasons: Mapping[int, str]
+    exact: float
+    relief: RobustRelief | None
+    nominal_relief: tuple[float, ...]
+
+
+def compute_chunk(chunk: Chunk) -> dict[str, object]:
+    """Outcomes of some draws, as plain data."""
+    from fegear.design.deviated_pair import drawn_outcomes
+    from fegear.one_thread import one_thread
+
+    with one_thread():
+        found = drawn_outcomes(chunk.bench, chunk.deviations)
+    return {"values": found.values, "reasons": found.reasons}
+
+
+def chunk_content(chunk: Chunk) -> object:
+    """All that the numbers of a chunk depend on: its own draws, not how many there are besides."""
+    asked = chunk.inputs
+    return asked.teeth, asked.source, asked.solved, chunk.relief, chunk.deviations
+
+
+def _part(scene: Scene) -> TolerancePart:
+    if scene.case.robustness is None:
+        raise InputError("robustness", "(not given)", "is needed to draw deviations", "write a table [robustness]")
+    return scene.case.robustness
+
+
+def _subjects(scene: Scene) -> tuple[str, ...]:
+    """The pair that ``[robustness]`` names, or the only one."""
+    part = scene.case.robustness
+    if part is None:
+        return ()
+    if part.pair is not None:
+        if part.pair not in scene.pairs:
+            raise InputError("robustness.pair", f'"{part.pair}"', "is no pair of this case")
+        return (part.pair,)
+    if len(scene.pairs) != 1:
+        raise InputError(
+            "robustness.pair", "(not given)", f"is needed in a case of {len(scene.pairs)} pairs", "name one of them"
+        )
+    return tuple(scene.pairs)
+
+
+def _check(scene: Scene, name: str) -> None:
+    part = _part(scene)
+    if name not in scene.plane_pairs:
+        raise InputError(
+            "robustness.pair", f'"{name}"', "has teeth with a width, whose deviations are not drawn yet",
+            "draw those of a pair of plane spur gears, or scatter misalignment with flank-design",
+        )  # fmt: skip
+    if part.deviations and "helix-slope" in part.deviations:
+        raise InputError(
+            "robustness.deviations", '"helix-slope"', "has no meaning for plane teeth, which are alike along the face",
+            "leave it out",
+        )  # fmt: skip
+    limits = _limits(scene, name)
+    if not _any(limits):
+        raise InputError(
+            "robustness", "no tolerance", "leaves nothing to draw",
+            f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class or robustness.centre_distance",
+        )  # fmt: skip
+    pair = scene.pairs[name]
+    room = pair.centre_distance - pair.tight_centre_distance
+    if limits.centre_distance > room * (1.0 + 1e-9) + 1e-12:
+        raise InputError(
+            "robustness.centre_distance", f"{limits.centre_distance * 1e3:.6g} mm",
+            f"jams the teeth: pair {name} has {room * 1e3:.4g} mm until they touch on both flanks",
+            f"give a gear of pair {name} a thickness_allowance, or the pair a larger centre_distance",
+        )  # fmt: skip
+    check_relief(scene, name)
+    check_formulas(scene, name, tips=scene.case.effects.corner_contact)
+
+
+def _limits(scene: Scene, name: str) -> Limits:
+    from fegear.design.tolerance_draws import Limits
+    from fegear.formulas.iso1328 import tolerances_of
+
+    part = _part(scene)
+    wanted: tuple[Kind, ...] = tuple(part.deviations or ("centre-distance", "profile-slope", "profile-form", "pitch"))
+    found = []
+    for member in MEMBERS:
+        gear = gear_name(scene, name, member)
+        own = scene.case.gear[gear].tolerance_class
+        found.append(None if own is None else tolerances_of(scene.gears[gear], own))
+
+    def both(kind: Kind, key: str) -> tuple[float, float]:
+        one, other = (getattr(own, key) if own and kind in wanted else 0.0 for own in found)
+        return one, other
+
+    return Limits(
+        part.centre_distance if "centre-distance" in wanted else 0.0, both("profile-slope", "profile_slope"),
+        both("profile-form", "profile_form"), both("helix-slope", "helix_slope"), both("pitch", "single_pitch"),
+    )  # fmt: skip
+
+
+def _any(limits: Limits) -> bool:
+    return bool(limits.centre_distance) or any(
+        any(pair) for pair in (limits.profile_slope, limits.profile_form, limits.helix_slope, limits.pitch)
+    )
+
+
+def _inputs(scene: Scene, name: str) -> DrawInputs:
+    teeth = pair_inputs(scene, name)
+    source = stress_sources(scene, name)[0]
+    solved = teeth.gears if FINITE_ELEMENTS in (source, teeth.compliance.source) else ()
+    gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
+    untold = tuple(gear for gear in dict.fromkeys(gears) if scene.case.gear[gear].tolerance_class is None)
+    return DrawInputs(
+        _part(scene), teeth, _limits(scene, name), source,
+        tuple(gear_to_solve(scene, gear) for gear in dict.fromkeys(solved)), name, gears, untold,
+    )  # fmt: skip
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    return (*needs_pair(scene, name), *needs_sources(scene, name))
+
+
+def _bench(asked: DrawInputs, upstream: Upstream) -> Bench:
+    from fegear.design.deviated_pair import bench
+
+    engagement = loaded_pair(upstream, asked.name).engagement
+    fe = asked.source == FINITE_ELEMENTS
+    solved = {gear: solution_of(upstream, gear) for gear in dict.fromkeys(asked.gears)} if fe else {}
+    driver, driven = (
+        root_stress_source(
+            asked.source, asked.name, gear, engagement.pair, member, solved, tips=engagement.corner_contact
+        )
+        for gear, member in zip(asked.gears, MEMBERS, strict=True)
+    )
+    return bench(engagement, asked.teeth.nominal, (driver, driven))
+
+
+def _compute(asked: DrawInputs, upstream: Upstream, work: Work) -> ToleranceData:
+    from fegear.contact import transmission_error
+    from fegear.design.deviated_pair import drawn_outcomes
+    from fegear.design.tolerance_draws import NO_LIMITS, draw
+    from fegear.engine.executor import map_points
+    from fegear.engine.point_job import Failure
+    from fegear.one_thread import one_thread
+
+    part, own = asked.part, _bench(asked, upstream)
+    deviations = draw(asked.limits, part.draws, part.seed, own.teeth, part.sequence, part.distribution)
+    benches: dict[str, tuple[tuple[float, ...], Bench]] = {OWN: ((), own)}
+    relief: RobustRelief | None = None
+    numbers: tuple[float, ...] = ()
+    with one_thread():
+        exact = transmission_error(own.engagement, own.load, 12).peak_to_peak
+        if part.reliefs is not None:
+            numbers, relief, found = _reliefs(asked, own, deviations)
+            benches |= found
+        none = draw(NO_LIMITS, 1, 0, own.teeth)
+        nominal = {state: drawn_outcomes(one, none).values[0] for state, (_, one) in benches.items()}
+    starts = range(0, part.draws, _CHUNK)
+    chunks = [
+        Chunk(asked, key, one, deviations.rows(slice(first, first + _CHUNK)))
+        for key, one in benches.values()
+        for first in starts
+    ]
+    executor = work.executor
+    if executor.scheduler is None and len(chunks) <= _FEW:
+        executor = replace(executor, here=True)
+    done = map_points(compute_chunk, chunks, executor, work.cache, key=chunk_content, progress=work.progress)
+    for one in done:
+        if isinstance(one, Failure):
+            raise FegearError(f"Draws of pair {asked.name} failed: {one.reason}")
+    values: dict[str, Array] = {}
+    reasons: dict[int, str] = {}
+    for number, state in enumerate(benches):
+        own_chunks = done[number * len(starts) : (number + 1) * len(starts)]
+        values[state] = np.concatenate([cast("Array", chunk["values"]) for chunk in own_chunks])
+        for first, chunk in zip(starts, own_chunks, strict=True):
+            reasons |= {first + row: reason for row, reason in chunk["reasons"].items()}
+    return ToleranceData(deviations, values, nominal, reasons, exact, relief, numbers)
+
+
+def _reliefs(
+    asked: DrawInputs, own: Bench, deviations: Deviations
+) -> tuple[tuple[float, ...], RobustRelief, dict[str, tuple[tuple[float, ...], Bench]]]:
+    """The nominal and the robust optimum, and the pair with each of them."""
+    from fegear.design.optimise import grindable
+    from fegear.design.robust_relief import robust_tip_relief
+
+    wish = asked.part.reliefs
+    if wish is None:
+        raise InputError("robustness.reliefs", "(not given)", "is needed to compare reliefs")
+    pair = own.engagement.pair
+    best = grindable(own.engagement.unmodified(), own.load, wish.shape)
+    numbers: list[float] = []
+    for gear, tip in ((pair.driver, best.driver), (pair.driven, best.driven)):
+        numbers += [tip.amount, (tip.end - tip.start) * gear.base_radius / pair.path_length]
+    nominal = (numbers[0], numbers[1], numbers[2], numbers[3])
+    relief = robust_tip_relief(
+        own, deviations.rows(slice(0, wish.draws)), nominal, amounts=wish.amounts, lengths=wish.lengths,
+        power=1.0 if wish.shape == "linear" else 2.0, percent=wish.percentile,
+    )  # fmt: skip
+
+    def with_tips(driver: Relief, driven: Relief) -> Bench:
+        return replace(own, engagement=replace(own.engagement, driver_relief=driver, driven_relief=driven))
+
+    shape = 1.0 if wish.shape == "linear" else 2.0
+    return nominal, relief, {
+        NOMINAL: ((*nominal, shape), with_tips(best.driver, best.driven)),
+        ROBUST: ((*relief.numbers, shape), with_tips(relief.driver, relief.driven)),
+    }  # fmt: skip
+
+
+def _present(data: ToleranceData, asked: DrawInputs) -> Outcome:
+    part, limits = asked.part, asked.limits
+    settings: dict[str, object] = {
+        "draws": part.draws, "seed": part.seed, "sequence": part.sequence, "distribution": part.distribution,
+        "centre_distance_tolerance": limits.centre_distance, "profile_slope_tolerance": list(limits.profile_slope),
+        "profile_form_tolerance": list(limits.profile_form), "single_pitch_tolerance": list(limits.pitch),
+        "root_stress": asked.source,
+    }  # fmt: skip
+    return Outcome(
+        data, tolerance_tables(data, asked), tolerance_values(data, asked), settings, tolerance_remarks(data, asked),
+        tolerance_figures(data, asked),
+    )  # fmt: skip
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """Draws of every state of relief, and the search for the best."""
+    part = _part(scene)
+    each = _DRAW_CORNERS if scene.case.effects.corner_contact else _DRAW
+    states, search = (3, part.reliefs.draws * _SEARCH) if part.reliefs else (1, 0.0)
+    chunks = math.ceil(part.draws / _CHUNK) * states
+    return Forecast({"draws": part.draws, "chunks": chunks}, part.draws * states * each + search)
+
+
+TOLERANCE_ROBUSTNESS = Stage(
+    name="tolerance-robustness",
+    title="Deviations inside the tolerances",
+    results=("robustness",),
+    about="transmission error, root stress and pressure of pairs drawn inside their tolerance classes",
+    subjects=_subjects,
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    effects=EFFECTS,
+    cites=citing(
+        Citation("iso-1328-1", "tolerances that deviations are drawn inside", "5.3, formulas (5) to (12)"),
+        Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ,
+    ),
+    forecast=_forecast,
+)  # fmt: skip
