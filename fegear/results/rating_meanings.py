@@ -101,6 +101,10 @@ MEANINGS: Mapping[str, str] = MappingProxyType(
         "sigma_FP": "permissible root stress at N_L, for a safety of 1",
         "S_H": "safety against pitting",
         "S_F": "safety against breakage of the tooth root",
+        "S_H_static": "safety against pitting, static",
+        "S_F_static": "safety against breakage of the tooth root, static",
+        "S_H_reference": "safety against pitting at the knee of the life line",
+        "S_F_reference": "safety against breakage of the tooth root at the knee of the life line",
         **{f"C_v{i}": "coefficient of K_v" for i in range(1, 8)},
     }
 )
