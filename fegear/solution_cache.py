@@ -5,9 +5,12 @@ from __future__ import annotations
 import contextlib
 import struct
 import time
-from collections import OrderedDict
+from collections import Counter, OrderedDict
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
+
+import numpy as np
 
 from fegear.store import Store, cache_folder
 
@@ -84,6 +87,8 @@ class SolutionCache:
         self._memory: OrderedDict[str, tuple[Any, float]] = OrderedDict()
         self._most = most
         self._new: set[str] = set()
+        self._used: set[str] = set()
+        self._arrays: dict[str, dict[int, int]] = {}
 
     def begin(self) -> None:
         """Start a stretch of work: what is computed in it and used again in it does not count as recalled."""
@@ -102,6 +107,7 @@ class SolutionCache:
             With it, and where the cache has a disk, solutions are kept there too.
         """
         account = self.shapes if codec else self.solutions
+        self._used.add(key)
         if key in self._memory:
             self._memory.move_to_end(key)
             value, seconds = self._memory[key]
@@ -116,10 +122,37 @@ class SolutionCache:
                 found = _read(self.disk.read(key), codec) or self._computed_and_written(key, compute, codec)
         account.add(*((1, 0, 0, 0.0) if found.source == "computed" else (0, 1, 1, found.seconds)))
         self._memory[key] = found.value, found.seconds
+        self._arrays.pop(key, None)
         self._new.add(key)
         while len(self._memory) > self._most:
             self._memory.popitem(last=False)
         return found
+
+    def shrink(self, most: int) -> bool:
+        """Forget what has been unused for longest until the arrays of what is left take no more than so many bytes.
+
+        What was used since the last time stays, however much that is: it will be asked for again.
+
+        Returns
+        -------
+        bool
+            Whether anything was forgotten.
+        """
+        arrays = {key: self._arrays.get(key) or arrays_of(value) for key, (value, _) in self._memory.items()}
+        self._arrays = arrays
+        holders = Counter(array for held in arrays.values() for array in held)
+        total = sum({array: size for held in arrays.values() for array, size in held.items()}.values())
+        unused = [key for key in self._memory if key not in self._used]
+        self._used.clear()
+        for number, key in enumerate(unused):
+            if total <= most:
+                return number > 0
+            held = arrays[key]
+            del self._memory[key], self._arrays[key]
+            for array, size in held.items():
+                holders[array] -= 1
+                total -= 0 if holders[array] else size
+        return bool(unused)
 
     def _computed_and_written(self, key: str, compute: Callable[[], T], codec: Codec[T]) -> Solution[T]:
         found = _timed(compute)
@@ -132,6 +165,33 @@ class SolutionCache:
 def cache_on_disk(folder: Path | None = None) -> SolutionCache:
     """A cache that keeps solutions between runs, by default in `fegear.store.cache_folder`."""
     return SolutionCache(Store((folder or cache_folder()) / "solutions"))
+
+
+def arrays_of(value: object) -> dict[int, int]:
+    """Bytes of every array that an object holds, however deep, by the array's identity: shared ones are the same."""
+    found: dict[int, int] = {}
+    seen: set[int] = set()
+    todo: list[object] = [value]
+    while todo:
+        one = todo.pop()
+        if isinstance(one, np.ndarray):
+            while isinstance(one.base, np.ndarray):  # of a part the whole is held
+                one = one.base
+            found[id(one)] = one.nbytes
+            if one.dtype != object:
+                continue
+        if isinstance(one, (str, bytes, int, float, type(None))) or id(one) in seen:
+            continue
+        seen.add(id(one))
+        if isinstance(one, Mapping):
+            todo.extend(one.values())
+        elif isinstance(one, (list, tuple, set, frozenset)):
+            todo.extend(one)
+        else:
+            todo.extend(getattr(one, "__dict__", {}).values())
+            slots = [name for kind in type(one).__mro__ for name in getattr(kind, "__slots__", ())]
+            todo.extend(getattr(one, name, None) for name in slots)
+    return found
 
 
 def _timed(compute: Callable[[], T]) -> Solution[T]:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-import shutil
-import tempfile
 import threading
 from typing import TYPE_CHECKING
 
 from fegear.engine.processes import start_process
 from fegear.window.jobs import Compute, Said
+from fegear.window.scratch import Scratch
 from fegear.window.worker import serve
 
 if TYPE_CHECKING:
@@ -35,7 +34,7 @@ class Computing:
     """
 
     def __init__(self, hear: Callable[[Said], None]) -> None:
-        self._hear, self._folder = hear, tempfile.mkdtemp(prefix="fegear-open-")
+        self._hear, self._scratch = hear, Scratch()
         self._lock = threading.Lock()
         self._open: dict[int, Job] = {}
         self._closed = False
@@ -52,7 +51,7 @@ class Computing:
         from multiprocessing import Pipe
 
         self._connection, theirs = Pipe()
-        self._process = start_process(serve, theirs, self._folder)
+        self._process = start_process(serve, theirs, str(self._scratch.folder))
         theirs.close()
         threading.Thread(target=self._listen, args=(self._connection, self._process), daemon=True).start()
 
@@ -110,7 +109,7 @@ class Computing:
         with self._lock:
             self._closed = True
             end(self._process)
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._scratch.remove()
 
 
 def end(process: BaseProcess) -> None:

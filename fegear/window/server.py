@@ -86,6 +86,7 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
             lambda: show(bench), host=HOST, port=port, title="fegear", dark=None, reload=False, show=False,
             show_welcome_message=False, favicon="data:,", reconnect_timeout=30.0, tailwind=False,
             gzip_middleware_factory=None,  # nothing is far away
+            message_history_length=100,  # each may be a figure of a hundred kilobytes
         )  # fmt: skip
     finally:
         bench.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,9 +37,9 @@ if TYPE_CHECKING:
 _STROKE = 1.5
 #: A value that has not moved for so long stands still [s].
 _STILL = 0.2
-#: Results in memory: some ten states of a case, whose gears stay as long as they are used. An hour of changes fills no
-#: more than that.
-_MOST = 48
+#: Bytes that results in memory may take beside those of the present case; a plane gear takes some 35 MB, and comes
+#: back from the folder of solved teeth.
+_MOST = 120_000_000
 
 
 class Worker:
@@ -52,7 +53,7 @@ class Worker:
     """
 
     def __init__(self, connection: Connection, folder: Path) -> None:
-        self._inbox, self._cache = Inbox(connection), SolutionCache(Store(folder), _MOST)
+        self._inbox, self._cache = Inbox(connection), SolutionCache(Store(folder))
         self._meshes: dict[str, object] = {}
         self._on_gears: dict[Task, object] = {}
         self._seconds: dict[str, float] = {}
@@ -99,6 +100,9 @@ class Worker:
             self._say("refused", sentence="Out of memory: ask for less at once, or allow more.", key="")
         finally:
             self._inbox.watch(None)
+            self._asked = None
+            if self._cache.shrink(_MOST):
+                _give_back()
 
     # ---- as a watcher of a run: every report of progress is an occasion to notice that another case is wanted ----
 
@@ -296,6 +300,14 @@ def scene_of(asked: Asked) -> Scene:
         accuracy = {**dict(document.get("accuracy", {})), "tolerance": tolerance}
         scene = build_scene({**document, "accuracy": accuracy}, asked.name, Path(asked.folder))
     return replace(scene, text=asked.text, estimates=not asked.moving)
+
+
+def _give_back() -> None:
+    """Hand freed memory back to the system; the C library keeps it otherwise, in pieces."""
+    import ctypes
+
+    with contextlib.suppress(OSError, AttributeError, TypeError):  # only glibc has it
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 def _load() -> None:

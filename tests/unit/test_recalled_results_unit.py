@@ -98,3 +98,23 @@ def test_names_that_join_to_one_table_are_refused():
     scene = build_scene(document, "case", Path())
     with pytest.raises(InputError, match="both have a table transmission_error_harmonics_I"):
         run_plan(scene, make_plan(scene, STAGES))
+
+
+def test_memory_is_bounded_by_the_bytes_of_what_is_held_and_shared_arrays_count_once():
+    cache = SolutionCache()
+    big = np.zeros(1_000_000 // 8)
+
+    def add(key, *arrays):
+        return cache.solve(key, lambda: {"one": [arrays], "two": (arrays[0][3:],)}).source
+
+    add("a", big)
+    add("b", big, np.zeros(25_000))  # 0.2 MB more
+    add("c", np.zeros(50_000))
+    assert not cache.shrink(1_700_000)
+    assert not cache.shrink(1_600_000)
+    assert cache.shrink(1_500_000)  # nothing was used since; a alone frees nothing, b does
+    assert [add(key, big) for key in ("c", "a", "b")] == ["memory", "computed", "computed"]
+    assert not cache.shrink(0)  # used just now
+    assert [add(key, big) for key in ("c", "a")] == ["memory", "memory"]
+    assert cache.shrink(0)
+    assert [add(key, big) for key in ("c", "a", "b")] == ["memory", "memory", "computed"]

@@ -43,6 +43,7 @@ from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Asked, Compute, Design, Export, Said
 from fegear.window.journal import journal_folder
 from fegear.window.order import in_order
+from fegear.window.scratch import Scratch, sweep
 from fegear.window.sent import whole
 from fegear.window.server import free_port, serve
 from fegear.window.worker import scene_of
@@ -609,6 +610,23 @@ def test_an_export_is_finished_whatever_is_asked_meanwhile(computing, tmp_path):
     assert heard.until(30, "exported", "dropped", "refused").what == "exported"
     heard.until(31, "done")
     assert any(one.suffix == ".dxf" for one in (tmp_path / "out").iterdir())
+
+
+def test_what_a_killed_server_left_is_removed_by_the_next_and_nothing_else(tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    alive = Scratch()
+    killed = Scratch()
+    (killed.folder / "ab").mkdir()
+    (killed.folder / "ab" / "x.entry").write_bytes(b"x")
+    killed._held.close()  # as the system does
+    for name in ("fegear-open-other", "something"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "fegear-open-link").symlink_to(tmp_path / "something")
+    assert sweep() == [killed.folder]
+    left = {path.name for path in tmp_path.iterdir()}
+    assert left == {alive.folder.name, "fegear-open-other", "something", "fegear-open-link"}
+    alive.remove()
+    assert not alive.folder.exists()
 
 
 def test_a_process_that_dies_is_replaced_and_says_so(computing, tmp_path):
