@@ -4,7 +4,7 @@ Source: ISO 6336-1:2006 with technical corrigendum 1:2008, clause 6 (method B: 6
 keeps the formulas. Equation numbers of clauses 6 to 8 were checked in a public program that types the standard with
 them (mekanika.org, MechanicalCalculatorWeb, Services/Iso6336*.cs).
 Method B takes the pair as two masses on the mean stiffness of their teeth; method C is a fit for pairs that run well
-below their resonance. Method C's numbers are those of IACS UR M56 (Rev. 4), 1.6.3, which reproduces ISO 6336-1:2019.
+below their resonance. Method C's numbers are those of IACS UR M56 (Rev. 4), 1.6.3, which repeats ISO 6336-1:2019.
 Lengths in m, line loads in N/m, stiffnesses per face width in Pa.
 """
 
@@ -26,6 +26,8 @@ _LEAST_LOAD = 100e3
 MAIN_END, SUPERCRITICAL = 1.15, 1.5
 #: K_1 of method C for grades 3 to 8, spur and helical; IACS UR M56 (Rev. 4), table 1.1.
 _K_1 = {"spur": (2.1, 3.9, 7.5, 14.9, 26.8, 39.1), "helical": (1.9, 3.5, 6.7, 13.3, 23.9, 34.8)}
+#: Where K_3 = 2.071 - .357 x has fallen to nothing [m/s].
+_NO_K_3 = 2.071 / 0.357
 _K_2 = {"spur": 0.0193, "helical": 0.0087}
 
 
@@ -243,20 +245,23 @@ def method_c(pair: PairGeometry, line_load: float, velocity: float, grade: int) 
     Raises
     ------
     RangeError
-        Outside grades 3 to 8, or faster than 10 m/s of `speed_parameter`.
+        Outside grades 3 to 8, or faster than 5.8 m/s of `speed_parameter`: K_3 is negative beyond, though the method is
+        stated for up to 10 m/s.
     """
     if not 3 <= grade <= 8:
         raise RangeError("accuracy grade", grade, "must be 3 to 8 for K_v by method C", "use method B")
     x = speed_parameter(pair, velocity)
-    if not 0.0 <= x <= 10.0:
+    if not 0.0 <= x <= _NO_K_3:
         raise RangeError(
-            "v z_1/100 sqrt(u^2/(1 + u^2))", f"{x:.4g} m/s", "must be at most 10 for K_v by method C", "use method B"
+            "v z_1/100 sqrt(u^2/(1 + u^2))", f"{x:.4g} m/s", "must be at most 5.8 for K_v by method C", "use method B"
         )
     load = max(line_load, _LEAST_LOAD) / 1e3
     k_3 = 2.0 if x <= 0.2 else 2.071 - 0.357 * x
     spur, helical = (1.0 + (_K_1[kind][grade - 3] / load + _K_2[kind]) * x * k_3 for kind in ("spur", "helical"))
     k_v = spur - min(pair.overlap_ratio, 1.0) * (spur - helical)
     remarks = []
+    if x > 0.5 * _NO_K_3:
+        remarks.append("K_v falls with speed beyond 2.9 m/s of v z_1/100 sqrt(u^2/(1 + u^2))")
     if pair.helix_angle > math.radians(30.0) and x >= 3.0:
         remarks.append("beta is above 30 deg")
     if pair.gears[0].teeth >= 50 and x >= 3.0:

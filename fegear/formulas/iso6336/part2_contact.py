@@ -1,9 +1,9 @@
 """ISO 6336-2: the contact stress of a pair: Z_H, Z_B, Z_D, Z_E, Z_epsilon, Z_beta, sigma_H0, sigma_H.
 
-Source: ISO 6336-2:2006, clauses 5 to 9, and IACS UR M56 (Rev. 4), M56.2, which reproduces ISO 6336-2:2019. Two things
-moved between editions: Z_beta, printed as sqrt(cos beta) in 2006 and corrected to 1/sqrt(cos beta) by technical
-corrigendum 1:2008; and Z_B, Z_D of helical gears, which 2019 raises by f_ZCa where tips are not relieved (its values
-are recalled: no public text that repeats them was at hand).
+Source: ISO 6336-2:2006, clauses 5 to 9, and IACS UR M56 (Rev. 4), M56.2, which repeats ISO 6336-2:2019 but for f_ZCa.
+Two things moved between editions: Z_beta, printed as sqrt(cos beta) in 2006 and corrected to 1/sqrt(cos beta) by
+technical corrigendum 1:2008; and Z_B, Z_D of helical gears, which 2019 raises by f_ZCa where tips are not relieved (its
+values are recalled: no public text that repeats them was at hand).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """ISO 6336-2: what the flanks bear: Z_NT, Z_L, Z_v, Z_R, Z_W, Z_X and sigma_HP, static, at reference and in between.
 
 Source: ISO 6336-2:2006, clauses 10 to 14; numbers of Z_L, Z_v, Z_R and Z_W as in IACS UR M56 (Rev. 4), M56.2.10 and
-2.11, which reproduces ISO 6336-2:2019. The denominator of Z_W of static strength, misprinted as 680 in the standard,
+2.11, which repeats ISO 6336-2:2019. The denominator of Z_W of static strength, misprinted as 680 in the standard,
 is 6800 (errata in doi:10.1007/978-3-030-33146-7_15). Stresses in Pa, roughness in m.
 """
 
