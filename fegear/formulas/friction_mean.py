@@ -1,6 +1,6 @@
 """Mean friction coefficients of gear teeth from load, speed, curvature, oil and roughness.
 
-Sources: C. Schlenk, Untersuchungen zur Fresstragfähigkeit von Grossgetrieben, thesis, TU München 1994, as ISO/TR
+Sources: L. Schlenk, Untersuchungen zur Fresstragfähigkeit von Großzahnrädern, thesis, TU München 1994, as ISO/TR
 14179-2:2001 carries it; ISO/TR 13989-1:2000, Eqs. 25 to 28 (now ISO/TS 6336-20); ISO/TR 13989-2:2000, Eqs. 1 to 7 (now
 ISO/TS 6336-21); ISO/TR 15144-1:2014, Formulae 86 and 87 (now ISO/TS 6336-22). All are of one form,
 

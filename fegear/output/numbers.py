@@ -14,7 +14,7 @@ def pretty_unit(unit: str) -> str:
     """``um.mm/N`` as ``µm·mm/N``; degrees get their sign."""
     for plain, sign in _SIGNS:
         unit = unit.replace(plain, sign)
-    return "°" if unit == "deg" else unit
+    return {"deg": "°", "degC": "°C"}.get(unit, unit)
 
 
 def _power(exponent: int) -> str:

@@ -208,4 +208,14 @@ def pair_values(name: str, pair: GearPair) -> tuple[Value, ...]:
         Value(f"{name}.normal_backlash", pair.normal_backlash, "mm", 0.0, "backlash along the line of action"
               if pair.driver.helix_angle == 0.0 else "backlash normal to the flanks"),
         *more,
+        *_losses(name, pair),
     )  # fmt: skip
+
+
+def _losses(name: str, pair: GearPair) -> tuple[Value, ...]:
+    """What teeth without deflection lose; nothing where at times none of them is in contact."""
+    from fegear.formulas.loss_factor import wimmer
+
+    if pair.contact_ratio < 1.0:
+        return ()
+    return (Value(f"{name}.rigid_loss_factor", wimmer(pair), "", 0.0, "tooth loss factor H_V of rigid gears"),)

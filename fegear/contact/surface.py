@@ -1,0 +1,133 @@
+"""State of the flanks where they touch: pressure, flash and contact temperature, film, from the computed load.
+
+The formulas of ISO/TS 6336-20 and -22 at every place, with the load that was computed there in place of the standard's
+load sharing factors.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.formulas.flash_temperature import flash_temperature
+from fegear.formulas.iso6336 import part20_flash, part22_micropitting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.arrays import Array
+    from fegear.formulas.flank_speeds import FlankSpeeds
+    from fegear.formulas.iso6336.rated_surface import RatedSurface
+
+    #: Friction coefficient from speeds and line loads [N/m] of one shape.
+    FrictionLaw = Callable[[FlankSpeeds, Array], Array]
+
+
+@dataclass(frozen=True)
+class FlankSurface:
+    """Flanks over the path and the face; NaN where nothing touches.
+
+    Parameters
+    ----------
+    x : ndarray, shape (X,)
+        On the line of action [m].
+    z : ndarray, shape (Z,)
+        Along the face, from its middle [m]; one place for a plane section.
+    line_load : ndarray, shape (Z, X)
+        Force in the plane of action per face width, with the load factors [N/m].
+    pressure : ndarray
+        Hertzian [Pa].
+    friction : ndarray
+        Coefficient with which heat was computed.
+    flash, contact : ndarray
+        Flash temperature [K] and contact temperature [degC].
+    film, ratio : ndarray
+        Lubricant film [m] and its ratio to the roughness.
+    bulk, film_bulk : float
+        Temperature of the teeth for scuffing and for the film [degC].
+    mean_flash : float
+        Over path and face [K].
+    """
+
+    x: Array
+    z: Array
+    line_load: Array
+    pressure: Array
+    friction: Array
+    flash: Array
+    contact: Array
+    film: Array
+    ratio: Array
+    bulk: float
+    film_bulk: float
+    mean_flash: float
+
+    @property
+    def largest(self) -> float:
+        """Largest contact temperature [degC]."""
+        return max(self.bulk, float(np.nanmax(self.contact)))
+
+    @property
+    def least_ratio(self) -> float:
+        """Least film ratio."""
+        return float(np.nanmin(self.ratio))
+
+    def place(self, values: Array, *, least: bool = False) -> tuple[float, float]:
+        """x and z of the largest (or least) value [m]."""
+        find = np.nanargmin if least else np.nanargmax
+        row, column = np.unravel_index(int(find(values)), values.shape)
+        return float(self.x[column]), float(self.z[row])
+
+
+def flank_surface(
+    rated: RatedSurface,
+    x: Array,
+    z: Array,
+    line_load: Array,
+    law: FrictionLaw | None = None,
+    losses: float | None = None,
+) -> FlankSurface:
+    """Evaluate the flanks under a computed load.
+
+    Parameters
+    ----------
+    rated : RatedSurface
+        Its load is not used but in mean friction coefficients and the bulk temperature of the film.
+    x : ndarray, shape (X,)
+        Rising, on the path of contact [m].
+    z : ndarray, shape (Z,)
+        Along the face [m].
+    line_load : ndarray, shape (Z, X)
+        With load factors [N/m]; NaN where nothing is known.
+    law : callable, optional
+        Friction law; without one the mean coefficients of either standard.
+    losses : float, optional
+        Computed loss factor H_V for the bulk temperature of the film; that of the standard without.
+    """
+    at, modulus = rated.at(x), rated.modulus
+    load = np.atleast_2d(line_load)
+    touch = np.where(np.nan_to_num(load) > 0.0, load, np.nan)
+    known = np.nan_to_num(load)
+    mu_heat = np.full(load.shape, part20_flash.friction(rated)) if law is None else law(at, known)
+    mu_film = np.full(load.shape, part22_micropitting.friction(rated)) if law is None else mu_heat
+    flash = flash_temperature(at, known, mu_heat, modulus)
+    mean = float(np.trapezoid(flash.mean(axis=0), x) / (x[-1] - x[0]))
+    bulk = part20_flash.bulk_temperature(rated, mean)
+    factor = part22_micropitting.loss_factor(rated.pair) if losses is None else losses
+    weight = known.sum()
+    film_bulk = part22_micropitting.bulk_temperature(
+        rated, float((mu_film * known).sum() / weight) if weight > 0.0 else 0.0, factor
+    )
+    pressed = part22_micropitting.pressure(at, known, modulus)
+    film = part22_micropitting.film(rated.surface, at, pressed, mu_film, film_bulk, modulus)
+    on = np.isfinite(touch)
+
+    def where(values: Array) -> Array:
+        return np.asarray(np.where(on, values, np.nan))
+
+    return FlankSurface(
+        x, z, where(known), where(pressed), where(np.asarray(mu_heat)), where(flash), where(bulk + flash),
+        where(film.thickness), where(film.ratio), bulk, film_bulk, mean,
+    )  # fmt: skip

@@ -1,0 +1,133 @@
+"""Power that tooth friction takes, from the computed load on the flanks and a friction law.
+
+Friction is normal force times coefficient against the sliding of the flanks; it is averaged over a base pitch. The
+loads are those without friction: what friction changes in them is neglected, a few per cent of them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.formulas.flank_speeds import flank_speeds
+from fegear.formulas.loss_factor import computed
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array
+    from fegear.contact.flank.loaded import LoadedFlanks
+    from fegear.contact.pair_history import PairHistory
+    from fegear.contact.surface import FrictionLaw
+    from fegear.geometry import GearPair
+
+
+@dataclass(frozen=True)
+class ToothLoss:
+    """What tooth friction takes of the power of a pair.
+
+    Parameters
+    ----------
+    x : ndarray, shape (N,)
+        Places of a tooth pair on the line of action [m].
+    load : ndarray
+        On the tooth pair [N].
+    coefficient : ndarray
+        Friction coefficient, weighted with the load along the contact line.
+    power : ndarray
+        That the tooth pair loses there [W].
+    loss : float
+        Mean over time of all pairs in contact [W].
+    transmitted : float
+        Power of the pair [W].
+    loss_factor : float
+        H_V, that a coefficient of 1 would take over the power transmitted.
+    """
+
+    x: Array
+    load: Array
+    coefficient: Array
+    power: Array
+    loss: float
+    transmitted: float
+    loss_factor: float
+
+    @property
+    def mean_coefficient(self) -> float:
+        """Coefficient that would take as much, were it the same everywhere."""
+        return self.loss / (self.loss_factor * self.transmitted) if self.loss_factor else 0.0
+
+    @property
+    def efficiency(self) -> float:
+        """Of the teeth alone."""
+        return 1.0 - self.loss / self.transmitted
+
+
+def loss_over_path(pair: GearPair, history: PairHistory, case: int, speed: float, law: FrictionLaw) -> ToothLoss:
+    """Of plane teeth, one tooth pair followed over its path.
+
+    Parameters
+    ----------
+    pair : GearPair
+    history : PairHistory
+        Whose positions stand on either side of every jump of the load.
+    case : int
+        Number of the load.
+    speed : float
+        Of the driver [rad/s].
+    law : callable
+    """
+    x, load = _with_pitch_point(history.x, history.load[:, case])
+    at = flank_speeds(pair, x, speed)
+    mu = np.asarray(law(at, load / pair.face_width))
+    power = mu * load * np.abs(at.sliding)
+    pitch = pair.base_pitch
+    total = float(load.sum())
+    transmitted = float(history.load[:, case].max() / history.share[:, case].max()) * speed * pair.driver.base_radius
+    if not total > 0.0:
+        transmitted = math.nan
+    mean = float(np.trapezoid(load * np.abs(x), x)) / pitch / (transmitted / (speed * pair.driver.base_radius))
+    return ToothLoss(
+        x, load, mu, power, float(np.trapezoid(power, x)) / pitch, transmitted, computed(pair, mean)
+    )  # fmt: skip
+
+
+def _with_pitch_point(x: Array, load: Array) -> tuple[Array, Array]:
+    """Positions with the pitch point among them, where sliding has a kink."""
+    if not x[0] < 0.0 < x[-1] or (x == 0.0).any():
+        return x, load
+    at = int(np.searchsorted(x, 0.0))
+    return np.insert(x, at, 0.0), np.insert(load, at, float(np.interp(0.0, x, load)))
+
+
+def loss_over_face(found: LoadedFlanks, case: int, speed: float, law: FrictionLaw) -> ToothLoss:
+    """Of teeth with a width, every station of the contact lines with its own load and sliding.
+
+    Parameters
+    ----------
+    found : LoadedFlanks
+    case : int
+        Number of the load.
+    speed : float
+        Of the driver [rad/s].
+    law : callable
+    """
+    pair, lines = found.pair, found.lines
+    force = np.where(lines.present, found.contact.force[:, :, case], 0.0)
+    at = flank_speeds(pair, lines.x, speed)
+    tilt = math.cos(pair.driver.base_helix_angle)  # the normal force is that much larger
+    mu = np.asarray(law(at, np.where(lines.present, found.line_load[:, :, case], 0.0)))
+    power = mu * force * np.abs(at.sliding) / tilt
+    load = float(found.load[case])
+    mean = float(lines.mean((force * np.abs(lines.x)).sum(axis=1))) / load
+    where = [(p, s) for p in range(lines.roll.size) for s in lines.at(p)]
+    place = np.array([lines.roll[p] + lines.pair[p, s.start] * pair.base_pitch for p, s in where])
+    order = np.argsort(place)
+    borne = np.array([force[p, s].sum() for p, s in where])[order]
+    rub = np.array([(mu[p, s] * force[p, s]).sum() for p, s in where])[order]
+    return ToothLoss(
+        place[order], borne, np.divide(rub, borne, out=np.zeros_like(rub), where=borne > 0.0),
+        np.array([power[p, s].sum() for p, s in where])[order], float(lines.mean(power.sum(axis=1))),
+        load * speed * pair.driver.base_radius, computed(pair, mean),
+    )  # fmt: skip

@@ -1,0 +1,263 @@
+"""Stages of the result ``tooth-loss``: friction loss, loss factors and efficiency of a pair and of a train."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.engine.citation import Citation
+from fegear.engine.figure import Axis, Curve, Figure, Panel
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.errors import RangeError
+from fegear.models.loaded_flanks import FLANK_EFFECTS
+from fegear.models.pair_checks import check_relief
+from fegear.models.pair_surface import check_speed, pair_friction, pair_speed
+from fegear.results.drawn_pair import LINE_OF_ACTION, path_marks
+from fegear.results.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
+from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair, plane_pairs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.case.reading import Scene
+    from fegear.contact.tooth_loss import ToothLoss
+    from fegear.engine.stage import Upstream, Work
+    from fegear.geometry import GearPair
+    from fegear.models.pair_surface import PairFriction
+
+#: Places along the path, and half as many for the estimate of the error.
+_POSITIONS = 801
+#: Laws by the works that they stand in.
+_WORKS = {
+    "schlenk": "schlenk", "iso-6336-20": "iso-ts-6336-20", "iso-6336-21": "iso-ts-6336-21",
+    "iso-6336-22": "iso-ts-6336-22", "buckingham": "lin-huston-coy", "benedict-kelley": "lin-huston-coy",
+}  # fmt: skip
+_NEGLECTED = "bearings, churning, windage and seals are neglected"
+
+
+@dataclass(frozen=True)
+class ToothLossInputs:
+    """What is read of the case beside the loaded pair.
+
+    Parameters
+    ----------
+    friction : PairFriction
+    speed : float
+        Of the driver [rad/s].
+    load : float
+        Nominal [N].
+    given : bool
+        Whether the case names the friction law.
+    name : str
+    """
+
+    friction: PairFriction
+    speed: float
+    load: float
+    given: bool = field(compare=False)
+    name: str = field(compare=False)
+
+
+@dataclass(frozen=True)
+class ToothLossData:
+    """Losses of a pair.
+
+    Parameters
+    ----------
+    pair : GearPair
+    found : ToothLoss
+        By the computed load and the friction law.
+    error : float
+        Share by which loss and loss factor may be off, of integration and of the loads over the face.
+    ohlendorf, wimmer : float
+        H_V of both; NaN outside their ranges.
+    """
+
+    pair: GearPair
+    found: ToothLoss
+    error: float
+    ohlendorf: float
+    wimmer: float
+
+
+def _inputs(scene: Scene, name: str) -> ToothLossInputs:
+    part = scene.case.pair[name]
+    load = part.normal_load(scene.pairs[name]) or math.nan
+    law, speed = pair_friction(scene, name, "tooth-loss"), pair_speed(scene, name)
+    return ToothLossInputs(law, speed, load, part.friction is not None, name)
+
+
+def _check_wide(scene: Scene, name: str) -> None:
+    check_speed(scene, name, "tooth-loss")
+    pair_friction(scene, name, "tooth-loss")
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_relief(scene, name)
+    _check_wide(scene, name)
+
+
+def _compute(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
+    from fegear.contact import pair_history
+    from fegear.contact.tooth_loss import loss_over_path
+
+    engagement = loaded_pair(upstream, inputs.name).engagement
+    pair = engagement.pair
+    law = inputs.friction.of(pair, inputs.speed, inputs.load)
+    found, coarse = (
+        loss_over_path(pair, pair_history(engagement, [inputs.load], count), 0, inputs.speed, law)
+        for count in (_POSITIONS, _POSITIONS // 2)
+    )
+    return _data(pair, found, coarse)
+
+
+def _compute_wide(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
+    from fegear.contact.tooth_loss import loss_over_face
+
+    loaded = loaded_flanks(upstream, inputs.name)
+    pair = loaded.found.pair
+    law = inputs.friction.of(pair, inputs.speed, inputs.load)
+    found, coarse = (
+        loss_over_face(one, loaded.nominal, inputs.speed, law) for one in (loaded.found, loaded.error.coarse)
+    )
+    return _data(pair, found, coarse)
+
+
+def _data(pair: GearPair, found: ToothLoss, coarse: ToothLoss) -> ToothLossData:
+    from fegear.formulas.loss_factor import ohlendorf, wimmer
+
+    closed = []
+    for formula in (ohlendorf, wimmer):
+        try:
+            closed.append(formula(pair))
+        except RangeError:
+            closed.append(math.nan)
+    error = abs(coarse.loss_factor / found.loss_factor - 1.0)
+    if found.loss:
+        error = max(error, abs(coarse.loss / found.loss - 1.0))
+    return ToothLossData(pair, found, error, closed[0], closed[1])
+
+
+def _present(data: ToothLossData, inputs: ToothLossInputs) -> Outcome:
+    name, found, law = inputs.name, data.found, inputs.friction.law
+    table = Table(
+        f"tooth_loss_{name}",
+        (
+            Column("x", found.x, "mm", "of the tooth pair on the line of action, from the pitch point"),
+            Column("roll_angle", np.asarray(data.pair.roll_angle(found.x, "driver")), "deg", "of the driver"),
+            Column("load", found.load, "N", "on the tooth pair"),
+            Column("friction_coefficient", found.coefficient, "", f"law {law}"),
+            Column("power_loss", found.power, "W", "that this tooth pair takes"),
+        ),
+        f"Friction loss of a tooth pair of {name} along the path of contact",
+    )
+    error, share = data.error, found.loss / found.transmitted
+    values = [
+        Value(f"{name}.tooth_loss", found.loss, "W", error * found.loss, "mean power that tooth friction takes"),
+        Value(f"{name}.transmitted_power", found.transmitted, "W", 0.0, "load times speed of the base circle"),
+        Value(f"{name}.tooth_efficiency", found.efficiency, "", error * share, f"of the teeth alone: {_NEGLECTED}"),
+        Value(f"{name}.loss_factor", found.loss_factor, "", error * found.loss_factor, "H_V by the computed load"),
+        Value(f"{name}.loss_factor_wimmer", data.wimmer, "", 0.0, "H_V of rigid gears, load even along the lines"),
+        Value(f"{name}.loss_factor_ohlendorf", data.ohlendorf, "", 0.0, "H_V, two pairs share alike, spur gears"),
+        Value(f"{name}.mean_friction", found.mean_coefficient, "", None, f"coefficient that takes as much, law {law}"),
+    ]
+    remarks = [
+        f"Pair {name}: loss of sliding teeth only; {_NEGLECTED}. Loads are those without friction."
+    ]  # fmt: skip
+    if not inputs.given:
+        remarks.append(f"Pair {name}: no friction law is given, so it is Schlenk's with the lubricant of the case.")
+    if math.isnan(data.ohlendorf):
+        remarks.append(f"Pair {name}: Ohlendorf's H_V is for contact ratios between 1 and 2.")
+    shown = tuple(value for value in values if not math.isnan(value.si))
+    settings = {"friction": law, "local": inputs.friction.local, "speed": inputs.speed}
+    return Outcome(data, (table,), shown, settings, tuple(remarks), (_figure(data, inputs),))
+
+
+def _figure(data: ToothLossData, inputs: ToothLossInputs) -> Figure:
+    name, found = inputs.name, data.found
+    x, marks = found.x * 1e3, path_marks(data.pair)
+
+    def panel(label: str, unit: str, y: np.ndarray[tuple[int, ...], np.dtype[np.float64]], role: str) -> Panel:
+        curve = Curve(x, y, "", role, dash="solid", markers=False)
+        return Panel(LINE_OF_ACTION, Axis(label, unit, zero=True), (curve,), marks)
+
+    closed = {"Wimmer": data.wimmer, "Ohlendorf": data.ohlendorf}
+    beside = ", ".join(f"{who} {value:.4f}" for who, value in closed.items() if not math.isnan(value))
+    return Figure(
+        f"tooth_loss_{name}",
+        f"Friction loss of pair {name}",
+        f"Pair {name}: load on a tooth pair, friction coefficient (law {inputs.friction.law}) and the power that this "
+        f"pair loses from A to E. Loss factor H_V by the computed load {found.loss_factor:.4f} ({beside}); the teeth "
+        f"lose {found.loss:.4g} W of {found.transmitted:.5g} W.",
+        (
+            panel("load on the pair", "N", found.load, "blue"),
+            panel("friction coefficient", "", found.coefficient, "green"),
+            panel("power lost", "W", found.power, "red"),
+        ),
+        under=f"{inputs.load:.5g} N, {inputs.speed * 30.0 / math.pi:.5g} rpm",
+    )
+
+
+def _cites(scene: Scene, name: str) -> Iterator[Citation]:
+    yield Citation("ohlendorf", "loss factor H_V of equal sharing")
+    yield Citation("wimmer", "loss factor H_V of even load along contact lines")
+    part = scene.case.pair[name].friction
+    law = "schlenk" if part is None else part.name
+    if law in _WORKS:
+        yield Citation(_WORKS[law], "friction coefficient")
+
+
+def _forecast(_scene: Scene, _name: str) -> Forecast:
+    return Forecast({"positions": _POSITIONS}, 0.05)
+
+
+_ABOUT = "friction loss of the teeth, loss factor H_V beside Ohlendorf and Wimmer, efficiency of pair and train"
+
+TOOTH_LOSS = Stage(
+    name="tooth-loss",
+    title="Tooth loss",
+    results=("tooth-loss",),
+    about=_ABOUT,
+    subjects=plane_pairs,
+    needs=needs_pair,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    effects=EFFECTS,
+    cites=_cites,
+    forecast=_forecast,
+)
+
+WIDE_TOOTH_LOSS = Stage(
+    name="wide-tooth-loss",
+    title="Tooth loss over the face",
+    results=("tooth-loss",),
+    about=_ABOUT,
+    subjects=wide_pairs,
+    needs=needs_flanks,
+    inputs=_inputs,
+    compute=_compute_wide,
+    present=_present,
+    check=_check_wide,
+    effects=FLANK_EFFECTS,
+    cites=_cites,
+    forecast=_forecast,
+)
+
+
+def loss_task(scene: Scene, pair: str) -> Task:
+    """The task that tells the loss of a pair."""
+    return Task("wide-tooth-loss" if pair in scene.wide_pairs else "tooth-loss", pair)
+
+
+def loss_of(upstream: Upstream, pair: str) -> ToothLossData:
+    """What it computed."""
+    for stage in ("tooth-loss", "wide-tooth-loss"):
+        if (task := Task(stage, pair)) in upstream:
+            return cast("ToothLossData", upstream[task])
+    raise KeyError(pair)
