@@ -95,6 +95,8 @@ class Page:
                     ui.element("div").props("id=results")
         for what, content in self._bench.shown_now():
             self._send(what, content)
+            if what == "done":
+                self._inputs.hear(what, content)
 
     @staticmethod
     def _by_hand(do: Callable[[], None]) -> None:
@@ -107,7 +109,7 @@ class Page:
     def _hear(self, what: str, content: dict[str, Any]) -> None:
         if what == "changed":
             self._later(content)
-        elif what in _OF_THE_FORM:
+        elif what in _OF_THE_FORM or (what == "done" and not content["moving"]):
             self._tell_form(what, content)
         if what != "laid":
             self._send(what, content)

@@ -187,6 +187,19 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     assert tomllib.loads(path.read_text())["pair"]["I"]["load"] == "7 kN"
     assert "# kept" in path.read_text()
 
+    # The report, in the folder that is offered; what stands in it is what stands on the page.
+    browser.until(f"{DRAWN} && document.querySelector('.values td.number b') !== null")
+    browser.click(button("Export"))
+    item = "[...document.querySelectorAll('.q-item')].find(one => one.textContent.includes('Report, tables'))"
+    browser.until(f"{item} !== undefined")
+    browser.click(item)
+    browser.until("document.activeElement.closest('.q-dialog') !== null && document.activeElement.value !== undefined")
+    press(browser, "Enter", 13)
+    report = tmp_path / "results" / "drive" / "report.html"
+    browser.until("[...document.querySelectorAll('.q-notification')].some(one => one.textContent.includes('Wrote '))")
+    assert largest_load(browser) in report.read_text()
+    assert (report.parent / "tables" / "load_sharing_I.csv").is_file()
+
     # Nobody else is let in, and nothing has been asked of any other machine.
     bare = served.address.partition("?")[0]
     for request in (
