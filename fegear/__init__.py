@@ -16,14 +16,15 @@ if TYPE_CHECKING:
     from fegear.workbench.gear import Gear
     from fegear.workbench.pair import Pair
     from fegear.workbench.questions import dynamic_factor, relief, root_stress, stiffness_table, transmission_error
+    from fegear.workbench.rated import rating
     from fegear.workbench.results import Results
     from fegear.workbench.run import run
 
 __version__ = "0.2.0"
 
 __all__ = [
-    "FegearError", "Gear", "InputError", "Pair", "Results", "__version__", "dynamic_factor", "relief", "root_stress",
-    "run", "stiffness_table", "transmission_error",
+    "FegearError", "Gear", "InputError", "Pair", "Results", "__version__", "dynamic_factor", "rating", "relief",
+    "root_stress", "run", "stiffness_table", "transmission_error",
 ]  # fmt: skip
 
 #: Modules of the names above, besides the version.
@@ -34,6 +35,7 @@ _HOMES = {
     "Pair": "workbench.pair",
     "Results": "workbench.results",
     "dynamic_factor": "workbench.questions",
+    "rating": "workbench.rated",
     "relief": "workbench.questions",
     "root_stress": "workbench.questions",
     "run": "workbench.run",

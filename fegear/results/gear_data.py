@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,7 @@ from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.path_of_contact import active_profile, specific_sliding
 from fegear.geometry.span import usual_span
+from fegear.results.gear_modifications import ground_off, modification_columns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,12 +36,15 @@ class Drawing:
         Names of the driver and the driven gear of each pair.
     balls : mapping of str to float
         Diameters of the measuring balls or pins that the case names, by gear [m].
+    ground : mapping of str to mapping of str to float
+        What is ground off the flanks [m], by gear and by `gear_modifications.MEANINGS`.
     """
 
     gears: Mapping[str, Gear]
     pairs: Mapping[str, GearPair]
     members: Mapping[str, tuple[str, str]]
     balls: Mapping[str, float]
+    ground: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 def drawing_of(scene: Scene) -> Drawing:
@@ -48,7 +52,8 @@ def drawing_of(scene: Scene) -> Drawing:
     parts = scene.case.pair
     members = {name: (parts[name].driver, parts[name].driven) for name in scene.pairs}
     balls = {name: d for name in scene.gears if (d := scene.case.gear[name].ball_diameter) is not None}
-    return Drawing(scene.gears, scene.pairs, members, balls)
+    ground = {name: amounts for name in scene.gears if (amounts := ground_off(scene.case.gear[name]))}
+    return Drawing(scene.gears, scene.pairs, members, balls, ground)
 
 
 def measured(gear: Gear, ball_diameter: float | None = None) -> OverBalls | None:
@@ -167,11 +172,18 @@ def _mesh_columns(pair: GearPair) -> tuple[Column, ...]:
     )  # fmt: skip
 
 
+def _modified(drawing: Drawing, names: Sequence[str]) -> tuple[Column, ...]:
+    return modification_columns([drawing.ground.get(name, {}) for name in names])
+
+
 def pair_table(name: str, drawing: Drawing) -> Table:
     """Gear data of a pair: driver first, driven gear second."""
     pair, names = drawing.pairs[name], drawing.members[name]
     gears = [pair.gear(member) for member in MEMBERS]
-    columns = (*_tooth_columns(names, gears), *_mesh_columns(pair), *measurement_columns(drawing, names))
+    columns = (
+        *_tooth_columns(names, gears), *_mesh_columns(pair), *measurement_columns(drawing, names),
+        *_modified(drawing, names),
+    )  # fmt: skip
     return Table(f"gear_data_{name}", columns, f"Gear data of pair {name}")
 
 
@@ -184,6 +196,7 @@ def lone_table(drawing: Drawing) -> Table | None:
     columns = (
         *_tooth_columns(names, [drawing.gears[name] for name in names]),
         *measurement_columns(drawing, names),
+        *_modified(drawing, names),
     )
     return Table("gear_data", columns, "Gear data")
 

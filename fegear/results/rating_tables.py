@@ -49,7 +49,7 @@ def factor_table(data: RatingData, asked: PairToRate) -> Table:
     columns += [
         Column("unit", np.array([unit for unit, _ in scales]), "", "of the numbers in this row"),
         Column("clause", np.array([one.clause for one in rows]), "", "where the standard gives it"),
-        Column("meaning", np.array([MEANINGS[one.symbol] for one in rows]), "", ""),
+        Column("meaning", np.array([MEANINGS.get(one.symbol, "") for one in rows]), "", "what it is"),
         Column(
             "remark", np.array([_remark(one, asked) for one in rows]), "", "what lies outside a range, or was given"
         ),

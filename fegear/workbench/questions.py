@@ -34,6 +34,7 @@ _TITLES = {
     "transmission-error": "Transmission error",
     "relief": "Relief",
     "dynamic-factor": "Dynamic factor",
+    "rating": "Rating",
 }
 
 
@@ -46,7 +47,7 @@ def _scene(wanted: str, document: Mapping[str, Any], tolerance: float | None) ->
     return build_scene(whole, wanted, Path.cwd(), bare_si=True)
 
 
-def _ask_of_pair(
+def ask_of_pair(
     wanted: str,
     pair: Pair,
     document: Mapping[str, Any],
@@ -215,7 +216,7 @@ def transmission_error(
         Tables ``transmission_error_<pair>``, ``transmission_error_harmonics_<pair>``; for several loads
         ``transmission_error_summary_<pair>``. Values ``<pair>.te_peak_to_peak``, ...
     """
-    return _ask_of_pair("transmission-error", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache)
+    return ask_of_pair("transmission-error", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache)
 
 
 def relief(
@@ -248,7 +249,7 @@ def relief(
     """
     document = _loaded(pair, torque, load)
     document["design"] = {"pair": pair.name, **(design or {})}
-    return _ask_of_pair("relief", pair, document, effects, tolerance, progress, cache)
+    return ask_of_pair("relief", pair, document, effects, tolerance, progress, cache)
 
 
 def dynamic_factor(
@@ -298,7 +299,7 @@ def dynamic_factor(
     }  # fmt: skip
     several = speeds if hasattr(speeds, "keys") else listed(speeds) or [speeds]
     document["dynamics"] = {"speeds": several, **(dynamics or {})}
-    found = _ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache)
+    found = ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache)
     if train is not None:
         return found
     said = "No train was given; assumed default: the gears turn as discs between steady torques, without shafts."

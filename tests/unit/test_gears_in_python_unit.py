@@ -249,3 +249,26 @@ def test_the_functions_say_what_they_take():
         for parameter in inspect.signature(function).parameters:
             assert parameter in text, (name, parameter)
     assert issubclass(InputError, FegearError)
+
+
+def test_a_rating_is_the_case_s():
+    steel = {"material": "case-hardened-steel", "hardness": "60 HRC"}
+    one, other = (
+        fegear.Gear(z, "4 mm", face_width="40 mm", strength=steel, tolerance_class=6, name=f"z{z}") for z in (21, 62)
+    )
+    pair = fegear.Pair(one, other)
+    found = fegear.rating(pair, torque="520 N*m", speed="1480 rpm", operation={"life": "20000 h"}, progress=False)
+    case = {
+        "title": "t", "results": ["rating"], "gear": {"z21": dict(one.keys), "z62": dict(other.keys)},
+        "pair": {"I": {"driver": "z21", "driven": "z62", "torque": "520 N*m", "speed": "1480 rpm",
+                       "operation": {"life": "20000 h"}}},
+    }  # fmt: skip
+    by_case = fegear.run(case, progress=False)
+    for key in ("I.driver.S_H", "I.driven.S_F", "I.driver.S_F_agma"):
+        assert found.values[key].value == by_case.values[key].value
+    with pytest.raises(fegear.InputError, match=r"pair\.I\.speed"):
+        fegear.rating(pair, torque="520 N*m", progress=False)
+    with pytest.raises(fegear.InputError, match="must be given"):
+        fegear.rating(pair, speed="1480 rpm")
+    with pytest.raises(fegear.InputError, match=r"is no fegear\.Pair"):
+        fegear.rating(one, torque="1 N*m")

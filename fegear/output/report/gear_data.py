@@ -10,6 +10,8 @@ from fegear.output.report.page import Section
 from fegear.output.tables import table_file
 from fegear.results.drawn_pair import pair_figure
 from fegear.results.gear_data import drawing_of, lone_table, pair_table, pair_values
+from fegear.results.gear_modifications import MEANINGS as MODIFICATIONS
+from fegear.results.rating_sheet import rated_columns
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +31,7 @@ _GROUPS = (
         "hpstc_diameter", "lpstc_diameter", "active_root_diameter", "root_form_diameter", "root_diameter",
     )),
     ("Measurement", ("tooth_thickness", "tip_thickness", "span_teeth", "span", "ball_diameter", "over_balls")),
+    ("Modifications", tuple(MODIFICATIONS)),
     ("In mesh", ("tip_clearance", "specific_sliding_start", "specific_sliding_end")),
 )  # fmt: skip
 
@@ -45,7 +48,7 @@ def gear_sections(results: Results) -> tuple[Section, ...]:
     sections = []
     for name in names:
         table, pair = pair_table(name, drawing), drawing.pairs[name]
-        blocks = _blocks(table, pair_values(name, pair), written)
+        blocks = _blocks(table, pair_values(name, pair), written, _loaded(results, name))
         sections.append(Section(f"Gear data: pair {name}", (*blocks, Plot(pair_figure(name, drawing)))))
     lone = lone_table(drawing)
     if lone is not None:
@@ -53,12 +56,20 @@ def gear_sections(results: Results) -> tuple[Section, ...]:
     return tuple(sections)
 
 
-def _blocks(table: Table, values: Sequence[Value], written: set[str]) -> tuple[Block, ...]:
+def _loaded(results: Results, name: str) -> tuple[SheetGroup, ...]:
+    """What the wanted results tell of a pair under load: a group for each."""
+    groups = (SheetGroup("Load capacity", rated_columns(results.values, name)),)
+    return tuple(group for group in groups if group.columns)
+
+
+def _blocks(
+    table: Table, values: Sequence[Value], written: set[str], more: Sequence[SheetGroup] = ()
+) -> tuple[Block, ...]:
     columns = {column.name: column for column in table.columns}
     heads = MEMBERS if values else tuple("" for _ in columns["gear"].values)
     groups = [SheetGroup(title, tuple(columns[name] for name in names if name in columns)) for title, names in _GROUPS]
     shared = tuple((value.meaning, value_cells(value)[0], value.unit) for value in values)
-    sheet = Sheet(heads, tuple(group for group in groups if group.columns), shared)
+    sheet = Sheet(heads, (*(group for group in groups if group.columns), *more), shared)
     note = "" if table.name in written else 'The table itself is written with results = ["geometry"].'
     if note:
         return sheet, Paragraph(note, "note screen")
