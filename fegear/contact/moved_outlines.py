@@ -51,7 +51,7 @@ def moved_outline(
 
     Turned on by the transmission error over its base radius, the driver then touches the driven gear where pairs are
     loaded: the drawn gap is transmission error less modifications, errors and deflections, which load sharing makes
-    zero there.
+    zero there. Without coupling a load moves its own tooth alone, as load sharing then has it.
 
     Parameters
     ----------
@@ -80,9 +80,9 @@ def moved_outline(
         unit = motion.displacement(radius[row, at] / m, patch, width[row, at] / m)
         per_load = line_load[row, at] / gear.material.young_modulus
         for t, pair in enumerate(pairs):
-            found = unit.get(towards_load * (pair - number))
-            if found is not None:
-                moved[at, t] += (found * per_load).transpose(2, 0, 1)
+            k = towards_load * (pair - number)
+            if k in unit and (k == 0 or e.compliance.coupling):
+                moved[at, t] += (unit[k] * per_load).transpose(2, 0, 1)
     moved += _removed(e, member, motion.points, pairs)
     return MovedOutline(np.asarray(pairs), motion.points * m, moved)
 

@@ -73,10 +73,11 @@ class OutlineMotion:
         from scipy.sparse import csr_array
 
         flank = self.influence.flank
-        arc, width = self.influence.place(radius, half_width)
+        arc, least = flank.arc_of_radius(radius), self.influence.corner_distance
+        arc = np.clip(arc, flank.flank_start + least, flank.flank_end - least)
         room = np.minimum(arc - flank.flank_start, flank.flank_end - arc)
-        wide = np.maximum(np.minimum(patch, _ROOM_SHARE * room), self.influence.corner_distance)
-        wide = np.maximum(wide, width)
+        width = np.minimum(half_width, np.maximum(room, least))  # a picture of a corner needs no law of its own
+        wide = np.maximum(np.maximum(np.minimum(patch, _ROOM_SHARE * room), least), width)
         forces = csr_array(flank.patches(arc, wide).T.astype(np.float32))  # a contact presses on few of the nodes
         found = (forces @ self.response.reshape(forces.shape[1], -1)).reshape(arc.size, 2 * self.reach + 1, 2, -1)
         moved = {k: found[:, k + self.reach].transpose(1, 2, 0) for k in range(-self.reach, self.reach + 1)}
@@ -132,14 +133,31 @@ def outline_motion(influence: Influence, reach: int) -> OutlineMotion:
 
 
 def _outline(mesh: SectorMesh) -> Index:
-    """Vertices of a tooth's outline from left to right, those that crowd at its corners thinned out."""
-    parts = [edges[:2] for name, edges in mesh.edges.items() if name not in _INNER]
-    following = dict(np.hstack(parts).T.tolist())
-    (at,) = set(following) - set(following.values())
-    corners = {int(vertex) for part in parts for vertex in np.setxor1d(part[0], part[1])}
-    chain = [at]
-    while at in following:
-        at = following[at]
-        if at in corners or np.hypot(*(mesh.points[:, at] - mesh.points[:, chain[-1]])) >= _APART:
-            chain.append(at)
-    return np.array(chain[::-1])
+    """Vertices of a tooth's outline from left to right, those that crowd thinned out."""
+    t = mesh.triangles
+    edges = np.hstack([t[[a, b, c]] for a, b, c in ((0, 3, 1), (1, 4, 2), (2, 5, 0))])
+    _, first, count = np.unique(edges[1], return_index=True, return_counts=True)
+    inner = np.concatenate([mesh.edges[name][2] for name in _INNER])
+    outer = edges[:, first[count == 1]]
+    outer = outer[[0, 2]][:, ~np.isin(outer[1], inner)]
+    beside: dict[int, list[int]] = {}
+    for one, other in outer.T.tolist():
+        beside.setdefault(one, []).append(other)
+        beside.setdefault(other, []).append(one)
+    ends = [vertex for vertex, others in beside.items() if len(others) == 1]
+    chain = [min(ends, key=lambda vertex: float(mesh.points[0, vertex]))]
+    while len(beside[chain[-1]]) > len(chain[-2:-1]):
+        chain.append(next(other for other in beside[chain[-1]] if other not in chain[-2:-1]))
+    named = {int(vertex) for name, part in mesh.edges.items() if name not in _INNER for vertex in _ends(part[:2])}
+    kept = chain[:1]
+    for vertex in chain[1:]:
+        apart = np.hypot(*(mesh.points[:, vertex] - mesh.points[:, kept[-1]]))
+        if vertex in named or vertex == chain[-1] or apart >= _APART:
+            kept.append(vertex)
+    return np.array(kept)
+
+
+def _ends(edges: Index) -> Index:
+    """Vertices that one edge alone has."""
+    vertices, count = np.unique(edges, return_counts=True)
+    return vertices[count == 1]

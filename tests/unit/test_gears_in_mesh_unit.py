@@ -2,6 +2,7 @@
 
 import base64
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.errors import InputError
-from fegear.fem.outline_motion import half_plane_dent
+from fegear.fem.imported import read_sector_mesh
+from fegear.fem.outline_motion import _outline, half_plane_dent
 from fegear.geometry import BasicRack, Tooth
 from fegear.geometry.outline import tool_in_space, tooth_outline
 from fegear.geometry.pair import MEMBERS
@@ -31,6 +33,7 @@ CASE = {
     "effects": {"neighbour_coupling": True, "hertz": "load-dependent", "relief": True},
     "accuracy": {"tolerance": 0.03},
 }  # fmt: skip
+MESHES = Path(__file__).parents[2] / "meshes"
 STRESS, DEFORMED = Task("stress-in-mesh", "I"), Task("deformed-in-mesh", "I")
 
 
@@ -78,6 +81,16 @@ def test_colours_of_the_fillets_are_the_root_stress_through_the_mesh(ran):
 
 def test_deformed_flanks_touch_where_the_load_is_shared(ran):
     """Once the driver is ahead by the transmission error, the gap of every loaded pair is closed: to 0.2 %."""
+    assert _touching(ran) > 40
+
+
+def test_without_coupling_a_load_moves_its_own_tooth_alone(cache):
+    scene = build_scene({**CASE, "effects": {**CASE["effects"], "neighbour_coupling": False}}, "case", None)
+    alone = run_plan(scene, make_plan(scene, STAGES, [DEFORMED]), cache=cache)
+    assert _touching(alone) > 40
+
+
+def _touching(ran):
     found, e = ran.outcomes[DEFORMED].data, ran.outcomes[Task("loaded-pair", "I")].data.pair.engagement
     state = e.solve(e.grid(found.roll), [2500.0])
     contacts, te = state.grid.contacts, found.transmission_error
@@ -96,7 +109,7 @@ def test_deformed_flanks_touch_where_the_load_is_shared(ran):
             closed = sum(_toward(found, member, p, j, x, along, line_load, width) for member in MEMBERS)
             assert closed == pytest.approx(te[p], rel=2e-3)
             looked += 1
-    assert looked > 40
+    return looked
 
 
 def _toward(found, member, p, j, x, along, line_load, width):
@@ -168,6 +181,19 @@ def test_the_tool_touches_the_profile_and_never_cuts_it(teeth, shift):
     places = profile[:, order[:: max(1, order.size // 60)]]
     assert max(float(np.hypot(*(at - one[:, None])).min()) for one in places.T) < 0.03
     assert float(np.hypot(*at).min()) == pytest.approx(tooth.root_radius, abs=1e-6)
+
+
+def test_the_outline_of_any_mesh_runs_from_space_to_space():
+    tooth = Tooth(28, BasicRack(1.0, 1.25, 0.25))
+    for file in sorted(MESHES.glob("four_square*.msh")):
+        mesh = read_sector_mesh(file, tooth, 3.175e-3, 20.240625e-3)
+        x, y = mesh.points[:, _outline(mesh)]
+        np.testing.assert_allclose(
+            [np.arctan2(x[0], y[0]), np.arctan2(x[-1], y[-1])], [-np.pi / 28, np.pi / 28], atol=1e-6
+        )
+        assert np.hypot(np.diff(x), np.diff(y)).max() < 0.4
+        assert np.hypot(x, y).max() == pytest.approx(tooth.tip_radius, abs=1e-3)
+        assert np.hypot(x, y).min() == pytest.approx(tooth.root_radius, abs=1e-3)
 
 
 def test_deformed_teeth_need_finite_elements():
