@@ -164,7 +164,7 @@ def filled(text: str) -> str:
         pattern = re.compile(rf"(<!-- {re.escape(mark)} -->\n).*?(<!-- end of {re.escape(mark)} -->)", re.DOTALL)
         if not pattern.search(text):
             raise ValueError(f"{PAGE} has no marks for {mark}")
-        text = pattern.sub(lambda m, b=block: m[1] + b + "\n" + m[2], text)
+        text = pattern.sub(lambda m, b=block: m[1] + "\n" + b + "\n\n" + m[2], text)
     return text
 
 

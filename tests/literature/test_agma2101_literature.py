@@ -94,6 +94,29 @@ def test_own_geometry_factors_stand_near_shigleys_charts():
     assert pitting_factor(wide) == pytest.approx(0.195, rel=0.02)
 
 
+#: AGMA 908-B89, tables of I and J as machine design textbooks (Norton) reprint them: 20 deg, h_ao 1.25, r_ao 0.25, full
+#: depth, thinning .024: spur gears loaded at the HPSTC; 10 deg of helix, tip loaded, axial contact ratio 2: printed to
+#: two digits of J and three of I.
+SPUR = ((21, 55, 0.34, 0.40), (26, 55, 0.37, 0.41), (35, 55, 0.40, 0.42), (55, 55, 0.43, 0.43), (21, 135, 0.35, 0.43))
+HELICAL = (
+    (21, 21, 0.127, 0.46, 0.46), (21, 55, 0.195, 0.49, 0.55), (26, 26, 0.131, 0.49, 0.49), (26, 55, 0.186, 0.52, 0.56),
+    (35, 35, 0.136, 0.54, 0.54), (55, 55, 0.143, 0.59, 0.59),
+)  # fmt: skip
+
+
+def test_geometry_factors_are_those_of_agmas_tables():
+    for z1, z2, *printed_j in SPUR:
+        one = pair(z1, z2)
+        found = [bending_factor(one, member).J for member in ("driver", "driven")]
+        assert found == pytest.approx(printed_j, abs=5.1e-3)
+    face = 2.0 * math.pi / math.sin(math.radians(10.0)) * INCH / 10
+    for z1, z2, printed_i, *printed_j in HELICAL:
+        one = pair(z1, z2, 10.0, face)
+        found = [bending_factor(one, member).J for member in ("driver", "driven")]
+        assert found == pytest.approx(printed_j, abs=5.1e-3)
+        assert pitting_factor(one) == pytest.approx(printed_i, abs=5.1e-4)
+
+
 def test_a_helical_pair_tends_to_shortest_lines_and_contact_of_the_plane():
     straight, lean = pair(26, 55, 0.0), pair(26, 55, 1e-5)
     assert pitting_factor(lean) == pytest.approx(pitting_factor(straight), rel=1e-5)

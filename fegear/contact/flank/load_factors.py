@@ -3,6 +3,10 @@
 K_Hbeta is with the loads (`LoadedFlanks.face_load_factor`). For the root, three loads are compared, each over a whole
 mesh cycle: the solved one; the same with the share of every pair spread evenly along its contact line; and the shares
 of perfect flanks spread so. Their largest root tensions s_1, s_2, s_3 give K_Fbeta = s_1 / s_2, K_Falpha = s_2 / s_3.
+
+The tension is that across the root, at right angles to the helix. Where a helical mesh begins or ends at a corner of
+the face its stress is that of a contact at a point rather than of a bent tooth: nothing is looked for within half a
+module of the ends of the face, and a share that would be spread evenly over less than a module of line is left out.
 """
 
 from __future__ import annotations
@@ -23,13 +27,15 @@ if TYPE_CHECKING:
     from fegear.contact.flank.root_stress import RootedLines
     from fegear.geometry.pair import GearPair
 
+#: Of helical pairs: what is left out at the ends of the face, and lines too short to be loaded evenly [modules].
+_FREE_END, _SHORTEST = 0.5, 1.0
 #: Places along the face at which the gap is read for its straight part.
 _READ = 101
 
 
 @dataclass(frozen=True)
 class RootFactors:
-    """K_Fbeta and K_Falpha of one gear, and the largest root tension of the solved load [Pa]."""
+    """K_Fbeta and K_Falpha of one gear, and the largest root tension of the solved load, across the root [Pa]."""
 
     face: float
     transverse: float
@@ -41,11 +47,16 @@ def transverse_load_factor(found: LoadedFlanks, perfect: LoadedFlanks) -> Array:
     return np.asarray(found.pair_load.max(axis=(0, 1)) / perfect.pair_load.max(axis=(0, 1)))
 
 
-def even_along_the_lines(lines: ContactLines, force: Array) -> Array:
-    """The force of every contact line spread evenly along it, shape (P, M) [N]."""
+def even_along_the_lines(lines: ContactLines, force: Array, shortest: float = 0.0) -> Array:
+    """The force of every contact line spread evenly along it, shape (P, M) [N]; none on lines of less than `shortest`.
+
+    A line's length is that along the face [m].
+    """
     even, support = np.zeros(force.shape), lines.support
     for p in range(lines.roll.size):
         for s in lines.at(p):
+            if lines.z[p, s][-1] - lines.z[p, s][0] < shortest:
+                continue
             even[p, s] = force[p, s].sum() * support[p, s] / support[p, s].sum()
     return even
 
@@ -65,8 +76,12 @@ def root_factors(found: LoadedFlanks, perfect: LoadedFlanks, rooted: RootedLines
         Number of the load.
     """
     solved, ideal = found.contact.force[:, :, case], perfect.contact.force[:, :, case]
-    loads = solved, even_along_the_lines(found.lines, solved), even_along_the_lines(found.lines, ideal)
-    largest, even, best = (rooted.largest("tension", force, z) for force in loads)
+    helical, m, lines = found.pair.driver.helix_angle != 0.0, found.pair.driver.module, found.lines
+    shortest = min(_SHORTEST * m, 0.5 * (lines.high - lines.low)) if helical else 0.0
+    loads = solved, even_along_the_lines(lines, solved, shortest), even_along_the_lines(lines, ideal, shortest)
+    inside = (z >= lines.low + _FREE_END * m) & (z <= lines.high - _FREE_END * m)
+    places = z[inside] if helical and inside.any() else z
+    largest, even, best = (rooted.largest("tension", force, places, across=True) for force in loads)
     return RootFactors(largest / even, even / best, largest)
 
 
