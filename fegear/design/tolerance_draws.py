@@ -89,6 +89,32 @@ class ProfileDeviation:
 
 
 @dataclass(frozen=True)
+class HelixDeviation:
+    """Slope deviation of a helix over a gear's own face, nothing in its middle.
+
+    Parameters
+    ----------
+    amount : float
+        f_Hbeta [m]: removal at end II less that at end I.
+    face_width : float
+        [m].
+    """
+
+    amount: float
+    face_width: float
+
+    @property
+    def face_kinks(self) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+    def removal(self, roll: ArrayLike, z: ArrayLike) -> Array:
+        """Of material, positive [m], at roll angles [rad] and heights from the middle of the face [m]."""
+        share, _ = np.broadcast_arrays(np.asarray(z, dtype=float) / self.face_width, np.asarray(roll, dtype=float))
+        return np.asarray(self.amount * share)
+
+
+@dataclass(frozen=True)
 class Deviations:
     """Rows of deviations; arrays of shape (D,), (D, 2) for driver and driven, (D, 2, 2 T) for the pitches.
 

@@ -12,26 +12,25 @@ from fegear.results.tolerance_tables import (
     OWN,
     ROBUST,
     SHOWN,
-    TOLD,
     influence_table,
     nominal,
     outcome,
     percentiles,
+    told,
 )
 from fegear.units import from_si
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
-    from fegear.results.tolerance_robustness import DrawInputs, ToleranceData
+    from fegear.results.tolerance_robustness import ToleranceData
+    from fegear.results.tolerance_tables import PairDrawn
 
 #: Deviations that the picture of influences has, and classes of a histogram.
 _MOST, _LEAST_CLASSES, _MOST_CLASSES = 12, 8, 60
-#: Outcomes whose distributions are drawn.
-_SPREAD = tuple(name for name in TOLD if name != "te_harmonic_1")
 _ROLES = {OWN: "relief of the case", NOMINAL: "designed", ROBUST: "linear tip relief"}
 
 
-def tolerance_figures(data: ToleranceData, asked: DrawInputs) -> tuple[Figure, ...]:
+def tolerance_figures(data: ToleranceData, asked: PairDrawn) -> tuple[Figure, ...]:
     """Of one pair; none where no draw has a result."""
     if not np.isfinite(outcome(data, "te_peak_to_peak")).any():
         return ()
@@ -53,10 +52,10 @@ def _histogram(values: Array) -> tuple[Array, Array]:
     return 0.5 * (edges[1:] + edges[:-1]), 100.0 * counts / values.size
 
 
-def _distributions(data: ToleranceData, asked: DrawInputs) -> Figure:
+def _distributions(data: ToleranceData, asked: PairDrawn) -> Figure:
     views = []
-    for name in _SPREAD:
-        one, factor = SHOWN[name], from_si(SHOWN[name].unit)
+    for name in (key for key in told(data) if key != "te_harmonic_1"):
+        one, factor = SHOWN[name], from_si(SHOWN[name].unit) if SHOWN[name].unit else 1.0
         values = outcome(data, name)
         values = np.sort(values[np.isfinite(values)]) * factor
         axis, mark = Axis(one.label, one.unit), Mark("x", nominal(data, name) * factor, "nominal")
@@ -76,14 +75,14 @@ def _distributions(data: ToleranceData, asked: DrawInputs) -> Figure:
         f"Pair {asked.name}, {asked.part.draws} draws: how results are spread, and which share lies below. Dotted: the "
         "pair of the drawing (nominal), and percentiles 5, 50 and 95 with their values.",
         views=tuple(views),
-        under=f"{asked.teeth.nominal:.5g} N",
+        under=f"{asked.load:.5g} N",
     )
 
 
-def _influences(data: ToleranceData, asked: DrawInputs) -> Figure:
+def _influences(data: ToleranceData, asked: PairDrawn) -> Figure:
     rows = influence_table(data, asked.gears)
     views = []
-    for name in TOLD:
+    for name in told(data):
         ranked = sorted(rows, key=lambda row: np.nan_to_num(row[1][name].share))[-_MOST:]
         names = tuple(column.name.replace("_", " ") for column, _ in ranked)
         places = np.arange(len(ranked), dtype=float)
@@ -108,7 +107,7 @@ def _influences(data: ToleranceData, asked: DrawInputs) -> Figure:
     )
 
 
-def _reliefs(data: ToleranceData, asked: DrawInputs) -> Figure:
+def _reliefs(data: ToleranceData, asked: PairDrawn) -> Figure:
     name, factor = "te_peak_to_peak", 1e6
     curves, marks = [], []
     percent = asked.part.reliefs.percentile if asked.part.reliefs else 95.0
@@ -129,5 +128,5 @@ def _reliefs(data: ToleranceData, asked: DrawInputs) -> Figure:
                 tuple(curves), tuple(marks),
             ),
         ),
-        under=f"{asked.teeth.nominal:.5g} N",
+        under=f"{asked.load:.5g} N",
     )  # fmt: skip

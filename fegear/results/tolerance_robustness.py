@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,10 +22,18 @@ from fegear.results.gear_solution import solution_of
 from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair
 from fegear.results.root_stress_parts import needs_sources, stress_sources
 from fegear.results.sources import HERTZ
-from fegear.results.tolerance_tables import NOMINAL, OWN, ROBUST, tolerance_remarks, tolerance_tables, tolerance_values
+from fegear.results.tolerance_tables import (
+    NOMINAL,
+    OWN,
+    ROBUST,
+    PairDrawn,
+    tolerance_remarks,
+    tolerance_tables,
+    tolerance_values,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from fegear.arrays import Array
     from fegear.case.reading import Scene
@@ -39,9 +47,11 @@ if TYPE_CHECKING:
     from fegear.models.tooth_influence import GearToSolve
 
 #: Draws that a process is given at a time; each is computed alone, so that the number changes no bit.
-_CHUNK = 25
+CHUNK = 25
 #: Processor seconds of a draw without and with corner contact, and of the search over its draws.
 _DRAW, _DRAW_CORNERS, _SEARCH = 0.005, 0.014, 0.035
+#: Kinds that are drawn of plane teeth unless the case names others.
+_PLANE: tuple[Kind, ...] = ("centre-distance", "profile-slope", "profile-form", "pitch")
 #: Chunks that are done here sooner than other processes start.
 _FEW = 4
 
@@ -76,6 +86,16 @@ class DrawInputs:
     gears: tuple[str, str] = field(compare=False)
     untold: tuple[str, ...] = field(compare=False)
 
+    @property
+    def load(self) -> float:
+        """[N]."""
+        return self.teeth.nominal
+
+    @property
+    def own_spacing(self) -> bool:
+        """Whether the case has spacing errors, which draws replace."""
+        return self.teeth.effects.spacing_errors
+
 
 @dataclass(frozen=True)
 class Chunk:
@@ -93,6 +113,8 @@ class ToleranceData:
 
     Parameters
     ----------
+    outcomes : tuple of str
+        Names of the numbers of a draw.
     deviations : Deviations
     values : mapping of str to ndarray, shape (D, outcomes)
         By the state of relief; NaN for draws without a result.
@@ -101,12 +123,13 @@ class ToleranceData:
     reasons : mapping of int to str
         Why draws have no result.
     exact : float
-        Peak-to-peak transmission error of the nominal pair, integrated between its jumps [m].
+        Peak-to-peak transmission error of the nominal pair with points at its jumps [m]; NaN where it is not known.
     relief : RobustRelief or None
     nominal_relief : tuple of floats
         Numbers of the nominal optimum, see `RobustRelief`; empty where none is asked for.
     """
 
+    outcomes: tuple[str, ...]
     deviations: Deviations
     values: Mapping[str, Array]
     nominal: Mapping[str, Array]
@@ -132,14 +155,15 @@ def chunk_content(chunk: Chunk) -> object:
     return asked.teeth, asked.source, asked.solved, chunk.relief, chunk.deviations
 
 
-def _part(scene: Scene) -> TolerancePart:
+def tolerance_part(scene: Scene) -> TolerancePart:
+    """``[robustness]``, which the case must have."""
     if scene.case.robustness is None:
         raise InputError("robustness", "(not given)", "is needed to draw deviations", "write a table [robustness]")
     return scene.case.robustness
 
 
-def _subjects(scene: Scene) -> tuple[str, ...]:
-    """The pair that ``[robustness]`` names, or the only one."""
+def chosen_pair(scene: Scene) -> tuple[str, ...]:
+    """The pair that ``[robustness]`` names, or the only one; none without the table."""
     part = scene.case.robustness
     if part is None:
         return ()
@@ -154,24 +178,19 @@ def _subjects(scene: Scene) -> tuple[str, ...]:
     return tuple(scene.pairs)
 
 
+def _subjects(scene: Scene) -> tuple[str, ...]:
+    return tuple(name for name in chosen_pair(scene) if name in scene.plane_pairs)
+
+
 def _check(scene: Scene, name: str) -> None:
-    part = _part(scene)
-    if name not in scene.plane_pairs:
-        raise InputError(
-            "robustness.pair", f'"{name}"', "has teeth with a width, whose deviations are not drawn yet",
-            "draw those of a pair of plane spur gears, or scatter misalignment with flank-design",
-        )  # fmt: skip
+    part = tolerance_part(scene)
     if part.deviations and "helix-slope" in part.deviations:
         raise InputError(
             "robustness.deviations", '"helix-slope"', "has no meaning for plane teeth, which are alike along the face",
-            "leave it out",
+            f'leave it out, or give pair.{name} width = "solid"',
         )  # fmt: skip
-    limits = _limits(scene, name)
-    if not _any(limits):
-        raise InputError(
-            "robustness", "no tolerance", "leaves nothing to draw",
-            f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class or robustness.centre_distance",
-        )  # fmt: skip
+    limits = limits_of(scene, name, _PLANE)
+    refuse_no_tolerance(scene, name, limits)
     pair = scene.pairs[name]
     room = pair.centre_distance - pair.tight_centre_distance
     if limits.centre_distance > room * (1.0 + 1e-9) + 1e-12:
@@ -184,12 +203,23 @@ def _check(scene: Scene, name: str) -> None:
     check_formulas(scene, name, tips=scene.case.effects.corner_contact)
 
 
-def _limits(scene: Scene, name: str) -> Limits:
+def refuse_no_tolerance(scene: Scene, name: str, limits: Limits) -> None:
+    """Refuse a pair none of whose wanted deviations has a tolerance."""
+    pairs = (limits.profile_slope, limits.profile_form, limits.helix_slope, limits.pitch)
+    if not limits.centre_distance and not any(any(pair) for pair in pairs):
+        raise InputError(
+            "robustness", "no tolerance", "leaves nothing to draw",
+            f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class",
+        )  # fmt: skip
+
+
+def limits_of(scene: Scene, name: str, usual: tuple[Kind, ...]) -> Limits:
+    """Largest deviations of a pair, of the kinds that the case names or else of the usual ones."""
     from fegear.design.tolerance_draws import Limits
     from fegear.formulas.iso1328 import tolerances_of
 
-    part = _part(scene)
-    wanted: tuple[Kind, ...] = tuple(part.deviations or ("centre-distance", "profile-slope", "profile-form", "pitch"))
+    part = tolerance_part(scene)
+    wanted: tuple[Kind, ...] = tuple(part.deviations or usual)
     found = []
     for member in MEMBERS:
         gear = gear_name(scene, name, member)
@@ -206,10 +236,9 @@ def _limits(scene: Scene, name: str) -> Limits:
     )  # fmt: skip
 
 
-def _any(limits: Limits) -> bool:
-    return bool(limits.centre_distance) or any(
-        any(pair) for pair in (limits.profile_slope, limits.profile_form, limits.helix_slope, limits.pitch)
-    )
+def unclassed(scene: Scene, gears: tuple[str, str]) -> tuple[str, ...]:
+    """Gears without a tolerance class."""
+    return tuple(gear for gear in dict.fromkeys(gears) if scene.case.gear[gear].tolerance_class is None)
 
 
 def _inputs(scene: Scene, name: str) -> DrawInputs:
@@ -217,10 +246,9 @@ def _inputs(scene: Scene, name: str) -> DrawInputs:
     source = stress_sources(scene, name)[0]
     solved = teeth.gears if FINITE_ELEMENTS in (source, teeth.compliance.source) else ()
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
-    untold = tuple(gear for gear in dict.fromkeys(gears) if scene.case.gear[gear].tolerance_class is None)
     return DrawInputs(
-        _part(scene), teeth, _limits(scene, name), source,
-        tuple(gear_to_solve(scene, gear) for gear in dict.fromkeys(solved)), name, gears, untold,
+        tolerance_part(scene), teeth, limits_of(scene, name, _PLANE), source,
+        tuple(gear_to_solve(scene, gear) for gear in dict.fromkeys(solved)), name, gears, unclassed(scene, gears),
     )  # fmt: skip
 
 
@@ -245,10 +273,8 @@ def _bench(asked: DrawInputs, upstream: Upstream) -> Bench:
 
 def _compute(asked: DrawInputs, upstream: Upstream, work: Work) -> ToleranceData:
     from fegear.contact import transmission_error
-    from fegear.design.deviated_pair import drawn_outcomes
+    from fegear.design.deviated_pair import OUTCOMES, drawn_outcomes
     from fegear.design.tolerance_draws import NO_LIMITS, draw
-    from fegear.engine.executor import map_points
-    from fegear.engine.point_job import Failure
     from fegear.one_thread import one_thread
 
     part, own = asked.part, _bench(asked, upstream)
@@ -263,27 +289,44 @@ def _compute(asked: DrawInputs, upstream: Upstream, work: Work) -> ToleranceData
             benches |= found
         none = draw(NO_LIMITS, 1, 0, own.teeth)
         nominal = {state: drawn_outcomes(one, none).values[0] for state, (_, one) in benches.items()}
-    starts = range(0, part.draws, _CHUNK)
+    starts = range(0, part.draws, CHUNK)
     chunks = [
-        Chunk(asked, key, one, deviations.rows(slice(first, first + _CHUNK)))
+        Chunk(asked, key, one, deviations.rows(slice(first, first + CHUNK)))
         for key, one in benches.values()
         for first in starts
     ]
-    executor = work.executor
-    if executor.scheduler is None and len(chunks) <= _FEW:
-        executor = replace(executor, here=True)
-    done = map_points(compute_chunk, chunks, executor, work.cache, key=chunk_content, progress=work.progress)
-    for one in done:
-        if isinstance(one, Failure):
-            raise FegearError(f"Draws of pair {asked.name} failed: {one.reason}")
+    done = drawn(compute_chunk, chunks, chunk_content, asked.name, work)
     values: dict[str, Array] = {}
     reasons: dict[int, str] = {}
     for number, state in enumerate(benches):
-        own_chunks = done[number * len(starts) : (number + 1) * len(starts)]
-        values[state] = np.concatenate([cast("Array", chunk["values"]) for chunk in own_chunks])
-        for first, chunk in zip(starts, own_chunks, strict=True):
-            reasons |= {first + row: reason for row, reason in chunk["reasons"].items()}
-    return ToleranceData(deviations, values, nominal, reasons, exact, relief, numbers)
+        values[state], failed = together(done[number * len(starts) : (number + 1) * len(starts)])
+        reasons |= failed
+    return ToleranceData(OUTCOMES, deviations, values, nominal, reasons, exact, relief, numbers)
+
+
+def drawn(
+    function: Callable[..., object], chunks: Sequence[object], key: Callable[[Any], object], name: str, work: Work
+) -> list[dict[str, Any]]:
+    """What a function makes of every chunk of draws of a pair, on all cores where there are many."""
+    from fegear.engine.executor import map_points
+    from fegear.engine.point_job import Failure
+
+    executor = work.executor
+    if executor.scheduler is None and len(chunks) <= _FEW:
+        executor = replace(executor, here=True)
+    done = map_points(function, chunks, executor, work.cache, key=key, progress=work.progress)
+    for one in done:
+        if isinstance(one, Failure):
+            raise FegearError(f"Draws of pair {name} failed: {one.reason}")
+    return list(done)
+
+
+def together(done: Sequence[Mapping[str, Any]]) -> tuple[Array, dict[int, str]]:
+    """Outcomes of all draws of a state, and why some have none, from those of its chunks in their order."""
+    reasons: dict[int, str] = {}
+    for number, chunk in enumerate(done):
+        reasons |= {number * CHUNK + row: reason for row, reason in chunk["reasons"].items()}
+    return np.concatenate([chunk["values"] for chunk in done]), reasons
 
 
 def _reliefs(
@@ -317,13 +360,14 @@ def _reliefs(
     }  # fmt: skip
 
 
-def _present(data: ToleranceData, asked: DrawInputs) -> Outcome:
+def present_draws(data: ToleranceData, asked: PairDrawn) -> Outcome:
+    """Tables, values, remarks and figures of the draws of a pair."""
     part, limits = asked.part, asked.limits
     settings: dict[str, object] = {
         "draws": part.draws, "seed": part.seed, "sequence": part.sequence, "distribution": part.distribution,
         "centre_distance_tolerance": limits.centre_distance, "profile_slope_tolerance": list(limits.profile_slope),
-        "profile_form_tolerance": list(limits.profile_form), "single_pitch_tolerance": list(limits.pitch),
-        "root_stress": asked.source,
+        "profile_form_tolerance": list(limits.profile_form), "helix_slope_tolerance": list(limits.helix_slope),
+        "single_pitch_tolerance": list(limits.pitch),
     }  # fmt: skip
     return Outcome(
         data, tolerance_tables(data, asked), tolerance_values(data, asked), settings, tolerance_remarks(data, asked),
@@ -333,10 +377,10 @@ def _present(data: ToleranceData, asked: DrawInputs) -> Outcome:
 
 def _forecast(scene: Scene, _name: str) -> Forecast:
     """Draws of every state of relief, and the search for the best."""
-    part = _part(scene)
+    part = tolerance_part(scene)
     each = _DRAW_CORNERS if scene.case.effects.corner_contact else _DRAW
     states, search = (3, part.reliefs.draws * _SEARCH) if part.reliefs else (1, 0.0)
-    chunks = math.ceil(part.draws / _CHUNK) * states
+    chunks = math.ceil(part.draws / CHUNK) * states
     return Forecast({"draws": part.draws, "chunks": chunks}, part.draws * states * each + search)
 
 
@@ -344,12 +388,12 @@ TOLERANCE_ROBUSTNESS = Stage(
     name="tolerance-robustness",
     title="Deviations inside the tolerances",
     results=("robustness",),
-    about="transmission error, root stress and pressure of pairs drawn inside their tolerance classes",
+    about="transmission error, pressure, root stress or K_Hbeta of pairs drawn inside their tolerances",
     subjects=_subjects,
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
-    present=_present,
+    present=present_draws,
     check=_check,
     effects=EFFECTS,
     cites=citing(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -13,8 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.arrays import Array
+    from fegear.case.robustness import TolerancePart
     from fegear.design.draw_statistics import Influence, Percentile
-    from fegear.results.tolerance_robustness import DrawInputs, ToleranceData
+    from fegear.design.tolerance_draws import Limits
+    from fegear.results.tolerance_robustness import ToleranceData
 
 #: How states of relief are called, and their columns' endings.
 OWN, NOMINAL, ROBUST = "as the case", "best without deviations", "best in the percentile"
@@ -31,7 +33,7 @@ class Shown(NamedTuple):
     meaning: str
 
 
-#: Of every outcome, by its name in `fegear.design.deviated_pair.OUTCOMES`.
+#: Of every outcome, by its name in `OUTCOMES` of `fegear.design.deviated_pair`, `FLANK_OUTCOMES` of `deviated_flanks`.
 SHOWN = {
     "te_peak_to_peak": Shown("um", "peak-to-peak transmission error", "over the base pitch in which teeth 0 meet"),
     "te_mean": Shown("um", "mean transmission error", "over that base pitch"),
@@ -43,21 +45,63 @@ SHOWN = {
     "driven_root_tension": Shown("MPa", "root tension of the driven gear", "largest of tooth 0"),
     "hertz_pressure": Shown("MPa", "Hertzian pressure", "largest between teeth 0, smooth flanks"),
     "largest_load": Shown("N", "load on one tooth pair", "largest on teeth 0"),
+    "face_load_factor": Shown("", "face load factor K_Hbeta", "largest over mean load over the face"),
+    "largest_line_load": Shown("N/mm", "line load", "largest over the face"),
 }
 #: Candidates of the grid that `robust_tip_relief` leads on, and draws over which it tries all of them.
 LED, SCREENING = 4, 64
 #: Outcomes that are drawn and whose influences are told.
-TOLD = ("te_peak_to_peak", "te_harmonic_1", "driver_root_tension", "driven_root_tension", "hertz_pressure")
+_TOLD = (
+    "te_peak_to_peak", "te_harmonic_1", "face_load_factor", "driver_root_tension", "driven_root_tension",
+    "hertz_pressure",
+)  # fmt: skip
+
+
+class PairDrawn(Protocol):
+    """What tables and pictures want to know of the inputs of draws."""
+
+    @property
+    def part(self) -> TolerancePart:
+        """Of the case."""
+
+    @property
+    def limits(self) -> Limits:
+        """Largest deviations."""
+
+    @property
+    def name(self) -> str:
+        """Of the pair."""
+
+    @property
+    def gears(self) -> tuple[str, str]:
+        """Driver and driven."""
+
+    @property
+    def untold(self) -> tuple[str, ...]:
+        """Gears without a tolerance class."""
+
+    @property
+    def load(self) -> float:
+        """[N]."""
+
+    @property
+    def own_spacing(self) -> bool:
+        """Whether the case has spacing errors, which draws replace."""
+
+
+def told(data: ToleranceData) -> tuple[str, ...]:
+    """Outcomes of a pair that are told beside its tables."""
+    return tuple(name for name in _TOLD if name in data.outcomes)
 
 
 def outcome(data: ToleranceData, name: str, state: str = OWN) -> Array:
     """An outcome of all draws of a state of relief, shape (D,)."""
-    return np.asarray(data.values[state][:, list(SHOWN).index(name)])
+    return np.asarray(data.values[state][:, data.outcomes.index(name)])
 
 
 def nominal(data: ToleranceData, name: str, state: str = OWN) -> float:
     """The outcome without deviations."""
-    return float(data.nominal[state][list(SHOWN).index(name)])
+    return float(data.nominal[state][data.outcomes.index(name)])
 
 
 def percentiles(data: ToleranceData, name: str, state: str = OWN) -> list[Percentile]:
@@ -80,6 +124,7 @@ def deviation_columns(data: ToleranceData, gears: tuple[str, str]) -> Iterator[C
         yield Column(f"{member}_profile_form", d.profile_form[:, i], "um", f"band of the profile form {of}, f_falpha")
         yield Column(f"{member}_form_waves", d.waves[:, i], "", f"waves of that over the active profile {of}")
         yield Column(f"{member}_form_phase", d.phase[:, i], "deg", f"their phase at the start of contact {of}")
+        yield Column(f"{member}_helix_slope", d.helix_slope[:, i], "um", f"f_Hbeta {of}, positive: cut back at end II")
         for k in range(d.pitch.shape[2]):
             gap = -(k // 2 + 1) if k % 2 == 0 else k // 2 + 1
             end, inner = abs(gap), abs(gap) - 1
@@ -112,11 +157,11 @@ def influence_table(data: ToleranceData, gears: tuple[str, str]) -> list[tuple[C
 
     columns = varied(data, gears)
     arrays = [np.asarray(column.si, dtype=float) for column in columns]
-    by_outcome = {name: influences(arrays, outcome(data, name)) for name in TOLD}
-    return [(column, {name: by_outcome[name][i] for name in TOLD}) for i, column in enumerate(columns)]
+    by_outcome = {name: influences(arrays, outcome(data, name)) for name in told(data)}
+    return [(column, {name: by_outcome[name][i] for name in told(data)}) for i, column in enumerate(columns)]
 
 
-def tolerance_tables(data: ToleranceData, asked: DrawInputs) -> tuple[Table, ...]:
+def tolerance_tables(data: ToleranceData, asked: PairDrawn) -> tuple[Table, ...]:
     """Draws, percentiles, influences, and the reliefs that were compared."""
     tables = [_draws(data, asked), _percentiles(data, asked), _influences(data, asked)]
     if data.relief is not None:
@@ -124,14 +169,14 @@ def tolerance_tables(data: ToleranceData, asked: DrawInputs) -> tuple[Table, ...
     return tuple(tables)
 
 
-def _draws(data: ToleranceData, asked: DrawInputs) -> Table:
+def _draws(data: ToleranceData, asked: PairDrawn) -> Table:
     count = len(data.deviations)
     columns = [Column("draw", np.arange(count), "", "in the order of the sequence"), *varied(data, asked.gears)]
     for state in data.values:
         columns += [
             Column(f"{name}{_ENDING[state]}", outcome(data, name, state), one.unit, f"{one.label}, relief {state}")
-            for name, one in SHOWN.items()
-            if state == OWN or name in TOLD
+            for name, one in ((key, SHOWN[key]) for key in data.outcomes)
+            if state == OWN or name in told(data)
         ]
     if data.reasons:
         why = np.array([data.reasons.get(row, "") for row in range(count)])
@@ -139,9 +184,9 @@ def _draws(data: ToleranceData, asked: DrawInputs) -> Table:
     return Table(f"robustness_draws_{asked.name}", tuple(columns), f"Every draw of {asked.name} and what came of it")
 
 
-def _percentiles(data: ToleranceData, asked: DrawInputs) -> Table:
+def _percentiles(data: ToleranceData, asked: PairDrawn) -> Table:
     columns = [Column("percentile", np.array(PERCENTS), "", "of the draws")]
-    for name, one in SHOWN.items():
+    for name, one in ((key, SHOWN[key]) for key in data.outcomes):
         found = percentiles(data, name)
         columns += [
             Column(name, np.array([p.value for p in found]), one.unit, f"{one.label}: {one.meaning}"),
@@ -151,13 +196,13 @@ def _percentiles(data: ToleranceData, asked: DrawInputs) -> Table:
     return Table(f"robustness_percentiles_{asked.name}", tuple(columns), f"Percentiles of the draws of {asked.name}")
 
 
-def _influences(data: ToleranceData, asked: DrawInputs) -> Table:
+def _influences(data: ToleranceData, asked: PairDrawn) -> Table:
     rows = influence_table(data, asked.gears)
     columns = [
         Column("deviation", np.array([column.name for column, _ in rows]), "", "that was drawn"),
         Column("meaning", np.array([column.meaning for column, _ in rows]), "", "in words"),
     ]
-    for name in TOLD:
+    for name in told(data):
         label = SHOWN[name].label
         columns += [
             Column(
@@ -172,7 +217,7 @@ def _influences(data: ToleranceData, asked: DrawInputs) -> Table:
     return Table(f"robustness_influences_{asked.name}", tuple(columns), f"Which deviations of {asked.name} matter most")
 
 
-def _reliefs(data: ToleranceData, asked: DrawInputs) -> Table:
+def _reliefs(data: ToleranceData, asked: PairDrawn) -> Table:
     states = list(data.values)
     relief, part = data.relief, asked.part.reliefs
     if relief is None or part is None:
@@ -187,7 +232,7 @@ def _reliefs(data: ToleranceData, asked: DrawInputs) -> Table:
                 f"{member}_length", np.array([n[2 * i + 1] for n in numbers]), "", f"{of}, over the path of contact"
             ),
         ]
-    for name in TOLD:
+    for name in told(data):
         one = SHOWN[name]
         columns.append(
             Column(
@@ -202,12 +247,12 @@ def _reliefs(data: ToleranceData, asked: DrawInputs) -> Table:
     return Table(f"robustness_reliefs_{asked.name}", tuple(columns), f"Tip reliefs of {asked.name} over the draws")
 
 
-def tolerance_values(data: ToleranceData, asked: DrawInputs) -> tuple[Value, ...]:
+def tolerance_values(data: ToleranceData, asked: PairDrawn) -> tuple[Value, ...]:
     """Nominal and percentiles of what is told, with half their 95 % intervals as errors; reliefs."""
     name, values = asked.name, []
-    for key in TOLD:
+    for key in told(data):
         one, error = SHOWN[key], None
-        if key == "te_peak_to_peak":
+        if key == "te_peak_to_peak" and np.isfinite(data.exact):
             error = abs(nominal(data, key) - data.exact)
         values.append(
             Value(f"{name}.{key}_nominal", nominal(data, key), one.unit, error, f"{one.label}, no deviations")
@@ -241,7 +286,7 @@ def tolerance_values(data: ToleranceData, asked: DrawInputs) -> tuple[Value, ...
     return tuple(values)
 
 
-def tolerance_remarks(data: ToleranceData, asked: DrawInputs) -> tuple[str, ...]:
+def tolerance_remarks(data: ToleranceData, asked: PairDrawn) -> tuple[str, ...]:
     """What a percentile is worth here, what matters most, how the relief was found, and what is left out."""
     name, part = asked.name, asked.part
     p = percentiles(data, "te_peak_to_peak")[-1]
@@ -261,7 +306,7 @@ def tolerance_remarks(data: ToleranceData, asked: DrawInputs) -> tuple[str, ...]
         f"Gear {gear} has no tolerance_class: its flanks are taken as the drawing's in every draw."
         for gear in asked.untold
     ]
-    if asked.teeth.effects.spacing_errors:
+    if asked.own_spacing:
         found.append(
             f"Pair {name}: spacing_errors of its gears are left out of the draws, which have pitches of their own."
         )

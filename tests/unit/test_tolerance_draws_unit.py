@@ -17,6 +17,7 @@ from fegear.design.tolerance_draws import NO_LIMITS, Limits, ProfileDeviation, d
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
+from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
@@ -277,6 +278,60 @@ def test_a_draw_is_an_ordinary_case_with_its_deviations_written_down():
     assert mine["largest_load"] == pytest.approx(found["I.largest_load"], rel=1e-9)
 
 
+WIDE = {
+    "results": ["robustness"],
+    "gear": {
+        name: {
+            "teeth": teeth, "module": "3 mm", "face_width": "8 mm", "tolerance_class": 6, "bore_radius": "18 mm",
+        }
+        for name, teeth in (("pinion", 20), ("wheel", 24))
+    },
+    "pair": {"I": {"driver": "pinion", "driven": "wheel", "load": "2 kN", "width": "slices"}},
+    "load_distribution": {"positions": 4, "panels": 6},
+    "effects": {"neighbour_coupling": True, "hertz": "load-dependent"},
+    "accuracy": {"tolerance": 0.1},
+    "robustness": {"draws": 25},
+}  # fmt: skip
+
+
+def test_a_draw_over_the_face_is_an_ordinary_case_with_its_deviations_written_down():
+    """Leads, relief tables and spacing errors of a draw, by load-distribution; none of them is the nominal pair."""
+    cache = SolutionCache()
+    data = next(
+        one.data for task, one in run(WIDE, cache).outcomes.items() if task.stage == "flank-tolerance-robustness"
+    )
+    assert (np.ptp(data.values["as the case"], axis=0) > 0.0).all()
+    d, row = data.deviations, 7
+    scene = build_scene(WIDE, "case", None)
+    pair = scene.pairs["I"]
+    case = {**WIDE, "results": ["load-distribution"]}
+    case["effects"] = WIDE["effects"] | {"relief": True, "spacing_errors": True}
+    case["gear"] = {name: dict(part) for name, part in WIDE["gear"].items()}
+    for i, (name, member) in enumerate(zip(("pinion", "wheel"), MEMBERS, strict=True)):
+        low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+        rolls = np.linspace(low, high, 41)
+        slope, form = d.profile_slope[row, i], d.profile_form[row, i]
+        removed = ProfileDeviation(low, high, slope, form, d.waves[row, i], d.phase[row, i]).removal(rolls)
+        case["gear"][name]["relief"] = {"table": {
+            "roll_angles": [f"{t:.17g} rad" for t in rolls], "removals": [f"{m:.17g} m" for m in removed],
+            "interpolation": "cubic",
+        }}  # fmt: skip
+        case["gear"][name]["lead"] = {"slope": f"{d.helix_slope[row, i]:.17g} m"}
+        case["gear"][name]["spacing_errors"] = [f"{v:.17g} m" for v in d.spacing(row, i, scene.gears[name].teeth)]
+    found = {value.name: value.si for value in run(case, cache).values}
+    mine = dict(zip(data.outcomes, data.values["as the case"][row], strict=True))
+    # A lead slope takes nothing from end I and all from end II: half of it more in the middle than the deviation.
+    assert mine["te_mean"] + 0.5 * d.helix_slope[row].sum() == pytest.approx(found["I.te_mean"], rel=1e-4)
+    assert mine["te_peak_to_peak"] == pytest.approx(found["I.te_peak_to_peak"], rel=2e-3)
+    assert mine["face_load_factor"] == pytest.approx(found["I.K_Hbeta"], rel=5e-4)
+    assert mine["hertz_pressure"] == pytest.approx(found["I.largest_hertz_pressure"], rel=5e-4)
+    assert mine["largest_line_load"] == pytest.approx(found["I.largest_line_load"], rel=5e-4)
+    plain = {value.name: value.si for value in run({**WIDE, "results": ["load-distribution"]}, cache).values}
+    nominal = dict(zip(data.outcomes, data.nominal["as the case"], strict=True))
+    assert nominal["face_load_factor"] == plain["I.K_Hbeta"]
+    assert nominal["hertz_pressure"] == plain["I.largest_hertz_pressure"]
+
+
 def test_draws_that_are_finished_are_not_drawn_again(tmp_path):
     from fegear.solution_cache import cache_on_disk
 
@@ -299,11 +354,16 @@ def test_draws_that_are_finished_are_not_drawn_again(tmp_path):
     ],
 )
 def test_what_cannot_be_drawn_is_refused(change, key):
-    from fegear.errors import InputError
-
     with pytest.raises(InputError) as refused:
         run({**CASE, **change})
     assert refused.value.key == key
+
+
+@pytest.mark.parametrize("part", [{"centre_distance": "10 um"}, {"reliefs": {}}])
+def test_what_is_not_drawn_over_the_face_is_refused(part):
+    with pytest.raises(InputError) as refused:
+        run({**WIDE, "robustness": part})
+    assert refused.value.key == f"robustness.{next(iter(part))}"
 
 
 @pytest.mark.long

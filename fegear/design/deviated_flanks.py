@@ -1,0 +1,113 @@
+"""Loaded flanks with deviations of manufacture: compliances over the face stay, contact is found anew."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.flank.complementarity import solve_contact
+from fegear.contact.flank.loaded import LoadedFlanks
+from fegear.design.deviated_pair import HARMONICS, Drawn
+from fegear.design.tolerance_draws import HelixDeviation, ProfileDeviation
+from fegear.errors import FegearError
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.relief import CombinedRelief
+
+if TYPE_CHECKING:
+    from fegear.arrays import Array
+    from fegear.contact.flank import FlankCompliance, FlankGaps
+    from fegear.contact.fourier import Panels
+    from fegear.design.tolerance_draws import Deviations
+    from fegear.geometry import GearPair
+
+#: What is kept of a draw, in the order of its numbers.
+FLANK_OUTCOMES = (
+    "te_peak_to_peak", "te_mean", *(f"te_harmonic_{n}" for n in range(1, HARMONICS + 1)), "face_load_factor",
+    "hertz_pressure", "largest_line_load",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FlankBench:
+    """A pair with a width set up for deviations: small enough to be sent to other processes.
+
+    Parameters
+    ----------
+    pair : GearPair
+    known : FlankCompliance
+        At all roll positions.
+    gaps : FlankGaps
+        Of the drawing, without spacing errors.
+    points : Panels
+        The roll positions with their weights.
+    load : float
+        Along the transverse line of action [N].
+    """
+
+    pair: GearPair
+    known: FlankCompliance
+    gaps: FlankGaps
+    points: Panels
+    load: float
+
+    @property
+    def teeth(self) -> int:
+        """Teeth on either side of tooth 0 that are in reach in one base pitch."""
+        lines = self.known.lines
+        return int(np.abs(lines.pair[lines.present]).max())
+
+
+def deviated_gaps(bench: FlankBench, deviations: Deviations, row: int) -> FlankGaps:
+    """What keeps the flanks of one draw apart."""
+    pair, gaps, reliefs, flanks = bench.pair, bench.gaps, [], []
+    own = (gaps.driver_relief, gaps.driver_flank), (gaps.driven_relief, gaps.driven_flank)
+    for i, (member, (relief, over_face)) in enumerate(zip(MEMBERS, own, strict=True)):
+        low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+        off = ProfileDeviation(
+            low, high, float(deviations.profile_slope[row, i]), float(deviations.profile_form[row, i]),
+            float(deviations.waves[row, i]), float(deviations.phase[row, i]),
+        )  # fmt: skip
+        reliefs.append(CombinedRelief((relief, off)))
+        lead = HelixDeviation(float(deviations.helix_slope[row, i]), pair.gear(member).face_width)
+        flanks.append((*over_face, lead))
+    driver, driven = (deviations.spacing(row, i, pair.gear(member).teeth) for i, member in enumerate(MEMBERS))
+    return replace(
+        gaps, driver_relief=reliefs[0], driven_relief=reliefs[1], driver_flank=flanks[0], driven_flank=flanks[1],
+        driver_spacing=driver, driven_spacing=driven, base_pitch=0,
+    )  # fmt: skip
+
+
+def flank_outcomes(bench: FlankBench, gaps: FlankGaps) -> Array:
+    """What comes of a deviated pair, in the order of `FLANK_OUTCOMES`.
+
+    Parameters
+    ----------
+    bench : FlankBench
+    gaps : FlankGaps
+        From `deviated_gaps`.
+    """
+    load = np.array([bench.load])
+    contact = solve_contact(bench.known, gaps.at(bench.pair, bench.known.lines), load)
+    found = LoadedFlanks(bench.pair, bench.known, contact, load, {})
+    te = np.ascontiguousarray(found.transmission_error[:, 0])
+    points = bench.points
+    share = points.weights / points.period
+    waves = np.exp(-2j * np.pi / points.period * np.multiply.outer(np.arange(1, HARMONICS + 1), points.x))
+    amplitudes = 2.0 * np.abs((waves * (share * te)).sum(axis=1))
+    return np.array([
+        np.ptp(te), (share * te).sum(), *amplitudes, found.face_load_factor[0], found.largest_pressure[0],
+        found.largest_line_load[0],
+    ])  # fmt: skip
+
+
+def drawn_flank_outcomes(bench: FlankBench, deviations: Deviations) -> Drawn:
+    """Outcomes of every draw, each computed alone, so that its bits are the same in any company."""
+    values, reasons = np.full((len(deviations), len(FLANK_OUTCOMES)), np.nan), {}
+    for row in range(len(deviations)):
+        try:
+            values[row] = flank_outcomes(bench, deviated_gaps(bench, deviations, row))
+        except FegearError as error:
+            reasons[row] = str(error)
+    return Drawn(values, reasons)

@@ -1,0 +1,178 @@
+"""Stage ``flank-tolerance-robustness``: a pair with a width, its gears deviating inside the drawing's tolerances."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.stage import Forecast, Stage
+from fegear.errors import InputError
+from fegear.models.loaded_flanks import FLANK_EFFECTS, flanks_to_load
+from fegear.models.pair_inputs import gear_name
+from fegear.models.solid_influence import solid_gear_to_solve
+from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.sources import HERTZ
+from fegear.results.tolerance_robustness import (
+    CHUNK,
+    ToleranceData,
+    chosen_pair,
+    drawn,
+    limits_of,
+    present_draws,
+    refuse_no_tolerance,
+    together,
+    tolerance_part,
+    unclassed,
+)
+from fegear.results.tolerance_tables import OWN
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.case.robustness import TolerancePart
+    from fegear.design.deviated_flanks import FlankBench
+    from fegear.design.tolerance_draws import Deviations, Kind, Limits
+    from fegear.engine.stage import Upstream, Work
+    from fegear.models.loaded_flanks import FlanksToLoad
+
+#: Kinds that are drawn of teeth with a width unless the case names others.
+_OVER_FACE: tuple[Kind, ...] = ("profile-slope", "profile-form", "helix-slope", "pitch")
+#: Processor seconds of a draw at one roll position.
+_AT_A_POSITION = 0.001
+
+
+@dataclass(frozen=True)
+class FlankDrawInputs:
+    """What the draws of a pair with a width depend on.
+
+    Parameters
+    ----------
+    part : TolerancePart
+    asked : FlanksToLoad
+    limits : Limits
+    solved : tuple
+        What the gears' solutions depend on.
+    name : str
+        Of the pair.
+    gears : tuple of (str, str)
+    untold : tuple of str
+        Gears without a tolerance class.
+    """
+
+    part: TolerancePart
+    asked: FlanksToLoad
+    limits: Limits
+    solved: tuple[object, ...]
+    name: str = field(compare=False)
+    gears: tuple[str, str] = field(compare=False)
+    untold: tuple[str, ...] = field(compare=False)
+
+    @property
+    def load(self) -> float:
+        """[N]."""
+        return self.asked.nominal
+
+    @property
+    def own_spacing(self) -> bool:
+        """Whether the case has spacing errors, which draws replace."""
+        return self.asked.effects.spacing_errors
+
+
+@dataclass(frozen=True)
+class FlankChunk:
+    """Some draws: all that a process needs."""
+
+    inputs: FlankDrawInputs
+    bench: FlankBench
+    deviations: Deviations
+
+
+def compute_flank_chunk(chunk: FlankChunk) -> dict[str, object]:
+    """Outcomes of some draws, as plain data."""
+    from fegear.design.deviated_flanks import drawn_flank_outcomes
+    from fegear.one_thread import one_thread
+
+    with one_thread():
+        found = drawn_flank_outcomes(chunk.bench, chunk.deviations)
+    return {"values": found.values, "reasons": found.reasons}
+
+
+def flank_chunk_content(chunk: FlankChunk) -> object:
+    """All that the numbers of a chunk depend on: its own draws, not how many there are besides."""
+    return chunk.inputs.asked, chunk.inputs.solved, chunk.deviations
+
+
+def _subjects(scene: Scene) -> tuple[str, ...]:
+    return tuple(name for name in chosen_pair(scene) if name in scene.wide_pairs)
+
+
+def _check(scene: Scene, name: str) -> None:
+    part = tolerance_part(scene)
+    if part.centre_distance or "centre-distance" in (part.deviations or ()):
+        raise InputError(
+            "robustness.centre_distance", f"{part.centre_distance * 1e3:.6g} mm",
+            "is drawn of plane teeth alone: over the face every centre distance has contact lines of its own",
+            f'leave it out, or give pair.{name} width = "plane" if its gears are spur gears',
+        )  # fmt: skip
+    if part.reliefs is not None:
+        raise InputError(
+            "robustness.reliefs", "a table", "is for plane teeth",
+            "leave it out; flank-design finds reliefs over the face, for misalignment that scatters too",
+        )  # fmt: skip
+    refuse_no_tolerance(scene, name, limits_of(scene, name, _OVER_FACE))
+
+
+def _inputs(scene: Scene, name: str) -> FlankDrawInputs:
+    gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
+    solved = tuple(solid_gear_to_solve(scene, gear) for gear in dict.fromkeys(gears))
+    return FlankDrawInputs(
+        tolerance_part(scene), flanks_to_load(scene, name), limits_of(scene, name, _OVER_FACE), solved, name, gears,
+        unclassed(scene, gears),
+    )  # fmt: skip
+
+
+def _compute(inputs: FlankDrawInputs, upstream: Upstream, work: Work) -> ToleranceData:
+    from fegear.design.deviated_flanks import FLANK_OUTCOMES, FlankBench, drawn_flank_outcomes
+    from fegear.design.tolerance_draws import NO_LIMITS, draw
+    from fegear.one_thread import one_thread
+
+    part, loaded = inputs.part, loaded_flanks(upstream, inputs.name)
+    none = np.empty(0)
+    gaps = replace(loaded.gaps, driver_spacing=none, driven_spacing=none)
+    bench = FlankBench(loaded.found.pair, loaded.known, gaps, loaded.flanks.points, inputs.load)
+    deviations = draw(inputs.limits, part.draws, part.seed, bench.teeth, part.sequence, part.distribution)
+    with one_thread():
+        nominal = drawn_flank_outcomes(bench, draw(NO_LIMITS, 1, 0, bench.teeth)).values[0]
+    chunks = [
+        FlankChunk(inputs, bench, deviations.rows(slice(first, first + CHUNK))) for first in range(0, part.draws, CHUNK)
+    ]
+    values, reasons = together(drawn(compute_flank_chunk, chunks, flank_chunk_content, inputs.name, work))
+    return ToleranceData(FLANK_OUTCOMES, deviations, {OWN: values}, {OWN: nominal}, reasons, math.nan, None, ())
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    part, asked = tolerance_part(scene), flanks_to_load(scene, name)
+    chunks = math.ceil(part.draws / CHUNK)
+    return Forecast({"draws": part.draws, "chunks": chunks}, part.draws * asked.positions * _AT_A_POSITION)
+
+
+FLANK_TOLERANCE_ROBUSTNESS = Stage(
+    name="flank-tolerance-robustness",
+    title="Deviations inside the tolerances, over the face",
+    results=("robustness",),
+    about="transmission error, pressure, root stress or K_Hbeta of pairs drawn inside their tolerances",
+    subjects=_subjects,
+    needs=needs_flanks,
+    inputs=_inputs,
+    compute=_compute,
+    present=present_draws,
+    check=_check,
+    effects=FLANK_EFFECTS,
+    cites=citing(
+        Citation("iso-1328-1", "tolerances that deviations are drawn inside", "5.3, formulas (5) to (12)"), HERTZ
+    ),
+    forecast=_forecast,
+)
