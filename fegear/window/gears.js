@@ -74,8 +74,19 @@ const fegearGears = (() => {
       kept.arrows = svg("g", {}, up);
       draw();
     };
-    function loadAt(x) {
+    function overFace(k) { // load of pair k of gears with a width; after the last roll position it is the next pair's again
+      const { roll, pairs, load } = kept.sent.pressure, at = (i) => {
+        const turn = Math.floor(i / roll.length), row = pairs.indexOf(k + turn);
+        return [roll[i - turn * roll.length] + turn, row < 0 ? 0 : load[row][i - turn * roll.length]];
+      };
+      let i = roll.findIndex((one) => one > kept.place);
+      if (i < 0) i = roll.length;
+      const [before, a] = at(i - 1), [after, b] = at(i);
+      return a + (b - a) * (kept.place - before) / (after - before);
+    }
+    function loadAt(x, k) {
       const table = loadsOf.get(pair);
+      if (!table && kept.sent.pressure) return overFace(k);
       if (!table || x < table.x[0] || x > table.x[table.x.length - 1]) return null;
       let i = table.x.findIndex((one) => one > x);
       if (i < 0) i = table.x.length - 1;
@@ -96,9 +107,9 @@ const fegearGears = (() => {
       kept.driven.setAttribute("transform", `rotate(${degrees(first, d.driven_base)} 0 ${d.driven_radius * 1e3})`);
       kept.arrows.replaceChildren();
       const c = Math.cos(d.pressure_angle), s = Math.sin(d.pressure_angle), found = [];
-      const largest = Math.max(...(loadsOf.get(pair)?.load ?? [1]));
-      for (let k = -1; first + k * d.base_pitch <= d.end + d.base_pitch; k += 1) {
-        const x = first + k * d.base_pitch, load = loadAt(x), on = x >= d.start && x <= d.end;
+      const largest = Math.max(...(loadsOf.get(pair)?.load ?? kept.sent.pressure?.load.flat() ?? [1]));
+      for (let k = -6; first + k * d.base_pitch <= d.end + 6 * d.base_pitch; k += 1) {
+        const x = first + k * d.base_pitch, load = loadAt(x, k), on = x >= d.start && x <= d.end;
         if (!on && !(load > 0)) continue;
         const [px, py] = fegearLayers.contactMoved(d, layers, k, x * 1e3 * c, x * 1e3 * s);
         svg("circle", { cx: px, cy: py, r: 0.13 * kept.unit, class: "contact" }, kept.arrows);

@@ -101,6 +101,7 @@ def _pressure(data: LoadedFlanksData) -> dict[str, Any]:
     }
     return {
         "roll": _rolled(lines.roll, pair.x_start, pair.base_pitch), "positions": positions, "ends": ends,
+        "pairs": found.pair_numbers.tolist(), "load": np.round(found.share[:, :, i] * found.load[i], 3).tolist(),
         "low": lines.low * 1e3, "high": lines.high * 1e3, "limit": float(inner.max()),
     }  # fmt: skip
 
