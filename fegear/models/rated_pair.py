@@ -85,6 +85,8 @@ class PairToRate:
         Of the pair.
     gears : (str, str)
         Names of driver and driven.
+    misaligned : bool
+        Whether the case misaligns the flanks that are computed.
     """
 
     conditions: Conditions
@@ -99,6 +101,7 @@ class PairToRate:
     assumed: tuple[str, ...] = field(compare=False)
     name: str = field(compare=False)
     gears: tuple[str, str] = field(compare=False)
+    misaligned: bool = field(default=False, compare=False)
 
     def of(self, member: Member) -> int:
         """Place of driver or driven among pinion and wheel."""
@@ -174,6 +177,7 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
         conditions, pair, load, {key: value for key, value in given.items() if value is not None}, levels,
         (idler[0], idler[1]), (operation.safety_contact, operation.safety_root), life, part.width_in(pair),
         tuple(dict.fromkeys(said)), name, gears,
+        scene.case.effects.misalignment and not (part.misalignment is None and part.line_error is None),
     )  # fmt: skip
 
 
@@ -220,6 +224,9 @@ def _quality(scene: Scene, name: str, gear: str, said: list[str]) -> Quality:
     try:
         found = tolerances_of(made, grade).rounded
     except InputError as error:
+        if part.tolerance_class is None:
+            remedy = "a rating needs pitch, profile and helix tolerances, which no class has for such a gear"
+            error = type(error)(error.key, error.value, error.rule, remedy)
         raise at(f"gear.{gear}", error, {"normal_module": "module"} if not part.is_helical else None) from None
     rough = part.roughness
     flank, root = (None, None) if rough is None else (rough.flank_height, rough.root_height)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
@@ -32,6 +33,12 @@ if TYPE_CHECKING:
 
 #: R of an idler's root stress whose meshes carry alike (ISO 6336-3, annex B).
 _IDLER = -1.2
+#: Transverse contact ratio from which a plane pair has no point of single pair contact.
+_SINGLE = 2.0
+_NO_SINGLE = (
+    "plane teeth with a contact ratio of 2 and more have no single pair contact, at which their root stress would be "
+    'computed. Write width = "solid" for it.'
+)
 #: Seconds of the formulas, and of one load on computed flanks.
 _FORMULAS, _FLANKS = 0.02, 1.0
 
@@ -72,8 +79,8 @@ class RatingData:
         With what was computed in the place of formulas.
     spectrum_computed : SpectrumRating or None
     agma : AgmaRating or None
-    why_not : str
-        Why AGMA 2101 says nothing; empty where it does, or was not asked.
+    why_not : tuple of str
+        Why something that was asked for is missing.
     """
 
     formula: PairRating
@@ -83,7 +90,7 @@ class RatingData:
     by_computed: PairRating | None
     spectrum_computed: SpectrumRating | None
     agma: AgmaRating | None
-    why_not: str
+    why_not: tuple[str, ...]
 
 
 def _inputs(scene: Scene, name: str) -> RatingInputs:
@@ -132,6 +139,13 @@ def given(asked: PairToRate) -> Replacement:
 
 
 def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingData:
+    try:
+        return _rate(inputs, upstream)
+    except RangeError as error:  # a formula's own words, under the name of the pair
+        raise at(f"pair.{inputs.asked.name}", error) from None
+
+
+def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
     from fegear.formulas.iso6336.safety import rate_pair
     from fegear.formulas.iso6336.spectrum_rating import rate_spectrum, sn_curves
 
@@ -141,7 +155,8 @@ def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingDat
     levels = [(_duty(conditions, level.tangential, level.speed), level.cycles) for level in asked.levels]
     spectrum = rate_spectrum(conditions, levels, own) if levels else None
     found = by_found = spectrum_found = None
-    if inputs.computed:
+    single = asked.width != "plane" or asked.pair.contact_ratio < _SINGLE
+    if inputs.computed and single:
         found = _computed(asked, formula, upstream)
         stands = replace(found.replacement, K_v=own.K_v)
         if stands.K_Halpha is None:
@@ -149,8 +164,11 @@ def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingDat
         by_found = rate_pair(conditions, stands)
         spectrum_found = rate_spectrum(conditions, levels, stands) if levels else None
     agma, why_not = _agma(inputs)
+    reasons = [f"no rating by AGMA 2101: {why_not}"] if why_not else []
+    if inputs.computed and not single:
+        reasons.append(_NO_SINGLE)
     return RatingData(
-        formula, sn_curves(conditions, own), spectrum, found, by_found, spectrum_found, agma, why_not
+        formula, sn_curves(conditions, own), spectrum, found, by_found, spectrum_found, agma, tuple(reasons)
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -170,7 +171,7 @@ def _of_spectrum(data: RatingData, spectrum: SpectrumRating, asked: PairToRate, 
     flank, root = data.curves.contact[i], data.curves.bending[i]
     of_flank = equivalent_torque(torque, cycles, 0.5 * wohler_exponent(flank), flank.cycles[-2])
     of_root = equivalent_torque(torque, cycles, wohler_exponent(root), root.cycles[-2])
-    return [
+    found = [
         Value(f"{key}.S_H_spectrum", spectrum.contact_safety[i], "", None, "safety against pitting under the spectrum"),
         Value(f"{key}.S_F_spectrum", spectrum.bending_safety[i], "", None,
               "safety against tooth breakage under the spectrum"),
@@ -181,14 +182,21 @@ def _of_spectrum(data: RatingData, spectrum: SpectrumRating, asked: PairToRate, 
         Value(f"{key}.equivalent_torque_F", of_root, "N.m", None,
               f"torque of the driver whose {root.cycles[-2]:g} load cycles hurt the roots as the spectrum does"),
     ]  # fmt: skip
+    return [value for value in found if math.isfinite(value.si)]
 
 
 def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
     """What falls short, what lies outside a range, and what the computed safeties count."""
     told = [f"Pair {asked.name}: {_remark(one, asked)}." for one in data.formula.factors if _shown(one, asked)]
-    if data.why_not:
-        told.append(f"Pair {asked.name}: no rating by AGMA 2101: {data.why_not}")
+    told += [f"Pair {asked.name}: {reason}" for reason in data.why_not]
     found = data.spectrum
+    if found is not None:
+        told += [
+            f"Pair {asked.name}: a level of the spectrum has the {what} of gear {gear} above their static strength."
+            for what, sums in (("flanks", found.contact_damage), ("roots", found.bending_damage))
+            for member, gear in zip(MEMBERS, asked.gears, strict=True)
+            if math.isinf(sums[asked.of(member)])
+        ]
     contact = data.formula.contact_safety if found is None else found.contact_safety
     bending = data.formula.bending_safety if found is None else found.bending_safety
     under = "" if found is None else " under the spectrum"
@@ -216,7 +224,22 @@ def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
             "root stress holds load sharing, face distribution and helix already: it stands for Y_F Y_S Y_beta Y_B "
             "Y_DT K_Fbeta K_Falpha together."
         )
+        told += _aligned(data, asked)
     return tuple(dict.fromkeys(told))
+
+
+def _aligned(data: RatingData, asked: PairToRate) -> list[str]:
+    """Say what misalignment the standard counts and the computed flanks do not have."""
+    counted = [one.value for one in data.formula.factors if one.symbol == "F_betay"]
+    if asked.misaligned or not counted:
+        return []
+    gap = f"{counted[0] * 1e6:.3g} um"
+    told = (
+        f"Pair {asked.name}: the computed flanks are aligned, while ISO 6336 counts a misalignment of F_betay = {gap} "
+        f'after running in. The same for both: pair.{asked.name}.line_error = {{ over_face = "{gap}" }} and '
+        "effects.misalignment = true."
+    )
+    return [told]
 
 
 def _shown(one: Factor, asked: PairToRate) -> bool:

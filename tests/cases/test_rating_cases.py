@@ -172,3 +172,51 @@ def test_agma_stands_beside_with_its_own_stresses():
     table = next(t for t in outcome.tables if t.name == "rating_safety_I")
     assert table["method"].tolist()[-1] == "AGMA 2101-D04"
     assert np.isfinite(table["S_F_driven"]).all()
+
+
+def test_formulas_out_of_their_range_name_the_pair():
+    with pytest.raises(InputError, match=r"pair\.I\.rim thickness / tooth height"):
+        run("rating_spur", ALONE, "gear.pinion.rim_thickness='3 mm'")
+
+
+def test_levels_beyond_static_strength_are_said_and_leave_no_infinite_value():
+    outcome = run(
+        "rating_spur", ALONE, "pair.I.operation={life='1000 h', spectrum=[{load_factor=9, share=0.1}, "
+        "{load_factor=1, share=0.9}]}",
+    )  # fmt: skip
+    assert all(math.isfinite(value.value) for value in outcome.values)
+    assert any("flanks of gear pinion above their static strength" in remark for remark in outcome.remarks)
+    assert not any(name.endswith("damage_H") for name in values(outcome))
+
+
+def test_sizes_without_tolerances_are_refused_with_a_remedy_that_helps():
+    small = "module='0.3 mm', face_width='5 mm', strength={material='case-hardened-steel'}"
+    with pytest.raises(InputError, match="a rating needs pitch, profile and helix tolerances"):
+        run(
+            "rating_spur", ALONE, f"gear.pinion={{teeth=21, {small}}}", f"gear.wheel={{teeth=62, {small}}}",
+        )  # fmt: skip
+
+
+@pytest.mark.long
+def test_computed_flanks_count_each_factor_once():
+    """Solved flanks: the root stress is that of the solved load, K_Hbeta that of load-distribution at the same load."""
+    operation = "pair.I.operation={life='20000 h', dynamic_factor=1.0}"
+    settings = (
+        operation, "rating.beside='computed'", "pair.I.width='slices'", "effects.hertz='load-dependent'",
+        "accuracy.tolerance=1e-2", "load_distribution.positions=8",
+        "pair.I.line_error={over_face='20 um'}", "effects.misalignment=true",
+    )  # fmt: skip
+    scene = read_scene(
+        CASES / "rating_spur.toml", ["results=['rating', 'load-distribution', 'root-stress-history']", *settings]
+    )
+    done = run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
+    found = {value.name: value for value in done.values}
+    # With K_A = K_v = 1 the rating's load is the case's.
+    assert found["I.K_Hbeta_computed"].value == pytest.approx(found["I.K_Hbeta"].value, rel=1e-9)
+    assert found["I.K_Hbeta_computed"].value > 1.1
+    table = next(t for t in done.tables if t.name == "rating_I")
+    stress = dict(zip(table["symbol"].tolist(), table["driver_computed"].tolist(), strict=True))
+    largest = max(
+        v.value for name, v in found.items() if "pinion" in name or "driver" in name if name.endswith("root_tension")
+    )
+    assert stress["sigma_F"] == pytest.approx(largest, rel=1e-2)
