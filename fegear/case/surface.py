@@ -20,6 +20,9 @@ from fegear.case.part import (
 #: R_z is about this many R_a where only one of them is given (ISO 6336-2 and ISO/TS 6336-22 use the same ratio).
 RZ_PER_RA = 6.0
 
+#: Oils thinner than this at 40 degC [m^2/s] are none whose viscosity at 100 degC could be guessed.
+_THIN = 7e-6
+
 #: Base oils that ISO/TS 6336-20, -21 and -22 tell apart.
 OilKind = Literal[
     "mineral",
@@ -111,6 +114,11 @@ class LubricantPart(Part):
     def _thinner_when_hot(self) -> Self:
         if self.viscosity_100 is not None and self.viscosity_100 >= self.viscosity_40:
             raise refuse("must be below viscosity_40: oil thins as it warms", "check both", key="viscosity_100")
+        if self.viscosity_100 is None and self.viscosity_40 < _THIN:
+            raise refuse(
+                "is needed for so thin an oil: no usual gear oil tells how it thins", "give viscosity_100",
+                key="viscosity_100", value="(not given)",
+            )  # fmt: skip
         if self.viscosity_40 < 2e-6 or (self.viscosity_100 or 2e-6) < 2e-6:
             key = "viscosity_40" if self.viscosity_40 < 2e-6 else "viscosity_100"
             raise refuse("is below 2 mm^2/s, where the viscosity law of ASTM D341 does not hold", "check it", key=key)

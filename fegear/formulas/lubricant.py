@@ -46,6 +46,8 @@ _SUMMAND = 0.7
 _WARM, _HOT, _ZERO, _ISO_ZERO = 40.0, 100.0, 273.15, 273.0
 #: Thinner than this the law does not hold [mm^2/s].
 _THINNEST = 0.2
+#: Hotter than this there is no oil [degC], and ISO's straight lines would make its density and alpha negative.
+HOTTEST = 350.0
 
 
 @dataclass(frozen=True)
@@ -94,13 +96,13 @@ class Oil:
         )  # fmt: skip
         first, last = math.log10(_WARM + _ZERO), math.log10(_HOT + _ZERO)
         slope = (warm - hot) / (last - first)
-        kelvin = np.maximum(np.asarray(temperature, dtype=float) + _ZERO, 1.0)
+        kelvin = np.maximum(_of_oil(temperature) + _ZERO, 1.0)
         nu = 10.0 ** (10.0 ** (warm + slope * (first - np.log10(kelvin)))) - _SUMMAND
         return np.asarray(np.maximum(nu, _THINNEST) * 1e-6)
 
     def density(self, temperature: ArrayLike) -> Array:
         """Density [kg/m^3] at temperatures [degC] (ISO/TR 15144-1, Formula 20): 0.7 kg/m^3 less for every degree."""
-        return np.asarray(self.density_15 - 0.7 * (np.asarray(temperature, dtype=float) + _ISO_ZERO - 289.0))
+        return np.asarray(self.density_15 - 0.7 * (_of_oil(temperature) + _ISO_ZERO - 289.0))
 
     def dynamic(self, temperature: ArrayLike) -> Array:
         """Dynamic viscosity [Pa s] at temperatures [degC] (Formula 16)."""
@@ -110,8 +112,13 @@ class Oil:
         """Pressure-viscosity coefficient alpha [1/Pa] at temperatures [degC] (Formulae 8 to 11)."""
         first, power = _PRESSURE_VISCOSITY.get(self.kind, _PRESSURE_VISCOSITY["mineral"])
         at_38 = first * float(self.dynamic(38.0)) ** power
-        kelvin = np.asarray(temperature, dtype=float) + _ISO_ZERO
+        kelvin = _of_oil(temperature) + _ISO_ZERO
         return np.asarray(at_38 * (1.0 + 516.0 * (1.0 / kelvin - 1.0 / 311.0)))
+
+
+def _of_oil(temperature: ArrayLike) -> Array:
+    """Temperatures that an oil can have: hotter ones count as the hottest [degC]."""
+    return np.minimum(np.asarray(temperature, dtype=float), HOTTEST)
 
 
 #: A power through kinematic viscosities of mineral gear oils at 100 over those at 40 degC [mm^2/s].

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
+from fegear.errors import InputError, RangeError
 from fegear.geometry.pair import MEMBERS
 from fegear.models.train import build_train, train_inputs
 
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: Tolerance class of flanks whose class the case does not give, and their roughness [m].
 _CLASS = 6
+#: c' and c_gamma of steel gears where the series of ISO 6336-1 does not hold [Pa].
+_USUAL_STIFFNESS = (14e9, 20e9)
 
 
 @dataclass(frozen=True)
@@ -229,21 +231,50 @@ def pair_friction(scene: Scene, name: str, wanted_by: str) -> PairFriction:
 
 
 def load_factors(scene: Scene, name: str) -> tuple[LoadFactors, tuple[str, ...]]:
-    """K_A K_gamma, K_v, K_Hbeta and K_Halpha as `operation` gives them; 1 with a remark where it does not."""
+    """K_A K_gamma, K_v, K_Hbeta and K_Halpha.
+
+    As `operation` gives them, else by ISO 6336-1 where both gears have a `strength`, on which running in depends; else
+    1, with a remark.
+    """
     from fegear.formulas.iso6336.rated_surface import LoadFactors
 
-    given = scene.case.pair[name].operation
+    part = scene.case.pair[name]
+    given = part.operation
     found = {
         "K_v": given.dynamic_factor, "K_Hbeta": given.face_load_factor, "K_Halpha": given.transverse_load_factor
     }  # fmt: skip
     missing = [key for key, value in found.items() if value is None]
     remarks: tuple[str, ...] = ()
+    if missing and all(scene.case.gear[gear].strength is not None for gear in (part.driver, part.driven)):
+        by_standard, remarks = _by_iso_6336(scene, name, missing)
+        found |= by_standard
+        missing = [key for key in missing if key not in by_standard]
     if missing:
         names = ", ".join(missing)
-        keys = "dynamic_factor, face_load_factor and transverse_load_factor"
-        remarks = (f"Pair {name}: {names} count as 1 for the surface; operation gives others by {keys}.",)
+        told = (
+            f"Pair {name}: {names} count as 1 for the surface; ISO 6336-1 gives them where both gears have a strength, "
+            "operation by dynamic_factor, face_load_factor and transverse_load_factor."
+        )
+        remarks = (*remarks, told)
     dynamic, face, transverse = (value or 1.0 for value in found.values())
     return LoadFactors(given.application_factor * given.mesh_load_factor, dynamic, face, transverse), remarks
+
+
+def _by_iso_6336(scene: Scene, name: str, wanted: list[str]) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Load factors of ISO 6336-1, as a rating has them, and what they assume; none outside its range."""
+    from fegear.formulas.iso6336.pair_rating import Replacement
+    from fegear.formulas.iso6336.safety import rate_pair
+    from fegear.models.rated_pair import pair_to_rate
+
+    if scene.case.pair[name].speed is None:  # that of a train is not known to a rating
+        return {}, ()
+    asked = pair_to_rate(scene, name)
+    own = Replacement(K_v=asked.given.get("K_v"), K_Halpha=asked.given.get("K_Halpha"))
+    try:
+        rating = rate_pair(asked.conditions, own)
+    except RangeError as error:
+        return {}, (f"Pair {name}: no load factors of ISO 6336-1: {error}",)
+    return {key: max(rating[key].values) for key in wanted}, tuple(one for one in asked.assumed if "shafts" in one)
 
 
 def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0, 0.0)) -> PairSurface:
@@ -283,11 +314,16 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
         told.append(f"Pair {name}: flanks without flank_treatment count as through-hardened, X_W = 1.")
     if oil.viscosity_100 is None:
         told.append(f"Pair {name}: viscosity_100 of the oil is that of a mineral oil of viscosity index 95.")
-    stiffness = pair_stiffness(pair, factors.application * load / pair.face_width)
+    single, mesh = _USUAL_STIFFNESS
+    try:
+        stiffness = pair_stiffness(pair, factors.application * load / pair.face_width)
+        single, mesh = stiffness.single, stiffness.mesh_alpha
+    except RangeError as error:
+        told.append(f"Pair {name}: c' = 14 and c_gamma = 20 N/(mm um), as ISO 6336-1 has no value here: {error}")
     rated = RatedSurface(
         pair, pair_speed(scene, name), load, factors, surface, SUPPLY_FACTOR[oil.supply],
         min(STRUCTURE_FACTOR[gear.flank_treatment or "through-hardened"] for gear in gears), tip_relief,
-        stiffness.single, stiffness.mesh_alpha, max(one or _CLASS for one in classes),
+        single, mesh, max(one or _CLASS for one in classes),
     )  # fmt: skip
     tests = OilTests(
         oil.scuffing_load_stage, oil.scuffing_temperature, oil.micropitting_load_stage, oil.micropitting_temperature,

@@ -185,7 +185,13 @@ def surface_values(name: str, data: FlankSurfaceData, asked: PairSurface) -> tup
         ]  # fmt: skip
     if data.integral is not None and not math.isnan(data.scuffing_integral):
         safety = part21_integral.safety(data.scuffing_integral, data.integral.integral)
-        found.append(Value(f"{name}.S_intS_iso", safety, "", None, "against scuffing by the integral temperature"))
+        heat = c.mean_flash if asked.friction else c.mean_flash * data.integral.friction / data.flash.friction
+        own = part21_integral.computed_integral(asked.rated, heat)
+        found += [
+            Value(f"{name}.S_intS", part21_integral.safety(data.scuffing_integral, own), "", None,
+                  "against scuffing by the mean flash temperature, computed load"),
+            Value(f"{name}.S_intS_iso", safety, "", None, "against scuffing by the integral temperature"),
+        ]  # fmt: skip
     if not math.isnan(data.permissible_film):
         found += [
             Value(f"{name}.S_lambda", c.least_ratio / data.permissible_film, "", None,

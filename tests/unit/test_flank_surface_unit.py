@@ -186,3 +186,19 @@ def test_flanks_with_a_width_tend_to_the_plane_and_carry_the_whole_load():
     assert np.nanmax(path["flash_temperature_mean"]) < np.nanmax(path["flash_temperature"])
     assert wide["largest_contact_temperature"] == pytest.approx(plane["largest_contact_temperature"], rel=0.25)
     assert "surface_map_I" in [figure.name for figure in found.figures]
+
+
+def test_load_factors_come_from_iso_6336_where_gears_have_a_strength():
+    """K_v, K_Hbeta and K_Halpha are those of the rating; without a strength they count as 1, and a note says so."""
+    plain, without = numbers("flank-surface")
+    assert any("count as 1 for the surface" in remark for remark in without.remarks)
+    gear = {"strength": {"material": "case-hardened-steel"}, "tolerance_class": 8}
+    values, found = numbers("flank-surface", gear=gear)
+    assert not any("count as 1 for the surface" in remark for remark in found.remarks)
+    table = columns(found, "surface_factors_I")
+    factors = dict(zip(table["factor"].tolist()[:4], table["value"].tolist()[:4], strict=True))
+    assert min(factors["K_v"], factors["K_Hbeta"], factors["K_Halpha"]) > 1.0
+    assert values["S_B_iso"] < plain["S_B_iso"]
+    given, told = numbers("flank-surface", gear=gear, operation={"dynamic_factor": 1.5})
+    assert columns(told, "surface_factors_I")["value"][1] == 1.5
+    assert given["S_B"] < values["S_B"]

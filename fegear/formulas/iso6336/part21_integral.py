@@ -174,6 +174,18 @@ def relief_factor(rated: RatedSurface, one: float, two: float, *, pinion_drives:
     return 1.0 + (0.06 + 0.18 * part) * e + (0.02 + 0.69 * part) * e * e
 
 
+def computed_integral(rated: RatedSurface, mean_flash: float) -> float:
+    """theta_int with a mean flash temperature that was computed over the path, in place of the tip's [degC].
+
+    Parameters
+    ----------
+    rated : RatedSurface
+    mean_flash : float
+        With the friction coefficient of this method [K].
+    """
+    return rated.surface.temperature + (_BULK * rated.supply + _WEIGHT) * mean_flash
+
+
 def scuffing_integral_temperature(rated: RatedSurface, load_stage: int) -> float:
     """theta_intS from the failure load stage of the test FZG A/8.3/90 [degC] (Eqs. 94 to 97, 102)."""
     torque, oil = _TEST_TORQUE * load_stage**2, rated.surface.oil
