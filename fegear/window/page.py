@@ -70,7 +70,7 @@ class Page:
         ui.on("design", lambda event: self._by_hand(lambda: bench.design(**event.args)))
         ui.on("shows", lambda event: bench.show(**event.args))
         ui.on("sight", lambda event: bench.see(event.args["tasks"]))
-        self._client.run_javascript(f"fegear.begin({json.dumps(template())})")
+        self._client.run_javascript(f"fegear.begin({json.dumps(template())}, {_AT + '/plotly.js'!r})")
         self._client.on_delete(bench.listen(self._hear))
         self._client.on_delete(self._forget)
         self._lay()
@@ -147,6 +147,6 @@ def show(bench: Bench) -> None:
     _serve_files()
     for name in ("page.css", "window.css"):
         ui.add_head_html(f'<link rel="stylesheet" href="{_AT}/{name}">')
-    for name in ("plotly.js", "figure.js", "window.js", "layers.js", "gears.js", "hands.js"):
+    for name in ("figure.js", "window.js", "layers.js", "gears.js", "hands.js"):
         ui.add_head_html(f'<script src="{_AT}/{name}"></script>')
     Page(bench)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import secrets
 import socket
+import sys
 import threading
 import webbrowser
 from typing import TYPE_CHECKING
@@ -13,10 +15,12 @@ from fegear.window.bench import Bench
 from fegear.window.doorkeeper import Doorkeeper
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
 HOST = "127.0.0.1"
+#: What the web server's library imports for clients that this server has none of.
+_CLIENTS = ("aiohttp", "requests")
 #: What `fegear open` needs beside fegear.
 EXTRA = "fegear open needs NiceGUI; install it with: pip install 'fegear[workbench]'"
 
@@ -38,6 +42,19 @@ def free_port(wanted: int | None) -> int:
                 "--port", wanted, f"cannot be listened on ({error})", "leave it out to have a free one chosen"
             ) from None
         return int(probe.getsockname()[1])
+
+
+@contextlib.contextmanager
+def _without_clients() -> Iterator[None]:
+    """Import without libraries that ask other servers for something: optional, and a third of the time."""
+    absent = [name for name in _CLIENTS if name not in sys.modules]
+    sys.modules.update(dict.fromkeys(absent))  # type: ignore[arg-type]
+    try:
+        yield
+    finally:
+        for name in absent:
+            if sys.modules.get(name) is None:
+                sys.modules.pop(name, None)
 
 
 def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[str], None]) -> None:
@@ -63,10 +80,11 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
     port, secret = free_port(port), secrets.token_urlsafe(24)
     address = f"http://{HOST}:{port}/?key={secret}"
     bench = Bench(case)
-    try:
-        import nicegui
-    except ImportError:
-        raise MissingLibraryError(EXTRA) from None
+    with _without_clients():
+        try:
+            import nicegui
+        except ImportError:
+            raise MissingLibraryError(EXTRA) from None
     from nicegui import ui
 
     from fegear.window.page import show

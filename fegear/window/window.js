@@ -46,7 +46,16 @@ const fegear = (() => {
     return sections.get(task);
   }
 
+  // plotly.js is large: it is fetched once the form can be used, and figures wait for it.
+  let fetched = null;
+  const plotly = new Promise((there) => { fetched = there; });
+  function fetchPlotly(address) {
+    const script = Object.assign(made("script"), { src: address, onload: fetched });
+    requestAnimationFrame(() => setTimeout(() => document.head.append(script)));
+  }
+
   async function paint(kept, key) { // one figure, in the shades of the ground
+    await plotly;
     const spec = kept.specs.get(key), mode = fegearFigure.theme();
     const host = kept.element.querySelector(".figures");
     let figure = [...host.children].find((one) => one.dataset.key === key);
@@ -216,5 +225,5 @@ const fegear = (() => {
   addEventListener("keydown", (event) => {
     if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); emitEvent("save"); }
   });
-  return { hear, begin(look) { template = look; document.documentElement.dataset.ready = "yes"; } };
+  return { hear, begin(look, address) { template = look; document.documentElement.dataset.ready = "yes"; fetchPlotly(address); } };
 })();
