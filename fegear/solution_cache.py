@@ -90,6 +90,10 @@ class SolutionCache:
         self._used: set[str] = set()
         self._arrays: dict[str, dict[int, int]] = {}
 
+    def __contains__(self, key: str) -> bool:
+        """Whether a solution is in memory."""
+        return key in self._memory
+
     def begin(self) -> None:
         """Start a stretch of work: what is computed in it and used again in it does not count as recalled."""
         self._new.clear()

@@ -217,6 +217,11 @@ def _refuse_one_name_for_two(done: Mapping[Task, _Finished], task: Task) -> None
                 )  # fmt: skip
 
 
+def key_without_needs(scene: Scene, step: Step) -> str:
+    """Under which the result of a task that needs no other is known."""
+    return content_key(step.stage.name, step.stage.inputs(scene, step.task.subject), [])
+
+
 def _finish(scene: Scene, step: Step, done: Mapping[Task, _Finished], work: Work) -> _Finished:
     started = time.perf_counter()
     work.cache.begin()

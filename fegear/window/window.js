@@ -37,7 +37,7 @@ const fegear = (() => {
     if (!sections.has(task)) {
       const element = made("section", "task");
       element.dataset.task = task;
-      element.append(made("h2"), made("div", "figures"), made("div", "stills"), made("div", "numbers"));
+      element.append(made("h2"), made("p", "draft"), made("div", "figures"), made("div", "stills"), made("div", "numbers"));
       element.hidden = true;
       $("results").append(element);
       sight.observe(element);
@@ -101,11 +101,12 @@ const fegear = (() => {
       for (const element of wanted) element.classList.add("stale");
       if (wanted.some((element, i) => host.children[i] !== element)) host.append(...wanted);
     },
-    async found({ task, title, values, figures, darker, loads }) {
+    async found({ task, title, values, figures, darker, loads, draft }) {
       const kept = section(task);
       if (loads) fegearGears.loads(loads);
       kept.darker = darker;
       kept.element.querySelector("h2").textContent = title;
+      kept.element.querySelector(".draft").textContent = draft ?? "";
       kept.element.querySelector(".numbers").innerHTML = values; // made and escaped by the report's own templates
       kept.element.hidden = !values && !figures.length;
       const keys = figures.map((one) => one.key);

@@ -13,6 +13,7 @@ from fegear.results.loaded_pair import LoadedPairData
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
 from fegear.window.designs import design_asked, designed
+from fegear.window.drafted import TOLERANCE, draft_of, wants_draft
 from fegear.window.gears import wanted_on_gears
 from fegear.window.hands import hands_of
 from fegear.window.harris import HarrisMaps, load_now_of
@@ -30,8 +31,7 @@ if TYPE_CHECKING:
     from fegear.engine.plan import Plan
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
-    from fegear.window.jobs import Asked, Job
-
+from fegear.window.jobs import Asked, Job
 
 #: For so long a computation goes on while a value is being moved [s].
 _STROKE = 1.5
@@ -159,10 +159,25 @@ class Worker:
             for content in () if asked.moving else at_once_told:
                 self._say("meshed", **content)
             self._on_gears = {task: data for task, data in self._on_gears.items() if str(task) in tasks}
+            self._draft(asked, scene, plan)
         return run_plan(
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,
         )  # fmt: skip
+
+    def _draft(self, asked: Asked, scene: Scene, plan: Plan) -> None:
+        """Tell a first answer where a gear has to be solved anew."""
+        from fegear.engine.run import run_plan
+
+        if asked.moving or not wants_draft(scene, plan, self._cache):
+            return
+        coarser = TOLERANCE / scene.case.accuracy.tolerance
+        rough = scene_of(asked._replace(loosened=asked.loosened * coarser, moving=True))
+        if (draft := draft_of(scene, rough, plan, self._cache)) is not None:
+            run_plan(
+                rough, draft.plan, self, cache=self._cache,
+                found=lambda task, outcome: self._found(rough, draft.plan, task, outcome, draft.told),
+            )  # fmt: skip
 
     def _compute(self, asked: Asked) -> None:
         started = time.perf_counter()
@@ -178,7 +193,7 @@ class Worker:
             self._say("harris", pairs=self._maps.at_rest(results))
             self._pictures(results)
 
-    def _found(self, scene: Scene, plan: Plan, task: Task, outcome: Outcome) -> None:
+    def _found(self, scene: Scene, plan: Plan, task: Task, outcome: Outcome, draft: str = "") -> None:
         from fegear.engine.figure import Figure
         from fegear.output.draw_plotly import darker, plotly_json
         from fegear.output.report.blocks import Values
@@ -198,12 +213,15 @@ class Worker:
                 {"key": one.key, "heading": one.heading, "caption": one.caption, **plotly_json(one)} for one in figures
             ],
             "darker": darker(figures),
+            "draft": draft,
             "loads": None if loads is None else {
                 "pair": task.subject, "x": loads.column("x").si.tolist(), "load": loads.column("load").si.tolist(),
             },
         }  # fmt: skip
         if (news := self._sent.news(found)) is not None:
             self._say("found", **news)
+        if draft:
+            return
         if self._on_gears.get(task) is not outcome.data and (shown := on_the_gears(task, outcome.data)) is not None:
             self._on_gears[task] = outcome.data  # what is recalled is on the page already
             self._say("meshed", **shown)

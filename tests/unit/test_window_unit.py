@@ -21,7 +21,7 @@ from fegear.case.keys import flat
 from fegear.case.reading import read_scene
 from fegear.drafts import KINDS, Answers, draft
 from fegear.engine.plan import make_plan
-from fegear.engine.run import run_plan
+from fegear.engine.run import key_without_needs, run_plan
 from fegear.errors import InputError
 from fegear.output.report.blocks import Values
 from fegear.output.report.rendering import fragment
@@ -36,6 +36,7 @@ from fegear.window.case_text import value_at
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.doorkeeper import Doorkeeper
+from fegear.window.drafted import draft_of, wants_draft
 from fegear.window.form import fields, fields_told, form, tables_to_add
 from fegear.window.hands import hands_of
 from fegear.window.harris import HarrisMaps
@@ -571,6 +572,43 @@ def test_answers_come_before_what_is_in_sight_and_that_before_the_rest(tmp_path)
 def _count(most):
     while most:
         most -= 1
+
+
+def test_a_gear_that_has_to_be_solved_anew_is_answered_by_a_draft_first(tmp_path):
+    text = TEXT.replace("weber-banaschek", "fe")
+
+    def draft(text, *known):
+        asked = Asked(text, "c", str(tmp_path))
+        scene, rough = scene_of(asked), scene_of(asked._replace(loosened=30.0, moving=True))
+        plan, cache = make_plan(scene, STAGES), SolutionCache()
+        for one in known:
+            step = next(step for step in make_plan(one, STAGES).steps if step.stage.name == "gear-solution")
+            cache.solve(key_without_needs(one, step), lambda: "solved")
+        return draft_of(scene, rough, plan, cache) if wants_draft(scene, plan, cache) else None
+
+    found = draft(text)
+    assert [step.task.stage for step in found.plan.steps] == ["gear-solution", "loaded-pair", "load-sharing"]
+    assert found.scene.case.accuracy.tolerance == pytest.approx(0.03)
+    assert not found.scene.estimates
+    assert found.told == "Draft at tolerance 0.03, errors not estimated; that at 0.001 follows."
+    scene = scene_of(Asked(text, "c", str(tmp_path)))
+    assert draft(text, scene) is None  # the gear is known, as where only the load changes
+    assert draft(text, scene_of(Asked(text.replace("28", "29"), "c", str(tmp_path)))) is not None
+    assert draft(TEXT) is None  # a formula needs none
+    assert draft(f"{text}[accuracy]\ntolerance = 0.01\n") is None
+
+
+@pytest.mark.long
+def test_a_draft_is_told_as_one_and_replaced(computing, tmp_path):
+    made, heard = computing
+    made.ask(Compute(70, Asked(TEXT.replace("weber-banaschek", "fe"), "c", str(tmp_path))))
+    heard.until(70, "done")
+    drafts = [
+        bool(said.content["draft"])
+        for said in heard.all
+        if said.number == 70 and said.what == "found" and said.content["task"] == "load-sharing of I"
+    ]
+    assert drafts == [True, False]
 
 
 def test_what_is_no_longer_wanted_is_given_up_between_two_steps_of_a_long_computation():
