@@ -126,7 +126,7 @@ def _in_gear(pair: GearPair, member: Member, one: MovedOutline) -> Array:
         placed_in_mesh(pair, member, one.displacement[:, t].transpose(1, 0, 2), j, moved=True).transpose(1, 0, 2)
         for t, j in enumerate(one.pairs.tolist())
     ]
-    return np.stack(parts, axis=1)
+    return np.stack(parts, axis=1).astype(np.float32)
 
 
 def _needs_motion(scene: Scene, name: str) -> tuple[Task, ...]:

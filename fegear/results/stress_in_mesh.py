@@ -17,7 +17,7 @@ from fegear.models.root_stress_source import FINITE_ELEMENTS, root_stress_source
 from fegear.results import forecasts
 from fegear.results.drawn_pair import placed_in_mesh
 from fegear.results.gear_solution import solution_of
-from fegear.results.gears_in_mesh import mesh_inputs, needs_mesh
+from fegear.results.gears_in_mesh import mesh_inputs, needs_mesh, picture_positions
 from fegear.results.loaded_pair import EFFECTS, loaded_pair, plane_pairs
 from fegear.results.sources import RING
 from fegear.results.transmission_error import POSITIONS
@@ -81,7 +81,7 @@ class FilletStress(ReadOnlyArrays):
 
 @dataclass(frozen=True)
 class StressInMeshData:
-    """Root stress of both gears in mesh at P roll positions.
+    """Root stress of both gears in mesh at P roll positions; the largest is of all that `root-stress-history` has.
 
     Parameters
     ----------
@@ -126,7 +126,13 @@ def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshD
             places[side] = np.stack([placed_in_mesh(pair, member, own, j) for j in pairs.tolist()])
             stress[side] = np.stack(teeth, axis=1)
         gears[member] = FilletStress(places, stress)
-    return StressInMeshData(pair, state.x, pairs, gears, _largest(state.x, pairs, gears, solved, asked))
+    largest = _largest(state.x, pairs, gears, solved, asked)
+    few = picture_positions(state.x, pair.base_pitch, largest.roll)
+    drawn = {
+        member: FilletStress(one.places, {side: all_of[few].astype(np.float32) for side, all_of in one.stress.items()})
+        for member, one in gears.items()
+    }
+    return StressInMeshData(pair, state.x[few], pairs, drawn, largest)
 
 
 def _largest(

@@ -171,14 +171,18 @@ const fegearLayers = (() => {
     }
   }
 
-  function contactMoved(d, { deformed, factor, place }, pair, x, y) { // where a contact stands on the deformed driven gear [mm]
+  function contactMoved(d, { deformed, factor, place }, pair, x, y, member = "driven") { // where a contact stands on a deformed gear [mm]
     const t = deformed ? deformed.pairs.indexOf(pair) : -1;
     if (t < 0) return [x, y];
-    const centre = d.driven_radius * 1e3, turn = (d.start + place * d.base_pitch) / d.driven_base, c = Math.cos(turn), s = Math.sin(turn);
-    const rest = [[c * x + s * (y - centre)], [c * (y - centre) - s * x + centre]];
-    const [[n, far]] = besides(deformed, "driven", pair, rest), move = mover(deformed, "driven", factor, place);
-    const [ux, uy] = [0, 1].map((i) => move(t, i, n) * (1 - far) + move(t, i, n + 1) * far);
-    return [x + c * ux - s * uy, y + s * ux + c * uy];
+    const driver = member === "driver", base = driver ? d.driver_base : d.driven_base;
+    const centre = driver ? -d.driver_radius * 1e3 : d.driven_radius * 1e3, turn = (driver ? -1 : 1) * (d.start + place * d.base_pitch) / base;
+    const turned = (u, v, angle) => [Math.cos(angle) * u - Math.sin(angle) * v, Math.sin(angle) * u + Math.cos(angle) * v];
+    const [u, v] = turned(x, y - centre, -turn), move = mover(deformed, member, factor, place);
+    const [[n, far]] = besides(deformed, member, pair, [[u], [v + centre]]);
+    const [du, dv] = [0, 1].map((i) => move(t, i, n) * (1 - far) + move(t, i, n + 1) * far);
+    const ahead = driver ? factor * aheadAt(deformed, place) / (base * 1e3) : 0;
+    const [px, py] = turned(u + du, v + dv, turn - ahead);
+    return [px, py + centre];
   }
 
   // ---- flanks --------------------------------------------------------------------------------------------------------

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from fegear.results.loaded_flanks import LoadedFlanksData
     from fegear.results.stress_in_mesh import StressInMeshData
 
-#: Roll positions stand so far apart at least, jumps and the largest value excepted [base pitches].
-_STEP = 0.019
 #: Points along a fillet that are coloured.
 _POINTS = 25
 #: Largest number of sixteen bits.
@@ -44,15 +42,14 @@ def on_the_gears(task: Task, data: Any) -> dict[str, Any] | None:
 
 def _stress(data: StressInMeshData) -> dict[str, Any]:
     pitch, largest = data.pair.base_pitch, data.largest
-    few = _few(data.roll, pitch, (largest.roll,))
     fillets = []
     for member, gear in data.gears.items():
         for side, places in gear.places.items():
-            at, values = _along(places, gear.stress[side][few])
+            at, values = _along(places, gear.stress[side])
             fillets.append({"member": member, "places": millimetres(at), "stress": packed(values * 1e-6)})
     limit = max(float(np.abs(s).max()) for gear in data.gears.values() for s in gear.stress.values())
     return {
-        "roll": _rolled(data.roll[few], data.pair.x_start, pitch), "pairs": data.pairs.tolist(), "fillets": fillets,
+        "roll": _rolled(data.roll, data.pair.x_start, pitch), "pairs": data.pairs.tolist(), "fillets": fillets,
         "limit": limit * 1e-6,
         "largest": {
             "value": largest.value * 1e-6, "member": largest.member, "pair": largest.pair, "roll": largest.roll * 1e3,
@@ -63,16 +60,15 @@ def _stress(data: StressInMeshData) -> dict[str, Any]:
 
 
 def _deformed(data: DeformedInMeshData) -> dict[str, Any]:
-    few = _few(data.roll, data.pair.base_pitch, ())
     module = data.pair.driver.module
     return {
-        "roll": _rolled(data.roll[few], data.pair.x_start, data.pair.base_pitch),
+        "roll": _rolled(data.roll, data.pair.x_start, data.pair.base_pitch),
         "pairs": data.pairs.tolist(),
-        "ahead": np.round(data.transmission_error[few] * 1e3, 8).tolist(),
+        "ahead": np.round(data.transmission_error * 1e3, 8).tolist(),
         "largest": data.largest * 1e6,
         "factor": _round_factor(_DRAWN * module / data.largest) if data.largest > 0.0 else 1.0,
         "gears": {
-            member: {"places": millimetres(data.places[member]), "moved": packed(data.moved[member][few] * 1e3)}
+            member: {"places": millimetres(data.places[member]), "moved": packed(data.moved[member] * 1e3)}
             for member in data.places
         },
     }
@@ -123,17 +119,6 @@ def _rolled(roll: Array, start: float, pitch: float) -> list[float]:
     """Roll positions as parts of the base pitch."""
     found: list[float] = np.round((roll - start) / pitch, 8).tolist()
     return found
-
-
-def _few(roll: Array, pitch: float, kept: tuple[float, ...]) -> Array:
-    """Numbers of the roll positions that are sent: evenly, both sides of every jump, and those that are kept."""
-    chosen = [0]
-    jump = np.diff(roll) < 1e-5 * pitch
-    for i in range(1, roll.size):
-        beside = jump[i - 1] or (i < roll.size - 1 and jump[i])
-        if beside or i == roll.size - 1 or roll[i] in kept or roll[i] - roll[chosen[-1]] >= _STEP * pitch:
-            chosen.append(i)
-    return np.array(chosen)
 
 
 def _along(places: Array, stress: Array) -> tuple[Array, Array]:

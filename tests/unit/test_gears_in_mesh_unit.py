@@ -59,7 +59,7 @@ def test_colours_of_the_fillets_are_the_root_stress_through_the_mesh(ran):
             near = np.abs(x[:, None] - own[on]).argmin(axis=0)
             assert np.abs(x[near] - own[on]).max() < 1e-12
             np.testing.assert_allclose(
-                found.gears[member].stress["tension"][on, t].max(axis=1), largest[near], rtol=1e-12
+                found.gears[member].stress["tension"][on, t].max(axis=1), largest[near], rtol=1e-6
             )
     value = max(ran.values[f"I.{member}.largest_root_tension"].si for member in MEMBERS)
     assert found.largest.value == pytest.approx(value, rel=1e-12)
@@ -67,7 +67,7 @@ def test_colours_of_the_fillets_are_the_root_stress_through_the_mesh(ran):
     one = found.gears[found.largest.member]
     p, t = np.flatnonzero(found.roll == found.largest.roll)[0], list(found.pairs).index(found.largest.pair)
     at = one.stress["tension"][p, t].argmax()
-    assert one.stress["tension"][p, t, at] == found.largest.value
+    assert one.stress["tension"][p, t, at] == pytest.approx(found.largest.value, rel=1e-6)
     np.testing.assert_array_equal(one.places["tension"][t, :, at], found.largest.place)
     # Compression lies on the other fillet of the same tooth: on its other side.
     middle = placed_in_mesh(found.pair, "driver", np.array([[0.0], [3e-2]]), 0)
