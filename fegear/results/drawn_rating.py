@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 #: First and last load cycles that are drawn.
 _FIRST, _LAST = 1e2, 1e11
 _MPA = 1e-6
+#: Ends of the axis of gears, with room for the word of what is required beside the bars.
+_ROOM = (-0.55, 1.85)
 
 
 def rating_figures(data: RatingData, asked: PairToRate) -> tuple[Figure, ...]:
@@ -42,7 +44,7 @@ def _safeties(data: RatingData, asked: PairToRate) -> Figure:
                 Bars(np.arange(2.0), height, method.name, f"series:{number}", error * height if known else None)
             )
         mark = Mark("y", least, f"required {least:g}")
-        panels.append(Panel(Axis(categories=names), Axis(label, zero=True), tuple(items), (mark,)))
+        panels.append(Panel(Axis(categories=names, limits=_ROOM), Axis(label, zero=True), tuple(items), (mark,)))
     caption = (
         f"Safeties of pair {asked.name} against pitting and tooth breakage by every method; the dotted line is what is "
         "required."

@@ -197,6 +197,18 @@ def test_sizes_without_tolerances_are_refused_with_a_remedy_that_helps():
         )  # fmt: skip
 
 
+def test_the_editions_differ_where_the_standard_does():
+    new = factors(run("rating_helical", ALONE))
+    old = factors(run("rating_helical", ALONE, "pair.I.iso_6336.edition=2006"))
+    assert set(new) - set(old) == {"f_epsilon", "f_ZCa"}
+    beta = math.radians(15.8)
+    assert old["Y_beta"] == pytest.approx(1.0 - 15.8 / 120.0, rel=1e-12)
+    assert new["Y_beta"] == pytest.approx(old["Y_beta"] / math.cos(beta) ** 3, rel=1e-12)
+    assert new["Y_F"] == pytest.approx(old["Y_F"] * new["f_epsilon"], rel=1e-12)
+    for symbol in ("K_v", "Z_H", "Z_epsilon", "Y_S", "sigma_HP"):
+        assert new[symbol] == old[symbol], symbol
+
+
 @pytest.mark.long
 def test_computed_flanks_count_each_factor_once():
     """Solved flanks: the root stress is that of the solved load, K_Hbeta that of load-distribution at the same load."""
