@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.case.reading import Scene
+    from fegear.contact.surface import FrictionLaw
     from fegear.contact.tooth_loss import ToothLoss
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry import GearPair
@@ -48,8 +49,10 @@ class ToothLossInputs:
     friction : PairFriction
     speed : float
         Of the driver [rad/s].
-    load : float
-        Nominal [N].
+    loads : tuple of float
+        Of the case, ascending [N].
+    nominal : int
+        Number of the nominal one.
     given : bool
         Whether the case names the friction law.
     name : str
@@ -57,9 +60,19 @@ class ToothLossInputs:
 
     friction: PairFriction
     speed: float
-    load: float
+    loads: tuple[float, ...]
+    nominal: int
     given: bool = field(compare=False)
     name: str = field(compare=False)
+
+    @property
+    def load(self) -> float:
+        """The nominal load [N]."""
+        return self.loads[self.nominal]
+
+    def law(self, pair: GearPair, load: float) -> FrictionLaw:
+        """Friction law under a load [N]."""
+        return self.friction.of(pair, self.speed, load)
 
 
 @dataclass(frozen=True)
@@ -69,8 +82,10 @@ class ToothLossData:
     Parameters
     ----------
     pair : GearPair
-    found : ToothLoss
-        By the computed load and the friction law.
+    over_loads : tuple of ToothLoss
+        By the computed load and the friction law, under every load.
+    nominal : int
+        Number of the nominal load.
     error : float
         Share by which loss and loss factor may be off, of integration and of the loads over the face.
     ohlendorf, wimmer : float
@@ -78,17 +93,23 @@ class ToothLossData:
     """
 
     pair: GearPair
-    found: ToothLoss
+    over_loads: tuple[ToothLoss, ...]
+    nominal: int
     error: float
     ohlendorf: float
     wimmer: float
 
+    @property
+    def found(self) -> ToothLoss:
+        """Under the nominal load."""
+        return self.over_loads[self.nominal]
+
 
 def _inputs(scene: Scene, name: str) -> ToothLossInputs:
     part = scene.case.pair[name]
-    load = part.normal_load(scene.pairs[name]) or math.nan
+    load, loads = part.normal_load(scene.pairs[name]) or math.nan, part.all_loads(scene.pairs[name])
     law, speed = pair_friction(scene, name, "tooth-loss"), pair_speed(scene, name)
-    return ToothLossInputs(law, speed, load, part.friction is not None, name)
+    return ToothLossInputs(law, speed, loads, loads.index(load), part.friction is not None, name)
 
 
 def _check_wide(scene: Scene, name: str) -> None:
@@ -107,12 +128,12 @@ def _compute(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothL
 
     engagement = loaded_pair(upstream, inputs.name).engagement
     pair = engagement.pair
-    law = inputs.friction.of(pair, inputs.speed, inputs.load)
-    found, coarse = (
-        loss_over_path(pair, pair_history(engagement, [inputs.load], count), 0, inputs.speed, law)
-        for count in (_POSITIONS, _POSITIONS // 2)
+    fine, coarse = (pair_history(engagement, inputs.loads, count) for count in (_POSITIONS, _POSITIONS // 2))
+    found = tuple(
+        loss_over_path(pair, fine, i, inputs.speed, inputs.law(pair, load)) for i, load in enumerate(inputs.loads)
     )
-    return _data(pair, found, coarse)
+    i = inputs.nominal
+    return _data(pair, found, i, loss_over_path(pair, coarse, i, inputs.speed, inputs.law(pair, inputs.load)))
 
 
 def _compute_wide(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
@@ -120,14 +141,14 @@ def _compute_wide(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> T
 
     loaded = loaded_flanks(upstream, inputs.name)
     pair = loaded.found.pair
-    law = inputs.friction.of(pair, inputs.speed, inputs.load)
-    found, coarse = (
-        loss_over_face(one, loaded.nominal, inputs.speed, law) for one in (loaded.found, loaded.error.coarse)
+    found = tuple(
+        loss_over_face(loaded.found, i, inputs.speed, inputs.law(pair, load)) for i, load in enumerate(inputs.loads)
     )
-    return _data(pair, found, coarse)
+    i = inputs.nominal
+    return _data(pair, found, i, loss_over_face(loaded.error.coarse, i, inputs.speed, inputs.law(pair, inputs.load)))
 
 
-def _data(pair: GearPair, found: ToothLoss, coarse: ToothLoss) -> ToothLossData:
+def _data(pair: GearPair, losses: tuple[ToothLoss, ...], nominal: int, coarse: ToothLoss) -> ToothLossData:
     from fegear.formulas.loss_factor import ohlendorf, wimmer
 
     closed = []
@@ -136,10 +157,11 @@ def _data(pair: GearPair, found: ToothLoss, coarse: ToothLoss) -> ToothLossData:
             closed.append(formula(pair))
         except RangeError:
             closed.append(math.nan)
+    found = losses[nominal]
     error = abs(coarse.loss_factor / found.loss_factor - 1.0)
     if found.loss:
         error = max(error, abs(coarse.loss / found.loss - 1.0))
-    return ToothLossData(pair, found, error, closed[0], closed[1])
+    return ToothLossData(pair, losses, nominal, error, closed[0], closed[1])
 
 
 def _present(data: ToothLossData, inputs: ToothLossInputs) -> Outcome:
@@ -174,7 +196,52 @@ def _present(data: ToothLossData, inputs: ToothLossInputs) -> Outcome:
         remarks.append(f"Pair {name}: Ohlendorf's H_V is for contact ratios between 1 and 2.")
     shown = tuple(value for value in values if not math.isnan(value.si))
     settings = {"friction": law, "local": inputs.friction.local, "speed": inputs.speed}
-    return Outcome(data, (table,), shown, settings, tuple(remarks), (_figure(data, inputs),))
+    tables, figures = [table], [_figure(data, inputs)]
+    if len(inputs.loads) > 1:
+        tables.append(_loads(data, inputs))
+        figures.append(_loads_figure(data, inputs))
+    return Outcome(data, tuple(tables), shown, settings, tuple(remarks), tuple(figures))
+
+
+def _loads(data: ToothLossData, inputs: ToothLossInputs) -> Table:
+    def column(name: str, attribute: str, unit: str, meaning: str) -> Column:
+        return Column(name, np.array([getattr(one, attribute) for one in data.over_loads]), unit, meaning)
+
+    columns = (
+        Column("load", np.array(inputs.loads), "N", "along the line of action"),
+        column("transmitted_power", "transmitted", "W", ""),
+        column("tooth_loss", "loss", "W", "mean power that tooth friction takes"),
+        column("loss_factor", "loss_factor", "", "H_V by the computed load"),
+        column("mean_friction", "mean_coefficient", "", "coefficient that takes as much everywhere"),
+        column("efficiency", "efficiency", "", "of the teeth alone"),
+    )
+    return Table(f"tooth_loss_loads_{inputs.name}", columns, f"Tooth loss of pair {inputs.name} under every load")
+
+
+def _loads_figure(data: ToothLossData, inputs: ToothLossInputs) -> Figure:
+    name, load = inputs.name, np.array(inputs.loads)
+    axis = Axis("load along the line of action", "N", zero=True)
+    factor = np.array([one.loss_factor for one in data.over_loads])
+    rigid = {"Ohlendorf": data.ohlendorf, "Wimmer": data.wimmer}
+    if math.isclose(data.ohlendorf, data.wimmer, rel_tol=1e-9):  # spur gears: one says what the other does
+        rigid = {"Ohlendorf and Wimmer": data.wimmer}
+    flat = [
+        Curve(load, np.full(load.size, value), who, role, dash="dash", markers=False)
+        for (who, value), role in zip(rigid.items(), ("series:1", "grey"), strict=False)
+        if not math.isnan(value)
+    ]
+    lost = np.array([1.0 - one.efficiency for one in data.over_loads]) * 100.0
+    return Figure(
+        f"tooth_loss_loads_{name}",
+        f"Tooth loss of pair {name} over the load",
+        f"Pair {name}: loss factor H_V by the computed load, beside those of rigid gears, and share of the power that "
+        f"the teeth lose by the law {inputs.friction.law}. Under little load reliefs stay open and tips bear nothing.",
+        (
+            Panel(axis, Axis("loss factor H_{V}"), (Curve(load, factor, "computed load", "series:0"), *flat)),
+            Panel(axis, Axis("power lost", "%", zero=True), (Curve(load, lost, "", "red", dash="solid"),)),
+        ),
+        under=f"{inputs.speed * 30.0 / math.pi:.5g} rpm",
+    )
 
 
 def _figure(data: ToothLossData, inputs: ToothLossInputs) -> Figure:

@@ -21,7 +21,8 @@ DOCS = ROOT / "docs"
 COSTLY = {
     "choose-a-tolerance", "commands", "corner-contact-warning", "cost", "dynamic-factor", "export",
     "gear-with-its-width", "helical-misalignment", "load-over-the-face", "python", "python-mechanics", "several-meshes",
-    "relieve-a-helical-pair", "stiffness-table", "sweep-on-a-cluster", "sweeps", "tutorial",
+    "relieve-a-helical-pair", "scuffing-micropitting-loss", "stiffness-table", "sweep-on-a-cluster", "sweeps",
+    "tutorial",
     "use-my-own-compliance", "use-my-own-mesh", "validate-root-stress-formula",
 }  # fmt: skip
 

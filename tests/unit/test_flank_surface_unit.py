@@ -202,3 +202,16 @@ def test_load_factors_come_from_iso_6336_where_gears_have_a_strength():
     given, told = numbers("flank-surface", gear=gear, operation={"dynamic_factor": 1.5})
     assert columns(told, "surface_factors_I")["value"][1] == 1.5
     assert given["S_B"] < values["S_B"]
+
+
+def test_losses_under_every_load_are_those_of_each_load_alone():
+    law = {"law": "schlenk"}
+    alone, _ = numbers("tooth-loss", friction=law, torque="60 N*m")
+    values, found = numbers("tooth-loss", friction=law, torque="60 N*m", loads=["500 N", "8000 N"])
+    assert {key: values[key] for key in alone} == pytest.approx(alone, rel=1e-9)
+    table = columns(found, "tooth_loss_loads_I")
+    assert table["load"].size == 3
+    assert (np.diff(table["tooth_loss"]) > 0.0).all()
+    assert (np.diff(table["mean_friction"]) > 0.0).all()  # as load to the fifth root
+    assert table["mean_friction"][2] / table["mean_friction"][0] == pytest.approx((8000.0 / 500.0) ** 0.2, rel=1e-9)
+    assert table["tooth_loss"][1] == pytest.approx(alone["tooth_loss"], rel=1e-9)
