@@ -17,12 +17,17 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 
 from fegear.plain import code_version, content_key
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parents[1]
 MADE = ROOT / "results" / "film"
@@ -256,8 +261,9 @@ def act(camera: Camera) -> None:
     camera.shoot(3.0)
 
 
-def take(path: Path) -> None:
-    """Open the window in a process of its own and film it.
+@contextmanager
+def opened(text: str, size: tuple[int, int]) -> Iterator:
+    """The window with a case, in a process of its own, and a browser that shows it.
 
     Raises
     ------
@@ -269,7 +275,7 @@ def take(path: Path) -> None:
     spec.loader.exec_module(chromium)
     with tempfile.TemporaryDirectory(prefix="fegear-film-") as folder:
         case = Path(folder, "drive.toml")
-        case.write_text(_CASE, "utf-8")
+        case.write_text(text, "utf-8")
         window = subprocess.Popen(
             [sys.executable, "-m", "fegear", "open", "--no-browser", str(case)], stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL, text=True, env=os.environ | {"FEGEAR_STATE": folder, "PYTHONUNBUFFERED": "1"},
@@ -278,16 +284,22 @@ def take(path: Path) -> None:
             address = window.stdout.readline().split()[-1:]
             if not address:
                 raise PluginError("the window of the film does not come up")
-            with chromium.Browser(_chromium(), *_PAGE_SIZE) as browser:
+            with chromium.Browser(_chromium(), *size) as browser:
                 browser("Page.navigate", url=address[0])
                 browser.until("document.documentElement?.dataset.ready !== undefined")
-                camera = Camera(browser)
-                act(camera)
-                camera.save(path)
+                yield browser
         finally:
             window.send_signal(signal.SIGTERM)
             window.stdout.close()
             window.wait(20)
+
+
+def take(path: Path) -> None:
+    """Open the window in a process of its own and film it."""
+    with opened(_CASE, _PAGE_SIZE) as browser:
+        camera = Camera(browser)
+        act(camera)
+        camera.save(path)
 
 
 def on_files(files, config):

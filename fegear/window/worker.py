@@ -274,9 +274,7 @@ class Worker:
         from fegear.output.report.rendering import fragment
         from fegear.studies.comparison import compare, comparison_figures, side_of
 
-        found = compare(
-            side_of(self._results(job.first), "A, pinned"), side_of(self._results(job.second), "B, now"), 1e-9
-        )
+        found = compare(side_of(self._results(job.first), "pinned"), side_of(self._results(job.second), "now"), 1e-9)
         figures = comparison_figures(found)
         page = comparison_page(found)
         sections = [

@@ -13,7 +13,8 @@ import pytest
 import fegear.cli
 from fegear.engine.table import Column, Table
 from fegear.output.comparison import read_side
-from fegear.studies.comparison import different_inputs, join
+from fegear.studies.comparison import compare, comparison_figures, different_inputs, join
+from fegear.studies.comparison.side import Side
 
 CASE = """
 results = ["geometry", "load-sharing"]
@@ -154,6 +155,17 @@ def test_a_table_that_one_case_lacks_is_told_by_its_own_keys_alone():
         ("gear.a.relief.tip[0].amount", None, "10 um"),
         ("gear.a.relief.tip[0].length", None, "2 mm"),
     ]
+
+
+def test_curves_over_each_other_are_of_quantities_in_their_order_not_of_their_errors():
+    def run(label, te):
+        x = np.arange(5.0)
+        columns = [Column("x", x, "mm"), Column("te", x + te, "um"), Column("te_error", x * te, "um"),
+                   Column("stiffness", 1.0 + 9.0 * te + x, "N/um")]  # fmt: skip
+        return Side(label, {}, {}, {"transmission_error_I": Table("transmission_error_I", tuple(columns), "T")})
+
+    (figure,) = comparison_figures(compare(run("a", 0.0), run("b", 1.0), 1e-9))
+    assert [panel.y.label for panel in figure.panels] == ["te", "stiffness"]
 
 
 def test_rows_that_only_one_table_has_are_counted_and_kept():

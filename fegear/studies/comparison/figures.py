@@ -10,6 +10,8 @@ from fegear.engine.figure import Axis, Curve, Figure, Panel
 from fegear.studies.comparison.tables import follows
 
 if TYPE_CHECKING:
+    from collections.abc import Set
+
     from fegear.engine.table import Column, Table
     from fegear.studies.comparison.compare import Comparison
     from fegear.studies.comparison.tables import Joined
@@ -21,7 +23,7 @@ _ROWS = 3
 
 
 def comparison_figures(comparison: Comparison) -> list[Figure]:
-    """One figure for each table that differs and whose rows follow its first column: the columns that differ most."""
+    """One figure for each table that differs and whose rows follow its first column: what differs most, in order."""
     found = []
     for joined in comparison.different_tables:
         name = joined.table.name
@@ -36,10 +38,17 @@ def comparison_figures(comparison: Comparison) -> list[Figure]:
 
 
 def _columns(joined: Joined, tolerance: float) -> list[Column]:
-    moving = [one for one in joined.differences if one.share > tolerance and np.isfinite(one.share)]
-    most = sorted(moving, key=lambda one: -one.share)[:_PANELS]
+    names = {one.column.name for one in joined.differences}
+    shown = [one for one in joined.differences if not _is_error(one.column.name, names)]
+    moving = [one for one in shown if one.share > tolerance and np.isfinite(one.share)]
+    most = {one.column.name for one in sorted(moving, key=lambda one: -one.share)[:_PANELS]}
     # Rows that do not meet have no difference: such tables show their first columns.
-    return [one.column for one in most] or [one.column for one in joined.differences[:_PANELS]]
+    return [one.column for one in shown if one.column.name in most] or [one.column for one in shown[:_PANELS]]
+
+
+def _is_error(name: str, names: Set[str]) -> bool:
+    """Whether a column holds the estimated errors of another one."""
+    return name.endswith("_error") and name.removesuffix("_error") in names
 
 
 def _rising(table: Table) -> bool:
