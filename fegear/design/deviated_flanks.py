@@ -18,6 +18,7 @@ from fegear.geometry.relief import CombinedRelief
 if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.contact.flank import FlankCompliance, FlankGaps
+    from fegear.contact.flank.root_stress import RootInfluence
     from fegear.contact.fourier import Panels
     from fegear.design.tolerance_draws import Deviations
     from fegear.geometry import GearPair
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 #: What is kept of a draw, in the order of its numbers.
 FLANK_OUTCOMES = (
     "te_peak_to_peak", "te_mean", *(f"te_harmonic_{n}" for n in range(1, HARMONICS + 1)), "face_load_factor",
-    "hertz_pressure", "largest_line_load",
+    "driver_root_tension", "driven_root_tension", "hertz_pressure", "largest_line_load",
 )  # fmt: skip
 
 
@@ -44,6 +45,8 @@ class FlankBench:
         The roll positions with their weights.
     load : float
         Along the transverse line of action [N].
+    roots : tuple of (RootInfluence, RootInfluence)
+        Root tension of driver and driven gear.
     """
 
     pair: GearPair
@@ -51,6 +54,7 @@ class FlankBench:
     gaps: FlankGaps
     points: Panels
     load: float
+    roots: tuple[RootInfluence, RootInfluence]
 
     @property
     def teeth(self) -> int:
@@ -96,8 +100,9 @@ def flank_outcomes(bench: FlankBench, gaps: FlankGaps) -> Array:
     share = points.weights / points.period
     waves = np.exp(-2j * np.pi / points.period * np.multiply.outer(np.arange(1, HARMONICS + 1), points.x))
     amplitudes = 2.0 * np.abs((waves * (share * te)).sum(axis=1))
+    roots = [root.largest(contact.force[:, :, 0]) for root in bench.roots]
     return np.array([
-        np.ptp(te), (share * te).sum(), *amplitudes, found.face_load_factor[0], found.largest_pressure[0],
+        np.ptp(te), (share * te).sum(), *amplitudes, found.face_load_factor[0], *roots, found.largest_pressure[0],
         found.largest_line_load[0],
     ])  # fmt: skip
 

@@ -11,13 +11,15 @@ import numpy as np
 from fegear.engine.citation import Citation, citing
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError
+from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_flanks import FLANK_EFFECTS, flanks_to_load
 from fegear.models.pair_inputs import gear_name
 from fegear.models.solid_influence import solid_gear_to_solve
+from fegear.results.flank_root_stress import places_along
 from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
 from fegear.results.sources import HERTZ
 from fegear.results.tolerance_robustness import (
-    CHUNK,
     ToleranceData,
     chosen_pair,
     drawn,
@@ -35,11 +37,13 @@ if TYPE_CHECKING:
     from fegear.case.robustness import TolerancePart
     from fegear.design.deviated_flanks import FlankBench
     from fegear.design.tolerance_draws import Deviations, Kind, Limits
-    from fegear.engine.stage import Upstream, Work
+    from fegear.engine.stage import Task, Upstream, Work
     from fegear.models.loaded_flanks import FlanksToLoad
 
 #: Kinds that are drawn of teeth with a width unless the case names others.
 _OVER_FACE: tuple[Kind, ...] = ("profile-slope", "profile-form", "helix-slope", "pitch")
+#: Draws that a process is given at a time: influences over the face are larger than those of plane teeth.
+_CHUNK = 100
 #: Processor seconds of a draw at one roll position.
 _AT_A_POSITION = 0.001
 
@@ -125,6 +129,11 @@ def _check(scene: Scene, name: str) -> None:
     refuse_no_tolerance(scene, name, limits_of(scene, name, _OVER_FACE))
 
 
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
+    return (*needs_flanks(scene, name), *needs_solid_solution(*gears))
+
+
 def _inputs(scene: Scene, name: str) -> FlankDrawInputs:
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
     solved = tuple(solid_gear_to_solve(scene, gear) for gear in dict.fromkeys(gears))
@@ -135,6 +144,7 @@ def _inputs(scene: Scene, name: str) -> FlankDrawInputs:
 
 
 def _compute(inputs: FlankDrawInputs, upstream: Upstream, work: Work) -> ToleranceData:
+    from fegear.contact.flank.root_stress import rooted_lines
     from fegear.design.deviated_flanks import FLANK_OUTCOMES, FlankBench, drawn_flank_outcomes
     from fegear.design.tolerance_draws import NO_LIMITS, draw
     from fegear.one_thread import one_thread
@@ -142,20 +152,29 @@ def _compute(inputs: FlankDrawInputs, upstream: Upstream, work: Work) -> Toleran
     part, loaded = inputs.part, loaded_flanks(upstream, inputs.name)
     none = np.empty(0)
     gaps = replace(loaded.gaps, driver_spacing=none, driven_spacing=none)
-    bench = FlankBench(loaded.found.pair, loaded.known, gaps, loaded.flanks.points, inputs.load)
+    found, z = loaded.found, places_along(loaded)
+    coupling = loaded.asked.effects.neighbour_coupling
+    roots = [
+        rooted_lines(
+            found.pair, member, found.lines, solid_solution_of(upstream, gear).fine, coupling=coupling
+        ).influence("tension", z)
+        for member, gear in zip(MEMBERS, inputs.gears, strict=True)
+    ]
+    bench = FlankBench(found.pair, loaded.known, gaps, loaded.flanks.points, inputs.load, (roots[0], roots[1]))
     deviations = draw(inputs.limits, part.draws, part.seed, bench.teeth, part.sequence, part.distribution)
     with one_thread():
         nominal = drawn_flank_outcomes(bench, draw(NO_LIMITS, 1, 0, bench.teeth)).values[0]
     chunks = [
-        FlankChunk(inputs, bench, deviations.rows(slice(first, first + CHUNK))) for first in range(0, part.draws, CHUNK)
+        FlankChunk(inputs, bench, deviations.rows(slice(first, first + _CHUNK)))
+        for first in range(0, part.draws, _CHUNK)
     ]
-    values, reasons = together(drawn(compute_flank_chunk, chunks, flank_chunk_content, inputs.name, work))
+    values, reasons = together(drawn(compute_flank_chunk, chunks, flank_chunk_content, inputs.name, work), _CHUNK)
     return ToleranceData(FLANK_OUTCOMES, deviations, {OWN: values}, {OWN: nominal}, reasons, math.nan, None, ())
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     part, asked = tolerance_part(scene), flanks_to_load(scene, name)
-    chunks = math.ceil(part.draws / CHUNK)
+    chunks = math.ceil(part.draws / _CHUNK)
     return Forecast({"draws": part.draws, "chunks": chunks}, part.draws * asked.positions * _AT_A_POSITION)
 
 
@@ -163,9 +182,9 @@ FLANK_TOLERANCE_ROBUSTNESS = Stage(
     name="flank-tolerance-robustness",
     title="Deviations inside the tolerances, over the face",
     results=("robustness",),
-    about="transmission error, pressure, root stress or K_Hbeta of pairs drawn inside their tolerances",
+    about="transmission error, root stress, pressure and K_Hbeta of pairs drawn inside their tolerances",
     subjects=_subjects,
-    needs=needs_flanks,
+    needs=_needs,
     inputs=_inputs,
     compute=_compute,
     present=present_draws,

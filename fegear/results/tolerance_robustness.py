@@ -299,7 +299,7 @@ def _compute(asked: DrawInputs, upstream: Upstream, work: Work) -> ToleranceData
     values: dict[str, Array] = {}
     reasons: dict[int, str] = {}
     for number, state in enumerate(benches):
-        values[state], failed = together(done[number * len(starts) : (number + 1) * len(starts)])
+        values[state], failed = together(done[number * len(starts) : (number + 1) * len(starts)], CHUNK)
         reasons |= failed
     return ToleranceData(OUTCOMES, deviations, values, nominal, reasons, exact, relief, numbers)
 
@@ -321,11 +321,11 @@ def drawn(
     return list(done)
 
 
-def together(done: Sequence[Mapping[str, Any]]) -> tuple[Array, dict[int, str]]:
+def together(done: Sequence[Mapping[str, Any]], size: int) -> tuple[Array, dict[int, str]]:
     """Outcomes of all draws of a state, and why some have none, from those of its chunks in their order."""
     reasons: dict[int, str] = {}
     for number, chunk in enumerate(done):
-        reasons |= {number * CHUNK + row: reason for row, reason in chunk["reasons"].items()}
+        reasons |= {number * size + row: reason for row, reason in chunk["reasons"].items()}
     return np.concatenate([chunk["values"] for chunk in done]), reasons
 
 
@@ -388,7 +388,7 @@ TOLERANCE_ROBUSTNESS = Stage(
     name="tolerance-robustness",
     title="Deviations inside the tolerances",
     results=("robustness",),
-    about="transmission error, pressure, root stress or K_Hbeta of pairs drawn inside their tolerances",
+    about="transmission error, root stress, pressure and K_Hbeta of pairs drawn inside their tolerances",
     subjects=_subjects,
     needs=_needs,
     inputs=_inputs,

@@ -131,11 +131,29 @@ class RootedLines:
         total = (_across(felt, self.solution.fillets[side], self.solution.tau) if across else felt[0]).reshape(
             arc.size, -1
         )
-        end = self._ends(side, places / m).ravel()
-        on = np.maximum(np.searchsorted(arc, end, side="right"), 1) > np.arange(arc.size)[:, None]
-        top = np.where(on, sign * total, -np.inf).max(axis=0)
-        high = top >= top.max() - _FITTED * abs(top.max())
-        return float((sign * extreme(total[:, high], arc, sign, end[high])[0]).max()) / m**2
+        return _highest(total, arc, sign, self._ends(side, places / m).ravel()) / m**2
+
+    def influence(self, side: Side, z: ArrayLike) -> RootInfluence:
+        """The stress of every place as a sum over the stations' forces, for many states of forces.
+
+        Parameters
+        ----------
+        side : {"tension", "compression"}
+        z : array_like, shape (Z,)
+            Along the face, from the middle of the common one [m].
+        """
+        m, zeta = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float)) / self.pair.driver.module
+        present, columns = self.lines.present, []
+        for station in range(present.shape[1]):
+            force = np.zeros(present.shape)
+            force[:, station] = 1.0
+            columns.append(self._felt(side, force, zeta))
+        felt = np.stack(columns, axis=-1) / m**2
+        at = self.teeth[:, 0]
+        parts = tuple(np.ascontiguousarray(felt[:, :, at == p]) for p in range(self.lines.roll.size))
+        ends = self._ends(side, zeta)
+        order = tuple(np.ascontiguousarray(ends[:, at == p]) for p in range(self.lines.roll.size))
+        return RootInfluence(self.solution.fillets[side].arc, _SIGN[side], order, parts)
 
     def _felt(self, side: Side, force: Array, zeta: Array) -> Array:
         """Stress up the fillet under forces on the stations, shape (points, Z, T) [1/module^2 times N]."""
@@ -163,6 +181,42 @@ class RootedLines:
             near = (zeta > own.zeta[0] - own.half_width[0]) & (zeta < own.zeta[-1] + own.half_width[-1])
             found[near, tooth] = np.interp(zeta[near], own.zeta, self.solution.root_end(0, side, own))
         return found
+
+
+@dataclass(frozen=True)
+class RootInfluence:
+    """Stress of one fillet per unit force on the stations: small, and without the solution behind it.
+
+    Parameters
+    ----------
+    arc : ndarray, shape (points,)
+        Up the fillet [module].
+    sign : float
+        1 for tension, -1 for compression.
+    end : tuple of ndarray, shape (Z, teeth)
+        How far up the fillet stress is root stress, for each roll position [module].
+    felt : tuple of ndarray, shape (points, Z, teeth, M)
+        Of the teeth that are followed at each roll position [Pa/N].
+    """
+
+    arc: Array
+    sign: float
+    end: tuple[Array, ...]
+    felt: tuple[Array, ...]
+
+    def largest(self, force: Array) -> float:
+        """As `RootedLines.largest`, under forces of shape (P, M) [N]."""
+        total = [(felt * force[p]).sum(axis=-1).reshape(self.arc.size, -1) for p, felt in enumerate(self.felt)]
+        end = np.concatenate([one.ravel() for one in self.end])
+        return _highest(np.concatenate(total, axis=1), self.arc, self.sign, end)
+
+
+def _highest(total: Array, arc: Array, sign: float, end: Array) -> float:
+    """Largest value of curves through points up the fillet, shape (points, N), laid through the highest alone."""
+    on = np.maximum(np.searchsorted(arc, end, side="right"), 1) > np.arange(arc.size)[:, None]
+    top = np.where(on, sign * total, -np.inf).max(axis=0)
+    high = top >= top.max() - _FITTED * abs(top.max())
+    return float((sign * extreme(total[:, high], arc, sign, end[high])[0]).max())
 
 
 def _across(surface: Array, fillet: SolidFillet, tau: float) -> Array:
