@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 
 #: Teeth behind the one whose pair touches first and ahead of it that a picture shows.
 _BEHIND, _AHEAD = 3, 4
-#: Neighbours whose motion under a load is known: all that a picture shows.
-_REACH = _BEHIND + _AHEAD
+#: Neighbours whose motion under a load is known: all that a picture shows beside the pairs that carry.
+_REACH = _AHEAD + 1
 #: Even steps over the base pitch; what lies between is seldom seen for longer than a frame.
 _STEPS = 50
 

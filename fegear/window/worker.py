@@ -147,7 +147,8 @@ class Worker:
             tasks = [str(step.task) for step in plan.steps]
             self._say("plan", tasks=tasks)
             self._sent.forget_others(tasks)
-            plan, at_once = in_order(plan, scene, (*asked.sight, *map(str, more)), self._seconds)
+            on_gears = dict.fromkeys(map(str, more), 0.0)  # what is switched on there follows a value that moves
+            plan, at_once = in_order(plan, scene, (*asked.sight, *on_gears), {**self._seconds, **on_gears})
             self._wait_before = at_once + 1 if asked.moving and at_once < len(plan.steps) else 0
             pairs = hands_of(scene)
             meshes = {name: one["mesh"] for name, one in pairs.items()}
