@@ -10,6 +10,7 @@ from fegear.case.part import at
 from fegear.errors import InputError
 from fegear.formulas.iso1328 import flank_tolerances, tolerances_of
 from fegear.formulas.iso6336.alignment import Alignment, PinionShaft
+from fegear.formulas.iso6336.groups import SOFT_IRON, TOUGH_IRON
 from fegear.formulas.iso6336.pair_geometry import of_pair
 from fegear.formulas.iso6336.part5_materials import BRINELL, MATERIALS, allowable, usual_hardness
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 #: What is taken where a case says nothing: Rz of flanks and fillets [m], nu_40 of ISO VG 220 [m^2/s], load cycles.
 USUAL_FLANK, USUAL_ROOT, USUAL_VISCOSITY, UNLIMITED = 4.8e-6, 20e-6, 220e-6, 1e10
+#: Young's modulus above which a material is no iron: nodular iron has about 175 GPa (ISO 6336-2, table of Z_E) [Pa].
+_STIFFEST_IRON = 190e9
 #: The class whose helix slope a favourable contact pattern takes off.
 _CLASS_5 = 5
 
@@ -205,6 +208,14 @@ def _strength(scene: Scene, gear: str, said: list[str]) -> Strength:
             found[stress] = law.stress
             said += [f"Gear {gear}: {one}." for one in law.remark.split("; ") if one]
         hardness = usual_hardness(part.material, part.quality) if part.hardness is None else part.hardness
+        if part.hardness is None and len(found) == 2:  # of own numbers no law has said it; Z_W asks for it
+            said.append(f"Gear {gear}: hardness {hardness:.4g} HV was assumed, the middle of the range.")
+        modulus = scene.gears[gear].material.young_modulus
+        if MATERIALS[part.material] in TOUGH_IRON | SOFT_IRON and modulus > _STIFFEST_IRON:
+            said.append(
+                f"Gear {gear}: strength names {part.material}, but its Young's modulus of {modulus * 1e-9:.4g} GPa is "
+                "that of steel (material); irons have 110 to 180 GPa, with which the contact stress is lower."
+            )
         return Strength(
             MATERIALS[part.material], found["contact"], found["bending"], BRINELL * hardness,
             part.yield_strength or math.nan, part.tensile_strength or math.nan, part.pitting_allowed,

@@ -167,6 +167,22 @@ def test_what_was_assumed_is_said():
     assert "730 HV was assumed" in said
 
 
+def test_iron_with_the_modulus_of_steel_and_own_numbers_without_hardness_are_said():
+    own = "gear.wheel.strength={material='nodular-iron', contact='600 MPa', bending='200 MPa'}"
+    said = run("rating_spur", ALONE, own).remarks
+    assert any("strength names nodular-iron" in one and "206.8 GPa" in one for one in said)
+    assert any("Gear wheel: hardness" in one and "was assumed" in one for one in said)
+    said = run("rating_spur", ALONE, own, "gear.wheel.material={young_modulus='175 GPa'}").remarks
+    assert not any("strength names" in one for one in said)
+
+
+def test_a_dynamic_factor_below_one_is_said():
+    fine = ("gear.pinion.tolerance_class=3", "gear.wheel.tolerance_class=3", "pair.I.speed='60000 rpm'")
+    outcome = run("rating_spur", ALONE, *fine)
+    assert values(outcome)["I.K_v_rated"] < 1.0
+    assert any("K_v:" in one and "is below 1" in one for one in outcome.remarks)
+
+
 def test_agma_stands_beside_with_its_own_stresses():
     outcome = run("rating_spur", "pair.I.operation={life='20000 h'}", "rating.beside='agma-2101'")
     table = next(t for t in outcome.tables if t.name == "rating_safety_I")

@@ -91,11 +91,20 @@ def test_lines_are_whole_and_go_on_where_they_meet(key):
 def test_below_the_range_is_refused_and_above_it_is_its_end(key):
     some = laws(*key)
     with pytest.raises(RangeError, match="is below the"):
-        allowable(*key, some[0].lowest - 1.0)
+        allowable(*key, 0.98 * some[0].lowest)
     beyond = allowable(*key, some[-1].highest + 50.0)
     assert "above the range" in beyond.remark
     if len(some) < 3:
         assert beyond.stress == some[-1].at(some[-1].highest)
+
+
+@pytest.mark.parametrize(("quality", "text", "mega"), [("MQ", "58 HRC", 1500.0), ("ML", "55 HRC", 1300.0)])
+def test_the_rockwell_end_of_the_standards_own_range_is_inside_it(quality, text, mega):
+    # ISO 6336-5 sets 58 HRC beside 660 HV and 55 HRC beside 600 HV; ISO 18265 makes 654 and 597 HV of them.
+    from fegear.case.strength import _rockwell
+
+    found = allowable("case-hardened-steel", "contact", quality, float(_rockwell(text).split()[0]))
+    assert (found.stress, found.remark) == (mega * 1e6, "")
 
 
 def test_better_quality_bears_at_least_as_much():

@@ -220,6 +220,8 @@ def method_b(
     remark = ""
     if name == "main resonance":
         remark = "K_v: the pair runs in its main resonance, which the standard says to avoid or to study by method A"
+    elif k_v < 1.0:
+        remark = f"K_v: {k_v:.3g} is below 1, as the formula of the {name} range has it; 1 is on the safe side"
     return DynamicFactor(mass, resonance, speed / resonance, limit, b, c, name, k_v, remark)
 
 

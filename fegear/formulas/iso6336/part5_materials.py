@@ -25,6 +25,9 @@ Stress = Literal["contact", "bending"]
 
 #: HBW of one HV.
 BRINELL = 0.95
+#: A hardness may miss the end of a range by so much: the standard's 660 HV or 58 HRC and 600 HV or 55 HRC of
+#: case-hardened steel are 654 and 597 HV by the table of ISO 18265.
+_CONVERSION = 0.01
 #: 25, 28 and 30 HRC in HV (ISO 18265, table A.1), by which case-hardened cores of quality MQ are told apart.
 HRC_25, HRC_28, HRC_30 = 266.25, 286.4285714285714, 301.6666666666667
 #: Letters of each material in the standard. Ferritic nodular iron has the laws of the pearlitic and bainitic one, and
@@ -161,7 +164,7 @@ def allowable(
     Raises
     ------
     RangeError
-        If the hardness lies below the range of the material and quality.
+        If the hardness lies below the range of the material and quality, by more than conversions of hardness differ.
     """
     rows = laws(material, stress, quality)
     known = usual_hardness(material, quality) if hardness is None else hardness
@@ -169,14 +172,15 @@ def allowable(
     if material == "case-hardened-steel" and stress == "bending" and quality == "MQ":
         row, told = _core(core_hardness, jominy_12)
         rows, remark = (rows[row],), "; ".join(one for one in (remark, told) if one)
-    if known < rows[0].lowest * (1.0 - 1e-9):
+    if known < rows[0].lowest * (1.0 - _CONVERSION):
         raise RangeError(
             "hardness", f"{known:.4g} HV",
             f"is below the {rows[0].lowest:.4g} HV from which ISO 6336-5 knows {material} of quality {quality}",
             "name another quality or material, or give own stress numbers",
         )  # fmt: skip
+    known = max(known, rows[0].lowest)
     law = next((one for one in rows if known <= one.highest), rows[-1])
-    if known > law.highest * (1.0 + 1e-9):
+    if known > law.highest * (1.0 + _CONVERSION):
         end = f"{known:.4g} HV is above the range of ISO 6336-5, whose end at {law.highest:.4g} HV was taken"
         remark = "; ".join(one for one in (remark, end) if one)
     return Allowable(law.at(min(known, law.highest)), law.row, remark)
