@@ -192,6 +192,13 @@ def _present(data: ToothLossData, inputs: ToothLossInputs) -> Outcome:
     ]  # fmt: skip
     if not inputs.given:
         remarks.append(f"Pair {name}: no friction law is given, so it is Schlenk's with the lubricant of the case.")
+    outside = (found.x < data.pair.x_start) | (found.x > data.pair.x_end)
+    if data.pair.driver.helix_angle == 0.0 and (found.load[outside] > 0.0).any():
+        most = found.load[outside].max()
+        remarks.append(
+            f"Pair {name}: tip corners bear up to {most:.4g} N off the path of contact; they slide "
+            "as if the line of action went on there."
+        )
     if math.isnan(data.ohlendorf):
         remarks.append(f"Pair {name}: Ohlendorf's H_V is for contact ratios between 1 and 2.")
     shown = tuple(value for value in values if not math.isnan(value.si))

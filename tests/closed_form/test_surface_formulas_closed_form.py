@@ -233,3 +233,19 @@ def test_wimmer_over_the_face_is_brute_force_and_ends_in_both_limits():
     whole = pair_of(np.random.default_rng(3), math.radians(15.0), math.pi * 3e-3 / math.sin(math.radians(15.0)))
     assert whole.overlap_ratio == pytest.approx(1.0)
     assert wimmer(whole) == pytest.approx(overlapping(whole), rel=1e-9)
+
+
+def test_a_pair_and_its_reverse_warm_alike_but_for_the_shock_of_approach():
+    """Whichever gear drives: friction, geometry at the pinion's tip, film and mirrored flash temperatures."""
+    for pair in (fzg_type_a(), fzg_type_c()):
+        one, other = rated(pair), rated(pair.reversed(), speed=200.0 * 16 / 24)
+        first, second = (part21_integral.integral_temperature(case) for case in (one, other))
+        for name in ("friction", "thermal", "angle", "geometry", "contact_ratio"):
+            assert getattr(first, name) == pytest.approx(getattr(second, name), rel=1e-9), name
+        x = np.linspace(pair.x_start, pair.x_end, 9)
+        here, there = part20_flash.flash_temperatures(one, x), part20_flash.flash_temperatures(other, -x)
+        assert here.flash / here.approach == pytest.approx(there.flash / there.approach, rel=1e-9, abs=1e-6)
+        assert here.approach[x > 0.0] == pytest.approx(1.0)
+        assert there.approach[x < 0.0] == pytest.approx(1.0)
+        assert part22_micropitting.least_ratio(one)[0] == pytest.approx(part22_micropitting.least_ratio(other)[0])
+        assert wimmer(pair) == pytest.approx(wimmer(pair.reversed()), rel=1e-12)
