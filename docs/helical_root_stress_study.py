@@ -40,7 +40,7 @@ LOW = (17.0, 1.0, 0.0, 8.0, 4.0, 0.2)
 HIGH = (45.0, 3.0, 0.5, 30.0, 10.0, 0.38)
 #: Normal module [m], load per face width along the line of action [N/m], dedendum; the wheel has no profile shift.
 MODULE, LOAD, DEDENDUM = 3e-3, 300e3, 1.25
-COUNT, SEED, TOLERANCE, FINE, POSITIONS = 24, 6336, 2e-2, 7e-3, 12
+COUNT, SEED, TOLERANCE, FINE, POSITIONS = 48, 6336, 2e-2, 7e-3, 12
 #: Every so many pairs are solved by FINE settings too, whose difference is the estimated error of all.
 CHECKED = 8
 _PER_MODULE = 4

@@ -16,7 +16,11 @@ from pathlib import Path
 import helical_root_stress_study as helical
 import khbeta_study as khbeta
 import numpy as np
+import slices_study as slices
 
+from fegear.contact.flank import FlankGaps
+from fegear.contact.flank.load_factors import iso_face_load_factor
+from fegear.contact.formula_reach import off, reach, sentence
 from fegear.contact.gear_population import drawn_gears
 from fegear.contact.root_stress_study import of_population, root_stress_study
 from fegear.engine.figure import Axis, Figure, Mark, Panel, Zone
@@ -116,20 +120,50 @@ def helical_figure() -> Figure:
     )  # fmt: skip
 
 
+#: Columns of the helical table of which a range may speak, and the words for them.
+SPOKEN = {
+    "teeth": ("z", ""), "profile_shift": ("x", ""), "helix_angle [deg]": ("helix angle", "deg"),
+    "face_width [modules]": ("face width", "modules"), "overlap_ratio": ("overlap ratio", ""),
+    "rack_tip_radius": ("rack tip radius", "modules"),
+}  # fmt: skip
+
+
 def helical_sentences() -> list[str]:
-    """A sentence for each formula, from both comparisons."""
-    found, even, solved = [], helical_ratios("fe_even"), helical_ratios("fe")
+    """A sentence for each formula: against even loads, and how far off it is against those that the flanks share."""
+    rows = [r for r in helical.table() if float(r["tolerance"]) == helical.TOLERANCE]
+    columns = {key: np.array([float(r[key]) for r in rows]) for key in SPOKEN}
+    pair = np.array([int(r["pair"]) for r in rows])
+    even, solved, found = helical_ratios("fe_even"), helical_ratios("fe"), []
     for key, name in RATED.items():
-        parts = []
-        for ratio, what in ((even[key], "load even over the lines"), (solved[key], "load as the flanks share it")):
-            r = ratio[np.isfinite(ratio)]
-            low, mid, high = (100.0 * (q - 1.0) for q in np.quantile(r, [0.05, 0.5, 0.95]))
-            near = 100.0 * np.mean(np.abs(r - 1.0) <= 0.1)
-            parts.append(
-                f"{what}: {low:+.0f} to {high:+.0f} %, median {mid:+.0f} %, within 10 % on {near:.0f} % of gears"
-            )
-        found.append(f"{name} against {'; against '.join(parts)}.")
+        one = reach(name, even[key], columns, pair, np.zeros(pair.size, dtype=bool))
+        shared = reach(name, solved[key], columns, pair, np.zeros(pair.size, dtype=bool))
+        ends = f"{off(shared.low)} to {off(shared.high)} (median {off(shared.median)})".replace("%", " %")
+        near = f"{100.0 * shared.near:.0f} %"
+        said = sentence(one, SPOKEN)[:-1].replace("over all loads", "under even loads")
+        found.append(f"{said}, and {ends} under loads as the flanks share them, where {near} of gears are within 10 %.")
     return found
+
+
+def khbeta_map() -> list[str]:
+    """ISO 6336-1's K_Hbeta over that of the misaligned solid pairs of docs/studies/slices.csv."""
+    known = {
+        (float(r["helix_angle [deg]"]), float(r["face_width [modules]"])): float(r["face_load_factor_misaligned"])
+        for r in slices.table()
+        if r["body"] == "solid"
+    }
+    lines = ["| face width, modules |" + "".join(f" {a} deg |" for a in slices.ANGLES)]
+    lines.append("|---|" + "---|" * len(slices.ANGLES))
+    for width in slices.WIDTHS:
+        cells = []
+        for angle in slices.ANGLES:
+            pair = slices.the_pair(angle, width)
+            half = 0.5 * pair.face_width
+            line = np.array([-0.5, 0.5]) * slices.MISALIGNED
+            gaps = FlankGaps(face_position=np.array([-half, half]), line_gap=line)
+            iso = iso_face_load_factor(pair, gaps, slices.LOAD * pair.face_width)
+            cells.append(f"{iso / known[float(angle), float(width)]:.2f}")
+        lines.append(f"| {width} | " + " | ".join(cells) + " |")
+    return lines
 
 
 def khbeta_table() -> list[str]:
@@ -155,6 +189,7 @@ def blocks() -> dict[str, str]:
         "spur sentences": "\n".join(f"- {s}" for s in sentences(table)) + f"\n\n{error}",
         "helical sentences": "\n".join(f"- {s}" for s in helical_sentences()),
         "K_Hbeta": "\n".join(khbeta_table()),
+        "K_Hbeta over face and helix": "\n".join(khbeta_map()),
     }
 
 

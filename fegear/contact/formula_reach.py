@@ -150,7 +150,7 @@ def _round(value: float) -> float:
     return float(f"{value:.2g}")
 
 
-def sentence(found: Reach, words: Mapping[str, tuple[str, str]]) -> str:
+def sentence(found: Reach, words: Mapping[str, tuple[str, str]], rated: str = "loads on the upper half") -> str:
     """What a designer reads.
 
     Parameters
@@ -158,13 +158,15 @@ def sentence(found: Reach, words: Mapping[str, tuple[str, str]]) -> str:
     found : Reach
     words : mapping of str to (str, str)
         Word and unit by which each column is called.
+    rated : str
+        What loads the percentiles `Reach.rated` are of.
     """
     if not np.isfinite(found.median):
         return f"{found.formula} gives nothing anywhere in this population."
     silent = f"; it gives nothing at {found.silent:.0%} of the points" if found.silent >= 0.005 else ""
     over = f"{_ends(found.low, found.median, found.high)} over all loads{silent}"
     if np.isfinite(found.rated[1]):
-        over = f"{_ends(*found.rated)} under loads on the upper half, {over}"
+        over = f"{_ends(*found.rated)} under {rated}, {over}"
     whole = f"nine in ten of its answers are {over}"
     if found.range is None:
         text = f"{found.formula} is within {NEAR:.0%} of the finite elements in no range worth naming; {whole}."
@@ -179,7 +181,7 @@ def sentence(found: Reach, words: Mapping[str, tuple[str, str]]) -> str:
 
 
 def _ends(low: float, median: float, high: float) -> str:
-    return f"{_off(low)} to {_off(high)} (median {_off(median)})"
+    return f"{off(low)} to {off(high)} (median {off(median)})"
 
 
 def _condition(c: Condition, words: Mapping[str, tuple[str, str]]) -> str:
@@ -187,6 +189,7 @@ def _condition(c: Condition, words: Mapping[str, tuple[str, str]]) -> str:
     return f"{word} {'>=' if c.above else '<='} {c.at:g}{' ' if unit else ''}{unit}"
 
 
-def _off(ratio: float) -> str:
-    off = ratio - 1.0
-    return "right" if abs(off) < 0.005 else f"{abs(off):.0%} {'high' if off > 0.0 else 'low'}"
+def off(ratio: float) -> str:
+    """How far off a ratio is, in words: "3% low", "right"."""
+    miss = ratio - 1.0
+    return "right" if abs(miss) < 0.005 else f"{abs(miss):.0%} {'high' if miss > 0.0 else 'low'}"

@@ -93,19 +93,14 @@ def geometry_factor(tooth: Tooth, radius: float, operating_pressure_angle: float
     return GeometryFactor(y / k_f, y, k_f, phi, h, p, rho)
 
 
-def pair_geometry_factor(pair: GearPair, member: Member, *, tip: bool = False) -> GeometryFactor:
-    """J of one gear of a pair, loaded at the highest point of single tooth contact or, with `tip`, at the tip.
+def refuse_undercut(pair: GearPair) -> None:
+    """Refuse a pair of which undercut has taken away part of the active profile.
 
     Raises
     ------
     RangeError
-        If the contact ratio is not between 1 and 2, or undercut has taken away part of the active profile (908-B89
-        excludes it: it moves the highest point of single tooth contact).
+        908-B89 excludes it: it moves the highest point of single tooth contact.
     """
-    if not 1.0 <= pair.contact_ratio < 2.0:
-        raise RangeError(
-            "contact ratio", f"{pair.contact_ratio:.4g}", "must be between 1 and 2 for AGMA 908 spur gears"
-        )
     for name, gear in (("driver", pair.driver), ("driven", pair.driven)):
         other = pair.driven if name == "driver" else pair.driver
         side: Member = "driver" if name == "driver" else "driven"
@@ -120,6 +115,22 @@ def pair_geometry_factor(pair: GearPair, member: Member, *, tip: bool = False) -
                 f"exceeds the start of active profile, {reach * 1e3:.6g} mm: undercut, which AGMA 908-B89 excludes",
                 "raise the profile shift",
             )
+
+
+def pair_geometry_factor(pair: GearPair, member: Member, *, tip: bool = False) -> GeometryFactor:
+    """J of one gear of a pair, loaded at the highest point of single tooth contact or, with `tip`, at the tip.
+
+    Raises
+    ------
+    RangeError
+        If the contact ratio is not between 1 and 2, or undercut has taken away part of the active profile (908-B89
+        excludes it: it moves the highest point of single tooth contact).
+    """
+    if not 1.0 <= pair.contact_ratio < 2.0:
+        raise RangeError(
+            "contact ratio", f"{pair.contact_ratio:.4g}", "must be between 1 and 2 for AGMA 908 spur gears"
+        )
+    refuse_undercut(pair)
     gear = pair.gear(member)
     at = pair.x_hpstc if member == "driver" else pair.x_lpstc
     radius = gear.involute_tip_radius if tip else float(pair.radius(at, member))

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
-from fegear.formulas.agma908 import pair_geometry_factor, stress_correction_factor
+from fegear.formulas.agma908 import pair_geometry_factor, refuse_undercut, stress_correction_factor
 from fegear.formulas.fillet_section import fillet_point
 from fegear.formulas.lewis import touching_section
 from fegear.geometry.curves import Trochoid
@@ -173,6 +173,7 @@ def bending_factor(pair: GearPair, member: Member, contact: ContactGeometry | No
             j.J, j.Y, j.K_f, float(gear.teeth), j.load_angle, j.load_height, j.section.thickness, j.fillet_radius,
             1.0, 1.0,
         )  # fmt: skip
+    refuse_undercut(pair)
     tooth, phi, psi = gear.tooth, gear.normal_pressure_angle, gear.helix_angle
     if tooth.rack.residual_undercut > 0.0:
         raise RangeError(

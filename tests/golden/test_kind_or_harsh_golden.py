@@ -81,3 +81,17 @@ def test_a_helical_pair_comes_out_again(study):
     kept = next(r for r in study.helical.table() if r["pair"] == "3" and r["member"] == "driver")
     assert float(row[11]) == pytest.approx(float(kept["fe"]), rel=5e-3)
     assert float(row[12]) == pytest.approx(float(kept["fe_even"]), rel=5e-3)
+
+
+def test_both_editions_of_iso_6336_3_are_one_on_a_spur_tooth_and_part_on_a_helical_one(study):
+    from fegear.formulas.iso6336.part3_pair import RatingChoice, rate_spur
+
+    tooth = study.Tooth(25, study.BasicRack(1.0, 1.25, 0.25), 0.2)
+    gear = study.Gear(tooth, 3e-3, 0.02, 0.03)
+    pair = study.helical.GearPair(gear, study.Gear(study.Tooth(40, tooth.rack), 3e-3, 0.03, 0.03))
+    one, other = (rate_spur(pair, "driver", 3e5, RatingChoice(e)).stress for e in (2006, 2019))
+    assert one == other
+    ratios = study.helical_ratios("fe")
+    apart = ratios["iso_2019"] / ratios["iso_2006"]
+    assert apart.min() < 0.99
+    assert apart.max() > 1.1

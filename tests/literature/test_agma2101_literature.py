@@ -183,6 +183,7 @@ def test_laws_of_the_factors():
         (lambda: agma2101_factors.load_distribution(0.5, 0.1, agma2101_factors.Mounting()), "2 pinion diameters"),
         (lambda: agma2101_factors.bending_cycle_factor(10.0, 200.0, "given"), "load cycles"),
         (lambda: agma2101.Service(-1.0, 1.0), "F_t"),
+        (lambda: bending_factor(pair(10, 60, 2.0), "driver"), "undercut"),
         (lambda: agma2101_factors.work_hardening_factor(1e-6, 500.0), "180 to 400"),
     ],
 )  # fmt: skip

@@ -328,5 +328,6 @@ SOURCE = RootStressSource(
     "iso-6336-3",
     tooth_root_stress,
     "ISO 6336-3:2006, method B",
-    "section and fillet radius at the 30 degree tangent; radial compression not subtracted",
+    "section and fillet radius at the 30 degree tangent; radial compression not subtracted; the edition of 2019 is the "
+    "same for one spur tooth under a given load",
 )
