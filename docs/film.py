@@ -74,6 +74,7 @@ document.body.insertAdjacentHTML('beforeend', `
       font-size: 1.500rem; line-height: 1.350; border-radius: .6rem; white-space: pre-line; }
   </style>`);
 """
+_MAP = "[...document.querySelectorAll('.plot-title')].some(one => one.textContent.startsWith('Harris map'))"
 _RELIEF = "[...document.querySelectorAll('.plot-title')].find(one => one.textContent.startsWith('Relief of'))"
 _IDLE = "!document.body.classList.contains('computing')"
 _ERROR = "document.querySelector('#plot-transmission_error_I')"
@@ -167,6 +168,7 @@ class Camera:
     def click(self, element: str) -> None:
         """Go to an element and click it."""
         self.go(self.middle(element))
+        self.point(self.middle(element))  # where it is by now
         self.button(True)
         self.button(False)
 
@@ -200,7 +202,8 @@ def named(words: str) -> str:
 def act(camera: Camera) -> None:
     """What is seen: everything is done with the mouse."""
     browser = camera.browser
-    camera.wait(f"{_IDLE} && {_ERROR}?.querySelector('.main-svg') != null")
+    camera.wait(f"{_IDLE} && {_ERROR}?.querySelector('.main-svg') != null && {_MAP}")
+    time.sleep(0.5)
     browser.run(_OVERLAY)
     camera.say("fegear open drive.toml")
     camera.point((880.0, 700.0))
@@ -208,6 +211,7 @@ def act(camera: Camera) -> None:
 
     camera.say("Root stress in colour, teeth deformed, over the path of contact")
     camera.click(named("Root stress"))
+    camera.wait(f"{_IDLE} && document.querySelector('.mesh-told').textContent.includes('MPa')")
     camera.click(named("Deformed"))
     camera.wait(f"{_IDLE} && document.querySelector('.mesh-told').textContent.includes('times as large')")
     camera.shoot(0.5)
@@ -215,7 +219,7 @@ def act(camera: Camera) -> None:
     for i in range(24):
         browser.run(f"(one => {{ one.value = {1000 * i / 24}; one.oninput(); }})({scrub})")
         camera.shoot(0.11)
-    browser.run(f"{named('Root stress')}.click(), {named('Deformed')}.click()")
+    browser.run("document.querySelectorAll('.mesh-tools [aria-pressed=true]').forEach(one => one.click())")
 
     camera.scroll(_RELIEF, 60)
     browser.run(f"void Plotly.relayout({_ERROR}, {{'yaxis.range': [14, 26]}})")
