@@ -30,6 +30,8 @@ MaterialName = Literal[
     "nitrocarburized-steel",
 ]
 
+#: How materials with a hard case begin.
+_WITH_A_CORE = ("case-hardened", "induction-hardened", "nitrided", "nitrocarburized")
 #: Rockwell C and Vickers hardness of unalloyed and low-alloy steel: ISO 18265:2013, table A.1.
 _HRC = (
     20.3, 22.2, 24.0, 25.6, 27.1, 28.5, 29.8, 31.0, 32.2, 33.3, 34.4, 35.5, 36.6, 37.7, 38.8, 39.8, 40.8, 41.8, 42.7,
@@ -82,8 +84,8 @@ class StrengthPart(Part):
     )
     core_hardness: Hardness | None = Field(
         default=None,
-        description="Hardness of the core of case-hardened teeth of quality MQ: 25 HRC at least; from 30 HRC the root "
-        "bears more.",
+        description="Hardness of the core of surface-hardened teeth: 25 HRC at least for case-hardened steel, quality "
+        "MQ, whose root bears more from 30 HRC; AGMA 2101 asks for it too.",
     )
     jominy_12: Hardness | None = Field(
         default=None,
@@ -120,10 +122,10 @@ class StrengthPart(Part):
     def _one_of_each(self) -> Self:
         if self.bending is not None and self.bending_allowable is not None:
             raise refuse("contradicts bending", "give sigma_Flim or sigma_FE", key="bending_allowable")
-        case_hardened = self.material == "case-hardened-steel"
-        for key in ("core_hardness", "jominy_12"):
-            if getattr(self, key) is not None and not case_hardened:
-                raise refuse("has a meaning only for case-hardened-steel", f"remove {key}", key=key)
+        if self.core_hardness is not None and not self.material.startswith(_WITH_A_CORE):
+            raise refuse("has a meaning only for surface-hardened steel", "remove core_hardness", key="core_hardness")
+        if self.jominy_12 is not None and self.material != "case-hardened-steel":
+            raise refuse("has a meaning only for case-hardened-steel", "remove jominy_12", key="jominy_12")
         if self.tensile_strength is not None and not self.material.endswith("iron"):
             raise refuse(
                 "has a meaning only for cast iron", "remove it, or give yield_strength", key="tensile_strength"

@@ -157,6 +157,10 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
                 Value(f"{name}.{symbol}_computed", value, "", None,
                       f"{MEANINGS[symbol]}, computed at the load with K_A, K_gamma and K_v")
             )  # fmt: skip
+        found.append(
+            Value(f"{name}.largest_pressure_computed", data.computed.pressure, "MPa", None,
+                  "largest pressure over the computed flanks at the load with K_A, K_gamma and K_v")
+        )  # fmt: skip
     return tuple(found)
 
 

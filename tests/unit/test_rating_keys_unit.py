@@ -47,7 +47,7 @@ def test_hardness_is_read_in_every_scale(text, vickers):
         ({"material": "steel"}, None, "gear.a.strength.material", "must be 'normalized-steel'"),
         ({"material": CASE, "bending": "1 MPa", "bending_allowable": "2 MPa"}, None,
          "gear.a.strength.bending_allowable", "contradicts bending"),
-        ({"material": "grey-iron", "core_hardness": "25 HRC"}, None, "gear.a.strength.core_hardness", "case-hardened"),
+        ({"material": "grey-iron", "core_hardness": "25 HRC"}, None, "gear.a.strength.core_hardness", "for surface"),
         ({"material": CASE, "tensile_strength": "1 GPa"}, None, "gear.a.strength.tensile_strength", "cast iron"),
         ({"material": CASE, "long_life": 1.1}, None, "gear.a.strength.long_life", "less than or equal to 1"),
         (None, {"life": "1 h", "load_cycles": 5}, "pair.I.operation.load_cycles", "contradicts life"),
