@@ -103,7 +103,7 @@ def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
         f"relief_of_{name}_{member}",
         f"Relief of gear {gear}",
         f"Material that is removed from the {member}'s flanks over its active profile; A to E: points of the path of "
-        "contact. The points can be moved.",
+        f"contact.{' The points can be moved.' if points else ''}",
         (Panel(axis, Axis("removal", "um", limits=(-0.06 * top, top)), tuple(items), roll_marks(pair, member)),),
     )
     alone = active_profile(pair, member)
