@@ -88,6 +88,8 @@ class Bar:
             self._level.set_value(self._bench.level)
         elif what == "designed":
             ui.notify(content["told"], type="positive", multi_line=True, timeout=10_000)
+        elif what == "failed":
+            ui.notify(content["sentence"], type="warning", multi_line=True, timeout=10_000)
         elif what == "exported":
             ui.notify("\n".join([f"Wrote {content['target']}", *content["remarks"]]), type="positive", multi_line=True)
 

@@ -67,6 +67,7 @@ class Bench:
         self._sight: tuple[str, ...] = ()
         self._shows: tuple[tuple[str, str], ...] = ()
         self._meshed: dict[tuple[str, str], _Content] = {}
+        self._asides: set[int] = set()
         self._found: dict[str, _Content] = {}
         self._last: dict[str, _Content] = {}
 
@@ -126,7 +127,7 @@ class Bench:
         self._last.clear()
         self._shows = ()
         self._meshed.clear()
-        self._first = self._number + 1
+        self._first = next(self._numbers)
         self.tell("laid")
         self.compute()
 
@@ -171,12 +172,18 @@ class Bench:
     def export(self, what: str, target: str) -> None:
         """Write the report or the drawings of the case as it is, at its own tolerance."""
         if self._computing is not None:
-            self._computing.ask(Export(next(self._numbers), self.asked()._replace(loosened=1.0), what, target))
+            self._computing.ask(Export(self._aside(), self.asked()._replace(loosened=1.0), what, target))
+
+    def _aside(self) -> int:
+        """Number of a job beside the case itself; who asked for it is told where it is refused."""
+        number = next(self._numbers)
+        self._asides.add(number)
+        return number
 
     def design(self, pair: str, how: How = "exact") -> None:
         """Ask for the reliefs that remove the transmission error of a pair, or the nearest to them to grind."""
         if self._computing is not None:
-            self._computing.ask(Design(next(self._numbers), self.asked(), pair, how))
+            self._computing.ask(Design(self._aside(), self.asked(), pair, how))
             self.tell("asked")
 
     def pin(self) -> None:
@@ -250,6 +257,13 @@ class Bench:
 
     def _hear(self, said: Said) -> None:
         what, content = said.what, {**said.content, "number": said.number}
+        if said.number in self._asides and what in ("refused", "designed", "exported", "compared"):
+            self._asides.discard(said.number)
+            if what == "refused":
+                self.tell("failed", content)
+                return
+            if what != "exported" and said.number < self._first:  # for the case that lay here before
+                return
         if what == "designed":
             self._last["designed"] = content
             self.tell(what, content)
@@ -271,7 +285,7 @@ class Bench:
         self._keep(what, content)
         self.tell(what, content)
         if what == "done" and not content["moving"] and self.pinned is not None and self._computing is not None:
-            self._computing.ask(Compare(next(self._numbers), self.pinned, self.asked()))
+            self._computing.ask(Compare(self._aside(), self.pinned, self.asked()))
 
     def _keep(self, what: str, content: _Content) -> None:
         """Remember what a page that opens later has to be told."""

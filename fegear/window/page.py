@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fegear.window.bench import Bench
 
 #: What bar and form hear; each change of theirs has the browser go through the whole form.
-_OF_THE_FORM = frozenset({"laid", "pinned", "unpinned", "refused", "exported", "designed"})
+_OF_THE_FORM = frozenset({"laid", "pinned", "unpinned", "refused", "exported", "designed", "failed"})
 #: A value that has not moved for so long stands still [s].
 _STILL = 0.4
 #: Where the page's own files are served.

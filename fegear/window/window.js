@@ -166,6 +166,7 @@ const fegear = (() => {
     },
     refused({ sentence }) { document.body.classList.remove("computing"); say(sentence); },
     exported() { say(ended); },
+    failed() { document.body.classList.remove("computing"); say(ended); }, // the bar has the sentence
     async compared({ sections: parts, figures, darker }) {
       say(ended);
       const host = $("compared");

@@ -257,6 +257,27 @@ def test_answers_to_earlier_places_of_a_moved_value_are_shown_and_end_nothing(tm
     assert dict(bench.shown_now())["hands"]["pairs"] == {"I": {"mesh": {"a": 1}}}
 
 
+def test_what_is_refused_beside_the_case_is_told_and_a_design_does_not_reach_the_next_case(tmp_path):
+    class Quiet:
+        def ask(self, job):
+            asked.append(job)
+
+    bench, told, asked = Bench(None), [], []
+    bench.lay(Desk(TWO, "c", tmp_path))
+    bench.listen(lambda what, content: told.append((what, content.get("sentence"))))
+    bench._computing = Quiet()
+    bench.export("relief", str(tmp_path / "out"))
+    bench.design("I", "ground")
+    export, design = asked
+    bench._hear(Said(export.number, "refused", {"sentence": "no gear has one", "key": ""}))
+    assert told[-1] == ("failed", "no gear has one")
+    other = TWO.replace("teeth = 41", "teeth = 43")
+    bench.lay(Desk(other, "d", tmp_path))
+    count = len(told)
+    bench._hear(Said(design.number, "designed", {"reliefs": {"a": None, "b": None}, "told": ""}))
+    assert (bench.desk.text, len(told)) == (other, count)
+
+
 def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
     for path in CASES:
         asked = Asked(path.read_text("utf-8"), path.stem, str(path.parent))
