@@ -4,6 +4,8 @@ Shigley's Mechanical Engineering Design (Budynas and Nisbett, 8th edition), exam
 17-tooth pinion of 240 HB and a 52-tooth wheel of 200 HB, ten teeth per inch, face 1.5 inch, 4 hp at 1800 rpm, Q_v = 6,
 10^8 cycles of the pinion, reliability 90 %, commercial enclosed unit. Its J, I, K_s and the elastic coefficient of
 2300 sqrt(psi) are taken as printed (charts and a size factor that the standard does not have); all else is computed.
+The numbers of example 14-4 are repeated by a public program, inputs and factors of 14-5 by a public page; stresses and
+safeties of 14-5 and the helical rows of AGMA 908's tables are recalled. They follow from the rest to the digits.
 """
 
 import math
