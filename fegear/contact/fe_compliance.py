@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,9 +60,16 @@ class FiniteElementCompliance:
         """kappa [m^2/N]."""
         return self.influence.log_slope
 
-    @cached_property
+    @property
     def neighbours(self) -> Mapping[int, Array]:
         """Chebyshev coefficients of c_k(p, q), shape (m, m) each; made when a neighbour is first asked for."""
+        kept, ends = self.influence.tabulated, f"neighbours {self.lowest.hex()} {self.highest.hex()}"
+        if ends not in kept:
+            kept[ends] = self._tabulated_neighbours()
+        found: Mapping[int, Array] = kept[ends]
+        return found
+
+    def _tabulated_neighbours(self) -> dict[int, Array]:
         rb, m = self.influence.gear.base_radius, _NEIGHBOUR_POINTS
         t = np.cos(math.pi * (np.arange(m) + 0.5) / m)
         nodes = np.hypot(rb, 0.5 * (self.lowest + self.highest) + 0.5 * (self.highest - self.lowest) * t)
@@ -140,13 +146,13 @@ def chebyshev_over(lowest: float, highest: float, p: Array, q: Array, coefficien
 
 def finite_element_compliance(influence: GearInfluence) -> FiniteElementCompliance:
     """Tabulate the influence functions of a solved gear, once for each solution."""
-    known: FiniteElementCompliance | None = influence.tabulated.get("compliance")
-    if known is None:
-        known = influence.tabulated["compliance"] = _tabulated(influence)
-    return known
+    # Kept are the tables alone: what holds the solution itself would keep it alive in a circle, and with it its memory.
+    if "own" not in influence.tabulated:
+        influence.tabulated["own"] = _tabulated(influence)
+    return FiniteElementCompliance(influence, *influence.tabulated["own"])
 
 
-def _tabulated(influence: GearInfluence) -> FiniteElementCompliance:
+def _tabulated(influence: GearInfluence) -> tuple[Spline, float, float]:
     gear = influence.gear
     rb = gear.base_radius
     bottom = max(influence.lowest_radius, gear.form_radius)
@@ -161,4 +167,4 @@ def _tabulated(influence: GearInfluence) -> FiniteElementCompliance:
     # Taken at a usual width, where what goes with the width itself is right, and given for the nominal one.
     usual, nominal = influence.reference_half_width, _NOMINAL_HALF_WIDTH * gear.module
     own = influence.self_compliance(radii, usual) - influence.log_slope * math.log(nominal / usual)
-    return FiniteElementCompliance(influence, spline(lengths, own), low, high)
+    return spline(lengths, own), low, high

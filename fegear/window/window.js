@@ -83,12 +83,19 @@ const fegear = (() => {
     place.dataset.count = Number(place.dataset.count || 0) + 1;
   }
 
+  const FOLLOWED = 250; // ms
+  let following = null, loadNow = null;
   let ended = ""; // what the last computation came to
   const say = (words) => { if ($("state")) $("state").textContent = words; };
   const heard = {
     hands(content) { return fegearHands.show(content, { made, paint, sections }); },
     harris(content) { return fegearHands.harris(content, { paint, sections }); },
-    load_now(content) { return fegearHands.follow(content); },
+    load_now(content) { // after the results that are waited for, and not for every one of them
+      following ??= setTimeout(() => {
+        line = line.then(() => { following = null; return fegearHands.follow(loadNow); }).catch((problem) => console.error(problem));
+      }, FOLLOWED);
+      loadNow = content;
+    },
     meshed(content) { fegearGears.meshed(content); },
     asked() { document.body.classList.add("computing"); say("computing ..."); },
     begin({ number, count, title }) { say(`${number} of ${count}: ${title} ...`); },

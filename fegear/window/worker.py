@@ -322,7 +322,9 @@ def scene_of(asked: Asked) -> Scene:
 def _give_back() -> None:
     """Hand freed memory back to the system; the C library keeps it otherwise, in pieces."""
     import ctypes
+    import gc
 
+    gc.collect()
     with contextlib.suppress(OSError, AttributeError, TypeError):  # only glibc has it
         ctypes.CDLL(None).malloc_trim(0)
 
