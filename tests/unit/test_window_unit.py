@@ -547,20 +547,24 @@ def test_while_a_value_moves_what_it_is_moved_for_is_found_and_the_rest_when_it_
     made, heard = computing
     text = TEXT.replace('["load-sharing"]', '["geometry", "load-sharing"]')
     asked = Asked(text, "c", str(tmp_path), moving=True)
-    made.ask(Compute(60, asked))
-    while heard.until(60, "found").content["task"] != "load-sharing of I":
-        pass
-    made.ask(Compute(61, asked._replace(text=text.replace("5 kN", "6 kN"))))
-    heard.until(60, "dropped")
-    heard.until(61, "done")
-    found = [(said.number, said.content["task"]) for said in heard.all if said.what == "found" and said.number >= 60]
-    assert [task for number, task in found if number == 60][-1] == "load-sharing of I"
-    assert [task for number, task in found if number == 61][-2:] == ["load-sharing of I", "geometry"]
+    for number in range(600, 620, 2):
+        made.ask(Compute(number, asked))
+        while heard.until(number, "found").content["task"] != "load-sharing of I":
+            pass
+        made.ask(Compute(number + 1, asked._replace(text=text.replace("5 kN", "6 kN"))))
+        if heard.until(number, "dropped", "done").what == "dropped":
+            break  # on a busy machine this process may be too slow to move the value before it counts as standing still
+    else:
+        raise AssertionError("the rest was computed each time although the value moved on")
+    heard.until(number + 1, "done")
+    found = [(said.number, said.content["task"]) for said in heard.all if said.what == "found"]
+    assert [task for of, task in found if of == number][-1] == "load-sharing of I"
+    assert [task for of, task in found if of == number + 1][-2:] == ["load-sharing of I", "geometry"]
     # what is the same as before is not sent again, and a page that opens later is shown it all the same
     geometry = [s.content for s in heard.all if s.what == "found" and s.content["task"] == "geometry"]
-    made.ask(Compute(62, asked._replace(moving=False)))
-    heard.until(62, "done")
-    again = next(s.content for s in heard.all if s.number == 62 and s.content.get("task") == "geometry")
+    made.ask(Compute(630, asked._replace(moving=False)))
+    heard.until(630, "done")
+    again = next(s.content for s in heard.all if s.number == 630 and s.content.get("task") == "geometry")
     assert geometry[-1]["figures"]
     assert [one.get("same") for one in again["figures"]] == [True] * len(geometry[-1]["figures"])
     assert whole(again, geometry[-1])["figures"] == geometry[-1]["figures"]
