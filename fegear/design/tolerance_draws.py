@@ -39,7 +39,7 @@ class Limits:
     ----------
     centre_distance : float
     profile_slope, profile_form, helix_slope, pitch : (float, float)
-        f_HalphaT, f_falphaT, f_HbetaT and f_pT.
+        f_HalphaT, f_falphaT, f_HbetaT and f_pT cos(alpha_t): all along the line of action.
     """
 
     centre_distance: float
@@ -127,8 +127,9 @@ class Deviations:
     waves, phase : ndarray
         Of the profile form, see `ProfileDeviation`.
     pitch : ndarray
-        Single pitch deviations f_p [m] between neighbouring teeth: of the gaps before and after tooth 0 in turn, from
-        it outward, so that entry 0 lies between teeth 0 and -1, entry 1 between 0 and 1, entry 2 between -1 and -2.
+        Single pitch deviations along the line of action [m] between neighbouring teeth: of the gaps before and after
+        tooth 0 in turn, from it outward, so that entry 0 lies between teeth 0 and -1, entry 1 between 0 and 1, entry 2
+        between -1 and -2.
     """
 
     centre_distance: Array

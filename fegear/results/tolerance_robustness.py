@@ -214,17 +214,24 @@ def refuse_no_tolerance(scene: Scene, name: str, limits: Limits) -> None:
 
 
 def limits_of(scene: Scene, name: str, usual: tuple[Kind, ...]) -> Limits:
-    """Largest deviations of a pair, of the kinds that the case names or else of the usual ones."""
+    """Largest deviations of a pair, of the kinds that the case names or else of the usual ones.
+
+    f_pT is an arc of the reference circle; flanks meet that deviation along the line of action, where it is shorter.
+    """
     from fegear.design.tolerance_draws import Limits
     from fegear.formulas.iso1328 import tolerances_of
 
     part = tolerance_part(scene)
     wanted: tuple[Kind, ...] = tuple(part.deviations or usual)
     found = []
-    for member in MEMBERS:
+    pitch = [0.0, 0.0]
+    for i, member in enumerate(MEMBERS):
         gear = gear_name(scene, name, member)
-        own = scene.case.gear[gear].tolerance_class
-        found.append(None if own is None else tolerances_of(scene.gears[gear], own))
+        grade, made = scene.case.gear[gear].tolerance_class, scene.gears[gear]
+        own = None if grade is None else tolerances_of(made, grade)
+        found.append(own)
+        if own is not None and "pitch" in wanted:
+            pitch[i] = own.base_pitch(made.transverse_pressure_angle)
 
     def both(kind: Kind, key: str) -> tuple[float, float]:
         one, other = (getattr(own, key) if own and kind in wanted else 0.0 for own in found)
@@ -232,7 +239,7 @@ def limits_of(scene: Scene, name: str, usual: tuple[Kind, ...]) -> Limits:
 
     return Limits(
         part.centre_distance if "centre-distance" in wanted else 0.0, both("profile-slope", "profile_slope"),
-        both("profile-form", "profile_form"), both("helix-slope", "helix_slope"), both("pitch", "single_pitch"),
+        both("profile-form", "profile_form"), both("helix-slope", "helix_slope"), (pitch[0], pitch[1]),
     )  # fmt: skip
 
 
@@ -367,7 +374,7 @@ def present_draws(data: ToleranceData, asked: PairDrawn) -> Outcome:
         "draws": part.draws, "seed": part.seed, "sequence": part.sequence, "distribution": part.distribution,
         "centre_distance_tolerance": limits.centre_distance, "profile_slope_tolerance": list(limits.profile_slope),
         "profile_form_tolerance": list(limits.profile_form), "helix_slope_tolerance": list(limits.helix_slope),
-        "single_pitch_tolerance": list(limits.pitch),
+        "base_pitch_tolerance": list(limits.pitch),
     }  # fmt: skip
     return Outcome(
         data, tolerance_tables(data, asked), tolerance_values(data, asked), settings, tolerance_remarks(data, asked),

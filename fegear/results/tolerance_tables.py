@@ -132,7 +132,10 @@ def deviation_columns(data: ToleranceData, gears: tuple[str, str]) -> Iterator[C
             names = f"{sign}{inner}" if inner else "0", f"{sign}{end}"
             word = f"{'before' if gap < 0 else 'after'}_{end}"
             yield Column(
-                f"{member}_pitch_{word}", d.pitch[:, i, k], "um", f"f_p between teeth {names[0]} and {names[1]} {of}"
+                f"{member}_pitch_{word}",
+                d.pitch[:, i, k],
+                "um",
+                f"f_p cos(alpha_t) between teeth {names[0]} and {names[1]} {of}",
             )
 
 

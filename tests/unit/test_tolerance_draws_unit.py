@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -82,6 +83,19 @@ def test_draws_fill_their_distributions():
             assert np.abs(values).max() > 0.9 * limit
             assert values.std() == pytest.approx(spread * limit, rel=3e-3)
             assert abs(values.mean()) < 2e-3 * limit
+
+
+def test_pitch_tolerances_are_those_along_the_line_of_action():
+    from fegear.case.reading import read_scene
+    from fegear.formulas.iso1328 import tolerances_of
+    from fegear.results.tolerance_robustness import limits_of
+
+    cases = Path(__file__).parents[2] / "cases"
+    scene = read_scene(cases / "robust_pair.toml", ["gear.wheel.tolerance_class=9"])
+    found = limits_of(scene, "I", ("pitch",))
+    arcs = [tolerances_of(scene.gears[name], grade).single_pitch for name, grade in (("pinion", 6), ("wheel", 9))]
+    assert found.pitch == pytest.approx([arc * math.cos(math.radians(20.0)) for arc in arcs], rel=1e-12)
+    assert limits_of(scene, "I", ("profile-slope",)).pitch == (0.0, 0.0)
 
 
 def test_pitches_add_up_to_positions():
