@@ -211,10 +211,12 @@ def _with_misses(found: Computed, asked: PairToRate) -> Computed:
     """The same with what slices are known to miss, which no coarser solution shows."""
     from fegear.fem.solid.slice_laws import missed_by_slices
 
-    missed, face = missed_by_slices(asked.pair.driver.twist), found.replacement.K_Hbeta or 1.0
+    missed = missed_by_slices(asked.pair.driver.twist)
+    # Load factors follow the unevenness of the load, at most by what the compliances miss; stress follows their root.
+    uneven = sum(abs(1.0 - 1.0 / (k or 1.0)) for k in (found.replacement.K_Hbeta, found.replacement.K_Halpha))
     one, other = found.bending_error
     return replace(
-        found, contact_error=found.contact_error + 0.5 * missed["contact"] * (1.0 - 1.0 / face),
+        found, contact_error=found.contact_error + 0.5 * missed["contact"] * uneven,
         bending_error=(one + missed["root_tension"], other + missed["root_tension"]),
     )  # fmt: skip
 
