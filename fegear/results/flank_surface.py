@@ -265,7 +265,7 @@ _CITES = citing(
     Citation("iso-ts-6336-22", "film thickness and micropitting safety S_lambda", "clauses 5 to 11"),
     Citation("blok", "flash temperature of sliding flanks"),
 )
-_ABOUT = "sliding, pressure, flash and contact temperature, lubricant film and safeties of the flanks from A to E"
+_ABOUT = "sliding, pressure, temperatures, lubricant film and safeties of the flanks from A to E"
 
 FLANK_SURFACE = Stage(
     name="flank-surface",

@@ -289,7 +289,7 @@ def _forecast(_scene: Scene, _name: str) -> Forecast:
     return Forecast({"positions": _POSITIONS}, 0.05)
 
 
-_ABOUT = "friction loss of the teeth, loss factor H_V beside Ohlendorf and Wimmer, efficiency of pair and train"
+_ABOUT = "friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train"
 
 TOOTH_LOSS = Stage(
     name="tooth-loss",
