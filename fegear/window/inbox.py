@@ -17,7 +17,7 @@ from fegear.window.jobs import Compute, Said
 if TYPE_CHECKING:
     from collections.abc import Callable
     from multiprocessing.connection import Connection
-    from types import FrameType
+    from types import CodeType, FrameType
 
     from fegear.window.jobs import Job
 
@@ -47,6 +47,7 @@ class Inbox:
         self._news, self._mouth = threading.Condition(), threading.Lock()
         self._ended = False
         self._unwanted: Callable[[Compute], bool] | None = None
+        self._within: CodeType | None = None
 
     def open(self) -> None:
         """Begin to listen; in the main thread, which alone is interrupted."""
@@ -113,9 +114,12 @@ class Inbox:
         """The case that waits to be computed."""
         return next((one for one in list(self._jobs) if isinstance(one, Compute)), None)
 
-    def watch(self, unwanted: Callable[[Compute], bool] | None) -> None:
-        """Say who decides whether what is being done gives way to another case; None where it never does."""
-        self._unwanted = unwanted
+    def watch(self, unwanted: Callable[[Compute], bool] | None, within: CodeType | None = None) -> None:
+        """Say who decides whether what is being done gives way to another case; None where it never does.
+
+        `within` is the function that does it: outside of it, where its end is dealt with, nobody is interrupted.
+        """
+        self._unwanted, self._within = unwanted, within
 
     def look(self) -> None:
         """Give up what is being done if another case is wanted.
@@ -130,8 +134,11 @@ class Inbox:
             raise Unwanted
 
     def _knocked(self, _signal: int, frame: FrameType | None) -> None:
+        inside = False
         while frame is not None:
+            inside = inside or frame.f_code is self._within
             if any(name in frame.f_code.co_filename.replace("\\", "/") for name in _WHOLE):
                 return  # the thread knocks again
             frame = frame.f_back
-        self.look()
+        if inside:
+            self.look()

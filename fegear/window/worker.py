@@ -79,18 +79,10 @@ class Worker:
         """Do one job."""
         self._number, self._begun, self._wait_before = job.number, time.monotonic(), 0
         self._asked = job.asked if isinstance(job, Compute) else None
-        self._inbox.watch(self._gives_way if isinstance(job, Compute) else None)
+        self._inbox.watch(self._gives_way if isinstance(job, Compute) else None, Worker._do.__code__)
         try:
-            if isinstance(job, Compute):
-                self._compute(job.asked)
-            elif isinstance(job, Export):
-                self._export(job)
-            elif isinstance(job, Design):
-                self._design(job)
-            else:
-                self._compare(job)
+            self._do(job)
         except Unwanted:
-            self._inbox.watch(None)
             self._say("dropped")
         except InputError as error:
             self._say("refused", sentence=str(error), key=error.key)
@@ -103,6 +95,17 @@ class Worker:
             self._asked = None
             if self._cache.shrink(_MOST):
                 _give_back()
+
+    def _do(self, job: Job) -> None:
+        """In here, and nowhere else, a computation that is unwanted is given up."""
+        if isinstance(job, Compute):
+            self._compute(job.asked)
+        elif isinstance(job, Export):
+            self._export(job)
+        elif isinstance(job, Design):
+            self._design(job)
+        else:
+            self._compare(job)
 
     # ---- as a watcher of a run: every report of progress is an occasion to notice that another case is wanted ----
 

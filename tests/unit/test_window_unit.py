@@ -642,12 +642,15 @@ def test_what_is_no_longer_wanted_is_given_up_between_two_steps_of_a_long_comput
     before = signal.getsignal(inbox_module._KNOCK)
     try:
         inbox.open()
-        inbox.watch(lambda _job: False)
+        inbox.watch(lambda _job: False, _count.__code__)
         ours.send(Compute(1, Asked("", "c", "")))
         end = time.monotonic() + 0.2
         while time.monotonic() < end:  # wanted still
+            _count(10_000)
+        inbox.watch(lambda _job: True, _count.__code__)
+        end = time.monotonic() + 0.2
+        while time.monotonic() < end:  # not where it could be given up: what follows an end is not torn apart
             pass
-        inbox.watch(lambda _job: True)
         with pytest.raises(Unwanted):
             _count(10**10)
         inbox.watch(None)
