@@ -11,8 +11,8 @@ from fegear.formulas.flank_speeds import FlankSpeeds, flank_speeds
 from fegear.formulas.flash_temperature import STEEL_HEAT, flash_temperature, reduced_modulus
 from fegear.formulas.friction_mean import MEAN_LAWS, Surface, helical_load_factor, mean_friction
 from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_micropitting
+from fegear.formulas.iso6336.fzg_test_gears import fzg_type_a, fzg_type_c
 from fegear.formulas.iso6336.rated_surface import LoadFactors, RatedSurface
-from fegear.formulas.iso6336.test_gears import fzg_type_a, fzg_type_c
 from fegear.formulas.loss_factor import computed, ohlendorf, overlapping, wimmer
 from fegear.formulas.lubricant import Oil
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
@@ -174,9 +174,9 @@ def test_load_sharing_of_the_standard_meets_its_corners():
     a, e, p = pair.x_start, pair.x_end, pair.base_pitch
     x = np.array([a, e - p, 0.0, a + p, e])
     assert part20_flash.load_sharing_factor(pair, x) == pytest.approx([1 / 3, 1.0, 1.0, 1.0, 1 / 3])
-    assert part22_micropitting.load_sharing_factor(pair, np.array([a, (a + e - p) / 2, e])) == pytest.approx(
-        [1 / 3, 1 / 2, 1 / 3]
-    )
+    beside = np.array([e - p - 1e-9, a + p + 1e-9])
+    assert part20_flash.load_sharing_factor(pair, beside) == pytest.approx([2 / 3, 2 / 3], abs=1e-6)
+    assert part20_flash.spur_sharing(pair, np.array([a, (a + e - p) / 2, e])) == pytest.approx([1 / 3, 1 / 2, 1 / 3])
     coarse = part20_flash.load_sharing_factor(pair, np.array([a, e]), 10)
     assert coarse == pytest.approx([8 / 15, 8 / 15])
 

@@ -17,6 +17,7 @@ import numpy as np
 from fegear.errors import RangeError
 from fegear.formulas.flank_speeds import FlankSpeeds, contact_ratios
 from fegear.formulas.friction_mean import Surface, helical_load_factor, mean_friction
+from fegear.formulas.iso6336.part20_flash import spur_sharing
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -97,21 +98,6 @@ def bulk_temperature(rated: RatedSurface, mu: float, losses: float) -> float:
     return rated.surface.temperature + _BULK * warm * rated.supply / (_RELIEF * relief_factor(rated))
 
 
-def load_sharing_factor(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
-    """X_Y of unmodified profiles (Formulae 46 to 48): (Q - 2)/15 at A and E, a third more beside B and D, 1 between.
-
-    Helical teeth are taken as spur ones here; a transverse contact ratio of 2 or more is for method A: 1 everywhere.
-    """
-    place, start, end = np.asarray(x, dtype=float), pair.x_start, pair.x_end
-    first, last = end - pair.base_pitch, start + pair.base_pitch
-    if pair.contact_ratio >= 2.0:
-        return np.ones_like(place)
-    least, tiny = (max(grade, 7) - 2.0) / 15.0, np.finfo(float).tiny
-    rising = least + (place - start) / max(first - start, tiny) / 3.0
-    falling = least + (end - place) / max(end - last, tiny) / 3.0
-    return np.asarray(np.where(place < first, rising, np.where(place > last, falling, 1.0)))
-
-
 def pressure(speeds: FlankSpeeds, line_load: ArrayLike, modulus: float) -> Array:
     """Local Hertzian pressure sqrt(w E_r / (2 pi rho_n)) [Pa], w in the plane of action per length (25 and 26)."""
     radius = np.maximum(speeds.relative_radius, np.finfo(float).tiny)
@@ -174,8 +160,8 @@ def film_of_test(oil: Oil, load_stage: int, temperature: float = 90.0) -> float:
     RangeError
         If the load stage is none of 5 to 10.
     """
+    from fegear.formulas.iso6336.fzg_test_gears import fzg_type_c
     from fegear.formulas.iso6336.rated_surface import SUPPLY_FACTOR, LoadFactors, RatedSurface
-    from fegear.formulas.iso6336.test_gears import fzg_type_c
 
     if load_stage not in _TEST_TORQUES:
         raise RangeError("load stage", load_stage, "must be 5 to 10")
@@ -191,7 +177,7 @@ def rated_film(rated: RatedSurface, x: ArrayLike) -> tuple[Film, float, float]:
     """The standard's film with its own load sharing, mu_m and theta_M [degC]."""
     mu = friction(rated)
     bulk, at = bulk_temperature(rated, mu, loss_factor(rated.pair)), rated.at(x)
-    share = load_sharing_factor(rated.pair, x, rated.grade)
+    share = spur_sharing(rated.pair, x, rated.grade)  # X_Y of unmodified profiles (Formulae 46 to 48)
     return (
         film(rated.surface, at, pressure(at, share * rated.line_load, rated.modulus), mu, bulk, rated.modulus),
         mu,
