@@ -63,6 +63,10 @@ def _rockwell(value: Any) -> Any:
 Hardness = Annotated[float, quantity("hardness", positive=True), BeforeValidator(_rockwell)]
 
 
+#: Stress numbers outside these are those of no gear: a unit is mistaken [Pa].
+_WEAKEST, _STRONGEST = 1e6, 10e9
+
+
 class StrengthPart(Part):
     """``strength = { material, quality, hardness, ... }``: what the flanks and roots of a gear bear.
 
@@ -122,6 +126,13 @@ class StrengthPart(Part):
     def _one_of_each(self) -> Self:
         if self.bending is not None and self.bending_allowable is not None:
             raise refuse("contradicts bending", "give sigma_Flim or sigma_FE", key="bending_allowable")
+        for key in ("contact", "bending", "bending_allowable", "yield_strength", "tensile_strength"):
+            value = getattr(self, key)
+            if value is not None and not _WEAKEST <= value <= _STRONGEST:
+                raise refuse(
+                    f"is that of no gear, {_WEAKEST * 1e-6:g} MPa to {_STRONGEST * 1e-9:g} GPa", "check the unit",
+                    key=key, value=f"{value * 1e-6:g} MPa",
+                )  # fmt: skip
         if self.core_hardness is not None and not self.material.startswith(_WITH_A_CORE):
             raise refuse("has a meaning only for surface-hardened steel", "remove core_hardness", key="core_hardness")
         if self.jominy_12 is not None and self.material != "case-hardened-steel":

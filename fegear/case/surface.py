@@ -20,6 +20,10 @@ from fegear.case.part import (
 #: R_z is about this many R_a where only one of them is given (ISO 6336-2 and ISO/TS 6336-22 use the same ratio).
 RZ_PER_RA = 6.0
 
+#: Beyond these a unit is mistaken: Ra and Rz of rough castings [m], oils like pitch [m^2/s].
+_ROUGHEST = {"flank": 100e-6, "root": 100e-6, "flank_rz": 600e-6, "root_rz": 600e-6}
+_THICKEST = 0.1
+
 #: Oils thinner than this at 40 degC [m^2/s] are none whose viscosity at 100 degC could be guessed.
 _THIN = 7e-6
 
@@ -62,6 +66,26 @@ class RoughnessPart(Part):
     root_rz: PositiveLength | None = Field(
         default=None, description="mean peak-to-valley roughness Rz of the fillets; 6 Ra where it is not given"
     )
+
+    @model_validator(mode="after")
+    def _of_gears(self) -> Self:
+        for key, most in _ROUGHEST.items():
+            value = getattr(self, key)
+            if value is not None and value > most:
+                raise refuse(
+                    f"is rougher than any gear, {most * 1e6:g} um",
+                    "check the unit",
+                    key=key,
+                    value=f"{value * 1e6:g} um",
+                )
+        for ra, rz in (("flank", "flank_rz"), ("root", "root_rz")):
+            low, high = getattr(self, ra), getattr(self, rz)
+            if low is not None and high is not None and high < low:
+                raise refuse(
+                    f"is below {ra} = {low * 1e6:g} um: no Rz is less than its Ra", "check both", key=rz,
+                    value=f"{high * 1e6:g} um",
+                )  # fmt: skip
+        return self
 
     @property
     def flank_ra(self) -> float | None:
@@ -112,6 +136,11 @@ class LubricantPart(Part):
 
     @model_validator(mode="after")
     def _thinner_when_hot(self) -> Self:
+        if self.viscosity_40 > _THICKEST:
+            raise refuse(
+                f"is thicker than any oil, {_THICKEST * 1e6:g} mm^2/s", "check the unit", key="viscosity_40",
+                value=f"{self.viscosity_40 * 1e6:g} mm^2/s",
+            )  # fmt: skip
         if self.viscosity_100 is not None and self.viscosity_100 >= self.viscosity_40:
             raise refuse("must be below viscosity_40: oil thins as it warms", "check both", key="viscosity_100")
         if self.viscosity_100 is None and self.viscosity_40 < _THIN:

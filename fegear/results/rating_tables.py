@@ -159,7 +159,7 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
             )  # fmt: skip
         found.append(
             Value(f"{name}.largest_pressure_computed", data.computed.pressure, "MPa", None,
-                  "largest pressure over the computed flanks at the load with K_A, K_gamma and K_v")
+                  "over the computed flanks at the load with K_A, K_gamma and K_v, tips and form circles left out")
         )  # fmt: skip
     return tuple(found)
 

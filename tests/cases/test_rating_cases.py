@@ -253,3 +253,15 @@ def test_computed_flanks_count_each_factor_once():
         v.value for name, v in found.items() if "pinion" in name or "driver" in name if name.endswith("root_tension")
     )
     assert stress["sigma_F"] == pytest.approx(largest, rel=1e-2)
+
+
+@pytest.mark.long
+def test_the_computed_pressure_of_helical_flanks_leaves_out_sharp_edges_as_load_distribution_does():
+    settings = (
+        "rating.beside='computed'", "pair.I.operation={life='20000 h', dynamic_factor=1.0}", "pair.I.width='slices'",
+        "effects={hertz='load-dependent'}", "load_distribution.positions=8", "accuracy.tolerance=1e-2",
+    )  # fmt: skip
+    scene = read_scene(CASES / "rating_helical.toml", ["results=['rating', 'load-distribution']", *settings])
+    done = run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
+    found = {value.name: value.value for value in done.values}
+    assert found["I.largest_pressure_computed"] == pytest.approx(found["I.largest_hertz_pressure"], rel=1e-9)

@@ -49,6 +49,8 @@ def test_hardness_is_read_in_every_scale(text, vickers):
          "gear.a.strength.bending_allowable", "contradicts bending"),
         ({"material": "grey-iron", "core_hardness": "25 HRC"}, None, "gear.a.strength.core_hardness", "for surface"),
         ({"material": CASE, "tensile_strength": "1 GPa"}, None, "gear.a.strength.tensile_strength", "cast iron"),
+        ({"material": CASE, "contact": "1500 Pa"}, None, "gear.a.strength.contact", "is that of no gear"),
+        ({"material": CASE, "bending": "500 GPa"}, None, "gear.a.strength.bending", "check the unit"),
         ({"material": CASE, "long_life": 1.1}, None, "gear.a.strength.long_life", "less than or equal to 1"),
         (None, {"life": "1 h", "load_cycles": 5}, "pair.I.operation.load_cycles", "contradicts life"),
         (None, {"contacts": [1]}, "pair.I.operation.contacts", "must hold two numbers"),

@@ -49,7 +49,7 @@ class Computed:
         Along the transverse line of action at which it was solved [N]; NaN of a plane pair, whose root stress is
         proportional to the load.
     pressure : float
-        Largest pressure over the flanks at that load [Pa]; NaN of a plane pair.
+        Largest pressure over the flanks at that load, tips and sharp edges left out [Pa]; NaN of a plane pair.
     """
 
     replacement: Replacement
@@ -180,5 +180,5 @@ def _factors(solved: SolvedFlanks, load: float, tangential: float, known: FlankC
         root[member] = even * root_width(pair, member) * pair.gear(member).module / tangential
     return _Factors(
         float(found.face_load_factor[0]), float(transverse_load_factor(found, perfect)[0]), face, transverse, root,
-        float(np.nanmax(found.pressure)),
+        float(found.largest_pressure[0]),
     )  # fmt: skip
