@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.figure import Axis, Bars, Curve, Figure, Mark, Panel, Points, View
+from fegear.results.tolerance_remarks import leading_told, search_told
 from fegear.results.tolerance_tables import (
     NOMINAL,
     OWN,
@@ -101,7 +102,8 @@ def _influences(data: ToleranceData, asked: PairDrawn) -> Figure:
         f"robustness_influences_{asked.name}",
         f"Which deviations of pair {asked.name} matter",
         f"Pair {asked.name}: share of a result's variance that each deviation explains by itself (either sign may "
-        "raise the result), and its rank correlation with it. The rest of 100 % is what deviations do together.",
+        "raise the result), and its rank correlation with it. The rest of 100 % is what deviations do together."
+        f"{leading_told(data, asked.gears)}",
         views=tuple(views),
         most_views=2,
     )
@@ -121,7 +123,8 @@ def _reliefs(data: ToleranceData, asked: PairDrawn) -> Figure:
         f"robustness_reliefs_{asked.name}",
         f"Tip reliefs of pair {asked.name} over the draws",
         f"Pair {asked.name}: share of the draws whose peak-to-peak transmission error lies below, with the relief of "
-        f"the case, the tip reliefs that are best for the drawing, and those that are best at percentile {percent:g}.",
+        f"the case, the tip reliefs that are best for the drawing, and those that are best at percentile {percent:g}."
+        f"{search_told(data, asked)}",
         (
             Panel(
                 Axis("peak-to-peak transmission error", "um", zero=True), Axis("draws below", "%", limits=(0.0, 100.0)),

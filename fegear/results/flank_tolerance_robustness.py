@@ -15,21 +15,12 @@ from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_flanks import FLANK_EFFECTS, flanks_to_load
 from fegear.models.pair_inputs import gear_name
 from fegear.models.solid_influence import solid_gear_to_solve
+from fegear.models.tolerances import chosen_pair, limits_of, refuse_no_tolerance, tolerance_part, unclassed
 from fegear.results.flank_root_stress import places_along
 from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
 from fegear.results.sources import HERTZ
-from fegear.results.tolerance_robustness import (
-    ToleranceData,
-    chosen_pair,
-    drawn,
-    limits_of,
-    present_draws,
-    refuse_no_tolerance,
-    together,
-    tolerance_part,
-    unclassed,
-)
+from fegear.results.tolerance_robustness import ToleranceData, drawn, present_draws, together
 from fegear.results.tolerance_tables import OWN
 
 if TYPE_CHECKING:

@@ -16,21 +16,15 @@ from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_checks import check_relief
 from fegear.models.pair_inputs import gear_name, pair_inputs
 from fegear.models.root_stress_source import FINITE_ELEMENTS, check_formulas, root_stress_source
+from fegear.models.tolerances import chosen_pair, limits_of, refuse_no_tolerance, tolerance_part, unclassed
 from fegear.models.tooth_influence import gear_to_solve
 from fegear.results.drawn_tolerances import tolerance_figures
 from fegear.results.gear_solution import solution_of
 from fegear.results.loaded_pair import EFFECTS, loaded_pair, needs_pair
 from fegear.results.root_stress_parts import needs_sources, stress_sources
 from fegear.results.sources import HERTZ
-from fegear.results.tolerance_tables import (
-    NOMINAL,
-    OWN,
-    ROBUST,
-    PairDrawn,
-    tolerance_remarks,
-    tolerance_tables,
-    tolerance_values,
-)
+from fegear.results.tolerance_remarks import tolerance_remarks
+from fegear.results.tolerance_tables import NOMINAL, OWN, ROBUST, PairDrawn, tolerance_tables, tolerance_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -155,29 +149,6 @@ def chunk_content(chunk: Chunk) -> object:
     return asked.teeth, asked.source, asked.solved, chunk.relief, chunk.deviations
 
 
-def tolerance_part(scene: Scene) -> TolerancePart:
-    """``[robustness]``, which the case must have."""
-    if scene.case.robustness is None:
-        raise InputError("robustness", "(not given)", "is needed to draw deviations", "write a table [robustness]")
-    return scene.case.robustness
-
-
-def chosen_pair(scene: Scene) -> tuple[str, ...]:
-    """The pair that ``[robustness]`` names, or the only one; none without the table."""
-    part = scene.case.robustness
-    if part is None:
-        return ()
-    if part.pair is not None:
-        if part.pair not in scene.pairs:
-            raise InputError("robustness.pair", f'"{part.pair}"', "is no pair of this case")
-        return (part.pair,)
-    if len(scene.pairs) != 1:
-        raise InputError(
-            "robustness.pair", "(not given)", f"is needed in a case of {len(scene.pairs)} pairs", "name one of them"
-        )
-    return tuple(scene.pairs)
-
-
 def _subjects(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name in chosen_pair(scene) if name in scene.plane_pairs)
 
@@ -201,51 +172,6 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
     check_relief(scene, name)
     check_formulas(scene, name, tips=scene.case.effects.corner_contact)
-
-
-def refuse_no_tolerance(scene: Scene, name: str, limits: Limits) -> None:
-    """Refuse a pair none of whose wanted deviations has a tolerance."""
-    pairs = (limits.profile_slope, limits.profile_form, limits.helix_slope, limits.pitch)
-    if not limits.centre_distance and not any(any(pair) for pair in pairs):
-        raise InputError(
-            "robustness", "no tolerance", "leaves nothing to draw",
-            f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class",
-        )  # fmt: skip
-
-
-def limits_of(scene: Scene, name: str, usual: tuple[Kind, ...]) -> Limits:
-    """Largest deviations of a pair, of the kinds that the case names or else of the usual ones.
-
-    f_pT is an arc of the reference circle; flanks meet that deviation along the line of action, where it is shorter.
-    """
-    from fegear.design.tolerance_draws import Limits
-    from fegear.formulas.iso1328 import tolerances_of
-
-    part = tolerance_part(scene)
-    wanted: tuple[Kind, ...] = tuple(part.deviations or usual)
-    found = []
-    pitch = [0.0, 0.0]
-    for i, member in enumerate(MEMBERS):
-        gear = gear_name(scene, name, member)
-        grade, made = scene.case.gear[gear].tolerance_class, scene.gears[gear]
-        own = None if grade is None else tolerances_of(made, grade)
-        found.append(own)
-        if own is not None and "pitch" in wanted:
-            pitch[i] = own.base_pitch(made.transverse_pressure_angle)
-
-    def both(kind: Kind, key: str) -> tuple[float, float]:
-        one, other = (getattr(own, key) if own and kind in wanted else 0.0 for own in found)
-        return one, other
-
-    return Limits(
-        part.centre_distance if "centre-distance" in wanted else 0.0, both("profile-slope", "profile_slope"),
-        both("profile-form", "profile_form"), both("helix-slope", "helix_slope"), (pitch[0], pitch[1]),
-    )  # fmt: skip
-
-
-def unclassed(scene: Scene, gears: tuple[str, str]) -> tuple[str, ...]:
-    """Gears without a tolerance class."""
-    return tuple(gear for gear in dict.fromkeys(gears) if scene.case.gear[gear].tolerance_class is None)
 
 
 def _inputs(scene: Scene, name: str) -> DrawInputs:

@@ -48,8 +48,6 @@ SHOWN = {
     "face_load_factor": Shown("", "face load factor K_Hbeta", "largest over mean load over the face"),
     "largest_line_load": Shown("N/mm", "line load", "largest over the face"),
 }
-#: Candidates of the grid that `robust_tip_relief` leads on, and draws over which it tries all of them.
-LED, SCREENING = 4, 64
 #: Outcomes that are drawn and whose influences are told.
 _TOLD = (
     "te_peak_to_peak", "te_harmonic_1", "face_load_factor", "driver_root_tension", "driven_root_tension",
@@ -287,70 +285,3 @@ def tolerance_values(data: ToleranceData, asked: PairDrawn) -> tuple[Value, ...]
                 ),
             ]  # fmt: skip
     return tuple(values)
-
-
-def tolerance_remarks(data: ToleranceData, asked: PairDrawn) -> tuple[str, ...]:
-    """What a percentile is worth here, what matters most, how the relief was found, and what is left out."""
-    name, part = asked.name, asked.part
-    p = percentiles(data, "te_peak_to_peak")[-1]
-    spread = (
-        "the tolerance is three standard deviations and the end"
-        if part.distribution == "normal" else "even over the tolerance"
-    )  # fmt: skip
-    told = (
-        f"Pair {name}: {part.draws} draws ({part.sequence}, seed {part.seed}; {part.distribution}, {spread}). Profile "
-        "deviations are alike on all teeth of a gear, pitch deviations differ from tooth to tooth. Percentile "
-        f"{p.percent:g} of the peak-to-peak transmission error is {p.value * 1e6:.4g} um, with 95 % confidence "
-        f"{p.low * 1e6:.4g} to {p.high * 1e6:.4g} um, {nominal(data, 'te_peak_to_peak') * 1e6:.4g} um without "
-        "deviations."
-    )
-    found = [told]
-    found += [
-        f"Gear {gear} has no tolerance_class: its flanks are taken as the drawing's in every draw."
-        for gear in asked.untold
-    ]
-    if asked.own_spacing:
-        found.append(
-            f"Pair {name}: spacing_errors of its gears are left out of the draws, which have pitches of their own."
-        )
-    ranked = sorted(influence_table(data, asked.gears), key=lambda row: -np.nan_to_num(row[1]["te_peak_to_peak"].share))
-    leading = [row for row in ranked if np.nan_to_num(row[1]["te_peak_to_peak"].share) >= 0.02][:3]
-    if leading:
-        shares = ", ".join(f"{c.name} {i['te_peak_to_peak'].share:.0%}" for c, i in leading)
-        found.append(
-            f"Pair {name}: most of the variance of the peak-to-peak transmission error by one deviation: {shares}."
-        )
-    if data.reasons:
-        first = min(data.reasons)
-        found.append(
-            f"Pair {name}: {len(data.reasons)} of {part.draws} draws have no result and do not count, the first (draw "
-            f"{first}): {data.reasons[first]}"
-        )
-    if data.relief is not None and part.reliefs is not None:
-        r = data.relief
-        found.append(
-            f"Pair {name}: the best tip reliefs at percentile {part.reliefs.percentile:g} were found with straight "
-            f"contact laws by trying all {r.candidates} combinations of a grid over {SCREENING} draws and the best "
-            f"tenth over {r.draws}, and leading the best {LED} and the nominal optimum on; at their ends exact sharing "
-            f"differs by at most {r.quick_error * 1e6:.2g} um. Over these draws they leave {r.left * 1e6:.4g} "
-            f"um, the nominal optimum {r.nominal_left * 1e6:.4g} um."
-        )
-        found.append(_held_against_nominal(data, name, part.reliefs.percentile))
-    return tuple(found)
-
-
-def _held_against_nominal(data: ToleranceData, name: str, percent: float) -> str:
-    """Whether the relief that was found over some draws is better over all of them, and how sure that is."""
-    from fegear.design.draw_statistics import sure_of_less
-
-    robust, other = (outcome(data, "te_peak_to_peak", state) for state in (ROBUST, NOMINAL))
-    here, there, sure = sure_of_less(robust, other, percent)
-    verdict = (
-        f"Pair {name}: over all draws that is {here * 1e6:.4g} um against {there * 1e6:.4g} um of the nominal optimum"
-    )
-    if here < there:
-        return f"{verdict}, less in {sure:.0%} of resampled sets of draws."
-    return (
-        f"{verdict}: no better over all draws than the nominal optimum, which serves as well (or raise "
-        "robustness.reliefs.draws)."
-    )
