@@ -74,6 +74,8 @@ class SolutionCache:
         Where solutions of kinds that have a `Codec` are kept beyond this process.
     most : int
         Solutions in memory; the ones unused for longest go first. A gear's influence functions take some 10 MB.
+    check : callable, optional
+        Called before something computed is kept; what it raises is raised on, and nothing is kept.
 
     Attributes
     ----------
@@ -81,8 +83,8 @@ class SolutionCache:
         Whole results, and the tooth shapes among what they are made of.
     """
 
-    def __init__(self, disk: Store | None = None, most: int = 128) -> None:
-        self.disk = disk
+    def __init__(self, disk: Store | None = None, most: int = 128, check: Callable[[], None] | None = None) -> None:
+        self.disk, self._check = disk, check
         self.solutions, self.shapes = Account(), Account()
         self._memory: OrderedDict[str, tuple[Any, float]] = OrderedDict()
         self._most = most
@@ -119,7 +121,7 @@ class SolutionCache:
                 account.add(0, 1, 0, seconds)
             return Solution(value, seconds, "memory")
         if codec is None or self.disk is None:
-            found = _timed(compute)
+            found = self._timed(compute)
         else:
             # Of several processes that want the same solution one computes it and the others wait.
             with self.disk.claim(key):
@@ -158,8 +160,15 @@ class SolutionCache:
                 total -= 0 if holders[array] else size
         return bool(unused)
 
+    def _timed(self, compute: Callable[[], T]) -> Solution[T]:
+        started = time.perf_counter()
+        value = compute()
+        if self._check is not None:
+            self._check()
+        return Solution(value, time.perf_counter() - started, "computed")
+
     def _computed_and_written(self, key: str, compute: Callable[[], T], codec: Codec[T]) -> Solution[T]:
-        found = _timed(compute)
+        found = self._timed(compute)
         if self.disk is not None:
             with contextlib.suppress(OSError):  # a full disk or a read-only folder costs the next run time, no more
                 self.disk.write(key, _SECONDS.pack(found.seconds) + codec.write(found.value))
@@ -196,12 +205,6 @@ def arrays_of(value: object) -> dict[int, int]:
             slots = [name for kind in type(one).__mro__ for name in getattr(kind, "__slots__", ())]
             todo.extend(getattr(one, name, None) for name in slots)
     return found
-
-
-def _timed(compute: Callable[[], T]) -> Solution[T]:
-    started = time.perf_counter()
-    value = compute()
-    return Solution(value, time.perf_counter() - started, "computed")
 
 
 def _read(data: bytes | None, codec: Codec[T]) -> Solution[T] | None:

@@ -10,6 +10,7 @@ import _thread
 import signal
 import threading
 from collections import deque
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fegear.window.jobs import Compute, Said
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 _KNOCK = signal.Signals["SIGUSR1" if hasattr(signal, "SIGUSR1") else "SIGBREAK"]
 #: How long it waits before it knocks again where nobody could answer [s].
 _AGAIN = 0.05
+#: Where fegear's own code lies.
+_OWN = str(Path(__file__).parents[1])
 #: Code that must not be left half-way: a module half imported, a message half sent, a place half registered.
 _WHOLE = ("<frozen importlib", "multiprocessing/connection.py", "threading.py", "/weakref.py", "/tempfile.py")
 
@@ -39,6 +42,11 @@ class Inbox:
     Parameters
     ----------
     connection : Connection
+
+    Attributes
+    ----------
+    given_up : bool
+        Whether what is watched has been told that it is unwanted; whatever ends it then, this is why.
     """
 
     def __init__(self, connection: Connection) -> None:
@@ -48,6 +56,7 @@ class Inbox:
         self._ended = False
         self._unwanted: Callable[[Compute], bool] | None = None
         self._within: CodeType | None = None
+        self.given_up = False
 
     def open(self) -> None:
         """Begin to listen; in the main thread, which alone is interrupted."""
@@ -120,6 +129,8 @@ class Inbox:
         `within` is the function that does it: outside of it, where its end is dealt with, nobody is interrupted.
         """
         self._unwanted, self._within = unwanted, within
+        if unwanted is not None:
+            self.given_up = False
 
     def look(self) -> None:
         """Give up what is being done if another case is wanted.
@@ -130,10 +141,14 @@ class Inbox:
             If so.
         """
         newest = self.newest
-        if self._unwanted is not None and newest is not None and self._unwanted(newest):
+        if self._unwanted is not None and (self.given_up or (newest is not None and self._unwanted(newest))):
+            self.given_up = True
             raise Unwanted
 
     def _knocked(self, _signal: int, frame: FrameType | None) -> None:
+        # Only in fegear's own code: a library's compiled code may take what is raised below it for something else.
+        if frame is None or not frame.f_code.co_filename.startswith(_OWN):
+            return
         inside = False
         while frame is not None:
             inside = inside or frame.f_code is self._within

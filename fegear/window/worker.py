@@ -53,7 +53,7 @@ class Worker:
     """
 
     def __init__(self, connection: Connection, folder: Path) -> None:
-        self._inbox, self._cache = Inbox(connection), SolutionCache(Store(folder))
+        self._inbox, self._cache = Inbox(connection), SolutionCache(Store(folder), check=lambda: self._inbox.look())
         self._meshes: dict[str, object] = {}
         self._on_gears: dict[Task, object] = {}
         self._seconds: dict[str, float] = {}
@@ -84,12 +84,15 @@ class Worker:
             self._do(job)
         except Unwanted:
             self._say("dropped")
-        except InputError as error:
-            self._say("refused", sentence=str(error), key=error.key)
-        except FegearError as error:
-            self._say("refused", sentence=str(error), key="")
         except MemoryError:
             self._say("refused", sentence="Out of memory: ask for less at once, or allow more.", key="")
+        except Exception as error:
+            if self._inbox.given_up:
+                self._say("dropped")
+            elif isinstance(error, FegearError):
+                self._say("refused", sentence=str(error), key=error.key if isinstance(error, InputError) else "")
+            else:
+                raise
         finally:
             self._inbox.watch(None)
             self._asked = None

@@ -110,6 +110,20 @@ def test_names_that_join_to_one_table_are_refused():
         run_plan(scene, make_plan(scene, STAGES))
 
 
+def test_what_is_given_up_while_it_is_computed_is_not_kept():
+    unwanted = [True]
+
+    def check():
+        if unwanted[0]:
+            raise KeyboardInterrupt
+
+    cache = SolutionCache(check=check)
+    with pytest.raises(KeyboardInterrupt):
+        cache.solve("a", lambda: 1)
+    unwanted[0] = False
+    assert cache.solve("a", lambda: 2).value == 2
+
+
 def test_memory_is_bounded_by_the_bytes_of_what_is_held_and_shared_arrays_count_once():
     cache = SolutionCache()
     big = np.zeros(1_000_000 // 8)

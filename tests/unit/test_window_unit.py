@@ -636,11 +636,12 @@ def test_a_draft_is_told_as_one_and_replaced(computing, tmp_path):
     assert drafts == [True, False]
 
 
-def test_what_is_no_longer_wanted_is_given_up_between_two_steps_of_a_long_computation():
+def test_what_is_no_longer_wanted_is_given_up_between_two_steps_of_a_long_computation(monkeypatch):
     ours, theirs = Pipe()
     inbox = Inbox(theirs)
     before = signal.getsignal(inbox_module._KNOCK)
     try:
+        monkeypatch.setattr(inbox_module, "_OWN", str(Path(__file__).parent))
         inbox.open()
         inbox.watch(lambda _job: False, _count.__code__)
         ours.send(Compute(1, Asked("", "c", "")))
