@@ -307,14 +307,14 @@ def soak(case: str, minutes: float) -> None:
         time.sleep(chance.choice((0.05, 0.1, 0.1, 0.4, 1.5)))
         now = time.monotonic()
         if base is None and now - begin > 6.0 * minutes:
-            window.settle()
+            window.rest()
             base = memory(window.server.pid), memory(window.browser.pid)
         if now - told > 60.0:
             told = now
             print(
                 f"  after {(now - begin) / 60:.0f} min, {count} changes: {memory(window.server.pid):.0f} MB", flush=True
             )
-    window.settle()
+    window.rest()
     grown = memory(window.server.pid) - base[0]
     page = memory(window.browser.pid) - base[1]
     left = window.close()
