@@ -222,6 +222,12 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
             f"Pair {name}: no safety against scuffing: lubricant gives neither scuffing_load_stage nor "
             "scuffing_temperature."
         )
+    oil = asked.rated.surface.temperature
+    if data.scuffing <= oil:
+        told.append(
+            f"Pair {name}: the oil of {oil:.4g} degC is no cooler than its scuffing temperature of {data.scuffing:.4g} "
+            "degC: S_B is not above zero, and says no more than that."
+        )
     if math.isnan(data.permissible_film):
         told.append(
             f"Pair {name}: no safety against micropitting: lubricant gives neither micropitting_load_stage nor "

@@ -183,6 +183,12 @@ def test_a_dynamic_factor_below_one_is_said():
     assert any("K_v:" in one and "is below 1" in one for one in outcome.remarks)
 
 
+def test_a_shaft_thicker_than_its_pinion_is_said():
+    said = run("rating_spur", ALONE, "pair.I.shafts.diameter='500 mm'").remarks
+    assert any("the shaft of 500 mm is thicker than the pinion, 84 mm" in one for one in said)
+    assert not any("thicker" in one for one in run("rating_spur", ALONE).remarks)
+
+
 def test_agma_stands_beside_with_its_own_stresses():
     outcome = run("rating_spur", "pair.I.operation={life='20000 h'}", "rating.beside='agma-2101'")
     table = next(t for t in outcome.tables if t.name == "rating_safety_I")

@@ -71,6 +71,15 @@ def test_flanks_of_a_spur_pair_from_a_to_e():
     ]
 
 
+def test_oil_hotter_than_it_scuffs_is_said():
+    hot = {key: value for key, value in OIL.items() if key != "scuffing_load_stage"}
+    values, found = numbers(
+        "flank-surface", lubricant=hot | {"temperature": "120 degC", "scuffing_temperature": "110 degC"}
+    )
+    assert values["S_B"] < 0.0
+    assert any("no cooler than its scuffing temperature" in remark for remark in found.remarks)
+
+
 def test_load_factors_heat_the_flanks_and_ones_change_nothing():
     plain, _ = numbers("flank-surface")
     ones = {"application_factor": 1.0, "dynamic_factor": 1.0, "face_load_factor": 1.0, "transverse_load_factor": 1.0}

@@ -95,12 +95,15 @@ def shaft_deformation(shaft: PinionShaft, line_load: float, width: float, diamet
     bending = k * shaft.bearing_span * shaft.offset / diameter**2 * (diameter / shaft.diameter) ** 4
     deformation = line_load * _BENDING * (abs(torque + bending - 0.3) + 0.3) * (width / diameter) ** 2
     place = shaft.offset / shaft.bearing_span
-    if place < most:
-        return deformation, ""
-    return (
-        deformation,
-        f"f_sh: s/l = {place:.3g} is not below {most:g}, for which arrangement {shaft.arrangement} is stated",
-    )
+    remarks = []
+    if not place < most:
+        remarks.append(f"s/l = {place:.3g} is not below {most:g}, for which arrangement {shaft.arrangement} is stated")
+    if shaft.diameter > diameter:
+        remarks.append(
+            f"the shaft of {shaft.diameter * 1e3:.4g} mm is thicker than the pinion, {diameter * 1e3:.4g} mm at its "
+            "reference circle"
+        )
+    return deformation, f"f_sh: {'; '.join(remarks)}" if remarks else ""
 
 
 def manufacturing(quality: tuple[Quality, Quality]) -> float:
