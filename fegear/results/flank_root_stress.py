@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Column, Outcome, Table
+from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_flanks import FLANK_EFFECTS
@@ -71,11 +71,14 @@ class FlankRootStressData:
         Largest over the face, under every load.
     over_face : mapping of Member to mapping of Side to StressOverFace
         At the nominal load.
+    across : mapping of Member to (float, float)
+        Helical gears: largest tension at right angles to the helix at the nominal load, and its estimated error [Pa].
     """
 
     loaded: LoadedFlanksData
     stress: Mapping[Member, ToothStress]
     over_face: Mapping[Member, Mapping[Side, StressOverFace]]
+    across: Mapping[Member, tuple[float, float]]
 
 
 def places_along(loaded: LoadedFlanksData) -> Array:
@@ -102,6 +105,7 @@ def _compute(asked: FlankRootStressInputs, upstream: Upstream, work: Work) -> Fl
     coupling = loaded.asked.effects.neighbour_coupling
     stress: dict[Member, ToothStress] = {}
     maps: dict[Member, dict[Side, StressOverFace]] = {}
+    across: dict[Member, tuple[float, float]] = {}
     for number, member in enumerate(MEMBERS):
         influence = solid_solution_of(upstream, asked.gears[member])
         rooted = rooted_lines(found.pair, member, found.lines, influence.fine, coupling=coupling)
@@ -122,8 +126,14 @@ def _compute(asked: FlankRootStressInputs, upstream: Upstream, work: Work) -> Fl
                 off.append(influence.error.get("root_tension", np.nan) * np.abs(largest["tension"][-1]))
         tension, compression, error = (np.stack(x, axis=1) for x in (largest["tension"], largest["compression"], off))
         stress[member] = ToothStress(rooted.x, tension, compression, error)
+        if found.pair.driver.helix_angle and influence.coarse:  # slices know no shear along the face
+            n = loaded.nominal
+            largest_across = rooted.largest("tension", found.contact.force[:, :, n], z, across=True)
+            worst = int(np.argmax(tension[:, n]))
+            share = error[worst, n] / tension[worst, n]
+            across[member] = largest_across, float(share * largest_across)
         work.progress((number + 1) / len(MEMBERS))
-    return FlankRootStressData(loaded, stress, maps)
+    return FlankRootStressData(loaded, stress, maps, across)
 
 
 def _present(data: FlankRootStressData, inputs: FlankRootStressInputs) -> Outcome:
@@ -138,12 +148,34 @@ def _present(data: FlankRootStressData, inputs: FlankRootStressInputs) -> Outcom
         tables.append(_over_face(label, gear, over))
         where = _where(data.stress[member], over, i)
         values += stress_values(f"{name}.{member}", "", f"gear {gear}, {where}", data.stress[member], i)
+        values += _across_the_root(f"{name}.{member}", gear, data.across.get(member))
     figures = (
         stress_figure(name, pair, loads[i], shown, i, inputs.gears),
         root_stress_map(name, loads[i], data.over_face, inputs.gears),
     )
     settings = {"places_along_the_face": int(data.over_face["driver"]["tension"].z.size)}
-    return Outcome(data, tuple(tables), tuple(values), settings, figures=figures)
+    remarks = () if not data.across else (_direction(data, inputs, i),)
+    return Outcome(data, tuple(tables), tuple(values), settings, remarks, figures=figures)
+
+
+def _across_the_root(of: str, gear: str, found: tuple[float, float] | None) -> list[Value]:
+    if found is None:
+        return []
+    value, error = found
+    told = f"gear {gear}: largest tension at right angles to the helix, as formulas for the normal section mean it"
+    return [Value(f"{of}.largest_root_tension_across", value, "MPa", None if np.isnan(error) else error, told)]
+
+
+def _direction(data: FlankRootStressData, inputs: FlankRootStressInputs, i: int) -> str:
+    """What the direction of the stress makes of it."""
+    more = " and ".join(
+        f"{100.0 * (value / data.stress[member].tension[:, i].max() - 1.0):+.1f} % ({member})"
+        for member, (value, _) in data.across.items()
+    )
+    return (
+        f"Pair {inputs.name}: root stresses over the mesh and the face are those along the transverse section; the "
+        f"largest at right angles to the helix differs by {more}: values largest_root_tension_across."
+    )
 
 
 def _places(over: Mapping[Side, StressOverFace]) -> tuple[Column, ...]:
