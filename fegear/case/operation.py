@@ -27,6 +27,8 @@ HelixModification = Literal[
 ]
 #: Shares of a spectrum may miss their sum of 1 by so much: they are often given in percent of one decimal.
 _SHARES = 2e-3
+#: Factors K_A and K_gamma above this are slips of the pen.
+_LARGEST = 10.0
 
 
 class SpectrumPart(Part):
@@ -75,7 +77,7 @@ class OperationPart(Part):
     life: PositiveTime | None = Field(
         default=None, description="Required life at the pair's speed or under the spectrum; unlimited without."
     )
-    load_cycles: PositiveNumber | None = Field(
+    load_cycles: Annotated[Number, Field(ge=1.0)] | None = Field(
         default=None, description="Load cycles that a flank of the driver must bear, in place of life."
     )
     contacts: list[Annotated[int, Field(ge=1, le=100)]] = Field(
@@ -98,6 +100,12 @@ class OperationPart(Part):
     def _one_life(self) -> Self:
         if self.life is not None and self.load_cycles is not None:
             raise refuse("contradicts life", "give life or load_cycles", key="load_cycles")
+        for key in ("application_factor", "mesh_load_factor"):
+            if getattr(self, key) > _LARGEST:
+                raise refuse(
+                    f"multiplies the load by more than {_LARGEST:g}, as no drive does",
+                    "check the decimal point, or give a larger load", key=key,
+                )  # fmt: skip
         if len(self.contacts) != 2:
             raise refuse(
                 "must hold two numbers, of the driver and of the driven gear", "[1, 1] as a rule", key="contacts"

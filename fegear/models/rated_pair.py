@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 USUAL_FLANK, USUAL_ROOT, USUAL_VISCOSITY, UNLIMITED = 4.8e-6, 20e-6, 220e-6, 1e10
 #: Young's modulus above which a material is no iron: nodular iron has about 175 GPa (ISO 6336-2, table of Z_E) [Pa].
 _STIFFEST_IRON = 190e9
+#: Pitch line velocity above which there is no gear, five times that of the fastest turbo gears [m/s].
+_FASTEST = 1000.0
 #: The class whose helix slope a favourable contact pattern takes off.
 _CLASS_5 = 5
 
@@ -158,9 +160,11 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
         said.append(f"Pair {name}: an oil of ISO VG 220 was assumed (lubricant).")
     viscosity = USUAL_VISCOSITY if part.lubricant is None else part.lubricant.viscosity_40
     first = geometry.members[0] == "driver"
+    _refuse_fast(part, pair, name)
     cycles = _in_order(_cycles(part, pair, said, name), first=first)
     duty = Duty(
-        tangential, speed, cycles, viscosity, operation.application_factor, operation.mesh_load_factor
+        tangential, speed, cycles, viscosity, operation.application_factor, operation.mesh_load_factor,
+        meshes=_mates(operation.contacts, first=first),
     )  # fmt: skip
     conditions = Conditions(
         geometry, (strength[0], strength[1]), (quality[0], quality[1]), duty,
@@ -187,6 +191,12 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
 def _in_order(values: Both, *, first: bool) -> Both:
     """Of driver and driven as of pinion and wheel."""
     return values if first else (values[1], values[0])
+
+
+def _mates(contacts: Sequence[int], *, first: bool) -> tuple[int, int]:
+    """With how many mates pinion and wheel mesh: each loads a flank once per revolution."""
+    one, other = contacts
+    return (one, other) if first else (other, one)
 
 
 def _strength(scene: Scene, gear: str, said: list[str]) -> Strength:
@@ -320,7 +330,27 @@ def _cycles(part: PairPart, pair: GearPair, said: list[str], name: str) -> Both:
             said.append(f"Pair {name}: no life was given; it is rated for {UNLIMITED:g} load cycles (operation.life).")
         return UNLIMITED, UNLIMITED
     turns = life * speed / (2.0 * math.pi)
+    if max(turns * one, turns * ratio * other) < 1.0:
+        raise InputError(
+            f"pair.{name}.operation.life", f"{life:.4g} s", "ends before the first load cycle", "check its unit"
+        )
     return turns * one, turns * ratio * other
+
+
+def _refuse_fast(part: PairPart, pair: GearPair, name: str) -> None:
+    """Refuse speeds at which any gear has burst; the formulas know no limit."""
+    bins = part.operation.spectrum or []
+    for key, speed in (
+        ("speed", part.speed),
+        *((f"operation.spectrum[{i}].speed", b.speed) for i, b in enumerate(bins)),
+    ):
+        velocity = (speed or 0.0) * pair.driver.pitch_radius
+        if velocity > _FASTEST:
+            raise InputError(
+                f"pair.{name}.{key}", f"{(speed or 0.0) * 30.0 / math.pi:.4g} rpm",
+                f"gives a pitch line velocity of {velocity:.4g} m/s, and gears burst below {_FASTEST:g} m/s",
+                "check its unit",
+            )  # fmt: skip
 
 
 def _levels(

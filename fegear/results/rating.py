@@ -15,7 +15,8 @@ from fegear.models.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load
 from fegear.results.drawn_rating import rating_figures
 from fegear.results.gear_solution import needs_solution, solution_of
 from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
-from fegear.results.rating_tables import factor_table, rating_remarks, rating_values, safety_table, spectrum_table
+from fegear.results.rating_remarks import rating_remarks, shortfalls
+from fegear.results.rating_tables import factor_table, rating_values, safety_table, spectrum_table
 from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
 from fegear.results.sources import RING
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Upstream, Work
     from fegear.formulas.agma2101 import AgmaRating
     from fegear.formulas.iso6336.pair_rating import PairRating, Replacement
-    from fegear.formulas.iso6336.rated import Duty
+    from fegear.formulas.iso6336.rated import Both, Duty
     from fegear.formulas.iso6336.safety import Conditions
     from fegear.formulas.iso6336.spectrum_rating import Curves, SpectrumRating
     from fegear.models.agma_pair import AgmaInputs
@@ -123,11 +124,16 @@ def rated(asked: PairToRate) -> Conditions:
     if not any(asked.idler):
         return asked.conditions
     correction = rate_pair(asked.conditions, given(asked))["Y_S"].values
-    factors = [
-        mean_stress_factor(mean_stress_ratio(one.group, y_s), _IDLER) if bent else 1.0
-        for one, y_s, bent in zip(asked.conditions.strength, correction, asked.idler, strict=True)
-    ]
-    return replace(asked.conditions, duty=replace(asked.conditions.duty, mean_stress=(factors[0], factors[1])))
+
+    def factors(*, static: bool) -> Both:
+        one, two = (
+            mean_stress_factor(mean_stress_ratio(one.group, y_s, static=static), _IDLER) if bent else 1.0
+            for one, y_s, bent in zip(asked.conditions.strength, correction, asked.idler, strict=True)
+        )
+        return one, two
+
+    duty = replace(asked.conditions.duty, mean_stress=factors(static=False), mean_stress_static=factors(static=True))
+    return replace(asked.conditions, duty=duty)
 
 
 def given(asked: PairToRate) -> Replacement:
@@ -227,7 +233,8 @@ def _present(data: RatingData, inputs: RatingInputs) -> Outcome:
         tables.append(spectrum_table(data.spectrum, inputs.asked))
     return Outcome(
         data, tuple(tables), rating_values(data, inputs.asked), _settings(data, inputs),
-        (*inputs.asked.assumed, *inputs.said, *rating_remarks(data, inputs.asked)), rating_figures(data, inputs.asked),
+        (*shortfalls(data, inputs.asked), *inputs.asked.assumed, *inputs.said, *rating_remarks(data, inputs.asked)),
+        rating_figures(data, inputs.asked),
     )  # fmt: skip
 
 

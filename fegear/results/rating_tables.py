@@ -1,4 +1,4 @@
-"""Tables, values and remarks of the result ``rating``."""
+"""Tables and values of the result ``rating``."""
 
 from __future__ import annotations
 
@@ -52,13 +52,14 @@ def factor_table(data: RatingData, asked: PairToRate) -> Table:
         Column("clause", np.array([one.clause for one in rows]), "", "where the standard gives it"),
         Column("meaning", np.array([MEANINGS.get(one.symbol, "") for one in rows]), "", "what it is"),
         Column(
-            "remark", np.array([_remark(one, asked) for one in rows]), "", "what lies outside a range, or was given"
+            "remark", np.array([remark_of(one, asked) for one in rows]), "", "what lies outside a range, or was given"
         ),
     ]
     return Table(f"rating_{asked.name}", tuple(columns), f"Rating of pair {asked.name} by ISO 6336, factor by factor")
 
 
-def _remark(one: Factor, asked: PairToRate) -> str:
+def remark_of(one: Factor, asked: PairToRate) -> str:
+    """A factor's remark, which says of a given one that it was given."""
     given = one.symbol in asked.given or (one.symbol == "K_Falpha" and "K_Halpha" in asked.given)
     return "as given by the case" if given and _STANDS_IN in one.remark else one.remark
 
@@ -187,65 +188,3 @@ def _of_spectrum(data: RatingData, spectrum: SpectrumRating, asked: PairToRate, 
               f"torque of the driver whose {root.cycles[-2]:g} load cycles hurt the roots as the spectrum does"),
     ]  # fmt: skip
     return [value for value in found if math.isfinite(value.si)]
-
-
-def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
-    """What falls short, what lies outside a range, and what the computed safeties count."""
-    told = [f"Pair {asked.name}: {_remark(one, asked)}." for one in data.formula.factors if _shown(one, asked)]
-    told += [f"Pair {asked.name}: {reason}" for reason in data.why_not]
-    found = data.spectrum
-    if found is not None:
-        told += [
-            f"Pair {asked.name}: a level of the spectrum has the {what} of gear {gear} above their static strength."
-            for what, sums in (("flanks", found.contact_damage), ("roots", found.bending_damage))
-            for member, gear in zip(MEMBERS, asked.gears, strict=True)
-            if math.isinf(sums[asked.of(member)])
-        ]
-    contact = data.formula.contact_safety if found is None else found.contact_safety
-    bending = data.formula.bending_safety if found is None else found.bending_safety
-    under = "" if found is None else " under the spectrum"
-    for member, gear in zip(MEMBERS, asked.gears, strict=True):
-        for symbol, safety, least in (("S_H", contact, asked.required[0]), ("S_F", bending, asked.required[1])):
-            value = safety[asked.of(member)]
-            if value < least:
-                told.append(
-                    f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the required "
-                    f"{least:g}."
-                )
-    if data.computed is None:
-        return tuple(dict.fromkeys(told))
-    if asked.width == "plane":
-        told.append(
-            f"Pair {asked.name}: computed is the root stress of the plane teeth at the outer point of single pair "
-            "contact, in the place of Y_F Y_S Y_B; load factors are those of the formulas. Write width = "
-            '"solid" for a computed load distribution.'
-        )
-    else:
-        load, pressure = data.computed.load, data.computed.pressure * 1e-6
-        told.append(
-            f"Pair {asked.name}: load distribution and root stress were computed at {load:.5g} N along the line of "
-            f"action (K_A, K_gamma and K_v included), where the largest pressure is {pressure:.4g} MPa. The computed "
-            "root stress holds load sharing, face distribution and helix already: it stands for Y_F Y_S Y_beta Y_B "
-            "Y_DT K_Fbeta K_Falpha together."
-        )
-        told += _aligned(data, asked)
-    return tuple(dict.fromkeys(told))
-
-
-def _aligned(data: RatingData, asked: PairToRate) -> list[str]:
-    """Say what misalignment the standard counts and the computed flanks do not have."""
-    counted = [one.value for one in data.formula.factors if one.symbol == "F_betay"]
-    if asked.misaligned or not counted:
-        return []
-    gap = f"{counted[0] * 1e6:.3g} um"
-    told = (
-        f"Pair {asked.name}: the computed flanks are aligned, while ISO 6336 counts a misalignment of F_betay = {gap} "
-        f'after running in. The same for both: pair.{asked.name}.line_error = {{ over_face = "{gap}" }} and '
-        "effects.misalignment = true."
-    )
-    return [told]
-
-
-def _shown(one: Factor, asked: PairToRate) -> bool:
-    """Whether a factor's remark is the reader's: not that the case gave it."""
-    return bool(one.remark) and _remark(one, asked) == one.remark and "as given" not in one.remark

@@ -95,6 +95,68 @@ def test_idlers_bear_less_by_the_mean_stress_factor():
     assert bent["S_H"] == plain["S_H"]
 
 
+def test_idlers_of_few_cycles_have_the_mean_stress_ratio_of_static_strength():
+    def root_at(cycles, idler):
+        operation = f"pair.I.operation={{load_cycles={cycles}, contacts=[1, 1]{idler}}}"
+        return factors(run("rating_spur", operation, ALONE), "driver")
+
+    # ISO 6336-3:2006, table B.1 of case-hardened steel: M = .7 static, .8 - .15 Y_S of endurance; R = -1.2
+    plain = {n: root_at(n, "") for n in (1e3, 3e6, 5e4)}
+    bent = {n: root_at(n, ", idler='driver'") for n in plain}
+    part = {n: bent[n]["sigma_FP"] / plain[n]["sigma_FP"] for n in plain}
+    m = 0.8 - 0.15 * plain[1e3]["Y_S"]
+    still, moved = 1.0 / (1.0 + 1.2 * 0.3 / 1.7), 1.0 / (1.0 + 1.2 * (1.0 - m) / (1.0 + m))
+    assert part[1e3] == pytest.approx(still, rel=1e-9)
+    assert bent[1e3]["Y_M_static"] == pytest.approx(still, rel=1e-9)
+    assert part[3e6] == pytest.approx(moved, rel=1e-9)
+    share = math.log(5e4 / 1e3) / math.log(3e6 / 1e3)
+    assert part[5e4] == pytest.approx(still * (moved / still) ** share, rel=1e-9)
+
+
+def test_a_gear_with_several_mates_moves_its_part_of_the_mass_in_each():
+    one = factors(run("rating_spur", "pair.I.operation={life='20000 h'}", ALONE))
+    sun = factors(run("rating_spur", "pair.I.operation={life='20000 h', contacts=[3, 1]}", ALONE))
+    ring = factors(run("rating_spur", "pair.I.operation={life='20000 h', contacts=[1, 3]}", ALONE))
+    # ISO 6336-1:2006, Eqs. 30 to 32: 1/m_red is the sum of both gears' mates/m
+    added = 2.0 * (1.0 / one["m_red"])
+    assert sum(1.0 / f["m_red"] - 1.0 / one["m_red"] for f in (sun, ring)) == pytest.approx(added, rel=1e-9)
+    assert sun["m_red"] < ring["m_red"]  # the lighter pinion counts for more
+    assert sun["n_E1"] == pytest.approx(one["n_E1"] * math.sqrt(one["m_red"] / sun["m_red"]), rel=1e-9)
+
+
+def test_a_safety_below_the_required_one_is_said_before_what_was_assumed():
+    outcome = run(
+        "rating_spur", "pair.I.operation={life='20000 h', safety_contact=9, safety_root=9}", ALONE,
+        "gear.pinion.strength={material='case-hardened-steel'}",
+    )  # fmt: skip
+    assert all("is below the required 9" in text for text in outcome.remarks[:4])
+    assert any("assumed" in text for text in outcome.remarks[4:])
+
+
+def test_a_load_of_no_account_beside_what_deviations_excite_is_said():
+    at = "pair.I.operation={life='20000 h'}"
+    shaken = [text for text in run("rating_spur", at, ALONE, "pair.I.torque='1e-3 N m'").remarks if "K_v =" in text]
+    assert len(shaken) == 1
+    assert "is above 10: flank deviations excite" in shaken[0]
+    assert not [text for text in run("rating_spur", at, ALONE).remarks if "is above 10" in text]
+
+
+@pytest.mark.parametrize(
+    ("setting", "key", "said"),
+    [
+        ("pair.I.speed='1e12 rpm'", "pair.I.speed", "gears burst below 1000 m/s"),
+        ("pair.I.operation={life='20000 h', spectrum=[{load_factor=1, share=1, speed='1e9 rpm'}]}",
+         "pair.I.operation.spectrum[0].speed", "gears burst below 1000 m/s"),
+        ("pair.I.operation={life='1e-6 s'}", "pair.I.operation.life", "ends before the first load cycle"),
+    ],
+)  # fmt: skip
+def test_what_no_gear_does_is_refused(setting, key, said):
+    with pytest.raises(InputError) as refused:
+        run("rating_spur", ALONE, setting)
+    assert refused.value.key == key
+    assert said in str(refused.value)
+
+
 def test_who_drives_changes_nothing_of_the_gears():
     one = run("rating_spur", "pair.I.operation={life='20000 h'}", ALONE)
     torque = 520.0 * 62 / 21

@@ -40,8 +40,8 @@ class RootStrength:
     Parameters
     ----------
     Y_NT, Y_deltarelT, Y_RrelT, Y_X, Y_M : float
-        At N_L; notch, surface and size at reference.
-    Y_deltarelT_static : float
+        At N_L; notch, surface, size and mean stress at reference.
+    Y_deltarelT_static, Y_M_static : float
     static, reference, permissible : float
         sigma_FP of a safety of 1, static, at 3e6 cycles and at N_L [Pa].
     remark : str
@@ -53,6 +53,7 @@ class RootStrength:
     Y_X: float
     Y_M: float
     Y_deltarelT_static: float
+    Y_M_static: float
     static: float
     reference: float
     permissible: float
@@ -184,7 +185,7 @@ def root_strength(
     roughness: float,
     notch: tuple[float, float],
     cycles: float,
-    mean_stress: float = 1.0,
+    mean_stress: tuple[float, float] = (1.0, 1.0),
 ) -> RootStrength:
     """sigma_FP of one gear for a safety of 1 (ISO 6336-3, 5.3): in between, log-log from static to reference.
 
@@ -197,8 +198,8 @@ def root_strength(
         q_s and Y_S of the critical section.
     cycles : float
         N_L.
-    mean_stress : float
-        Y_M.
+    mean_stress : (float, float)
+        Y_M of static strength and of endurance, whose M differ.
     """
     layer, unsure = slip_layer(strength)
     delta = notch_sensitivity(notch[0], layer)
@@ -207,10 +208,11 @@ def root_strength(
     size = size_factor(strength.group, module)
     knots = life_knots(strength)
     whole = delta * surface * size
-    base = strength.bending * STANDARD_GEAR * mean_stress
-    stress = Knots(knots.cycles, tuple(base * v for v in knots.values)).scaled((static, whole, whole))
+    base, endured = strength.bending * STANDARD_GEAR, whole * mean_stress[1]
+    stress = Knots(knots.cycles, tuple(base * v for v in knots.values))
+    stress = stress.scaled((static * mean_stress[0], endured, endured))
     remark = "; ".join(r for r in (unsure, rough) if r)
     return RootStrength(
-        knots.at(cycles), delta, surface, size, mean_stress, static,
+        knots.at(cycles), delta, surface, size, mean_stress[1], static, mean_stress[0],
         stress.values[0], stress.values[1], stress.at(cycles), remark,
     )  # fmt: skip

@@ -119,6 +119,8 @@ class Duty:
         Y_M: 1 for pulsating loads, see `part3_strength.mean_stress_factor`.
     meshes : (int, int)
         With how many mates each gear meshes at once: (3, 1) for a sun with three planets.
+    mean_stress_static : (float, float) or None
+        Y_M of static strength; None where it is that of endurance.
     """
 
     tangential: float
@@ -129,6 +131,7 @@ class Duty:
     mesh_load_factor: float = 1.0
     mean_stress: Both = (1.0, 1.0)
     meshes: tuple[int, int] = (1, 1)
+    mean_stress_static: Both | None = None
 
     def __post_init__(self) -> None:
         """Refuse loads, speeds and lives that are not positive."""
@@ -136,7 +139,12 @@ class Duty:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise RangeError(name, value, "must be positive and finite")
-        for name, values in (("N_L", self.cycles), ("Y_M", self.mean_stress), ("meshes", self.meshes)):
+        for name, values in (
+            ("N_L", self.cycles),
+            ("Y_M", self.mean_stress),
+            ("static Y_M", self.mean_stress_static or (1.0, 1.0)),
+            ("meshes", self.meshes),
+        ):
             for value in values:
                 if not value > 0.0:
                     raise RangeError(name, value, "must be positive")

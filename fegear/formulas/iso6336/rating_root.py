@@ -102,14 +102,16 @@ def permissible_bending(
 ) -> tuple[RootStrength, RootStrength]:
     """What both roots bear, with its factors in the table."""
     part = f"ISO 6336-3:{conditions.edition}"
+    duty = conditions.duty
+    at_rest = duty.mean_stress if duty.mean_stress_static is None else duty.mean_stress_static
     one, two = (
         root_strength(
             conditions.strength[i],
             conditions.geometry.module,
             conditions.quality[i].root_roughness,
             (_notch(form), form.form.Y_S),
-            conditions.duty.cycles[i],
-            conditions.duty.mean_stress[i],
+            duty.cycles[i],
+            (at_rest[i], duty.mean_stress[i]),
         )
         for i, form in enumerate(forms)
     )
@@ -120,7 +122,8 @@ def permissible_bending(
     table.add("Y_deltarelT", (one.Y_deltarelT, two.Y_deltarelT), f"{part}, clause 13", remark=remark)
     table.add("Y_RrelT", (one.Y_RrelT, two.Y_RrelT), f"{part}, clause 14")
     table.add("Y_X", (one.Y_X, two.Y_X), f"{part}, clause 15")
-    table.add("Y_M", (one.Y_M, two.Y_M), f"{part}, annex B")
+    table.add("Y_M", (one.Y_M, two.Y_M), f"{part}, annex B, endurance")
+    table.add("Y_M_static", (one.Y_M_static, two.Y_M_static), f"{part}, annex B, static strength")
     table.add("sigma_FP_static", (one.static, two.static), f"{part}, 5.3", "Pa")
     table.add("sigma_FP_reference", (one.reference, two.reference), f"{part}, 5.3", "Pa")
     table.add("sigma_FP", (one.permissible, two.permissible), f"{part}, 5.3", "Pa")
