@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from fegear.case.deviations import DeviationsPart
 from fegear.case.flank import BiasPart, LeadPart, TopographyPart
 from fegear.case.part import (
     Angle,
@@ -210,6 +211,11 @@ class GearPart(Part):
     tolerance_class: Annotated[int, Field(ge=1, le=11)] | None = Field(
         default=None,
         description="Flank tolerance class of ISO 1328-1:2013, 1 (tightest) to 11; it wants a `face_width`.",
+    )
+    deviations: DeviationsPart | None = Field(
+        default=None,
+        description="Own deviations of the flanks, in the place of those by `tolerance_class` in a rating; all three "
+        "of a gear outside the sizes of ISO 1328-1.",
     )
     helix_angle: Angle | None = Field(
         default=None, description="Helix angle on the pitch cylinder, up to 60 deg; without it the gear is a spur gear."

@@ -26,13 +26,15 @@ if TYPE_CHECKING:
     from fegear.case.pair import PairPart, Width
     from fegear.case.reading import Scene
     from fegear.formulas.iso6336.rated import Both
-    from fegear.geometry import GearPair
+    from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
 
 #: What is taken where a case says nothing: Rz of flanks and fillets [m], nu_40 of ISO VG 220 [m^2/s], load cycles.
 USUAL_FLANK, USUAL_ROOT, USUAL_VISCOSITY, UNLIMITED = 4.8e-6, 20e-6, 220e-6, 1e10
 #: Young's modulus above which a material is no iron: nodular iron has about 175 GPa (ISO 6336-2, table of Z_E) [Pa].
 _STIFFEST_IRON = 190e9
+#: What a gear outside the sizes of ISO 1328-1 has to say, as an example.
+_OWN = 'deviations = { base_pitch = "5 um", profile_form = "4 um", helix_slope = "6 um" }'
 #: Pitch line velocity above which there is no gear, five times that of the fastest turbo gears [m/s].
 _FASTEST = 1000.0
 #: The class whose helix slope a favourable contact pattern takes off.
@@ -241,14 +243,11 @@ def _quality(scene: Scene, name: str, gear: str, said: list[str]) -> Quality:
     grade = part.tolerance_class
     if grade is None:
         grade = max(scene.case.pair[name].iso_6336.accuracy_grade, 1)
-        said.append(f"Gear {gear}: tolerance class {grade} was assumed, accuracy_grade of iso_6336 (tolerance_class).")
-    try:
-        found = tolerances_of(made, grade).rounded
-    except InputError as error:
-        if part.tolerance_class is None:
-            remedy = "a rating needs pitch, profile and helix tolerances, which no class has for such a gear"
-            error = type(error)(error.key, error.value, error.rule, remedy)
-        raise at(f"gear.{gear}", error, {"normal_module": "module"} if not part.is_helical else None) from None
+        rest = "" if part.deviations is None else ", for what its own deviations do not say"
+        said.append(
+            f"Gear {gear}: tolerance class {grade} was assumed{rest}, accuracy_grade of iso_6336 (tolerance_class)."
+        )
+    pitch, form, slope = _deviations(part, made, grade, gear)
     rough = part.roughness
     flank, root = (None, None) if rough is None else (rough.flank_height, rough.root_height)
     if flank is None:
@@ -256,9 +255,27 @@ def _quality(scene: Scene, name: str, gear: str, said: list[str]) -> Quality:
     if root is None:
         said.append(f"Gear {gear}: Rz = {USUAL_ROOT * 1e6:g} um of the fillets was assumed (roughness).")
     return Quality(
-        grade, found.base_pitch(made.transverse_pressure_angle), found.profile_form, found.helix_slope,
-        flank or USUAL_FLANK, root or USUAL_ROOT, _tip_relief(scene, gear, part, said),
+        grade, pitch, form, slope, flank or USUAL_FLANK, root or USUAL_ROOT, _tip_relief(scene, gear, part, said)
     )  # fmt: skip
+
+
+def _deviations(part: GearPart, made: Gear, grade: int, gear: str) -> tuple[float, float, float]:
+    """f_pb, f_falpha and f_Hbeta [m]: the gear's own, else by class."""
+    own = part.deviations
+    pitch, form, slope = (None,) * 3 if own is None else (own.base_pitch, own.profile_form, own.helix_slope)
+    if pitch is not None and form is not None and slope is not None:
+        return pitch, form, slope  # no class is asked: the gear may lie outside its sizes
+    try:
+        found = tolerances_of(made, grade).rounded
+    except InputError as error:
+        remedy = f"give gear.{gear}.{_OWN}: a rating needs them, and no class has them for such a gear"
+        error = type(error)(error.key, error.value, error.rule, remedy)
+        raise at(f"gear.{gear}", error, {"normal_module": "module"} if not part.is_helical else None) from None
+    return (
+        found.base_pitch(made.transverse_pressure_angle) if pitch is None else pitch,
+        found.profile_form if form is None else form,
+        found.helix_slope if slope is None else slope,
+    )
 
 
 def _tip_relief(scene: Scene, gear: str, part: GearPart, said: list[str]) -> float:
@@ -292,10 +309,15 @@ def _alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str]) -
         )  # fmt: skip
     slope = None
     if shafts.contact_pattern == "favourable":
-        slope = max(
-            flank_tolerances(_CLASS_5, 2.0 * g.pitch_radius, g.module, g.face_width).rounded.helix_slope
-            for g in (scene.gears[gear] for gear in gears)
-        )
+        try:
+            slope = max(
+                flank_tolerances(_CLASS_5, 2.0 * g.pitch_radius, g.module, g.face_width).rounded.helix_slope
+                for g in (scene.gears[gear] for gear in gears)
+            )
+        except InputError as error:
+            rule = f"takes off the helix slope of class 5, which a gear of {error.key} = {error.value} has none of"
+            key, remedy = f"pair.{name}.shafts.contact_pattern", "leave it out, or give face_load_factor (operation)"
+            raise InputError(key, shafts.contact_pattern, rule, remedy) from None
     return Alignment(shaft, shafts.deformation, shafts.misalignment, modification, shafts.contact_pattern, slope)
 
 

@@ -48,6 +48,7 @@ class GearKeys(TypedDict, total=False):
     topography: Mapping[str, Any]
     spacing_errors: Sequence[Quantity] | Mapping[str, Any]
     tolerance_class: int
+    deviations: Mapping[str, Any]
     helix_angle: Quantity
     hand: Literal["left", "right", "spur"]
     normal_module: Quantity

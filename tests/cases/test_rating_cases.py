@@ -141,6 +141,52 @@ def test_a_load_of_no_account_beside_what_deviations_excite_is_said():
     assert not [text for text in run("rating_spur", at, ALONE).remarks if "is above 10" in text]
 
 
+def fine_pair(tmp_path, *settings: str):
+    """Rate a pair of module .4 mm with 3 mm of face, sizes that ISO 1328-1 does not know."""
+    text = (CASES / "rating_spur.toml").read_text("utf-8").replace("tolerance_class = 6", "")
+    (tmp_path / "rating_fine.toml").write_text(text, "utf-8")
+    sizes = [f"gear.{one}.{key}" for one in ("pinion", "wheel") for key in ("module='0.4 mm'", "face_width='3 mm'")]
+    load = ("pair.I.torque='0.4 N m'", "pair.I.operation={life='2000 h'}")
+    return run(str(tmp_path / "rating_fine"), ALONE, *sizes, *load, "pair.I.shafts={deformation='1 um'}", *settings)
+
+
+def own_deviations(pitch="5 um", form="4 um", slope="6 um"):
+    table = f"{{base_pitch='{pitch}', profile_form='{form}', helix_slope='{slope}'}}"
+    return [f"gear.{one}.deviations={table}" for one in ("pinion", "wheel")]
+
+
+def test_a_gear_outside_the_sizes_of_iso_1328_is_rated_with_its_own_deviations(tmp_path):
+    found = factors(fine_pair(tmp_path, *own_deviations()))
+    assert [found["f_pb"], found["f_falpha"]] == pytest.approx([5.0, 4.0])
+    assert found["f_ma"] == pytest.approx(math.hypot(6.0, 6.0))  # ISO 6336-1, 7.5.3: of both helix slopes
+    wide = factors(fine_pair(tmp_path, *own_deviations(slope="12 um")))
+    assert wide["K_Hbeta"] > found["K_Hbeta"]
+    rough = factors(fine_pair(tmp_path, *own_deviations(pitch="10 um")))
+    assert rough["K_v"] > found["K_v"]
+
+
+def test_own_deviations_take_the_place_of_those_by_class_one_by_one():
+    plain, own = (
+        factors(run("rating_spur", ALONE, *(f"gear.{gear}.deviations={{{given}}}" for gear in ("pinion", "wheel"))))
+        for given in ("", "profile_form='40 um'")
+    )
+    assert own["f_falpha"] == pytest.approx(40.0)
+    assert own["f_pb"] == plain["f_pb"]
+    assert own["f_ma"] == plain["f_ma"]
+
+
+def test_sizes_outside_iso_1328_are_refused_with_own_deviations_as_the_remedy(tmp_path):
+    with pytest.raises(InputError) as refused:
+        fine_pair(tmp_path)
+    assert refused.value.key == "gear.pinion.module"
+    assert "give gear.pinion.deviations = { base_pitch" in str(refused.value)
+    with pytest.raises(InputError) as refused:
+        fine_pair(tmp_path, *own_deviations(), "pair.I.shafts={deformation='1 um', contact_pattern='favourable'}")
+    assert refused.value.key == "pair.I.shafts.contact_pattern"
+    with pytest.raises(InputError, match="larger than that of any gear"):
+        fine_pair(tmp_path, *own_deviations(slope="6 mm"))
+
+
 @pytest.mark.parametrize(
     ("setting", "key", "said"),
     [
@@ -275,7 +321,7 @@ def test_levels_beyond_static_strength_are_said_and_leave_no_infinite_value():
 
 def test_sizes_without_tolerances_are_refused_with_a_remedy_that_helps():
     small = "module='0.3 mm', face_width='5 mm', strength={material='case-hardened-steel'}"
-    with pytest.raises(InputError, match="a rating needs pitch, profile and helix tolerances"):
+    with pytest.raises(InputError, match=r"give gear.pinion.deviations = .*: a rating needs them"):
         run(
             "rating_spur", ALONE, f"gear.pinion={{teeth=21, {small}}}", f"gear.wheel={{teeth=62, {small}}}",
         )  # fmt: skip
