@@ -72,8 +72,9 @@ def test_outside_the_ranges_nothing_is_extrapolated(change, key):
 
 
 def test_limits_themselves_are_inside():
-    flank_tolerances(1, 5.0 * 1e-3, 0.5e-3, 4.0 * 1e-3)
-    flank_tolerances(11, 15.0, 70e-3, 1.2)
+    finest, coarsest = flank_tolerances(1, 5.0 * 1e-3, 0.5e-3, 4.0 * 1e-3), flank_tolerances(11, 15.0, 70e-3, 1.2)
+    for name in ("single_pitch", "cumulative_pitch", "profile_total", "helix_total"):
+        assert 0.0 < getattr(finest, name) < getattr(coarsest, name) < 3e-3
 
 
 def test_a_gear_is_taken_by_its_reference_diameter_and_normal_module():
