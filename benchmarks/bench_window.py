@@ -156,6 +156,9 @@ class Window:
         self.settle()
         self.browser.run(WATCH)
         self.gear = self.browser.run("document.querySelector('[data-key$=\".teeth\"]').dataset.key.split('.')[1]")
+        self.gears = self.browser.run(
+            "[...document.querySelectorAll('[data-key$=\".teeth\"]')].map((one) => one.dataset.key.split('.')[1])"
+        )
         self.key = "torque" if "torque" in self.text else "load"
 
     def pids(self) -> tuple[list[int], list[int]]:
@@ -168,7 +171,7 @@ class Window:
         pids = self.pids()
         before = [processor(one) for one in pids]
         for change in changes:
-            first, whole = self.browser.run(f"answer(() => {change})")
+            first, whole = self.browser.run(f"answer(() => {{ {change} }})")
             found.first.append(first)
             found.whole.append(whole)
         after = [processor(one) for one in pids]
@@ -188,7 +191,16 @@ class Window:
 
     def typed(self, key: str, value: str) -> str:
         """Something typed into a field and confirmed; what is left out by default is unfolded before."""
-        find = f"document.querySelector('[data-key=\"gear.{self.gear}.{key}\"]')"
+        return self._typed_at(self.gear, key, value)
+
+    def typed_everywhere(self, key: str, value: str) -> str:
+        """The same on every gear: gears in mesh share a pressure angle, and the case holds when the last one has it."""
+        return "; setTimeout(() => {".join(self._typed_at(gear, key, value) for gear in self.gears) + "}, 50)" * (
+            len(self.gears) - 1
+        )
+
+    def _typed_at(self, gear: str, key: str, value: str) -> str:
+        find = f"document.querySelector('[data-key=\"gear.{gear}.{key}\"]')"
         if not self.browser.run(f"{find} !== null"):
             self.browser.run(
                 "[...document.querySelectorAll('.q-expansion-item .q-item')].forEach((one) => one.click())"
@@ -228,7 +240,11 @@ KINDS = (
     ("load slider", lambda w, i: w.load_of(0.5 + 0.01 * i), (None, 100, 200)),
     ("tooth number", lambda w, i: w.typed("teeth", str(24 + i + 6 * (w.key == "load"))), (600, 1500, 1500)),
     ("profile shift", lambda w, i: w.typed("profile_shift", f"{0.05 + 0.002 * i:.3f}"), (600, 1500, 1500)),
-    ("pressure angle", lambda w, i: w.typed("pressure_angle", f"{20.1 + 0.05 * i:.2f} deg"), (600, 1500, 1500)),
+    (
+        "pressure angle",
+        lambda w, i: w.typed_everywhere("pressure_angle", f"{20.1 + 0.05 * i:.2f} deg"),
+        (600, 1500, 1500),
+    ),
 )
 
 

@@ -309,6 +309,7 @@ def test_gears_that_cannot_be_are_marked_and_the_study_goes_on():
     assert np.isfinite(table["ratio_to_fe"][table["rack_tip_radius"] == 0.25]).all()
 
 
+@pytest.mark.long
 def test_a_population_ends_with_its_distribution_and_a_sentence_for_each_formula():
     tables, _, results = run("root_stress_population", "study.samples=2", "study.pressure_angle=['20 deg', '25 deg']")
     table = tables["root_stress_study"]

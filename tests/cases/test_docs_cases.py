@@ -23,7 +23,7 @@ COSTLY = {
     "gear-with-its-width", "helical-misalignment", "load-over-the-face", "python", "python-mechanics", "several-meshes",
     "relieve-a-helical-pair", "scuffing-micropitting-loss", "stiffness-table", "sweep-on-a-cluster", "sweeps",
     "tutorial",
-    "use-my-own-compliance", "use-my-own-mesh", "validate-root-stress-formula",
+    "rate-a-pair", "tolerances", "use-my-own-compliance", "use-my-own-mesh", "validate-root-stress-formula",
 }  # fmt: skip
 
 

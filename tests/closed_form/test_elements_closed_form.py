@@ -200,7 +200,14 @@ def _gauss(points):
 
 @pytest.mark.parametrize(
     ("order", "curved", "points"),
-    [(2, False, 3), (3, False, 4), (4, False, 5), (2, True, 9), (3, True, 9), (4, True, 9)],
+    [
+        (2, False, 3),
+        (3, False, 4),
+        (4, False, 5),
+        (2, True, 9),
+        (4, True, 9),
+        pytest.param(3, True, 9, marks=pytest.mark.long),
+    ],
 )
 def test_element_matrices_against_integration_with_40_digits(order, curved, points):
     tooth = Tooth(28, BasicRack(1.0, 1.25, 0.25))
