@@ -53,6 +53,7 @@ const fegearGears = (() => {
     }
     kept.set = (data) => {
       if (!data) return;
+      more.allow(data.refused ?? {});
       if (JSON.stringify(data) === JSON.stringify(kept.data)) return draw();
       kept.data = data;
       const m = data.module * 1e3, wide = Math.max(6 * m, 1.3e3 * Math.max(-data.start, data.end)), tall = 3.2 * m;
@@ -166,8 +167,17 @@ const fegearGears = (() => {
       draw();
     };
     const factor = () => kept.factor ?? kept.sent.deformed?.factor ?? 1;
+    let vain = {}; // kind -> why it cannot be had of this pair
+    function allow(refused) { // what is on stays a button, to be switched off
+      vain = refused;
+      for (const [kind, [, title]] of Object.entries(KINDS)) {
+        buttons[kind].disabled = !!vain[kind] && !kept.on[kind];
+        buttons[kind].title = vain[kind] ? `${title}. ${vain[kind]}` : title;
+      }
+    }
     function turn(kind, on) {
       kept.on[kind] = on;
+      allow(vain);
       buttons[kind].setAttribute("aria-pressed", String(on));
       emitEvent("shows", { pair, kind, on });
       tell();
@@ -221,6 +231,7 @@ const fegearGears = (() => {
     pressed.classList.add("mesh-scale");
     return {
       tell,
+      allow,
       elements: [switches, scale, told, flanks, pressed],
       now: () => ({ place: kept.place, factor: factor(), stress: has("stress"), deformed: has("deformed"), tool: has("tool") }),
       draw() {
@@ -235,6 +246,7 @@ const fegearGears = (() => {
         if (kind in KINDS && kept.on[kind] === undefined) { // a page that opened later
           kept.on[kind] = true;
           buttons[kind].setAttribute("aria-pressed", "true");
+          allow(vain);
         }
         tell();
         draw();

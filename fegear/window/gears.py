@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: What is switched on at the gears, and the stage that computes it.
 STAGES_OF = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
+#: Why they are not shown of other pairs.
+_NOT_PLANE = "It is shown only of pairs of plane teeth."
 
 
 def _plain(value: Any) -> Any:
@@ -31,7 +33,7 @@ def _plain(value: Any) -> Any:
 
 
 def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
-    """Outlines of both gears and how they turn, for the page to draw.
+    """Outlines of both gears and how they turn, for the page to draw, and what can be switched on in vain.
 
     Parameters
     ----------
@@ -39,7 +41,13 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
     name : str
         Of the pair.
     """
-    return {key: _plain(value) for key, value in asdict(moving_pair(scene.pairs[name])).items()}
+    found = {key: _plain(value) for key, value in asdict(moving_pair(scene.pairs[name])).items()}
+    return found | {"refused": {} if _plane(scene, name) else dict.fromkeys(STAGES_OF, _NOT_PLANE)}
+
+
+def _plane(scene: Scene, name: str) -> bool:
+    """Whether a pair's teeth are plane, of which alone stress and deformation are shown."""
+    return not scene.pairs[name].driver.helix_angle and name in scene.plane_pairs
 
 
 def wanted_on_gears(scene: Scene, shows: Iterable[tuple[str, str]]) -> tuple[list[Task], list[dict[str, Any]]]:
@@ -67,8 +75,8 @@ def wanted_on_gears(scene: Scene, shows: Iterable[tuple[str, str]]) -> tuple[lis
             lines = {member: millimetres(at) for member, at in tool_envelope(gears).items()}
             tips = {member: gears.gear(member).tip_radius * 1e3 for member in lines}
             told.append({"pair": pair, "kind": kind, "lines": lines, "tips": tips})
-        elif scene.pairs[pair].driver.helix_angle or pair not in scene.plane_pairs:
-            told.append({"pair": pair, "kind": kind, "refused": "It is shown of pairs of plane teeth."})
+        elif not _plane(scene, pair):
+            told.append({"pair": pair, "kind": kind, "refused": _NOT_PLANE})
         else:
             task = Task(STAGES_OF[kind], pair)
             try:

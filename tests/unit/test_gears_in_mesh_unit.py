@@ -20,7 +20,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
 from fegear.results.drawn_pair import placed_in_mesh
 from fegear.solution_cache import SolutionCache
-from fegear.window.gears import wanted_on_gears
+from fegear.window.gears import gears_in_mesh, wanted_on_gears
 from fegear.window.on_gears import on_the_gears
 
 CASE = {
@@ -238,3 +238,19 @@ def test_what_cannot_be_shown_is_said_and_stops_nothing():
     refused, tool = told
     assert "not how a tooth deforms" in refused["refused"]
     assert np.shape(tool["lines"]["driver"])[:2] == (31, 2)
+
+
+def test_the_page_knows_beforehand_what_of_a_pair_is_shown_in_vain():
+    helical = json.loads(json.dumps(CASE))
+    gear = {"teeth": 23, "module": "3 mm", "face_width": "10 mm"}
+    helical["gear"] |= {"a": gear | {"helix_angle": "15 deg", "hand": "left", "normal_module": gear.pop("module")}}
+    helical["gear"]["b"] = helical["gear"]["a"] | {"hand": "right"}
+    helical["pair"]["I"]["driven"] = "b"
+    del helical["effects"]
+    for case, kinds in ((CASE, []), (helical, ["deformed", "stress"])):
+        scene = build_scene(case, "case", None)
+        told = gears_in_mesh(scene, "I")["refused"]
+        assert sorted(told) == kinds
+        # The same sentence answers whoever asks for it all the same.
+        _, answers = wanted_on_gears(scene, [("I", "stress"), ("I", "deformed")])
+        assert {one["kind"]: one["refused"] for one in answers} == told
