@@ -83,7 +83,7 @@ class OperationPart(Part):
     contacts: list[Annotated[int, Field(ge=1, le=100)]] = Field(
         default=[1, 1],
         description="How often a flank of the driver and of the driven gear is loaded per revolution: 3 for a sun "
-        "gear with three planets.",
+        "gear with three planets, of whose mass K_v then takes a third for each mesh.",
     )
     idler: Literal["driver", "driven", "both"] | None = Field(
         default=None, description="Gear whose teeth are bent to either side once per revolution, as those of an idler."
