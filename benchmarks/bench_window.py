@@ -181,7 +181,7 @@ class Window:
     def relief(self, amount: float, *, moving: bool = True) -> str:
         """A tip relief of so many micrometres."""
         now = "true" if moving else "false"
-        return f"emitEvent('relief', {{gear: '{self.gear}', end: 'tip', start: 30, amount: {amount}, moving: {now}}})"
+        return f"emitEvent('relief', {{gear: '{self.gear}', end: 'tip', start: 26, amount: {amount}, moving: {now}}})"
 
     def load_of(self, share: float, *, moving: bool = True) -> str:
         """So much of the pair's load."""
