@@ -71,7 +71,7 @@ def load_sharing_factor(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
     """X_Gamma of unmodified profiles (clause 9, Eqs. 49 to 60 and 76).
 
     (Q - 2)/15 at A and E, a third more beside B and D, 1 between them, with Q the tolerance class, at least 7: 1/3 and
-    2/3 of fine gears, as in AGMA 925-A03, Eqs. 45 to 47, and in ISO/TR 15144-1 (a program lets it rise to 1 at B).
+    2/3 of fine gears, as in ISO/TR 15144-1 and, recalled, in AGMA 925-A03, Eqs. 45 to 47 (one program: 1 at B).
     Helical pairs with epsilon_gamma above 2 have 1/epsilon_alpha; helical teeth count the buttressing of their ends
     besides. A transverse contact ratio of 2 or more lies outside the clause: 1 everywhere, on the safe side.
 
