@@ -208,6 +208,7 @@ const fegear = (() => {
     unpinned() { sections.get("compared")?.element.remove(); sections.delete("compared"); },
     laid() {
       sections.clear();
+      unpainted.clear();
       seen.clear();
       sight.disconnect();
       document.querySelectorAll("#results, #remarks, #compared, #designed, #hands").forEach((one) => one.replaceChildren());
@@ -217,12 +218,23 @@ const fegear = (() => {
   let line = Promise.resolve(); // one after the other: a figure is not painted twice at a time
   const newest = new Map(); // what is overtaken before its turn is not shown
   const OVERTAKEN = new Set(["found", "hands", "plan", "harris", "load_now", "meshed"]);
+  // A figure that is the same as before travels as its key alone: it may have come with results whose turn is still to come.
+  const unpainted = new Map(); // task -> figures that came and were not shown yet
+  function withFigures(content) {
+    const before = unpainted.get(content.task) ?? [];
+    const figures = content.figures.map((one) => (one.same && before.find((other) => other.key === one.key)) || one);
+    unpainted.set(content.task, figures);
+    return { ...content, figures };
+  }
   function hear(what, content) {
     if (!heard[what]) return line;
+    if (what === "found") content = withFigures(content);
     const kind = `${what} ${content?.task ?? ""} ${content?.pair ?? ""} ${content?.kind ?? ""}`, number = (newest.get(kind) ?? 0) + 1;
     newest.set(kind, number);
     line = line.then(() => {
-      if (!OVERTAKEN.has(what) || newest.get(kind) === number) return heard[what](content);
+      if (OVERTAKEN.has(what) && newest.get(kind) !== number) return undefined;
+      if (what === "found") unpainted.delete(content.task);
+      return heard[what](content);
     }).catch((problem) => console.error(problem));
     return line;
   }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import signal
 import subprocess
@@ -35,6 +36,15 @@ driven = "a"
 load = "5 kN"
 compliance = { source = "weber-banaschek" }
 """
+_LAYOUT = {
+    "height": 200,
+    "margin": {"l": 40, "r": 12, "t": 12, "b": 40},
+    "meta": {"names": 1, "inner": 100, "beside": 1},
+}
+TWICE = [
+    {"key": "twice", "heading": "Twice", "caption": "", "data": [{"y": [1, 2]}], "layout": _LAYOUT},
+    {"key": "twice", "same": True},
+]
 IDLE = "!document.body.classList.contains('computing')"
 DRAWN = f"{IDLE} && document.querySelector('#plot-load_sharing_I .main-svg') !== null"
 
@@ -110,6 +120,12 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     go(browser, served.address)
     browser.until(f"{DRAWN} && {field('pair.I.load')} !== null")
     before = largest_load(browser)
+
+    # Results that are overtaken before their turn have had a figure that the next ones name by its key alone.
+    browser.run(f"for (const figure of {json.dumps(TWICE)}) fegear.hear('found', {{task: 'hand twice', title: 'Twice', "
+                "values: '', darker: {}, figures: [figure]})")  # fmt: skip
+    browser.until("document.querySelector('#plot-twice .main-svg') !== null")
+    browser.run("document.querySelector('[data-task=\"hand twice\"]').remove()")
 
     # By keyboard alone: an arrow key steps, the values follow; the text has it, with its comments.
     browser.run(f"{field('pair.I.load')}.focus()")
