@@ -165,7 +165,7 @@ class Bench:
         if self.desk is None or self._computing is None or self.desk.refusal is not None:
             return
         self._number = next(self._numbers)
-        self.tell("asked", {"number": self._number})
+        self.tell("asked", {"number": self._number, "moving": moving})
         asked = self.asked()._replace(moving=moving, sight=self._sight, shows=self._shows, laid=self._laid)
         self._computing.ask(Compute(self._number, asked))
 
@@ -197,10 +197,14 @@ class Bench:
         self._last.pop("compared", None)
         self.tell("unpinned")
 
-    def _with_gears(self, pairs: dict[str, Any]) -> dict[str, Any]:
+    def _with_gears(self, content: _Content) -> _Content:
         """What changes by hand, with the gears in mesh where they were not sent again."""
         before = self._last.get("hands", {}).get("pairs", {})
-        return {name: {**one, "mesh": one["mesh"] or before.get(name, {}).get("mesh")} for name, one in pairs.items()}
+        pairs = {
+            name: {**one, "mesh": one["mesh"] or before.get(name, {}).get("mesh")}
+            for name, one in content["pairs"].items()
+        }
+        return {**content, "pairs": pairs}
 
     def move_relief(self, gear: str, end: str, start: float, amount: float, *, moving: bool, index: int = 0) -> None:
         """Have a part of a relief start at a roll angle [deg] with an amount [um]; the others stay.
@@ -278,8 +282,6 @@ class Bench:
         # While a value is being moved, the answer to an earlier place of it is what there is; it ends nothing.
         if what in ("refused", "done") and said.number != self._number:
             return
-        if what == "hands":
-            content["pairs"] = self._with_gears(content["pairs"])
         if what == "done":
             content["level"] = "" if self.level == "normal" else f" ({self.level}, not the case's own)"
         self._keep(what, content)
@@ -301,7 +303,7 @@ class Bench:
         elif what == "picture":
             self._found[content["task"]]["pictures"][content["key"]] = content
         if what in ("plan", "hands", "harris", "done"):
-            self._last[what] = content
+            self._last[what] = self._with_gears(content) if what == "hands" else content
 
 
 #: What a template is for, by the name of its kind.

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: What bar and form hear; each change of theirs has the browser go through the whole form.
 _OF_THE_FORM = frozenset({"laid", "pinned", "unpinned", "refused", "exported", "designed", "failed"})
+#: What the page's scripts have no use for.
+_NOT_OF_THE_PAGE = frozenset({"changed", "pinned"})
 #: A value that has not moved for so long stands still [s].
 _STILL = 0.4
 #: Where the page's own files are served.
@@ -63,6 +65,7 @@ class Page:
         self._bar: Bar | None = None
         self._inputs: Inputs | None = None
         self._soon: asyncio.TimerHandle | None = None
+        self._unsent: list[tuple[str, dict[str, Any]]] = []
         ui.on("relief", lambda event: self._by_hand(lambda: bench.move_relief(**event.args)))
         ui.on("load", lambda event: self._by_hand(lambda: bench.move_load(**event.args)))
         ui.on("drop", lambda event: self._by_hand(lambda: bench.drop_relief(**event.args)))
@@ -111,7 +114,7 @@ class Page:
             self._later(content)
         elif what in _OF_THE_FORM or (what == "done" and not content["moving"]):
             self._tell_form(what, content)
-        if what != "laid":
+        if what != "laid" and what not in _NOT_OF_THE_PAGE:
             self._send(what, content)
 
     def _forget(self) -> None:
@@ -139,7 +142,15 @@ class Page:
                 self._inputs.hear(what, content)
 
     def _send(self, what: str, content: dict[str, Any]) -> None:
-        self._client.run_javascript(f"fegear.hear({json.dumps(what)}, {json.dumps(content)})")
+        # What comes at once travels together: every message costs both sides more than what it holds.
+        if not self._unsent:
+            asyncio.get_running_loop().call_soon(self._send_all)
+        self._unsent.append((what, content))
+
+    def _send_all(self) -> None:
+        told, self._unsent = json.dumps(self._unsent), []
+        if not self._client.is_deleted:
+            self._client.run_javascript(f"fegear.hearAll({told})")
 
 
 def show(bench: Bench) -> None:

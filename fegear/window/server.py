@@ -103,7 +103,7 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
         ui.run(
             lambda: show(bench), host=HOST, port=port, title="fegear", dark=None, reload=False, show=False,
             show_welcome_message=False, favicon="data:,", reconnect_timeout=30.0, tailwind=False,
-            gzip_middleware_factory=None,  # nothing is far away
+            gzip_middleware_factory=None, ws_per_message_deflate=False,  # nothing is far away
             message_history_length=100,  # each may be a figure of a hundred kilobytes
         )  # fmt: skip
     finally:

@@ -226,14 +226,23 @@ const fegear = (() => {
     unpainted.set(content.task, figures);
     return { ...content, figures };
   }
+  let unshown = {}; // outlines of gears that came and were not shown yet; the same ones are not sent again
+  function withGears(content) {
+    const pairs = {};
+    for (const [pair, one] of Object.entries(content.pairs)) pairs[pair] = { ...one, mesh: one.mesh ?? unshown[pair]?.mesh };
+    unshown = pairs;
+    return { ...content, pairs };
+  }
   function hear(what, content) {
     if (!heard[what]) return line;
     if (what === "found") content = withFigures(content);
+    if (what === "hands") content = withGears(content);
     const kind = `${what} ${content?.task ?? ""} ${content?.pair ?? ""} ${content?.kind ?? ""}`, number = (newest.get(kind) ?? 0) + 1;
     newest.set(kind, number);
     line = line.then(() => {
       if (OVERTAKEN.has(what) && newest.get(kind) !== number) return undefined;
       if (what === "found") unpainted.delete(content.task);
+      if (what === "hands") unshown = {};
       return heard[what](content);
     }).catch((problem) => console.error(problem));
     return line;
@@ -246,5 +255,5 @@ const fegear = (() => {
   addEventListener("keydown", (event) => {
     if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); emitEvent("save"); }
   });
-  return { hear, begin(look, address) { template = look; document.documentElement.dataset.ready = "yes"; fetchPlotly(address); } };
+  return { hear, hearAll(all) { for (const one of all) fegear.hear(...one); }, begin(look, address) { template = look; document.documentElement.dataset.ready = "yes"; fetchPlotly(address); } };
 })();
