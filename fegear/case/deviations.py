@@ -23,10 +23,18 @@ class DeviationsPart(Part):
     helix_slope: LengthOrZero | None = Field(
         default=None, description="Helix slope deviation f_Hbeta over the face width."
     )
+    profile_slope: LengthOrZero | None = Field(
+        default=None, description="Profile slope deviation f_Halpha, for `robustness` alone: no rating asks for it."
+    )
+
+    @property
+    def enough_to_rate(self) -> bool:
+        """Whether no tolerance class is needed for a rating."""
+        return None not in (self.base_pitch, self.profile_form, self.helix_slope)
 
     @model_validator(mode="after")
     def _of_gears(self) -> Self:
-        for key in ("base_pitch", "profile_form", "helix_slope"):
+        for key in ("base_pitch", "profile_form", "helix_slope", "profile_slope"):
             value = getattr(self, key)
             if value is not None and value > _LARGEST:
                 rule = f"is larger than that of any gear, {_LARGEST * 1e3:g} mm"

@@ -214,8 +214,8 @@ class GearPart(Part):
     )
     deviations: DeviationsPart | None = Field(
         default=None,
-        description="Own deviations of the flanks, in the place of those by `tolerance_class` in a rating; all three "
-        "of a gear outside the sizes of ISO 1328-1.",
+        description="Own deviations of the flanks, in the place of those by `tolerance_class` in a rating and in "
+        "`robustness`; a gear outside the sizes of ISO 1328-1 has no others.",
     )
     helix_angle: Angle | None = Field(
         default=None, description="Helix angle on the pitch cylinder, up to 60 deg; without it the gear is a spur gear."
@@ -320,7 +320,8 @@ class GearPart(Part):
             gear = Gear(tooth, m, bore, width, self.material.build(), self.plane, self.hand or "spur")
             if self.ball_diameter is not None:
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
-            if self.tolerance_class is not None:
+            told = self.deviations is not None and self.deviations.enough_to_rate
+            if self.tolerance_class is not None and not told:
                 from fegear.formulas.iso1328 import tolerances_of
 
                 tolerances_of(gear, self.tolerance_class)  # refuses sizes that the standard knows no tolerance of

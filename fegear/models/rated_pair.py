@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.case.part import at
 from fegear.errors import InputError
-from fegear.formulas.iso1328 import flank_tolerances, tolerances_of
+from fegear.formulas.iso1328 import flank_tolerances
 from fegear.formulas.iso6336.alignment import Alignment, PinionShaft
 from fegear.formulas.iso6336.groups import SOFT_IRON, TOUGH_IRON
 from fegear.formulas.iso6336.pair_geometry import of_pair
@@ -16,6 +16,7 @@ from fegear.formulas.iso6336.part5_materials import BRINELL, MATERIALS, allowabl
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
 from fegear.formulas.iso6336.safety import Conditions
 from fegear.geometry.pair import MEMBERS
+from fegear.models.gear_deviations import gear_deviations
 from fegear.models.pair_inputs import gear_name
 
 if TYPE_CHECKING:
@@ -28,11 +29,14 @@ if TYPE_CHECKING:
     from fegear.formulas.iso6336.rated import Both
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
+    from fegear.models.gear_deviations import Deviation
 
 #: What is taken where a case says nothing: Rz of flanks and fillets [m], nu_40 of ISO VG 220 [m^2/s], load cycles.
 USUAL_FLANK, USUAL_ROOT, USUAL_VISCOSITY, UNLIMITED = 4.8e-6, 20e-6, 220e-6, 1e10
 #: Young's modulus above which a material is no iron: nodular iron has about 175 GPa (ISO 6336-2, table of Z_E) [Pa].
 _STIFFEST_IRON = 190e9
+#: Deviations that a rating asks for.
+_RATED: tuple[Deviation, ...] = ("base_pitch", "profile_form", "helix_slope")
 #: What a gear outside the sizes of ISO 1328-1 has to say, as an example.
 _OWN = 'deviations = { base_pitch = "5 um", profile_form = "4 um", helix_slope = "6 um" }'
 #: Pitch line velocity above which there is no gear, five times that of the fastest turbo gears [m/s].
@@ -261,21 +265,13 @@ def _quality(scene: Scene, name: str, gear: str, said: list[str]) -> Quality:
 
 def _deviations(part: GearPart, made: Gear, grade: int, gear: str) -> tuple[float, float, float]:
     """f_pb, f_falpha and f_Hbeta [m]: the gear's own, else by class."""
-    own = part.deviations
-    pitch, form, slope = (None,) * 3 if own is None else (own.base_pitch, own.profile_form, own.helix_slope)
-    if pitch is not None and form is not None and slope is not None:
-        return pitch, form, slope  # no class is asked: the gear may lie outside its sizes
     try:
-        found = tolerances_of(made, grade).rounded
+        found = gear_deviations(part, made, grade, _RATED, rounded=True)
     except InputError as error:
         remedy = f"give gear.{gear}.{_OWN}: a rating needs them, and no class has them for such a gear"
         error = type(error)(error.key, error.value, error.rule, remedy)
         raise at(f"gear.{gear}", error, {"normal_module": "module"} if not part.is_helical else None) from None
-    return (
-        found.base_pitch(made.transverse_pressure_angle) if pitch is None else pitch,
-        found.profile_form if form is None else form,
-        found.helix_slope if slope is None else slope,
-    )
+    return found["base_pitch"], found["profile_form"], found["helix_slope"]
 
 
 def _tip_relief(scene: Scene, gear: str, part: GearPart, said: list[str]) -> float:

@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fegear.case.part import at
 from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
+from fegear.models.gear_deviations import own_deviation
 from fegear.models.pair_inputs import gear_name
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.robustness import TolerancePart
     from fegear.design.tolerance_draws import Kind, Limits
+    from fegear.models.gear_deviations import Deviation
+
+#: Deviations of a gear by the kinds that are drawn.
+_NAMES: dict[Kind, Deviation] = {
+    "profile-slope": "profile_slope", "profile-form": "profile_form", "helix-slope": "helix_slope",
+    "pitch": "base_pitch",
+}  # fmt: skip
 
 
 def tolerance_part(scene: Scene) -> TolerancePart:
@@ -43,40 +52,65 @@ def refuse_no_tolerance(scene: Scene, name: str, limits: Limits) -> None:
     if not limits.centre_distance and not any(any(pair) for pair in pairs):
         raise InputError(
             "robustness", "no tolerance", "leaves nothing to draw",
-            f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class",
+            f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class or deviations",
         )  # fmt: skip
 
 
 def limits_of(scene: Scene, name: str, usual: tuple[Kind, ...]) -> Limits:
     """Largest deviations of a pair, of the kinds that the case names or else of the usual ones.
 
-    f_pT is an arc of the reference circle; flanks meet that deviation along the line of action, where it is shorter.
+    A gear's own deviations take the place of those of its class. f_pT is an arc of the reference circle; flanks meet
+    that deviation along the line of action, where it is shorter.
+
+    Raises
+    ------
+    InputError
+        If a class is asked of a gear outside the sizes of ISO 1328-1.
     """
     from fegear.design.tolerance_draws import Limits
-    from fegear.formulas.iso1328 import tolerances_of
+    from fegear.models.gear_deviations import gear_deviations
 
     part = tolerance_part(scene)
-    wanted: tuple[Kind, ...] = tuple(part.deviations or usual)
-    found = []
-    pitch = [0.0, 0.0]
-    for i, member in enumerate(MEMBERS):
+    kinds = _of_flanks(part, usual)
+    found: list[dict[Deviation, float]] = []
+    for member in MEMBERS:
         gear = gear_name(scene, name, member)
-        grade, made = scene.case.gear[gear].tolerance_class, scene.gears[gear]
-        own = None if grade is None else tolerances_of(made, grade)
-        found.append(own)
-        if own is not None and "pitch" in wanted:
-            pitch[i] = own.base_pitch(made.transverse_pressure_angle)
+        drawn = scene.case.gear[gear]
+        try:
+            found.append(gear_deviations(drawn, scene.gears[gear], drawn.tolerance_class, kinds))
+        except InputError as error:
+            missing = ", ".join(one for one in kinds if own_deviation(drawn, one) is None)
+            remedy = f"give {missing} of gear.{gear}.deviations, or name other robustness.deviations"
+            raise at(f"gear.{gear}", type(error)(error.key, error.value, error.rule, remedy)) from None
 
-    def both(kind: Kind, key: str) -> tuple[float, float]:
-        one, other = (getattr(own, key) if own and kind in wanted else 0.0 for own in found)
-        return one, other
+    def both(kind: Deviation) -> tuple[float, float]:
+        return found[0].get(kind, 0.0), found[1].get(kind, 0.0)
 
+    wanted = "centre-distance" in (part.deviations or usual)
     return Limits(
-        part.centre_distance if "centre-distance" in wanted else 0.0, both("profile-slope", "profile_slope"),
-        both("profile-form", "profile_form"), both("helix-slope", "helix_slope"), (pitch[0], pitch[1]),
+        part.centre_distance if wanted else 0.0, both("profile_slope"), both("profile_form"), both("helix_slope"),
+        both("base_pitch"),
     )  # fmt: skip
 
 
-def unclassed(scene: Scene, gears: tuple[str, str]) -> tuple[str, ...]:
-    """Gears without a tolerance class."""
-    return tuple(gear for gear in dict.fromkeys(gears) if scene.case.gear[gear].tolerance_class is None)
+def untold(scene: Scene, gears: tuple[str, str], usual: tuple[Kind, ...]) -> tuple[str, ...]:
+    """Sentences on deviations that are not drawn, for the case says nothing of them."""
+    kinds, told = _of_flanks(tolerance_part(scene), usual), []
+    for gear in dict.fromkeys(gears):
+        part = scene.case.gear[gear]
+        if part.tolerance_class is not None:
+            continue
+        missing = [kind for kind in kinds if own_deviation(part, kind) is None]
+        if len(missing) == len(kinds):
+            told.append(f"Gear {gear} has no tolerance_class: its flanks are taken as the drawing's in every draw.")
+        elif missing:
+            told.append(
+                f"Gear {gear} has no tolerance_class, and no {', '.join(missing)} among its own deviations: those are "
+                "taken as the drawing's in every draw."
+            )
+    return tuple(told)
+
+
+def _of_flanks(part: TolerancePart, usual: tuple[Kind, ...]) -> tuple[Deviation, ...]:
+    """Kinds that a gear's tolerances tell."""
+    return tuple(_NAMES[kind] for kind in (part.deviations or usual) if kind != "centre-distance")

@@ -15,7 +15,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_flanks import FLANK_EFFECTS, flanks_to_load
 from fegear.models.pair_inputs import gear_name
 from fegear.models.solid_influence import solid_gear_to_solve
-from fegear.models.tolerances import chosen_pair, limits_of, refuse_no_tolerance, tolerance_part, unclassed
+from fegear.models.tolerances import chosen_pair, limits_of, refuse_no_tolerance, tolerance_part, untold
 from fegear.results.flank_root_stress import places_along
 from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
@@ -54,7 +54,7 @@ class FlankDrawInputs:
         Of the pair.
     gears : tuple of (str, str)
     untold : tuple of str
-        Gears without a tolerance class.
+        Sentences on deviations that the case does not tell.
     """
 
     part: TolerancePart
@@ -130,7 +130,7 @@ def _inputs(scene: Scene, name: str) -> FlankDrawInputs:
     solved = tuple(solid_gear_to_solve(scene, gear) for gear in dict.fromkeys(gears))
     return FlankDrawInputs(
         tolerance_part(scene), flanks_to_load(scene, name), limits_of(scene, name, _OVER_FACE), solved, name, gears,
-        unclassed(scene, gears),
+        untold(scene, gears, _OVER_FACE),
     )  # fmt: skip
 
 

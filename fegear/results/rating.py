@@ -163,11 +163,9 @@ def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
     found = by_found = spectrum_found = None
     single = asked.width != "plane" or asked.pair.contact_ratio < _SINGLE
     if inputs.computed and single:
-        found = _computed(asked, formula, upstream)
-        stands = replace(found.replacement, K_v=own.K_v)
-        if stands.K_Halpha is None:
-            stands = replace(stands, K_Halpha=own.K_Halpha, K_Falpha=own.K_Falpha)
-        by_found = rate_pair(conditions, stands)
+        found, of_levels = _computed(asked, formula, spectrum, upstream)
+        by_found = rate_pair(conditions, _standing(found, own))
+        stands = [None if one is None else _standing(one, own) for one in of_levels]
         spectrum_found = rate_spectrum(conditions, levels, stands) if levels else None
     agma, why_not = _agma(inputs)
     reasons = [f"no rating by AGMA 2101: {why_not}"] if why_not else []
@@ -176,6 +174,12 @@ def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
     return RatingData(
         formula, sn_curves(conditions, own), spectrum, found, by_found, spectrum_found, agma, tuple(reasons)
     )  # fmt: skip
+
+
+def _standing(found: Computed, own: Replacement) -> Replacement:
+    """What stands in for the formulas: the computed values, and those that the case gives where nothing is computed."""
+    stands = replace(found.replacement, K_v=own.K_v)
+    return stands if stands.K_Halpha is not None else replace(stands, K_Halpha=own.K_Halpha, K_Falpha=own.K_Falpha)
 
 
 def _duty(conditions: Conditions, tangential: float, speed: float) -> Duty | None:
@@ -193,24 +197,41 @@ def _agma(inputs: RatingInputs) -> tuple[AgmaRating | None, str]:
         return None, str(error)
 
 
-def _computed(asked: PairToRate, formula: PairRating, upstream: Upstream) -> Computed:
+def _computed(
+    asked: PairToRate, formula: PairRating, spectrum: SpectrumRating | None, upstream: Upstream
+) -> tuple[Computed, list[Computed | None]]:
+    """What is computed at the nominal load, and at that of every level of the spectrum; None for idle ones."""
     from fegear.contact.flank.rated import SolvedFlanks, computed_flanks, computed_plane
     from fegear.results.flank_root_stress import places_along
 
     members = asked.conditions.geometry.members
+    ratings = [] if spectrum is None else [level.rating for level in spectrum.levels]
     if asked.width == "plane":
         known = {member: solution_of(upstream, gear) for member, gear in zip(MEMBERS, asked.gears, strict=True)}
-        return computed_plane(asked.pair, members, known)
+        plane = computed_plane(asked.pair, members, known)
+        return plane, [None if one is None else plane for one in ratings]
     loaded = loaded_flanks(upstream, asked.name)
     solids = {member: solid_solution_of(upstream, gear) for member, gear in zip(MEMBERS, asked.gears, strict=True)}
     solved = SolvedFlanks(
         loaded.flanks, loaded.gaps, loaded.found.known, loaded.error.coarse.known, solids, places_along(loaded),
         loaded.asked.effects.neighbour_coupling,
     )  # fmt: skip
+    nominal = asked.conditions.duty.tangential
+    loads = [_applied(asked, formula, nominal)]
+    loads += [_applied(asked, one, of.tangential) for one, of in zip(ratings, asked.levels, strict=True) if one]
+    distinct = tuple(dict.fromkeys(loads))
+    found = dict(zip(distinct, computed_flanks(solved, members, distinct), strict=True))
+    if asked.width == "slices":
+        found = {load: _with_misses(one, asked) for load, one in found.items()}
+    rest = iter(loads[1:])
+    return found[loads[0]], [None if one is None else found[next(rest)] for one in ratings]
+
+
+def _applied(asked: PairToRate, rating: PairRating, tangential: float) -> Both:
+    """Load along the line of action and at the reference circle with K_A, K_gamma and K_v [N]."""
     duty = asked.conditions.duty
-    more = duty.application_factor * duty.mesh_load_factor * formula["K_v"].value
-    found = computed_flanks(solved, members, asked.load * more, duty.tangential * more)
-    return _with_misses(found, asked) if asked.width == "slices" else found
+    load = tangential * duty.application_factor * duty.mesh_load_factor * rating["K_v"].value
+    return load * asked.load / duty.tangential, load
 
 
 def _with_misses(found: Computed, asked: PairToRate) -> Computed:
@@ -230,7 +251,7 @@ def _with_misses(found: Computed, asked: PairToRate) -> Computed:
 def _present(data: RatingData, inputs: RatingInputs) -> Outcome:
     tables = [factor_table(data, inputs.asked), safety_table(data, inputs.asked)]
     if data.spectrum is not None:
-        tables.append(spectrum_table(data.spectrum, inputs.asked))
+        tables.append(spectrum_table(data.spectrum, inputs.asked, data.spectrum_computed))
     return Outcome(
         data, tuple(tables), rating_values(data, inputs.asked), _settings(data, inputs),
         (*shortfalls(data, inputs.asked), *inputs.asked.assumed, *inputs.said, *rating_remarks(data, inputs.asked)),

@@ -13,7 +13,7 @@ from fegear.results.rating_meanings import MEANINGS, read_as
 from fegear.results.rating_methods import methods
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from fegear.formulas.iso6336.pair_rating import Factor
     from fegear.formulas.iso6336.spectrum_rating import SpectrumRating
@@ -82,8 +82,8 @@ def safety_table(data: RatingData, asked: PairToRate) -> Table:
     return Table(f"rating_safety_{asked.name}", tuple(columns), f"Safeties of pair {asked.name}", printed=True)
 
 
-def spectrum_table(found: SpectrumRating, asked: PairToRate) -> Table:
-    """Load, stresses and damage of every level."""
+def spectrum_table(found: SpectrumRating, asked: PairToRate, computed: SpectrumRating | None = None) -> Table:
+    """Load, stresses and damage of every level; beside them what was computed at its load."""
     geometry, levels = asked.conditions.geometry, found.levels
     driver = asked.of("driver")
     torque = [level.tangential * 0.5 * geometry.diameters[driver] for level in asked.levels]
@@ -110,8 +110,29 @@ def spectrum_table(found: SpectrumRating, asked: PairToRate) -> Table:
             Column(f"damage_F_{member}", np.array([one.bending[i].damage() for one in levels]), "",
                    "n/N of the roots at a safety of 1"),
         ]  # fmt: skip
+    for head, unit, meaning, of in _computed_levels(computed, asked):
+        columns.append(Column(head, of, unit, meaning))
     title = f"Load spectrum of pair {asked.name}: stress and damage of every level"
     return Table(f"rating_spectrum_{asked.name}", tuple(columns), title)
+
+
+def _computed_levels(
+    found: SpectrumRating | None, asked: PairToRate
+) -> Iterator[tuple[str, str, str, np.ndarray[tuple[int], np.dtype[np.float64]]]]:
+    """Column head, unit, meaning and numbers of what was computed at the loads of the levels."""
+    if found is None:
+        return
+    wide = asked.width != "plane"
+    for one in ("K_Hbeta", "K_Halpha") if wide else ():
+        values = [math.nan if level.rating is None else level.rating[one].value for level in found.levels]
+        yield f"{one}_computed", "", f"{MEANINGS[one]}, computed at the load of the level", np.array(values)
+    for member in MEMBERS:
+        i = asked.of(member)
+        if wide:
+            contact = np.array([level.contact[i].stress for level in found.levels])
+            yield f"sigma_H_{member}_computed", "MPa", "contact stress by the computed load distribution", contact
+        bending = np.array([level.bending[i].stress for level in found.levels])
+        yield f"sigma_F_{member}_computed", "MPa", "computed root stress", bending
 
 
 def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
@@ -147,6 +168,16 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
             ]  # fmt: skip
         if data.spectrum is not None:
             found += _of_spectrum(data, data.spectrum, asked, member)
+        if data.spectrum_computed is not None:
+            if asked.width != "plane":
+                found.append(
+                    Value(f"{key}.S_H_spectrum_computed", data.spectrum_computed.contact_safety[i], "", None,
+                          "safety against pitting under the spectrum, loads of all levels computed")
+                )  # fmt: skip
+            found.append(
+                Value(f"{key}.S_F_spectrum_computed", data.spectrum_computed.bending_safety[i], "", None,
+                      "safety against tooth breakage under the spectrum, root stresses computed")
+            )  # fmt: skip
     for symbol in ("K_v", "K_Hbeta", "K_Halpha"):
         found.append(
             Value(f"{name}.{symbol}_rated", data.formula[symbol].value, "", None, f"{MEANINGS[symbol]}, ISO 6336")

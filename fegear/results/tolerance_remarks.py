@@ -33,11 +33,7 @@ def tolerance_remarks(data: ToleranceData, asked: PairDrawn) -> tuple[str, ...]:
         f"{p.low * 1e6:.4g} to {p.high * 1e6:.4g} um, {nominal(data, 'te_peak_to_peak') * 1e6:.4g} um without "
         "deviations."
     )
-    found = [told]
-    found += [
-        f"Gear {gear} has no tolerance_class: its flanks are taken as the drawing's in every draw."
-        for gear in asked.untold
-    ]
+    found = [told, *asked.untold]
     if asked.own_spacing:
         found.append(
             f"Pair {name}: spacing_errors of its gears are left out of the draws, which have pitches of their own."

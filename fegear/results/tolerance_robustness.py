@@ -16,7 +16,7 @@ from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_checks import check_relief
 from fegear.models.pair_inputs import gear_name, pair_inputs
 from fegear.models.root_stress_source import FINITE_ELEMENTS, check_formulas, root_stress_source
-from fegear.models.tolerances import chosen_pair, limits_of, refuse_no_tolerance, tolerance_part, unclassed
+from fegear.models.tolerances import chosen_pair, limits_of, refuse_no_tolerance, tolerance_part, untold
 from fegear.models.tooth_influence import gear_to_solve
 from fegear.results.drawn_tolerances import tolerance_figures
 from fegear.results.gear_solution import solution_of
@@ -68,7 +68,7 @@ class DrawInputs:
     gears : tuple of (str, str)
         Driver and driven.
     untold : tuple of str
-        Gears without a tolerance class.
+        Sentences on deviations that the case does not tell.
     """
 
     part: TolerancePart
@@ -181,7 +181,7 @@ def _inputs(scene: Scene, name: str) -> DrawInputs:
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
     return DrawInputs(
         tolerance_part(scene), teeth, limits_of(scene, name, _PLANE), source,
-        tuple(gear_to_solve(scene, gear) for gear in dict.fromkeys(solved)), name, gears, unclassed(scene, gears),
+        tuple(gear_to_solve(scene, gear) for gear in dict.fromkeys(solved)), name, gears, untold(scene, gears, _PLANE),
     )  # fmt: skip
 
 

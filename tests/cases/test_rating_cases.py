@@ -165,6 +165,18 @@ def test_a_gear_outside_the_sizes_of_iso_1328_is_rated_with_its_own_deviations(t
     assert rough["K_v"] > found["K_v"]
 
 
+def test_a_tolerance_class_beside_own_deviations_says_how_good_a_small_gear_is(tmp_path):
+    """ISO 6336-1, 6.4.3: tip relief counts in K_v from grade 5 on, and nothing else of the class is asked."""
+    both = [f"gear.{gear}.tolerance_class={{}}" for gear in ("pinion", "wheel")]
+    coarse, good = (
+        factors(fine_pair(tmp_path, *own_deviations(), *(one.format(grade) for one in both))) for grade in (6, 5)
+    )
+    assert coarse["B_k"] == 1.0 != good["B_k"]
+    assert coarse["B_p"] == good["B_p"]
+    with pytest.raises(InputError, match="the range of ISO 1328-1"):
+        fine_pair(tmp_path, *(one.format(5) for one in both))
+
+
 def test_own_deviations_take_the_place_of_those_by_class_one_by_one():
     plain, own = (
         factors(run("rating_spur", ALONE, *(f"gear.{gear}.deviations={{{given}}}" for gear in ("pinion", "wheel"))))
@@ -367,6 +379,30 @@ def test_computed_flanks_count_each_factor_once():
         v.value for name, v in found.items() if "pinion" in name or "driver" in name if name.endswith("root_tension")
     )
     assert stress["sigma_F"] == pytest.approx(largest, rel=1e-2)
+
+
+@pytest.mark.long
+def test_every_level_of_a_spectrum_has_the_load_factors_of_its_own_load():
+    """The flanks of a level are those of a pair that is given its torque; idling levels have none."""
+    life = "pair.I.operation={life='20000 h', dynamic_factor=1.0}"
+    levels = (
+        life[:-1] + ", spectrum=[{load_factor=1, share=0.3}, {load_factor=0.3, share=0.6}, {load_factor=0, share=0.1}]}"
+    )
+    settings = (
+        "rating.beside='computed'", "pair.I.width='slices'", "effects.hertz='load-dependent'", "accuracy.tolerance=0.1",
+        "load_distribution.positions=4", "pair.I.line_error={over_face='20 um'}", "effects.misalignment=true",
+    )  # fmt: skip
+    spectrum, light = (
+        run("rating_spur", levels, *settings),
+        run("rating_spur", life, "pair.I.torque='156 N*m'", *settings),
+    )
+    table = next(one for one in spectrum.tables if one.name == "rating_spectrum_I")
+    alone = factors(light, "driver_computed")
+    assert table["K_Hbeta_computed"][1] == pytest.approx(alone["K_Hbeta"], rel=1e-3)
+    assert table["sigma_F_driver_computed"][1] == pytest.approx(alone["sigma_F"], rel=1e-3)
+    assert table["K_Hbeta_computed"][1] > 1.3 * table["K_Hbeta_computed"][0] > 1.3
+    assert np.isnan(table["K_Hbeta_computed"][2])
+    assert values(spectrum)["I.K_Hbeta_computed"] == pytest.approx(table["K_Hbeta_computed"][0], rel=1e-12)
 
 
 @pytest.mark.long

@@ -21,6 +21,7 @@ from fegear.engine.run import run_plan
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.geometry.pair import MEMBERS
+from fegear.models.tolerances import limits_of, untold
 from fegear.results.catalogue import STAGES
 from fegear.solution_cache import SolutionCache
 
@@ -290,6 +291,31 @@ def test_a_draw_is_an_ordinary_case_with_its_deviations_written_down():
     assert mine["driven_root_tension"] == pytest.approx(found["I.driven.largest_root_tension"], rel=3e-3)
     assert mine["hertz_pressure"] == pytest.approx(found["I.largest_hertz_pressure"], rel=3e-3)
     assert mine["largest_load"] == pytest.approx(found["I.largest_load"], rel=1e-9)
+
+
+def test_own_deviations_take_the_place_of_those_by_class_when_drawn():
+    """Each for itself; of a gear too small for ISO 1328-1 nothing else is asked, and one without a class says so."""
+    kinds = ("profile-slope", "profile-form", "pitch")
+    own = {"base_pitch": "3 um", "profile_form": "2 um"}
+    case = CASE | {"gear": {"pinion": CASE["gear"]["pinion"] | {"deviations": own}, "wheel": CASE["gear"]["wheel"]}}
+    plain, mine = (limits_of(build_scene(one, "case", None), "I", kinds) for one in (CASE, case))
+    assert mine.pitch == (pytest.approx(3e-6), plain.pitch[1])
+    assert mine.profile_form == (pytest.approx(2e-6), plain.profile_form[1])
+    assert mine.profile_slope == plain.profile_slope
+    assert untold(build_scene(case, "case", None), ("pinion", "wheel"), kinds) == ()
+    # without a class: what it says is drawn, the rest is told; with one, of a face below 4 mm, the rest is asked for
+    lone = {key: value for key, value in case["gear"]["pinion"].items() if key != "tolerance_class"}
+    scene = build_scene(case | {"gear": case["gear"] | {"pinion": lone}}, "case", None)
+    assert limits_of(scene, "I", kinds).profile_slope == (0.0, plain.profile_slope[1])
+    (said,) = untold(scene, ("pinion", "wheel"), kinds)
+    assert "no profile_slope among its own deviations" in said
+    narrow = case["gear"]["pinion"] | {"face_width": "3 mm", "deviations": own | {"helix_slope": "4 um"}}
+    scene = build_scene(case | {"gear": case["gear"] | {"pinion": narrow}}, "case", None)
+    with pytest.raises(InputError, match=r"give profile_slope of gear\.pinion\.deviations"):
+        limits_of(scene, "I", kinds)
+    narrow["deviations"] = narrow["deviations"] | {"profile_slope": "1 um"}
+    scene = build_scene(case | {"gear": case["gear"] | {"pinion": narrow}}, "case", None)
+    assert limits_of(scene, "I", kinds).profile_slope[0] == pytest.approx(1e-6)
 
 
 WIDE = {

@@ -20,7 +20,7 @@ from fegear.formulas.iso6336.pair_rating import Replacement
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from fegear.arrays import Array
     from fegear.contact.flank.compliance import FlankCompliance
@@ -116,32 +116,38 @@ class SolvedFlanks:
     coupling: bool
 
 
-def computed_flanks(solved: SolvedFlanks, members: tuple[Member, Member], load: float, tangential: float) -> Computed:
-    """Load factors and root stresses of a pair with a width.
+def computed_flanks(
+    solved: SolvedFlanks, members: tuple[Member, Member], loads: Sequence[Both]
+) -> tuple[Computed, ...]:
+    """Load factors and root stresses of a pair with a width, under several loads.
 
     Parameters
     ----------
     solved : SolvedFlanks
     members : (Member, Member)
         Which of driver and driven pinion and wheel are.
-    load : float
-        Along the transverse line of action, with K_A K_gamma K_v [N].
-    tangential : float
-        The same at the reference circle [N].
+    loads : sequence of (float, float)
+        Along the transverse line of action, with K_A K_gamma and K_v, and the same at the reference circle [N]. Errors
+        are estimated under the first one and hold for all.
     """
-    fine = _factors(solved, load, tangential, solved.fine, coarse=False)
-    again = _factors(solved, load, tangential, solved.coarse, coarse=True)
+    fine = _factors(solved, loads, solved.fine, coarse=False)
+    again = _factors(solved, loads[:1], solved.coarse, coarse=True)[0]
+    contact = 0.5 * (abs(again.face / fine[0].face - 1.0) + abs(again.transverse / fine[0].transverse - 1.0))
+    root = {m: abs(again.largest(m) / fine[0].largest(m) - 1.0) for m in MEMBERS}
 
     def both(values: Mapping[Member, float]) -> Both:
         return values[members[0]], values[members[1]]
 
-    made = Replacement(
-        K_Hbeta=fine.face, K_Halpha=fine.transverse, K_Fbeta=both(fine.root_face),
-        K_Falpha=both(fine.root_transverse), root_factor=both(fine.root),
+    return tuple(
+        Computed(
+            Replacement(
+                K_Hbeta=one.face, K_Halpha=one.transverse, K_Fbeta=both(one.root_face),
+                K_Falpha=both(one.root_transverse), root_factor=both(one.root),
+            ),
+            contact, both(root), load, one.pressure,
+        )
+        for one, (load, _) in zip(fine, loads, strict=True)
     )  # fmt: skip
-    contact = 0.5 * (abs(again.face / fine.face - 1.0) + abs(again.transverse / fine.transverse - 1.0))
-    root = {m: abs(again.largest(m) / fine.largest(m) - 1.0) for m in MEMBERS}
-    return Computed(made, contact, both(root), load, fine.pressure)
 
 
 @dataclass(frozen=True)
@@ -160,25 +166,30 @@ class _Factors:
         return self.root_face[member] * self.root_transverse[member] * self.root[member]
 
 
-def _factors(solved: SolvedFlanks, load: float, tangential: float, known: FlankCompliance, *, coarse: bool) -> _Factors:
+def _factors(solved: SolvedFlanks, loads: Sequence[Both], known: FlankCompliance, *, coarse: bool) -> list[_Factors]:
+    """Factors under every load, solved in one go."""
     from fegear.contact.flank.load_factors import root_factors, transverse_load_factor
     from fegear.contact.flank.root_stress import rooted_lines
 
-    pair = solved.flanks.pair
-    found = solved.flanks.solve([load], solved.gaps, known)
-    perfect = solved.flanks.solve([load], None, known)
-    face: dict[Member, float] = {}
-    transverse: dict[Member, float] = {}
-    root: dict[Member, float] = {}
+    pair, normal = solved.flanks.pair, [load for load, _ in loads]
+    found = solved.flanks.solve(normal, solved.gaps, known)
+    perfect = solved.flanks.solve(normal, None, known)
+    across = transverse_load_factor(found, perfect)
+    rooted = {}
     for member in MEMBERS:
         influence = solved.influences[member]
         body = (influence.coarse or influence.fine) if coarse else influence.fine
-        rooted = rooted_lines(pair, member, found.lines, body, coupling=solved.coupling)
-        factors = root_factors(found, perfect, rooted, solved.places, 0)
-        face[member], transverse[member] = factors.face, factors.transverse
-        even = factors.largest / (factors.face * factors.transverse)
-        root[member] = even * root_width(pair, member) * pair.gear(member).module / tangential
-    return _Factors(
-        float(found.face_load_factor[0]), float(transverse_load_factor(found, perfect)[0]), face, transverse, root,
-        float(found.largest_pressure[0]),
-    )  # fmt: skip
+        rooted[member] = rooted_lines(pair, member, found.lines, body, coupling=solved.coupling)
+    made = []
+    for case, (_, tangential) in enumerate(loads):
+        factors = {m: root_factors(found, perfect, rooted[m], solved.places, case) for m in MEMBERS}
+        size = {m: root_width(pair, m) * pair.gear(m).module / tangential for m in MEMBERS}
+        made.append(
+            _Factors(
+                float(found.face_load_factor[case]), float(across[case]), {m: factors[m].face for m in MEMBERS},
+                {m: factors[m].transverse for m in MEMBERS},
+                {m: factors[m].largest / (factors[m].face * factors[m].transverse) * size[m] for m in MEMBERS},
+                float(found.largest_pressure[case]),
+            )
+        )  # fmt: skip
+    return made

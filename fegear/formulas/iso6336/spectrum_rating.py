@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 
 from fegear.formulas.iso6336 import part2_permissible, part3_strength
 from fegear.formulas.iso6336.life import Knots
+from fegear.formulas.iso6336.pair_rating import Replacement
 from fegear.formulas.iso6336.part6_spectrum import Bin, damage, service_life, spectrum_safety
 from fegear.formulas.iso6336.safety import rate_pair
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fegear.formulas.iso6336.pair_rating import PairRating, Replacement
+    from fegear.formulas.iso6336.pair_rating import PairRating
     from fegear.formulas.iso6336.rated import Both, Duty
     from fegear.formulas.iso6336.safety import Conditions
 
@@ -78,7 +79,9 @@ def sn_curves(conditions: Conditions, computed: Replacement | None = None) -> Cu
 
 
 def rate_spectrum(
-    conditions: Conditions, levels: Sequence[tuple[Duty | None, Both]], computed: Replacement | None = None
+    conditions: Conditions,
+    levels: Sequence[tuple[Duty | None, Both]],
+    computed: Replacement | Sequence[Replacement | None] | None = None,
 ) -> SpectrumRating:
     """Rate a pair under a spectrum.
 
@@ -88,25 +91,26 @@ def rate_spectrum(
         Of the nominal load.
     levels : sequence of (Duty or None, (float, float))
         Load and speed of each level (None without load) and its load cycles of pinion and wheel.
-    computed : Replacement, optional
-        Values that stand in for those of the formulas at every level.
+    computed : Replacement or sequence of Replacement, optional
+        Values that stand in for those of the formulas: the same at every level, or those of each.
 
     Raises
     ------
     RangeError
         If a formula is asked outside its range, or no level has a load.
     """
-    nominal = sn_curves(conditions, computed)
+    each = [computed] * len(levels) if computed is None or isinstance(computed, Replacement) else computed
+    nominal = sn_curves(conditions, next((one for one in each if one is not None), None))
     curves = {conditions.duty.speed: nominal}
     found = []
-    for duty, cycles in levels:
+    for (duty, cycles), stands in zip(levels, each, strict=True):
         if duty is None:
             found.append(LevelRating(None, _idle(cycles, nominal.contact), _idle(cycles, nominal.bending)))
             continue
         at = replace(conditions, duty=duty)
         if duty.speed not in curves:
-            curves[duty.speed] = sn_curves(at, computed)
-        known, rated = curves[duty.speed], rate_pair(at, computed)
+            curves[duty.speed] = sn_curves(at, stands)
+        known, rated = curves[duty.speed], rate_pair(at, stands)
         contact = [Bin(rated.contact_stress[i], cycles[i], known.contact[i]) for i in (0, 1)]
         bending = [Bin(rated.bending_stress[i], cycles[i], known.bending[i]) for i in (0, 1)]
         found.append(LevelRating(rated, (contact[0], contact[1]), (bending[0], bending[1])))
