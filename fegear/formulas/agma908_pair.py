@@ -9,7 +9,7 @@ low axial contact ratio (m_F at most 1) at the highest point of single tooth con
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
@@ -21,6 +21,9 @@ from fegear.geometry.curves import Trochoid
 if TYPE_CHECKING:
     from fegear.geometry import Gear, GearPair
     from fegear.geometry.pair import Member
+
+#: Axial contact ratios so far from 1 are taken for the two sides of the jump of J.
+_BESIDE_ONE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,6 +207,24 @@ def bending_factor(pair: GearPair, member: Member, contact: ContactGeometry | No
     bent = 6.0 * h / (s * s * c_h) - math.tan(load_angle) / s
     y = k_psi * math.cos(at.normal_angle) / (math.cos(load_angle) * bent)
     return BendingFactor(y * at.C_psi / (k_f * at.sharing), y, k_f, teeth, load_angle, h, s, rho, c_h, k_psi)
+
+
+def jump_of_bending_factor(pair: GearPair, member: Member) -> float:
+    """J just above an axial contact ratio of 1 over J just below it, of one gear of a helical pair.
+
+    The information sheet's own jump: C_h and K_psi begin, C_psi ends, and the load moves to the tip. I has none.
+    """
+    below, above = (
+        bending_factor(_with_axial_ratio(pair, 1.0 + step), member).J for step in (-_BESIDE_ONE, _BESIDE_ONE)
+    )
+    return above / below
+
+
+def _with_axial_ratio(pair: GearPair, ratio: float) -> GearPair:
+    """The pair with faces of such a width."""
+    width = pair.face_width * ratio / pair.overlap_ratio
+    driver, driven = (replace(gear, face_width=width) for gear in (pair.driver, pair.driven))
+    return replace(pair, driver=driver, driven=driven, axial_offset=0.0)
 
 
 @dataclass(frozen=True, slots=True)

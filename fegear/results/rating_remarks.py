@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from fegear.errors import RangeError
 from fegear.geometry.pair import MEMBERS
 from fegear.results.rating_tables import remark_of
 
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
 
 #: K_v above which the load is a trifle beside what flank deviations excite: teeth part and meet again.
 _SHAKEN = 10.0
+#: How near to an axial contact ratio of 1 the jump of AGMA's J is told, and from which size.
+_NEAR_ONE, _WORTH_SAYING = 0.1, 0.05
 
 
 def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
@@ -53,6 +56,8 @@ def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
     """What lies outside a range, and what the computed safeties count."""
     told = [f"Pair {asked.name}: {remark_of(one, asked)}." for one in data.formula.factors if _shown(one, asked)]
     told += [f"Pair {asked.name}: {reason}" for reason in data.why_not]
+    if data.agma is not None:
+        told += _beside_the_jump(asked)
     if data.computed is None:
         return tuple(dict.fromkeys(told))
     if asked.width == "plane":
@@ -71,6 +76,31 @@ def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
         )
         told += _aligned(data, asked)
     return tuple(dict.fromkeys(told))
+
+
+def _beside_the_jump(asked: PairToRate) -> list[str]:
+    """Say where J of AGMA 908 jumps near the pair's axial contact ratio."""
+    from fegear.formulas.agma908_pair import jump_of_bending_factor
+
+    ratio = asked.pair.overlap_ratio
+    if ratio == 0.0 or abs(ratio - 1.0) > _NEAR_ONE:
+        return []
+    try:
+        jumps = {
+            gear: jump_of_bending_factor(asked.pair, member) - 1.0
+            for member, gear in zip(MEMBERS, asked.gears, strict=True)
+        }
+    except RangeError:  # a face that narrow or wide is none of its pairs
+        return []
+    if max(abs(jump) for jump in jumps.values()) < _WORTH_SAYING:
+        return []
+    sizes = ", ".join(f"{jump:+.0%} (gear {gear})" for gear, jump in jumps.items())
+    told = (
+        f"Pair {asked.name}: its axial contact ratio is {ratio:.3f}, and at 1 the J of AGMA 908, and S_F with it, "
+        f"jumps by {sizes} as the face widens: above it counts the load at the tip with C_h and K_psi, up to it that "
+        "of single tooth contact with C_psi."
+    )
+    return [told]
 
 
 def _aligned(data: RatingData, asked: PairToRate) -> list[str]:

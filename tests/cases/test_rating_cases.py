@@ -316,6 +316,24 @@ def test_agma_stands_beside_with_its_own_stresses():
     assert np.isfinite(table["S_F_driven"]).all()
 
 
+def test_a_pair_beside_the_jump_of_agmas_bending_factor_is_told_of_it():
+    """At 30 degrees an axial contact ratio of 1 has 50.27 mm of face; S_F of both sides differs by what is said."""
+    helix = [f"gear.{gear}.helix_angle='30 deg'" for gear in ("pinion", "wheel")]
+    size = ("gear.pinion.tip_diameter='175 mm'", "gear.wheel.tip_diameter='967 mm'", "pair.I.centre_distance='556 mm'")
+
+    def rated(face):
+        faces = [f"gear.{gear}.face_width='{face} mm'" for gear in ("pinion", "wheel")]
+        found = run("rating_helical", "rating.beside='agma-2101'", *helix, *size, *faces, "pair.I.torque='2000 N m'")
+        return values(found), [text for text in found.remarks if "axial contact ratio" in text]
+
+    (below, (told,)), (above, (again,)) = rated(50.26), rated(50.28)
+    jump = above["I.driver.S_F_agma"] / below["I.driver.S_F_agma"] - 1.0
+    assert jump < -0.1
+    assert f"{jump:+.0%} (gear pinion)" in told
+    assert f"{jump:+.0%} (gear pinion)" in again
+    assert rated(70)[1] == []
+
+
 def test_formulas_out_of_their_range_name_the_pair():
     with pytest.raises(InputError, match=r"pair\.I\.rim thickness / tooth height"):
         run("rating_spur", ALONE, "gear.pinion.rim_thickness='3 mm'")
