@@ -209,7 +209,8 @@ def _over_face(label: str, gear: str, over: Mapping[Side, StressOverFace]) -> Ta
     return Table(f"root_stress_over_face_{label}", columns, f"Root stress of gear {gear} along its face in the mesh")
 
 
-def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+def needs_flank_roots(scene: Scene, name: str) -> tuple[Task, ...]:
+    """The tasks of a pair's loaded flanks and of both gears' solutions."""
     part = scene.case.pair[name]
     return (*needs_flanks(scene, name), *needs_solid_solution(part.driver, part.driven))
 
@@ -225,7 +226,7 @@ FLANK_ROOT_STRESS = Stage(
     results=("root-stress-history",),
     about="root stress of both gears as a tooth passes through the mesh",
     subjects=wide_pairs,
-    needs=_needs,
+    needs=needs_flank_roots,
     inputs=_inputs,
     compute=_compute,
     present=_present,

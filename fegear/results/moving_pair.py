@@ -40,6 +40,9 @@ class MovingPair(ReadOnlyArrays):
     points : tuple of (str, float)
         Points A to E of the path with their places.
     module : float
+    twist : float
+        Tangent of the base helix angle, positive for a right-handed driver: a contact line that crosses the middle of
+        the face at x stands at x - z twist at z along it.
     """
 
     driver: Array
@@ -54,6 +57,7 @@ class MovingPair(ReadOnlyArrays):
     base_pitch: float
     points: tuple[tuple[str, float], ...]
     module: float
+    twist: float
 
 
 def moving_pair(pair: GearPair) -> MovingPair:
@@ -77,4 +81,5 @@ def moving_pair(pair: GearPair) -> MovingPair:
         pair.base_pitch,
         tuple((point.letter, point.x) for point in path_points(pair)),
         pair.driver.module,
+        pair.driver.twist * pair.driver.base_radius,
     )

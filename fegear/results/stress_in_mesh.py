@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -52,6 +52,8 @@ class LargestStress(NamedTuple):
         On the fillet of that tooth, in the frame of `placed_in_mesh` [m].
     radius : float
         Of that place from the gear's centre [m].
+    z : float
+        Along the face from its middle [m]; 0 for plane teeth.
     """
 
     value: float
@@ -60,6 +62,7 @@ class LargestStress(NamedTuple):
     roll: float
     place: Array
     radius: float
+    z: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -71,8 +74,8 @@ class FilletStress(ReadOnlyArrays):
     places : mapping of str to ndarray, shape (T, 2, n)
         By fillet (``tension`` lies below the loaded flank): points from the root land up to the flank, where the teeth
         stand while pair 0 touches at the pitch point, which is the origin [m].
-    stress : mapping of str to ndarray, shape (P, T, n)
-        There, over the roll positions [Pa].
+    stress : mapping of str to ndarray, shape (P, T, n), or (Z, P, T, n) over the face
+        There, over the roll positions [Pa]; NaN where it is that of a contact beside the fillet.
     """
 
     places: Mapping[Side, Array]
@@ -93,6 +96,8 @@ class StressInMeshData:
     gears : mapping of str to FilletStress
         By member.
     largest : LargestStress
+    z : ndarray, shape (Z,)
+        Sections along the face, ascending, that of the largest stress among them [m]; empty for plane teeth.
     """
 
     pair: GearPair
@@ -100,6 +105,7 @@ class StressInMeshData:
     pairs: Array
     gears: Mapping[Member, FilletStress]
     largest: LargestStress
+    z: Array = field(default_factory=lambda: np.empty(0))
 
 
 def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshData:

@@ -98,28 +98,31 @@ const fegearGears = (() => {
       const d = kept.data;
       if (!d) return;
       scrub.value = Math.round(kept.place * 1000);
-      const layers = more.now();
+      const layers = more.now(), off = layers.z * 1e-3 * d.twist; // the section at z stands so far behind the middle of the face
       picture.classList.toggle("at-rest", !!layers.deformed);
       fegearLayers.gears(canvas, kept.view, layers);
       more.draw();
       const first = d.start + kept.place * d.base_pitch; // the pair that came into contact last
       const degrees = (x, base) => x / base * 180 / Math.PI;
-      kept.driver.setAttribute("transform", `rotate(${-degrees(first, d.driver_base)} 0 ${-d.driver_radius * 1e3})`);
-      kept.driven.setAttribute("transform", `rotate(${degrees(first, d.driven_base)} 0 ${d.driven_radius * 1e3})`);
+      kept.driver.setAttribute("transform", `rotate(${-degrees(first - off, d.driver_base)} 0 ${-d.driver_radius * 1e3})`);
+      kept.driven.setAttribute("transform", `rotate(${degrees(first - off, d.driven_base)} 0 ${d.driven_radius * 1e3})`);
       kept.arrows.replaceChildren();
       const c = Math.cos(d.pressure_angle), s = Math.sin(d.pressure_angle), found = [];
       const largest = Math.max(...(loadsOf.get(pair)?.load ?? kept.sent.pressure?.load.flat() ?? [1]));
       for (let k = -6; first + k * d.base_pitch <= d.end + 6 * d.base_pitch; k += 1) {
-        const x = first + k * d.base_pitch, load = loadAt(x, k), on = x >= d.start && x <= d.end;
+        const x = first + k * d.base_pitch, load = loadAt(x, k), here = x - off, on = here >= d.start && here <= d.end;
         if (!on && !(load > 0)) continue;
-        const [px, py] = fegearLayers.contactMoved(d, layers, k, x * 1e3 * c, x * 1e3 * s);
-        svg("circle", { cx: px, cy: py, r: 0.13 * kept.unit, class: "contact" }, kept.arrows);
+        const beside = !on && kept.sent.pressure && d.twist; // the contact line of a helical pair stands elsewhere on the face
+        const at = beside ? Math.min(Math.max(here, d.start), d.end) : here;
+        const [px, py] = fegearLayers.contactMoved(d, layers, k, at * 1e3 * c, at * 1e3 * s);
+        if (!beside) svg("circle", { cx: px, cy: py, r: 0.13 * kept.unit, class: "contact" }, kept.arrows);
         if (load > 0) {
           const length = 2.6 * kept.unit * load / largest, tip = 0.22 * kept.unit;
           const qx = px + length * c, qy = py + length * s;
-          svg("line", { x1: px, y1: py, x2: qx, y2: qy, class: "load" }, kept.arrows);
-          svg("path", { d: `M${qx + tip * c},${qy + tip * s}L${qx - 0.5 * tip * s},${qy + 0.5 * tip * c}L${qx + 0.5 * tip * s},${qy - 0.5 * tip * c}Z`, class: "load-tip" }, kept.arrows);
-          found.push(`${load.toPrecision(4)} N at x = ${(x * 1e3).toFixed(3)} mm`);
+          const look = beside ? " beside" : "";
+          svg("line", { x1: px, y1: py, x2: qx, y2: qy, class: `load${look}` }, kept.arrows);
+          svg("path", { d: `M${qx + tip * c},${qy + tip * s}L${qx - 0.5 * tip * s},${qy + 0.5 * tip * c}L${qx + 0.5 * tip * s},${qy - 0.5 * tip * c}Z`, class: `load-tip${look}` }, kept.arrows);
+          found.push(`${load.toPrecision(4)} N at x = ${(x * 1e3).toFixed(3)} mm${beside ? " (pale: not in this section)" : ""}`);
         }
       }
       told.textContent = found.length ? found.join(", ") : `roll position ${(first * 1e3).toFixed(3)} mm`;
@@ -159,7 +162,21 @@ const fegearGears = (() => {
     label.hidden = true;
     words.textContent = "magnified";
     label.append(words, slider, value);
-    switches.append(label);
+    const section = document.createElement("label"), at = document.createElement("b");
+    const along = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 200, value: 100 });
+    along.setAttribute("aria-label", "Section along the face");
+    section.className = "mesh-factor";
+    section.hidden = true;
+    section.append("section at z =", along, at);
+    along.oninput = () => {
+      const { z } = kept.sent.stress, { z: most } = kept.sent.stress.largest, free = z[0] + (z.at(-1) - z[0]) * along.value / 200;
+      kept.z = Math.abs(free - most) < 0.004 * (z.at(-1) - z[0]) ? null : free; // it stays where stress is largest
+      tell();
+      draw();
+    };
+    const faced = () => { const stress = has("stress"); return stress?.z.length ? stress : null; };
+    const sectionAt = () => { const one = faced(); return one ? Math.min(Math.max(kept.z ?? one.largest.z, one.z[0]), one.z.at(-1)) : 0; };
+    switches.append(section, label);
     slider.oninput = () => {
       const power = 10 ** Math.floor(slider.value / 100), exact = 10 ** (slider.value / 100);
       kept.factor = Math.min(1000, Math.round(exact / power * 10) / 10 * power);
@@ -196,13 +213,22 @@ const fegearGears = (() => {
     function tell() {
       const stress = has("stress"), deformed = has("deformed"), lines = [];
       scale.hidden = !stress;
+      section.hidden = !faced();
       label.hidden = !kept.on.deformed;
       if (stress) {
         const { largest, limit } = stress, number = limit.toPrecision(4), title = document.createElement("span");
         title.textContent = "tangential root stress:";
         scale.replaceChildren(title, ...bar("stress", `−${number}`, number, "MPa"));
-        lines.push(`Largest root tension over the mesh cycle: ${largest.value.toPrecision(5)} MPa in the ${largest.member} gear, at radius `
-          + `${largest.radius.toFixed(3)} mm, while its pair touches at x = ${largest.x.toFixed(3)} mm (ring).`);
+        const wide = faced(), where = wide ? `, z = ${largest.z.toFixed(3)} mm` : "";
+        const touches = wide ? "contact line crosses the middle of the face" : "pair touches";
+        lines.push(`Largest root tension over the mesh cycle${wide ? " and the face" : ""}: ${largest.value.toPrecision(5)} MPa in the ${largest.member} gear, at radius `
+          + `${largest.radius.toFixed(3)} mm${where}, while its ${touches} at x = ${largest.x.toFixed(3)} mm (ring).`);
+        if (wide) {
+          const span = wide.z.at(-1) - wide.z[0];
+          along.value = Math.round(200 * (sectionAt() - wide.z[0]) / span);
+          at.textContent = `${sectionAt().toFixed(2)} mm`;
+          lines.push("The gears are drawn in the section at z (thin line over the flanks); stress is that along the section. Arrows are the loads of whole tooth pairs, x that of their contact lines in the middle of the face.");
+        }
       }
       if (deformed) {
         slider.value = Math.round(100 * Math.log10(factor()));
@@ -233,11 +259,11 @@ const fegearGears = (() => {
       tell,
       allow,
       elements: [switches, scale, told, flanks, pressed],
-      now: () => ({ place: kept.place, factor: factor(), stress: has("stress"), deformed: has("deformed"), tool: has("tool") }),
+      now: () => ({ place: kept.place, factor: factor(), stress: has("stress"), deformed: has("deformed"), tool: has("tool"), z: sectionAt() }),
       draw() {
         const pressure = kept.sent.pressure;
         if (!pressure || !kept.data) return;
-        const found = fegearLayers.flanks(flanks, kept.data, pressure, kept.place);
+        const found = fegearLayers.flanks(flanks, kept.data, pressure, kept.place, faced() ? sectionAt() : null);
         now.textContent = `at this position up to ${found.largest.toPrecision(4)} MPa; the scale leaves tips and form circles out. All flanks in contact are laid over each other.`;
       },
       take(content) {

@@ -20,10 +20,14 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
 
-#: What is switched on at the gears, and the stage that computes it.
-STAGES_OF = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
-#: Why they are not shown of other pairs.
-_NOT_PLANE = "It is shown only of pairs of plane teeth."
+#: What is switched on at the gears, and the stage that computes it for plane teeth, and for those with a width.
+_PLANE = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
+_WIDE = {"stress": "flank-stress-in-mesh"}
+#: Why deformed teeth are not shown of gears with a width.
+_NOT_PLANE = (
+    "It is shown only of pairs of plane teeth: of gears with a width flanks and fillets are known, not how tips and "
+    "the flanks behind move."
+)
 
 
 def _plain(value: Any) -> Any:
@@ -42,12 +46,12 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
         Of the pair.
     """
     found = {key: _plain(value) for key, value in asdict(moving_pair(scene.pairs[name])).items()}
-    return found | {"refused": {} if _plane(scene, name) else dict.fromkeys(STAGES_OF, _NOT_PLANE)}
+    return found | {"refused": {kind: _NOT_PLANE for kind in _PLANE if kind not in _stages(scene, name)}}
 
 
-def _plane(scene: Scene, name: str) -> bool:
-    """Whether a pair's teeth are plane, of which alone stress and deformation are shown."""
-    return not scene.pairs[name].driver.helix_angle and name in scene.plane_pairs
+def _stages(scene: Scene, name: str) -> dict[str, str]:
+    """The stages that compute what is switched on at the gears of a pair."""
+    return _PLANE if name in scene.plane_pairs else _WIDE
 
 
 def wanted_on_gears(scene: Scene, shows: Iterable[tuple[str, str]]) -> tuple[list[Task], list[dict[str, Any]]]:
@@ -75,10 +79,10 @@ def wanted_on_gears(scene: Scene, shows: Iterable[tuple[str, str]]) -> tuple[lis
             lines = {member: millimetres(at) for member, at in tool_envelope(gears).items()}
             tips = {member: gears.gear(member).tip_radius * 1e3 for member in lines}
             told.append({"pair": pair, "kind": kind, "lines": lines, "tips": tips})
-        elif not _plane(scene, pair):
+        elif kind not in (stages := _stages(scene, pair)):
             told.append({"pair": pair, "kind": kind, "refused": _NOT_PLANE})
         else:
-            task = Task(STAGES_OF[kind], pair)
+            task = Task(stages[kind], pair)
             try:
                 make_plan(scene, STAGES, [task])
                 tasks.append(task)

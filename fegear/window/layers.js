@@ -33,7 +33,12 @@ const fegearLayers = (() => {
 
   // ---- what was sent, ready to be drawn ------------------------------------------------------------------------------
   function stressOf(sent) {
-    return { ...sent, fillets: sent.fillets.map((one) => ({ ...one, stress: unpack(one.stress) })) };
+    const fillets = sent.fillets.map((one) => {
+      const made = { ...one, stress: unpack(one.stress) };
+      made.stress.shape = made.stress.shape.slice(-3); // (sections along the face,) roll positions, teeth, points
+      return made;
+    });
+    return { ...sent, fillets };
   }
   function deformedOf(sent) {
     const gears = {};
@@ -62,6 +67,12 @@ const fegearLayers = (() => {
       return factor * moved.step * (data[i] + (data[j] - data[i]) * share);
     };
   }
+  function weights(stress, place, z, [positions]) { // [row of roll positions, weight] for a place, in a section along the face [mm]
+    const [low, high, share] = between(stress.roll, place);
+    const [below, above, far] = stress.z.length ? between(stress.z, z) : [0, 0, 0];
+    return [[below, low, (1 - far) * (1 - share)], [below, high, (1 - far) * share], [above, low, far * (1 - share)], [above, high, far * share]]
+      .filter((one) => one[2] > 0).map(([section, row, weight]) => [section * positions + row, weight]);
+  }
   function aheadAt(deformed, place) {
     const [low, high, share] = between(deformed.roll, place);
     return deformed.ahead[low] + (deformed.ahead[high] - deformed.ahead[low]) * share;
@@ -75,11 +86,11 @@ const fegearLayers = (() => {
     const context = canvas.getContext("2d");
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, wide, tall);
-    const { stress, deformed, tool, place, factor } = shown;
+    const { stress, deformed, tool, place, factor, z = 0 } = shown;
     if (!stress && !deformed && !tool) return;
     const scale = Math.min(wide / (2 * view.wide), tall / (2 * view.tall)), pixel = ratio / scale;
     const look = getComputedStyle(canvas), line = { driver: look.getPropertyValue("--driver"), driven: look.getPropertyValue("--driven") };
-    const d = view.data, first = d.start + place * d.base_pitch;
+    const d = view.data, first = d.start + place * d.base_pitch - z * 1e-3 * d.twist; // in the section at z
     context.lineJoin = context.lineCap = "round";
     for (const member of ["driver", "driven"]) {
       const driver = member === "driver", centre = driver ? -d.driver_radius * 1e3 : d.driven_radius * 1e3;
@@ -115,16 +126,16 @@ const fegearLayers = (() => {
           context.stroke();
         });
       }
-      if (stress) fillets(context, stress, deformed, move, member, place, pixel, look);
+      if (stress) fillets(context, stress, deformed, move, member, place, z, pixel, look);
     }
   }
-  function fillets(context, stress, deformed, move, member, place, pixel, look) {
-    const scale = shades("stress"), [low, high, share] = between(stress.roll, place);
+  function fillets(context, stress, deformed, move, member, place, z, pixel, look) {
+    const scale = shades("stress"), NONE = -32768; // beside a contact it is no root stress
     context.lineWidth = 6 * pixel;
     context.lineCap = "butt";
     for (const fillet of stress.fillets) {
       if (fillet.member !== member) continue;
-      const { data, step, shape: [, teeth, points] } = fillet.stress;
+      const { data, step, shape, shape: [, teeth, points] } = fillet.stress, at_rows = weights(stress, place, z, shape);
       for (let t = 0; t < teeth; t += 1) {
         const [xs, ys] = fillet.places[t], tooth = deformed ? deformed.pairs.indexOf(stress.pairs[t]) : -1;
         let beside = null;
@@ -142,20 +153,27 @@ const fegearLayers = (() => {
         };
         let x = at(0, 0), y = at(0, 1);
         for (let i = 1; i < points; i += 1) {
-          const nx = at(i, 0), ny = at(i, 1), a = (low * teeth + t) * points + i, b = (high * teeth + t) * points + i;
-          const value = 0.5 * step * ((data[a] + data[a - 1]) * (1 - share) + (data[b] + data[b - 1]) * share);
-          context.strokeStyle = shade(scale, 0.5 + 0.5 * value / stress.limit);
-          context.beginPath();
-          context.moveTo(x, y);
-          context.lineTo(nx, ny);
-          context.stroke();
+          const nx = at(i, 0), ny = at(i, 1);
+          let value = 0, known = true;
+          for (const [row, weight] of at_rows) {
+            const a = (row * teeth + t) * points + i;
+            known = known && data[a] !== NONE && data[a - 1] !== NONE;
+            value += 0.5 * step * weight * (data[a] + data[a - 1]);
+          }
+          if (known) {
+            context.strokeStyle = shade(scale, 0.5 + 0.5 * value / stress.limit);
+            context.beginPath();
+            context.moveTo(x, y);
+            context.lineTo(nx, ny);
+            context.stroke();
+          }
           x = nx; y = ny;
         }
       }
     }
     context.lineCap = "round";
     const { largest } = stress;
-    if (largest.member === member) {
+    if (largest.member === member && Math.abs(largest.z - z) < 0.005 * ((stress.z.at(-1) ?? 0) - (stress.z[0] ?? 0)) + 1e-6) {
       context.strokeStyle = look.getPropertyValue("--ink");
       context.lineWidth = (Math.abs(largest.at - place) < 0.01 ? 2.6 : 1.2) * pixel;
       context.beginPath();
@@ -186,7 +204,7 @@ const fegearLayers = (() => {
   }
 
   // ---- flanks --------------------------------------------------------------------------------------------------------
-  function flanks(canvas, data, sent, place) { // both flanks side by side: height over the face, contact lines in colour
+  function flanks(canvas, data, sent, place, section) { // both flanks side by side: height over the face, contact lines in colour
     const box = canvas.getBoundingClientRect(), ratio = devicePixelRatio || 1;
     const wide = Math.round(box.width * ratio), tall = Math.round(box.height * ratio);
     if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, { width: wide, height: tall });
@@ -214,6 +232,12 @@ const fegearLayers = (() => {
       context.lineTo(x1, up(pitch));
       context.stroke();
       context.setLineDash([]);
+      if (section !== null) { // where the gears above are cut
+        context.beginPath();
+        context.moveTo(across(section), y0);
+        context.lineTo(across(section), y1);
+        context.stroke();
+      }
       context.fillStyle = look.getPropertyValue("--ink");
       context.textAlign = "left";
       context.fillText(`${member}: radius over the face [mm]`, x0, y1 - 9);

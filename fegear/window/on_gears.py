@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 _POINTS = 25
 #: Largest number of sixteen bits.
 _MOST = 32767
+#: What stands for no number.
+_NONE = -32768
 #: The largest displacement is drawn so large, about, where nobody says otherwise [modules].
 _DRAWN = 0.1
 
@@ -31,7 +33,7 @@ def on_the_gears(task: Task, data: Any) -> dict[str, Any] | None:
     data : object
         As the stage computed it.
     """
-    if task.stage == "stress-in-mesh":
+    if task.stage in ("stress-in-mesh", "flank-stress-in-mesh"):
         return {"pair": task.subject, "kind": "stress", **_stress(data)}
     if task.stage == "deformed-in-mesh":
         return {"pair": task.subject, "kind": "deformed", **_deformed(data)}
@@ -41,20 +43,22 @@ def on_the_gears(task: Task, data: Any) -> dict[str, Any] | None:
 
 
 def _stress(data: StressInMeshData) -> dict[str, Any]:
-    pitch, largest = data.pair.base_pitch, data.largest
+    pitch, largest, start = data.pair.base_pitch, data.largest, data.pair.x_start
     fillets = []
     for member, gear in data.gears.items():
         for side, places in gear.places.items():
-            at, values = _along(places, gear.stress[side])
+            # Points of a section of a gear with a width are few.
+            at, values = (places, gear.stress[side]) if data.z.size else _along(places, gear.stress[side])
             fillets.append({"member": member, "places": millimetres(at), "stress": packed(values * 1e-6)})
-    limit = max(float(np.abs(s).max()) for gear in data.gears.values() for s in gear.stress.values())
+    limit = max(float(np.nanmax(np.abs(s))) for gear in data.gears.values() for s in gear.stress.values())
     return {
-        "roll": _rolled(data.roll, data.pair.x_start, pitch), "pairs": data.pairs.tolist(), "fillets": fillets,
-        "limit": limit * 1e-6,
+        "roll": _rolled(data.roll, start, pitch), "pairs": data.pairs.tolist(), "fillets": fillets,
+        "limit": limit * 1e-6, "z": millimetres(data.z),
         "largest": {
             "value": largest.value * 1e-6, "member": largest.member, "pair": largest.pair, "roll": largest.roll * 1e3,
             "x": (largest.roll + largest.pair * pitch) * 1e3, "place": millimetres(largest.place),
-            "radius": largest.radius * 1e3, "at": _rolled(np.array([largest.roll]), data.pair.x_start, pitch)[0],
+            "radius": largest.radius * 1e3, "z": largest.z * 1e3,
+            "at": _rolled(np.array([largest.roll]), start, pitch)[0],
         },
     }  # fmt: skip
 
@@ -103,9 +107,9 @@ def _pressure(data: LoadedFlanksData) -> dict[str, Any]:
 
 
 def packed(values: Array) -> dict[str, Any]:
-    """Numbers as sixteen-bit steps of their largest, in base 64: 1.5e-5 of it is a step."""
-    step = float(np.abs(values).max()) / _MOST or 1.0
-    data = np.round(values / step).astype("<i2").tobytes()
+    """Numbers as sixteen-bit steps of their largest, in base 64: 1.5e-5 of it is a step; NaN is `_NONE`."""
+    step = float(np.nanmax(np.abs(values))) / _MOST or 1.0
+    data = np.nan_to_num(np.round(values / step), nan=_NONE).astype("<i2").tobytes()
     return {"step": step, "shape": list(values.shape), "data": base64.b64encode(data).decode()}
 
 

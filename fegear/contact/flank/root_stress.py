@@ -119,6 +119,16 @@ class RootedLines:
         shape = places.size, len(self.teeth)
         return StressOverFace(self.x, places, value.reshape(shape).T / m**2, radius.reshape(shape).T)
 
+    def along_fillets(self, side: Side, force: Array, z: ArrayLike) -> Array:
+        """Stress at every point up the fillets of every tooth, for pictures, shape (points, Z, T) [Pa].
+
+        Arguments are those of `stress`. Beside a contact line near the fillet, where stress is that of the contact, it
+        is NaN.
+        """
+        m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
+        root = self.solution.fillets[side].arc[:, None, None] <= self._ends(side, places / m)
+        return np.where(root, self._felt(side, force, places / m) / m**2, np.nan)
+
     def largest(self, side: Side, force: Array, z: ArrayLike, *, across: bool = False) -> float:
         """Largest value of `stress` [Pa]: curves are laid through the highest of all points alone.
 
