@@ -9,8 +9,8 @@ processor milliseconds that server, computing process and browser take for one c
 as well stretches the first, not the second). `--against` measures another checkout in between, change by change kind,
 and prints the ratios.
 
-The soak makes random changes of every kind for so many minutes and prints how much memory server and computing process
-have grown since the end of the first tenth, and what they leave behind.
+The soak makes random changes of every kind for so many minutes and prints how much memory server, computing process and
+browser have grown since the end of the first tenth, and what they leave behind.
 """
 
 from __future__ import annotations
@@ -119,9 +119,14 @@ class Window:
 
     def __init__(self, checkout: Path, case: str) -> None:
         self._state = tempfile.TemporaryDirectory()
+        self.scratch = Path(self._state.name) / "scratch"
+        self.scratch.mkdir()
         self.browser = _browser()
         # so that the start measured is that of a machine on which fegear has run before
-        env = os.environ | {"FEGEAR_STATE": self._state.name, "PYTHONUNBUFFERED": "1", "PYTHONPATH": str(checkout)}
+        env = os.environ | {
+            "FEGEAR_STATE": self._state.name, "TMPDIR": str(self.scratch), "PYTHONUNBUFFERED": "1",
+            "PYTHONPATH": str(checkout),
+        }  # fmt: skip
         self.started = time.monotonic()
         self.server = subprocess.Popen(
             [sys.executable, "-m", "fegear", "open", "--no-browser", str(ROOT / "cases" / f"{case}.toml")],
@@ -224,15 +229,17 @@ class Window:
         time.sleep(1.0)
         return self.browser.run("delays")
 
-    def close(self) -> list[int]:
-        """End both; returns the processes that the server leaves behind."""
-        left = [pid for pid, _ in _family(self.server.pid)]
+    def close(self) -> list[str]:
+        """End both; returns the processes and folders that the server leaves behind half a second later."""
+        family = [pid for pid, _ in _family(self.server.pid)]
         self.server.terminate()
         self.server.wait(20)
+        time.sleep(0.5)
+        left = [f"process {pid}" for pid in family if Path(f"/proc/{pid}").exists()]
+        left += [path.name for path in self.scratch.iterdir()]
         self.browser.close()
         self._state.cleanup()
-        time.sleep(0.5)
-        return [pid for pid in left if Path(f"/proc/{pid}").exists()]
+        return left
 
 
 KINDS = (
@@ -303,6 +310,48 @@ def measure(case: str, count: int, checkouts: list[Path]) -> None:
             window.close()
 
 
+@dataclass
+class Kept:
+    """What is held after garbage has been collected."""
+
+    server: float
+    browser: float
+    heap: float
+    counts: dict[str, int]
+    scratch: float
+    threads: int
+    files: int
+
+    @classmethod
+    def now(cls, window: Window) -> Kept:
+        """Of a window at rest; the browser lets garbage lie as long as memory is free, so it is told to collect it."""
+        window.rest()
+        window.browser("HeapProfiler.collectGarbage")
+        heap = window.browser("Runtime.getHeapUsage")["usedSize"] / 1e6
+        pids = window.pids()[0]
+        return cls(
+            memory(window.server.pid), memory(window.browser.pid), heap, window.browser("Memory.getDOMCounters"),
+            sum(path.stat().st_size for path in window.scratch.rglob("*") if path.is_file()) / 1e6,
+            sum(len(list(Path(f"/proc/{pid}/task").iterdir())) for pid in pids),
+            sum(len(list(Path(f"/proc/{pid}/fd").iterdir())) for pid in pids),
+        )  # fmt: skip
+
+    def __str__(self) -> str:
+        counts = self.counts
+        return (
+            f"server and computing process {self.server:.0f} MB, {self.threads} threads, {self.files} files open, "
+            f"scratch folder {self.scratch:.0f} MB; browser {self.browser:.0f} MB, script's heap {self.heap:.1f} MB, "
+            f"{counts['nodes']} nodes, {counts['jsEventListeners']} listeners"
+        )
+
+
+def _press(words: str) -> str:
+    return (
+        f"[...document.querySelectorAll('button')].find((one) => one.textContent.trim() === '{words}' && !one.disabled)"
+        "?.click()"
+    )
+
+
 def soak(case: str, minutes: float) -> None:
     """Print how much memory random changes leave taken."""
     window = Window(ROOT, case)
@@ -310,33 +359,38 @@ def soak(case: str, minutes: float) -> None:
     chance, count, base = random.Random(17), 0, None  # noqa: S311 - no secret
     begin = told = time.monotonic()
     end = begin + 60.0 * minutes
-    kinds = (
-        lambda: window.relief(chance.uniform(1, 12)), lambda: window.load_of(chance.uniform(0.3, 1.5)),
-        lambda: window.relief(chance.uniform(1, 12), moving=False),
-        lambda: window.load_of(chance.uniform(0.3, 1.5), moving=False),
-        lambda: window.typed("teeth", str(chance.randint(20, 40))),
-        lambda: window.typed("profile_shift", f"{chance.uniform(-0.1, 0.3):.3f}"),
-    )  # fmt: skip
+    kinds = {
+        lambda: window.relief(chance.uniform(1, 12)): 6,
+        lambda: window.load_of(chance.uniform(0.3, 1.5)): 6,
+        lambda: window.relief(chance.uniform(1, 12), moving=False): 2,
+        lambda: window.load_of(chance.uniform(0.3, 1.5), moving=False): 2,
+        lambda: window.typed("teeth", str(chance.randint(20, 40))): 1,
+        lambda: window.typed("profile_shift", f"{chance.uniform(-0.1, 0.3):.3f}"): 1,
+        lambda: _press("Undo"): 1,
+        lambda: _press("Redo"): 0.5,
+        lambda: _press(chance.choice(("Pin as A", "Unpin A"))): 0.3,
+        lambda: _press(chance.choice(("draft", "normal"))): 0.3,
+        lambda: _press(chance.choice(("Root stress", "Deformed", "Tool"))): 0.3,
+    }
     while time.monotonic() < end:
-        window.browser.run(chance.choices(kinds, weights=(6, 6, 2, 2, 1, 1))[0]())
+        window.browser.run(chance.choices(list(kinds), weights=kinds.values())[0]())
         count += 1
         time.sleep(chance.choice((0.05, 0.1, 0.1, 0.4, 1.5)))
         now = time.monotonic()
         if base is None and now - begin > 6.0 * minutes:
-            window.rest()
-            base = memory(window.server.pid), memory(window.browser.pid)
+            base = Kept.now(window)
+            print(f"{case}, after the first tenth: {base}", flush=True)
         if now - told > 60.0:
             told = now
-            print(
-                f"  after {(now - begin) / 60:.0f} min, {count} changes: {memory(window.server.pid):.0f} MB", flush=True
-            )
-    window.rest()
-    grown = memory(window.server.pid) - base[0]
-    page = memory(window.browser.pid) - base[1]
-    left = window.close()
-    print(f"{case}: {count} changes in {minutes:g} min; server and computing process {base[0]:.0f} MB after the first"
-          f" tenth, grown by {grown:.0f} MB (asked: less than 50 in an hour); browser grown by {page:.0f} MB;"
-          f" processes left behind: {len(left)}")  # fmt: skip
+            print(f"  after {(now - begin) / 60:.0f} min, {count} changes: {Kept.now(window)}", flush=True)
+    last = Kept.now(window)
+    print(f"{case}, {count} changes in {minutes:g} min: {last}")
+    more = {name: last.counts[name] - before for name, before in base.counts.items()}
+    print(f"  grown since the first tenth: server and computing process by {last.server - base.server:.0f} MB"
+          f" (asked: less than 50 in an hour), browser by {last.browser - base.browser:.0f} MB,"
+          f" its script's heap by {last.heap - base.heap:.1f} MB, {more['nodes']} nodes,"
+          f" {more['jsEventListeners']} listeners;"
+          f" left behind half a second after the end: {window.close() or 'nothing'}")  # fmt: skip
 
 
 if __name__ == "__main__":

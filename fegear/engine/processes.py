@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import importlib
 import os
+import shutil
 import sys
 import threading
 from types import ModuleType
@@ -14,7 +16,8 @@ from fegear.engine.point_job import Reply, failed
 from fegear.errors import FegearError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator, Mapping
+    from collections.abc import Generator, Iterator, Mapping
+    from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
 
     from fegear.engine.point_job import Job
@@ -52,10 +55,12 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
     A blocked signal stays blocked in the new process; in this one it is delivered at the end of the block.
     """
     import signal
+    from multiprocessing import resource_tracker
 
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
+    resource_tracker.ensure_running()  # which lets Ctrl-C through again when it starts its own process
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -63,17 +68,27 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def settle() -> None:
-    """Begin a worker's life: Ctrl-C is the parent's business, and no worker outlives a parent that was killed."""
+def settle(scratch: str = "") -> None:
+    """Begin a worker's life: what ends the parent is the parent's business, and no worker outlives one that was killed.
+
+    Parameters
+    ----------
+    scratch : str
+        Folder that the parent would have removed.
+    """
     import signal
     from multiprocessing import connection, parent_process
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in ("SIGINT", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
     parent = parent_process()
 
     def follow() -> None:
         if parent is not None:
             connection.wait([parent.sentinel])
+            while scratch and os.path.isdir(scratch):  # noqa: PTH112  (the main thread may still write into it)
+                shutil.rmtree(scratch, ignore_errors=True)
             os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()
@@ -125,14 +140,42 @@ def _without_main() -> Iterator[None]:
         sys.modules["__main__"] = main
 
 
-def start_process(target: Callable[..., None], *args: object) -> BaseProcess:
-    """Start one process of one thread that Ctrl-C does not reach and that ends with its parent once it has settled."""
+def start_process(module: str, connection: Connection, scratch: str) -> BaseProcess:
+    """Start one process of one thread that Ctrl-C does not reach and that ends with its parent, however that ends.
+
+    Parameters
+    ----------
+    module : str
+        Its ``serve`` receives the other two.
+    connection : Connection
+    scratch : str
+        Folder that is removed if the parent is killed.
+    """
     from multiprocessing import get_context
 
-    process = get_context("spawn").Process(target=target, args=args)
+    process = get_context("spawn").Process(target=_begin, args=(module, connection, scratch))
     with _one_thread_each(), _deaf_to_ctrl_c(), _without_main():
         process.start()
     return process
+
+
+def _begin(module: str, connection: Connection, scratch: str) -> None:
+    settle(scratch)  # before anything is loaded, which takes a second
+    importlib.import_module(module).serve(connection, scratch)
+
+
+def end_tracker(patience: float = 2.0) -> None:
+    """End the process that multiprocessing starts beside the first; it would outlive this one for a moment.
+
+    For a program that starts no more. Python has no public way to it; without this one it ends a little later.
+    """
+    from multiprocessing import resource_tracker
+
+    stop = getattr(getattr(resource_tracker, "_resource_tracker", None), "_stop", None)
+    if stop is not None:
+        ending = threading.Thread(target=stop, daemon=True)  # waits for whoever else still holds it
+        ending.start()
+        ending.join(patience)
 
 
 def _pool(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 from typing import TYPE_CHECKING
 
 from fegear.engine.processes import start_process
 from fegear.window.jobs import Compute, Said
 from fegear.window.scratch import Scratch
-from fegear.window.worker import serve
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from fegear.window.jobs import Job
 
+#: What the process runs; loaded there, not here.
+_WORKER = "fegear.window.worker"
 #: A computation that is no longer wanted is stopped with its process if it has not noticed after this time [s].
 PATIENCE = 5.0
 #: A process that is asked to end is killed after this [s].
@@ -37,6 +39,8 @@ class Computing:
         self._hear, self._scratch = hear, Scratch()
         self._lock = threading.Lock()
         self._open: dict[int, Job] = {}
+        self._unwanted: dict[int, float] = {}  # since when
+        self._timer: threading.Timer | None = None
         self._closed = False
         self._process: BaseProcess
         self._connection: Connection
@@ -51,7 +55,7 @@ class Computing:
         from multiprocessing import Pipe
 
         self._connection, theirs = Pipe()
-        self._process = start_process(serve, theirs, str(self._scratch.folder))
+        self._process = start_process(_WORKER, theirs, str(self._scratch.folder))
         theirs.close()
         threading.Thread(target=self._listen, args=(self._connection, self._process), daemon=True).start()
 
@@ -61,24 +65,37 @@ class Computing:
             if self._closed:
                 return
             if isinstance(job, Compute):
-                unwanted = [number for number, one in self._open.items() if isinstance(one, Compute)]
-                if unwanted:
-                    threading.Timer(PATIENCE, self._insist, (unwanted,)).start()
+                now = time.monotonic()
+                for number, one in self._open.items():
+                    if isinstance(one, Compute):
+                        self._unwanted.setdefault(number, now)
+                self._be_patient()
             self._open[job.number] = job
             with contextlib.suppress(OSError):
                 self._connection.send(job)
 
-    def _insist(self, unwanted: list[int]) -> None:
+    def _be_patient(self) -> None:
+        """Look again when the computation that has been unwanted for longest should have noticed."""
+        if self._timer is None and self._unwanted:
+            self._timer = threading.Timer(min(self._unwanted.values()) + PATIENCE - time.monotonic(), self._insist)
+            self._timer.daemon = True  # the end does not wait for it
+            self._timer.start()
+
+    def _insist(self) -> None:
         """Stop a process that still computes what nobody wants, and have another do what is."""
         with self._lock:
-            if self._closed or not any(number in self._open for number in unwanted):
+            self._timer = None
+            if self._closed:
                 return
-            for number in unwanted:
-                self._open.pop(number, None)
-            self._again()
+            if any(time.monotonic() - since >= PATIENCE for since in self._unwanted.values()):
+                for number in self._unwanted:
+                    self._open.pop(number, None)
+                self._again()
+            self._be_patient()
 
     def _again(self) -> None:
         end(self._process)
+        self._unwanted.clear()
         self._start()
         for job in self._open.values():
             with contextlib.suppress(OSError):
@@ -93,6 +110,7 @@ class Computing:
             if said.what in ("done", "refused", "dropped", "exported", "compared", "designed"):
                 with self._lock:
                     self._open.pop(said.number, None)
+                    self._unwanted.pop(said.number, None)
             self._hear(said)
         with self._lock:
             if self._closed or process is not self._process:
@@ -108,6 +126,8 @@ class Computing:
         """End the process and remove what it kept."""
         with self._lock:
             self._closed = True
+            if self._timer is not None:
+                self._timer.cancel()
             end(self._process)
         self._scratch.remove()
 

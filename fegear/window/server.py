@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import secrets
+import signal
 import socket
 import sys
 import threading
 import webbrowser
 from typing import TYPE_CHECKING
 
+from fegear.engine.processes import end_tracker
 from fegear.errors import InputError, MissingLibraryError
 from fegear.window.bench import Bench
 from fegear.window.doorkeeper import Doorkeeper
@@ -57,6 +59,16 @@ def _without_clients() -> Iterator[None]:
                 sys.modules.pop(name, None)
 
 
+def _end_with_the_terminal() -> None:
+    """Take a terminal that is closed for a request to end, unless it has been said not to matter (`nohup`).
+
+    The web server knows that request, and lets pages and computing process end in order.
+    """
+    hang_up = getattr(signal, "SIGHUP", None)
+    if hang_up is not None and signal.getsignal(hang_up) != signal.SIG_IGN:
+        signal.signal(hang_up, lambda *_: signal.raise_signal(signal.SIGTERM))
+
+
 def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[str], None]) -> None:
     """Serve the page until the process is told to end.
 
@@ -96,6 +108,7 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
         if browser:
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
+    _end_with_the_terminal()
     nicegui.app.on_startup(opened)
     nicegui.app.on_shutdown(bench.close)
     nicegui.app.add_middleware(Doorkeeper, port=port, secret=secret)
@@ -108,3 +121,4 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
         )  # fmt: skip
     finally:
         bench.close()
+        end_tracker()

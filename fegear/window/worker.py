@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fegear.engine.processes import settle
 from fegear.errors import FegearError, InputError
 from fegear.results.loaded_pair import LoadedPairData
 from fegear.solution_cache import SolutionCache
@@ -40,6 +40,8 @@ _STILL = 0.2
 #: Bytes that results in memory may take beside those of the present case; a plane gear takes some 35 MB, and comes
 #: back from the folder of solved teeth.
 _MOST = 120_000_000
+#: Bytes that the folder of solved teeth may take, which may lie in memory, too; a plane gear takes some 3 MB.
+_MOST_ON_DISK = 256_000_000
 
 
 class Worker:
@@ -53,7 +55,8 @@ class Worker:
     """
 
     def __init__(self, connection: Connection, folder: Path) -> None:
-        self._inbox, self._cache = Inbox(connection), SolutionCache(Store(folder), check=lambda: self._inbox.look())
+        self._inbox = Inbox(connection)
+        self._cache = SolutionCache(Store(folder, _MOST_ON_DISK), check=lambda: self._inbox.look())
         self._meshes: dict[str, object] = {}
         self._on_gears: dict[Task, object] = {}
         self._seconds: dict[str, float] = {}
@@ -236,7 +239,6 @@ class Worker:
     def _pictures(self, results: Results) -> None:
         """Draw what a page cannot draw itself, after all numbers are there."""
         import base64
-        import tempfile
 
         from fegear.output.draw_png import draw_pictures
 
@@ -350,6 +352,6 @@ def _load() -> None:
 
 
 def serve(connection: Connection, folder: str) -> None:
-    """Entry of the process."""
-    settle()
+    """Entry of the process, once it has settled."""
+    tempfile.tempdir = folder  # so that nothing of it is left where it is stopped
     Worker(connection, Path(folder)).serve()
