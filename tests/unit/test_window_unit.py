@@ -8,6 +8,8 @@ import os
 import queue
 import signal
 import socket
+import subprocess
+import sys
 import time
 import tomllib
 from dataclasses import replace
@@ -694,6 +696,34 @@ def test_what_a_killed_server_left_is_removed_by_the_next_and_nothing_else(tmp_p
     assert left == {alive.folder.name, "fegear-open-other", "something", "fegear-open-link"}
     alive.remove()
     assert not alive.folder.exists()
+
+
+def test_a_process_whose_parent_is_killed_ends_and_clears_away_after_it(tmp_path):
+    """From its first moment on, however it is kept busy."""
+    (tmp_path / "busy.py").write_text(
+        "import os, pathlib\n"
+        "def serve(connection, scratch):\n"
+        "    connection.send(os.getpid())\n"
+        "    while True:\n"
+        "        pathlib.Path(scratch, 'ab').mkdir(parents=True, exist_ok=True)\n"
+        "        pathlib.Path(scratch, 'ab', 'x').write_bytes(b'x')\n"
+    )
+    scratch = tmp_path / "scratch"
+    parent = subprocess.Popen(
+        [sys.executable, "-c", ("import multiprocessing, sys; from fegear.engine.processes import start_process\n"
+         "ours, theirs = multiprocessing.Pipe()\n"
+         "start_process('busy', theirs, sys.argv[1]); print(ours.recv(), flush=True); input()"), str(scratch)],
+        env=os.environ | {"PYTHONPATH": str(tmp_path)}, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    with parent:
+        pid = int(parent.stdout.readline())
+        parent.kill()
+    end = time.monotonic() + 20.0
+    while scratch.exists() or (
+        Path(f"/proc/{pid}/stat").exists() and " Z " not in Path(f"/proc/{pid}/stat").read_text()
+    ):
+        assert time.monotonic() < end
+        time.sleep(0.01)
 
 
 def test_a_process_that_dies_is_replaced_and_says_so(computing, tmp_path):
