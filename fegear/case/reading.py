@@ -53,6 +53,9 @@ class Scene:
     estimates : bool
         Whether errors and the sizes of neglected effects are estimated beside the numbers of loaded pairs, which do not
         depend on that: a first answer while a value is being moved does without.
+    drafts : mapping of str to float
+        Gears of which a draft is enough, with its relative tolerance: their teeth are solved once, as that tolerance
+        usually wants, and not held against it.
     """
 
     case: Case
@@ -64,6 +67,7 @@ class Scene:
     text: str = ""
     document: Mapping[str, object] = field(default_factory=dict)
     estimates: bool = True
+    drafts: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def spur_gears(self) -> dict[str, Gear]:

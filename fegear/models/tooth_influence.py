@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.case.part import at
 from fegear.errors import RangeError
-from fegear.models.settings import given_settings, mesh_settings
+from fegear.models.settings import given_settings, mesh_settings, settings_for
 from fegear.models.tooth_mesh import own_sector_mesh
 
 if TYPE_CHECKING:
@@ -59,6 +59,8 @@ class GearToSolve:
         A user's own.
     name : str
         Of the gear, for messages.
+    draft : bool
+        Whether the first settings for the tolerance are enough, without an error estimate.
     """
 
     gear: Gear
@@ -67,6 +69,7 @@ class GearToSolve:
     reach: int
     mesh: SectorMesh | None = None
     name: str = field(default="", compare=False)
+    draft: bool = False
 
 
 def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
@@ -80,7 +83,9 @@ def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
     mesh, accuracy = own_sector_mesh(scene, name), scene.case.accuracy
     given = mesh is not None or bool(given_settings(accuracy))
     settings = mesh_settings(accuracy) if given else None
-    return GearToSolve(scene.gears[name], accuracy.tolerance, settings, needed_reach(scene, name), mesh, name)
+    draft, reach = None if given else scene.drafts.get(name), needed_reach(scene, name)
+    tolerance = draft or accuracy.tolerance
+    return GearToSolve(scene.gears[name], tolerance, settings, reach, mesh, name, draft is not None)
 
 
 def solve_influence_functions(
@@ -104,6 +109,8 @@ def solve_influence_functions(
 
     gear, reach = asked.gear, asked.reach
     try:
+        if asked.draft:
+            return solve_gear(gear, settings_for(asked.tolerance), reach=reach, estimate_error=False, cache=cache)
         if asked.settings is None:
             return solve_to_tolerance(gear, asked.tolerance, reach=reach, progress=progress, cache=cache)
         return solve_gear(gear, asked.settings, reach=reach, mesh=asked.mesh, progress=progress, cache=cache)

@@ -1,13 +1,11 @@
-"""A first answer where a gear has to be solved anew: the same results at a coarser tolerance, told as a draft."""
+"""A first answer where a gear has to be solved anew: the same results from a coarser mesh of it, told as a draft."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from fegear.engine.plan import make_plan
 from fegear.engine.run import key_without_needs
-from fegear.results.catalogue import STAGES
 from fegear.window.order import in_order
 
 if TYPE_CHECKING:
@@ -15,11 +13,11 @@ if TYPE_CHECKING:
     from fegear.engine.plan import Plan
     from fegear.solution_cache import SolutionCache
 
-#: Tolerance of a draft. Transmission errors and root stresses of the gallery's gears differ by 1e-4 to 1e-3 from those
-#: at 1e-3, and a gear takes half the time or less.
-TOLERANCE = 0.03
-#: A case that is nearly as coarse itself has none.
-_COARSER = 5.0
+#: How much coarser than the case a draft is, just over the square root of ten: edges of the next level. It is the
+#: solution that the error of the case's own is estimated from, so that nothing is solved for the draft alone.
+_COARSER = 3.2
+#: A draft at 1e-3 takes a sixth of a second; a finer case gets the same one. One as coarse as this takes as long.
+_FINEST, _COARSEST = 1e-3, 6e-3
 _SOLVED = "gear-solution"
 
 
@@ -29,7 +27,8 @@ class Draft(NamedTuple):
     Attributes
     ----------
     scene : Scene
-        The case at `tolerance`, without estimates of errors.
+        The case with drafts of the gears that are to be solved anew, without estimates of errors; gears that are known
+        are taken as they are.
     plan : Plan
         Of the results that come first alone.
     told : str
@@ -41,31 +40,27 @@ class Draft(NamedTuple):
     told: str
 
 
-def wants_draft(scene: Scene, plan: Plan, cache: SolutionCache) -> bool:
-    """Whether a gear has to be solved anew, and more finely than for a draft."""
-    if scene.case.accuracy.tolerance * _COARSER > TOLERANCE:
-        return False
-    steps = [step for step in plan.steps if step.task.stage == _SOLVED]
-    return any(key_without_needs(scene, step) not in cache for step in steps)
-
-
-def draft_of(scene: Scene, rough: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
-    """The draft of a case; None where nothing would be coarser, because the case names its settings.
+def draft_of(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
+    """The draft of a case; None where every gear is known, or nothing would be coarser.
 
     Parameters
     ----------
-    scene, rough : Scene
-        The case at its own tolerance, and at that of a draft.
+    scene : Scene
     plan : Plan
         Of the case.
     cache : SolutionCache
     """
-    found = in_order(make_plan(rough, STAGES), rough, (), {})
-    steps = found.plan.steps[: found.at_once]
-    keys = {step.task: key_without_needs(scene, step) for step in plan.steps if step.task.stage == _SOLVED}
-    coarser = [step for step in steps if step.task in keys and keys[step.task] != key_without_needs(rough, step)]
-    if not any(keys[step.task] not in cache for step in coarser):
-        return None
     own = scene.case.accuracy.tolerance
-    told = f"Draft at tolerance {rough.case.accuracy.tolerance:.2g}, errors not estimated; that at {own:.2g} follows."
-    return Draft(rough, replace(found.plan, steps=steps), told)
+    if own > _COARSEST:
+        return None
+    ordered = in_order(plan, scene, (), {})
+    steps = ordered.plan.steps[: ordered.at_once]
+    solved = [step for step in steps if step.task.stage == _SOLVED]
+    anew = [step for step in solved if key_without_needs(scene, step) not in cache]
+    tolerance = _COARSER * max(own, _FINEST)
+    rough = replace(scene, estimates=False, drafts={step.task.subject: tolerance for step in anew})
+    # A case that names its settings is solved with them.
+    if not any(key_without_needs(scene, step) != key_without_needs(rough, step) for step in anew):
+        return None
+    told = f"Draft on a mesh for a tolerance of {tolerance:.2g}, errors not estimated; that at {own:.2g} follows."
+    return Draft(rough, replace(plan, steps=steps), told)

@@ -13,7 +13,7 @@ from fegear.results.loaded_pair import LoadedPairData
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
 from fegear.window.designs import design_asked, designed
-from fegear.window.drafted import TOLERANCE, draft_of, wants_draft
+from fegear.window.drafted import draft_of
 from fegear.window.gears import wanted_on_gears
 from fegear.window.hands import hands_of
 from fegear.window.harris import HarrisMaps, load_now_of
@@ -179,14 +179,10 @@ class Worker:
         """Tell a first answer where a gear has to be solved anew."""
         from fegear.engine.run import run_plan
 
-        if asked.moving or not wants_draft(scene, plan, self._cache):
-            return
-        coarser = TOLERANCE / scene.case.accuracy.tolerance
-        rough = scene_of(asked._replace(loosened=asked.loosened * coarser, moving=True))
-        if (draft := draft_of(scene, rough, plan, self._cache)) is not None:
+        if not asked.moving and (draft := draft_of(scene, plan, self._cache)) is not None:
             run_plan(
-                rough, draft.plan, self, cache=self._cache,
-                found=lambda task, outcome: self._found(rough, draft.plan, task, outcome, draft.told),
+                draft.scene, draft.plan, self, cache=self._cache,
+                found=lambda task, outcome: self._found(draft.scene, draft.plan, task, outcome, draft.told),
             )  # fmt: skip
 
     def _compute(self, asked: Asked) -> None:

@@ -24,6 +24,7 @@ from fegear.case.reading import read_scene
 from fegear.drafts import KINDS, Answers, draft
 from fegear.engine.plan import make_plan
 from fegear.engine.run import key_without_needs, run_plan
+from fegear.engine.stage import Task
 from fegear.errors import InputError
 from fegear.output.report.blocks import Values
 from fegear.output.report.rendering import fragment
@@ -38,7 +39,7 @@ from fegear.window.case_text import value_at
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.doorkeeper import Doorkeeper
-from fegear.window.drafted import draft_of, wants_draft
+from fegear.window.drafted import draft_of
 from fegear.window.form import fields, fields_told, form, tables_to_add
 from fegear.window.hands import hands_of
 from fegear.window.harris import HarrisMaps
@@ -605,24 +606,58 @@ def test_a_gear_that_has_to_be_solved_anew_is_answered_by_a_draft_first(tmp_path
     text = TEXT.replace("weber-banaschek", "fe")
 
     def draft(text, *known):
-        asked = Asked(text, "c", str(tmp_path))
-        scene, rough = scene_of(asked), scene_of(asked._replace(loosened=30.0, moving=True))
-        plan, cache = make_plan(scene, STAGES), SolutionCache()
+        scene, cache = scene_of(Asked(text, "c", str(tmp_path))), SolutionCache()
         for one in known:
-            step = next(step for step in make_plan(one, STAGES).steps if step.stage.name == "gear-solution")
-            cache.solve(key_without_needs(one, step), lambda: "solved")
-        return draft_of(scene, rough, plan, cache) if wants_draft(scene, plan, cache) else None
+            for step in make_plan(one, STAGES).steps:
+                if step.stage.name == "gear-solution":
+                    cache.solve(key_without_needs(one, step), lambda: "solved")
+        return draft_of(scene, make_plan(scene, STAGES), cache)
 
     found = draft(text)
     assert [step.task.stage for step in found.plan.steps] == ["gear-solution", "loaded-pair", "load-sharing"]
-    assert found.scene.case.accuracy.tolerance == pytest.approx(0.03)
+    assert found.scene.drafts == {"a": pytest.approx(3.2e-3)}
     assert not found.scene.estimates
-    assert found.told == "Draft at tolerance 0.03, errors not estimated; that at 0.001 follows."
+    assert found.told == "Draft on a mesh for a tolerance of 0.0032, errors not estimated; that at 0.001 follows."
     scene = scene_of(Asked(text, "c", str(tmp_path)))
     assert draft(text, scene) is None  # the gear is known, as where only the load changes
-    assert draft(text, scene_of(Asked(text.replace("28", "29"), "c", str(tmp_path)))) is not None
     assert draft(TEXT) is None  # a formula needs none
     assert draft(f"{text}[accuracy]\ntolerance = 0.01\n") is None
+    assert draft(f"{text}[accuracy]\ntolerance = 1e-4\n").scene.drafts == {"a": pytest.approx(3.2e-3)}
+    assert draft(f"{text}[accuracy]\nflank_edge_length = 0.08\n") is None  # solved with those settings
+
+    # of two gears the changed one alone is drafted; its mate is taken as it is
+    two = text.replace('driven = "a"', 'driven = "b"') + '[gear.b]\nteeth = 31\nmodule = "3 mm"\nface_width = "20 mm"\n'
+    before, after = (scene_of(Asked(one, "c", str(tmp_path))) for one in (two, two.replace("28", "29")))
+    found = draft(two.replace("28", "29"), before)
+    assert list(found.scene.drafts) == ["a"]
+    keys = {
+        (name, step.task.subject): key_without_needs(scene, step)
+        for name, scene in (("before", before), ("after", after), ("draft", found.scene))
+        for step in make_plan(scene, STAGES).steps
+        if step.stage.name == "gear-solution"
+    }
+    assert keys["before", "b"] == keys["draft", "b"] == keys["after", "b"]
+    assert len({keys["before", "a"], keys["draft", "a"], keys["after", "a"]}) == 3
+
+
+def test_the_draft_of_a_gear_is_what_the_error_of_its_solution_is_estimated_from(tmp_path):
+    text = f"{TEXT.replace('weber-banaschek', 'fe')}[accuracy]\ntolerance = 5e-3\n"
+    scene, cache = scene_of(Asked(text, "c", str(tmp_path))), SolutionCache()
+    plan, solution = make_plan(scene, STAGES), Task("gear-solution", "a")
+    draft = draft_of(scene, plan, cache)
+
+    def solved(scene, plan, cache):
+        alone = replace(plan, steps=tuple(step for step in plan.steps if step.task == solution))
+        return run_plan(scene, alone, cache=cache).outcomes[solution].data
+
+    drafted, whole = (solved(one, draft.plan, cache) for one in (draft.scene, scene))
+    assert drafted.coarse is None
+    assert drafted.fine is whole.coarse
+    assert cache.shapes.computed == 2
+    undrafted = solved(scene, plan, SolutionCache())
+    assert np.array_equal(whole.fine.compliance[1], undrafted.fine.compliance[1])
+    assert dict(whole.rounds[0].errors) == dict(undrafted.rounds[0].errors)
+    assert draft_of(scene, plan, cache) is None
 
 
 @pytest.mark.long
