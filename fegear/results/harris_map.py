@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fegear.engine.figure import Axis, Curve, Figure, Panel, Points
+from fegear.results.loaded_flanks import LoadedFlanksData
 from fegear.results.loaded_pair import BASE_PITCH, LoadedPairData, drawn_loads, pitch_marks
 from fegear.results.transmission_error import POSITIONS
 
@@ -25,12 +26,32 @@ _FAMILY, _QUICK = 10, 60
 NOW = "present load"
 
 
-def harris_panel(curve: Loaded, pair: GearPair, load: float, word: str, more: Sequence[Item] = ()) -> Panel:
+class HarrisCurves(NamedTuple):
+    """Transmission error of a pair over a base pitch, for several loads.
+
+    Attributes
+    ----------
+    x : ndarray, shape (P,)
+        Roll positions [m].
+    load : ndarray, shape (L,)
+        [N].
+    transmission_error : ndarray, shape (P, L)
+        [m].
+    """
+
+    x: Array
+    load: Array
+    transmission_error: Array
+
+
+def harris_panel(
+    curve: Loaded | HarrisCurves, pair: GearPair, load: float, word: str, more: Sequence[Item] = ()
+) -> Panel:
     """Transmission error over one base pitch, a curve for each load; the one that is `load` is wide.
 
     Parameters
     ----------
-    curve : Loaded
+    curve : Loaded or HarrisCurves
     pair : GearPair
     load : float
         [N]; nan where none of them stands out.
@@ -57,44 +78,62 @@ def _round_step(about: float) -> float:
     return max(one for one in (1.0, 2.0, 2.5, 5.0) if one <= about / power * (1.0 + 1e-9)) * power
 
 
-def load_now(data: LoadedPairData) -> tuple[float, Array, Array]:
-    """The transmission error at the nominal load, at a few roll positions, while a slider moves: N, mm and um."""
+def nominal_load(data: LoadedPairData | LoadedFlanksData) -> float:
+    """The load that a pair's results are for [N]."""
+    return data.pair.nominal if isinstance(data, LoadedPairData) else data.asked.nominal
+
+
+def _at_loads(data: LoadedPairData | LoadedFlanksData, loads: Array, positions: int) -> HarrisCurves:
+    """The pair under other loads: plane teeth at so many roll positions, others at their own."""
     from fegear.contact.mesh_curve import roll_positions
 
-    engagement, load = data.pair.engagement, data.pair.nominal
-    x = roll_positions(engagement, _QUICK)
-    solved = engagement.solve(engagement.grid(x), (load,))
-    return load, x * 1e3, solved.transmission_error[:, 0] * 1e6
+    if isinstance(data, LoadedFlanksData):
+        found = data.flanks.solve(loads, data.gaps, data.known)
+        return HarrisCurves(found.lines.roll, found.load, found.transmission_error)
+    engagement = data.pair.engagement
+    x = roll_positions(engagement, positions)
+    return HarrisCurves(x, loads, engagement.solve(engagement.grid(x), tuple(loads.tolist())).transmission_error)
 
 
-def slider_map(name: str, data: LoadedPairData, greatest: float) -> Figure:
+def _now(data: LoadedPairData | LoadedFlanksData, positions: int) -> HarrisCurves:
+    """The pair under its nominal load."""
+    if isinstance(data, LoadedFlanksData):
+        found, i = data.found, data.nominal
+        return HarrisCurves(found.lines.roll, found.load[[i]], found.transmission_error[:, [i]])
+    return _at_loads(data, np.array([nominal_load(data)]), positions)
+
+
+def load_now(data: LoadedPairData | LoadedFlanksData) -> tuple[float, Array, Array]:
+    """The transmission error at the nominal load, at a few roll positions, while a slider moves: N, mm and um."""
+    now = _now(data, _QUICK)
+    return float(now.load[0]), now.x * 1e3, now.transmission_error[:, 0] * 1e6
+
+
+def slider_map(name: str, data: LoadedPairData | LoadedFlanksData, greatest: float) -> Figure:
     """The Harris map beside a load slider: the family up to the greatest load, and the present load in it.
 
     Parameters
     ----------
     name : str
         Of the pair.
-    data : LoadedPairData
+    data : LoadedPairData or LoadedFlanksData
         Its reliefs, errors and effects are those of the case.
     greatest : float
         Load to which the slider goes [N].
     """
-    from fegear.contact.mesh_curve import roll_positions
-
-    engagement, now = data.pair.engagement, data.pair.nominal
     step = _round_step(greatest / _FAMILY)
-    loads = step * np.arange(1, math.floor(greatest / step * (1.0 + 1e-9)) + 1)
-    x = roll_positions(engagement, POSITIONS)
-    at = engagement.grid(x)
-    curve, present = engagement.solve(at, tuple(loads)), engagement.solve(at, (now,)).transmission_error * 1e6
-    wide = Curve(x * 1e3, present[:, 0], NOW, "ink", dash="solid", width=3.2, markers=False)
-    over_roll = harris_panel(curve, engagement.pair, math.nan, "", (wide,))
+    loads = step * np.arange(1.0, math.floor(greatest / step * (1.0 + 1e-9)) + 1.0)
+    curve, present = _at_loads(data, loads, POSITIONS), _now(data, POSITIONS)
+    pair = data.pair.engagement.pair if isinstance(data, LoadedPairData) else data.asked.pair
+    x, now, error = present.x, present.load, present.transmission_error * 1e6
+    wide = Curve(x * 1e3, error[:, 0], NOW, "ink", dash="solid", width=3.2, markers=False)
+    over_roll = harris_panel(curve, pair, math.nan, "", (wide,))
     over_load = Panel(
         Axis("load along the line of action", "N", zero=True),
         Axis("peak to peak", "um", zero=True),
         (
             Curve(loads, np.ptp(curve.transmission_error, axis=0) * 1e6, "", "designed", markers=True),
-            Points(np.array([now]), np.ptp(present, axis=0), NOW, "ink", symbol="circle", size=11.0),
+            Points(now, np.ptp(error, axis=0), NOW, "ink", symbol="circle", size=11.0),
         ),
         height=0.7,
     )

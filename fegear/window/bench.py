@@ -13,7 +13,7 @@ from fegear.window.case_text import literal, with_value
 from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.jobs import Asked, Compare, Compute, Design, Export, Said
-from fegear.window.reliefs import moved_relief, own_name
+from fegear.window.reliefs import moved_relief, own_name, without_relief
 from fegear.window.sent import whole
 
 if TYPE_CHECKING:
@@ -228,7 +228,8 @@ class Bench:
 
     def drop_relief(self, gear: str) -> None:
         """Leave a gear without relief."""
-        self._put(with_value(self._on_desk().text, ("gear", gear, "relief"), None), moving=False)
+        desk = self._on_desk()
+        self._put(without_relief(desk.text, desk.document, gear), moving=False)
 
     def _take_reliefs(self, reliefs: dict[str, Any]) -> None:
         """Give gears other reliefs; the case before is pinned, so that both are shown over each other."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import json
 import re
 import tomllib
@@ -14,6 +15,7 @@ from fegear.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+#: Keys from table to table; the number of one of several tables in a list is a text as well.
 Path = tuple[str, ...]
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _BLANK = re.compile(r"[ \t]*")
@@ -26,7 +28,10 @@ _PLAIN = re.compile(r"[^,\]}#\n]*")
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Where a key stands: `begin` is that of the key, `start` and `end` those of its value; `depth` counts braces."""
+    """Where a key stands: `begin` is that of the key, `start` and `end` those of its value; `depth` counts brackets.
+
+    A table in a list stands there without a key.
+    """
 
     path: Path
     begin: int
@@ -37,7 +42,7 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Head:
-    """A line ``[a.b]``: the table's path, where the line begins, and where the last of its statements ends."""
+    """A line ``[a.b]`` or ``[[a.b]]``: its table's path, where it begins, and where the last of its statements ends."""
 
     path: Path
     begin: int
@@ -67,9 +72,12 @@ def value_at(document: Mapping[str, Any], path: Path) -> Any:
     """The value below a path; None where there is none."""
     found: Any = document
     for step in path:
-        if not isinstance(found, dict) or step not in found:
+        if isinstance(found, list) and step.isdecimal() and int(step) < len(found):
+            found = found[int(step)]
+        elif isinstance(found, dict) and step in found:
+            found = found[step]
+        else:
             return None
-        found = found[step]
     return found
 
 
@@ -92,7 +100,7 @@ def with_value(text: str, path: Path, value: str | None) -> str:
     Raises
     ------
     InputError
-        If the key stands where it cannot be changed by itself (in a list of tables), or the value is no TOML.
+        If the key stands where it cannot be changed by itself, or the value is no TOML.
     """
     before = tomllib.loads(text)
     wanted = _changed(before, path, value)
@@ -117,14 +125,14 @@ def _changed(document: Mapping[str, Any], path: Path, value: str | None) -> dict
     made: dict[str, Any] = copy.deepcopy(dict(document))
     if value is None:
         for depth in range(len(path), 0, -1):
-            table = value_at(made, path[: depth - 1]) if depth > 1 else made
-            if isinstance(table, dict) and (depth == len(path) or (depth > 1 and table.get(path[depth - 1]) == {})):
-                table.pop(path[depth - 1], None)
+            held = value_at(made, path[: depth - 1])
+            if isinstance(held, dict) and (depth == len(path) or (depth > 1 and held.get(path[depth - 1]) == {})):
+                held.pop(path[depth - 1], None)
         return made
-    table = made
-    for step in path[:-1]:
-        table = table.setdefault(step, {})
-        if not isinstance(table, dict):
+    table: Any = made
+    for step, after in itertools.pairwise(path):
+        table = table.setdefault(step, {}) if isinstance(table, dict) else value_at(table, (step,))
+        if not isinstance(table, dict) and value_at(table, (after,)) is None:
             raise InputError(".".join(path), value, f'cannot be set: "{step}" is no table', "change it in the text")
     try:
         table[path[-1]] = tomllib.loads(f"value = {value}")["value"]
@@ -206,10 +214,11 @@ def _without(text: str, begin: int, end: int) -> str:
 
 
 def statements(text: str) -> tuple[list[Entry], list[Head]]:
-    """Every key of a valid TOML text outside of lists of tables, and every table's head; the first is the file's."""
+    """Every key of a valid TOML text, and every table's head; the first is the file's."""
     entries: list[Entry] = []
     heads = [Head((), 0, 0)]
-    table: Path | None = ()
+    table: Path = ()
+    counts: dict[Path, int] = {}  # how many tables of a list there are so far
     at = 0
     while True:
         at = _end(_BETWEEN, text, at)
@@ -219,32 +228,39 @@ def statements(text: str) -> tuple[list[Entry], list[Head]]:
             begin, several = text.rfind("\n", 0, at) + 1, text.startswith("[[", at)
             keys, at = _keys(text, at + 1 + several)
             at = _end(_LINE, text, at)
-            table = None if several else keys
-            heads += [] if several else [Head(keys, begin, at)]
+            table = ()
+            for step in keys:  # below a list its last table is meant
+                table = (*table, str(counts[table] - 1), step) if table in counts else (*table, step)
+            if several:
+                counts[table] = counts.get(table, 0) + 1
+                table = (*table, str(counts[table] - 1))
+            heads.append(Head(table, begin, at))
             continue
         begin = at
         keys, at = _keys(text, at)
         start = _end(_BLANK, text, at + 1)
         at = _value(text, start)
-        if table is not None:
-            entries += [Entry(table + keys, begin, start, at, 0), *_within(text, start, at, table + keys, 1)]
-            heads[-1] = Head(heads[-1].path, heads[-1].begin, _end(_LINE, text, at))
+        entries += [Entry(table + keys, begin, start, at, 0), *_within(text, start, at, table + keys, 1)]
+        heads[-1] = Head(heads[-1].path, heads[-1].begin, _end(_LINE, text, at))
 
 
 def _within(text: str, start: int, end: int, path: Path, depth: int) -> Iterator[Entry]:
-    """Keys of an inline table."""
-    if text[start] != "{":
+    """Keys of an inline table, and tables in a list with theirs."""
+    if text[start] not in "{[":
         return
-    at = start + 1
-    while True:
+    at, listed = start + 1, text[start] == "["
+    for number in itertools.count():
         at = _end(_BETWEEN, text, at)
         if at >= end - 1:
             return
-        begin = at
-        keys, at = _keys(text, at)
-        first = _end(_BLANK, text, at + 1)
+        begin = first = at
+        keys: Path = (str(number),)
+        if not listed:
+            keys, at = _keys(text, at)
+            first = _end(_BLANK, text, at + 1)
         at = _value(text, first)
-        yield Entry(path + keys, begin, first, at, depth)
+        if not listed or text[first] == "{":
+            yield Entry(path + keys, begin, first, at, depth)
         yield from _within(text, first, at, path + keys, depth + 1)
         at = _end(_BETWEEN, text, at)
         at += text[at] == ","

@@ -79,6 +79,7 @@ const fegearHands = (() => {
     }
     if (relief.given.length) tools.append(button("Without relief", "Leave the relief of this gear out", () => emitEvent("drop", { gear: relief.gear })));
     if (relief.given.includes("table")) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "Its table is part of the curve, and is changed in the form or the text." }));
+    if (relief.over_face.length) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: `What is removed over the face (${relief.over_face.join(", ")}) is changed in the form or the text.` }));
     if (relief.given.length && !relief.on) tools.append(Object.assign(document.createElement("span"), { className: "quiet", textContent: "The effect relief is off: it changes no result." }));
   }
 
@@ -134,7 +135,9 @@ const fegearHands = (() => {
       kept.mesh.set(content.mesh);
       kept.load.set(content.load);
       const tools = kept.host.querySelector(".pair-tools");
-      tools.replaceChildren(...(content.reliefs.length === 1 && content.load ? [
+      tools.replaceChildren(...(!content.designs && content.load ? [
+        Object.assign(document.createElement("span"), { className: "quiet", textContent: "Reliefs by theory and the nearest that can be ground are those of plane teeth; tip relief, crowning and slope of gears with a width are what the result flank-design finds." }),
+      ] : content.reliefs.length === 1 && content.load ? [
         button("Give the driven gear a name of its own", "Driver and driven are one gear of the case; relief by theory gives each its own", () => emitEvent("name_driven", { pair })),
       ] : content.reliefs.length > 1 && content.load ? [
         button("Remove the transmission error", "Reliefs of both gears that leave none at this load (Mark, Eq. 4.6), as tables of the case", () => emitEvent("design", { pair, how: "exact" })),

@@ -19,7 +19,7 @@ _MEMBERS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
 
 
 def hands_of(scene: Scene) -> dict[str, Any]:
-    """For every pair: its gears in mesh, and for spur pairs the reliefs and the load.
+    """For every pair: its gears in mesh, the reliefs, and the load.
 
     Parameters
     ----------
@@ -28,12 +28,15 @@ def hands_of(scene: Scene) -> dict[str, Any]:
     Returns
     -------
     dict
-        By the pair's name: ``mesh``, ``reliefs`` and ``load``.
+        By the pair's name: ``mesh``, ``reliefs``, ``load``, and ``designs``: whether reliefs are found by theory, which
+        is of plane teeth.
     """
     found: dict[str, Any] = {}
     for name in scene.pairs:
-        reliefs = _reliefs(scene, name) if name in scene.spur_pairs else []
-        found[name] = {"mesh": gears_in_mesh(scene, name), "reliefs": reliefs, "load": _load(scene.document, name)}
+        found[name] = {
+            "mesh": gears_in_mesh(scene, name), "reliefs": _reliefs(scene, name), "load": _load(scene.document, name),
+            "designs": name in scene.plane_pairs,
+        }  # fmt: skip
     return found
 
 
@@ -48,7 +51,8 @@ def _reliefs(scene: Scene, name: str) -> list[dict[str, Any]]:
         made.append({
             "gear": relief.gear, "low": relief.low, "high": relief.high, "usual": relief.usual,
             "handles": [asdict(handle) for handle in relief.handles],
-            "given": sorted(document), "on": scene.case.effects.relief,
+            "given": sorted(document), "over_face": scene.case.gear[relief.gear].over_face,
+            "on": scene.case.effects.relief,
             "figure": {"key": figure.key, "heading": figure.heading, "caption": figure.caption, **plotly_json(figure)},
             "darker": darker([figure]),
         })  # fmt: skip

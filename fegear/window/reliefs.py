@@ -9,8 +9,12 @@ from fegear.window.case_text import literal, value_at, with_value
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fegear.window.case_text import Path
+
 #: Other ways to say where a relief starts and how much it removes.
 _OTHERWISE = ("start_radius", "length", "normalised_length", "amount_over_delta")
+#: Keys of a gear that modify its flanks.
+_MODIFIED = {"relief", "lead", "bias", "topography"}
 
 
 def moved_relief(
@@ -38,20 +42,33 @@ def moved_relief(
     InputError
         If the text cannot be changed there.
     """
-    table = ("gear", gear, "relief", end)
+    table: Path = ("gear", gear, "relief", end)
     new = {"amount": f"{amount:.2f} um"} | ({} if end == "crowning" else {"start_roll_angle": f"{start:.3f} deg"})
-    several = value_at(document, table)
-    if isinstance(several, list):
-        parts = [dict(one) for one in several]
-        parts[index] = {key: value for key, value in parts[index].items() if key not in _OTHERWISE} | new
-        text = with_value(text, table, literal(parts))
-    else:
-        for key, value in new.items():
-            text = with_value(text, (*table, key), f'"{value}"')
-        for key in _OTHERWISE:
-            if end != "crowning":
-                text = with_value(text, (*table, key), None)
+    if isinstance(value_at(document, table), list):
+        table = (*table, str(index))
+    for key, value in new.items():
+        text = with_value(text, (*table, key), f'"{value}"')
+    for key in _OTHERWISE:
+        if end != "crowning":
+            text = with_value(text, (*table, key), None)
     return with_value(text, ("effects", "relief"), "true")
+
+
+def without_relief(text: str, document: Mapping[str, Any], gear: str) -> str:
+    """The text of a case with a gear without relief, and without the effect where no flank is modified any more.
+
+    Raises
+    ------
+    InputError
+        If the text cannot be changed there.
+    """
+    left = {name: {key for key in one if name != gear or key != "relief"} for name, one in document["gear"].items()}
+    text = with_value(text, ("gear", gear, "relief"), None)
+    if any(keys & _MODIFIED for keys in left.values()) or any(
+        "modification" in one for one in document["pair"].values()
+    ):
+        return text
+    return with_value(text, ("effects", "relief"), None)
 
 
 def own_name(text: str, document: Mapping[str, Any], pair: str) -> str:

@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fegear.errors import FegearError, InputError
-from fegear.results.loaded_pair import LoadedPairData
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
 from fegear.window.designs import design_asked, designed
 from fegear.window.drafted import draft_of
 from fegear.window.gears import wanted_on_gears
 from fegear.window.hands import hands_of
-from fegear.window.harris import HarrisMaps, load_now_of
+from fegear.window.harris import LOADED, HarrisMaps, load_now_of
 from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Compare, Compute, Design, Export, Said
 from fegear.window.on_gears import on_the_gears
@@ -205,7 +204,7 @@ class Worker:
         from fegear.output.report.blocks import Values
         from fegear.output.report.rendering import fragment
 
-        if isinstance(outcome.data, LoadedPairData) and self._asked is not None and self._asked.moving:
+        if isinstance(outcome.data, LOADED) and self._asked is not None and self._asked.moving:
             self._say("load_now", **load_now_of(task.subject, outcome.data))
         title = next(step.stage.title for step in plan.steps if step.task == task)
         figures = [one for one in outcome.figures if isinstance(one, Figure) and one.drawable_in_page]

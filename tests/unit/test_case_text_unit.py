@@ -20,7 +20,7 @@ results = [ # a list over lines
   "geometry", # with a comment, and a ] in it
   'load-sharing',
 ]
-"odd key" = { a = { b = [1, 2, { c = "}" }] }, d.e = 1 }
+"odd key" = { a = { b = [1, 2, { c = "}" }, [{ f = 1 }, {}]] }, d.e = 1 }
 
 [gear."a b"]   # a name with a blank
 teeth = 28 # z
@@ -28,6 +28,14 @@ rack = { addendum = 1.0, tip_radius = 'x\\' } # not an escape
 
 [[lists]]
 teeth = 3
+
+[[lists]] # of two
+teeth = 4
+[[lists.inner]]
+x = 1 # mm
+[lists.more]
+y = 2
+[[lists.inner]]
 
 [pair]
 I.load = "1 kN"
@@ -69,6 +77,10 @@ def test_every_key_can_be_changed_and_removed_where_it_stands(text):
         (("gear", "new", "teeth"), '[gear.new]\nteeth = "3 mm"'),
         (("pair", "I", "speed"), 'I.speed = "3 mm"'),
         (("pair", "J", "speed"), 'speed = "3 mm"'),
+        (("lists", "0", "speed"), 'teeth = 3\nspeed = "3 mm"'),
+        (("lists", "1", "inner", "0", "speed"), 'x = 1 # mm\nspeed = "3 mm"'),
+        (("lists", "1", "inner", "1", "speed"), '[[lists.inner]]\nspeed = "3 mm"'),
+        (("lists", "1", "more", "speed"), 'y = 2\nspeed = "3 mm"'),
     ],
 )
 def test_a_new_key_stands_in_its_table_and_goes_without_a_trace(path, line):
@@ -79,9 +91,18 @@ def test_a_new_key_stands_in_its_table_and_goes_without_a_trace(path, line):
     assert solid(tomllib.loads(with_value(made, path, None))) == solid(tomllib.loads(HARD))
 
 
+def test_a_new_key_stands_in_a_table_of_a_list():
+    path = ("odd key", "a", "b", "3", "1", "g")
+    made = with_value(HARD, path, "2")
+    assert made == HARD.replace("{ f = 1 }, {}", "{ f = 1 }, { g = 2 }")
+    assert tomllib.loads(with_value(made, path, None)) == tomllib.loads(HARD)
+
+
 def test_what_cannot_be_changed_by_itself_is_refused():
     with pytest.raises(InputError, match="in the text"):
         with_value(HARD, ("lists", "teeth"), "4")
+    with pytest.raises(InputError, match="in the text"):
+        with_value(HARD, ("lists", "2", "teeth"), "4")
     with pytest.raises(InputError, match="is no value"):
         with_value(HARD, ("title",), "not toml")
 

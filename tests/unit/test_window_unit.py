@@ -241,6 +241,7 @@ def test_a_relief_moved_by_hand_is_the_relief_of_the_case(tmp_path):
     bench.desk.redo()
     bench.drop_relief("a")
     assert scene_of(bench.asked()).case.gear["a"].relief is None
+    assert bench.desk.refusal is None
 
 
 def test_answers_to_earlier_places_of_a_moved_value_are_shown_and_end_nothing(tmp_path):
@@ -305,8 +306,29 @@ crowning = { amount = "3 um" }
 """
 
 
-def test_every_part_of_a_relief_has_its_handle_and_moves_alone(tmp_path):
-    desk = Desk(TWO + SEVERAL, "c", tmp_path)
+LISTED = """
+[[gear.a.relief.tip]]
+amount = "10 um" # ground first
+start_radius = "42.5 mm"
+
+[[gear.a.relief.tip]]
+amount = "4 um"
+length = "2 mm" # then this
+shape = "parabolic"
+
+[[gear.a.relief.root]]
+amount = "6 um"
+length = "1.5 mm"
+
+[gear.a.relief.crowning]
+amount = "3 um"
+"""
+
+
+@pytest.mark.parametrize("several", [SEVERAL, LISTED])
+def test_every_part_of_a_relief_has_its_handle_and_moves_alone(tmp_path, several):
+    text = TWO + several
+    desk = Desk(text, "c", tmp_path)
     bench = Bench(None)
     bench.lay(desk)
 
@@ -327,7 +349,42 @@ def test_every_part_of_a_relief_has_its_handle_and_moves_alone(tmp_path):
             )
         assert value_at(desk.document, ("gear", "a", "relief", "tip"))[1]["shape"] == "parabolic"
         desk.undo()
-    assert desk.text == TWO + SEVERAL
+    assert desk.text == text
+    if several is LISTED:
+        bench.move_relief("a", "tip", before["tip", 1].start, 5.0, moving=False, index=1)
+        changed = desk.text.replace("5.00 um", "4 um").splitlines()
+        assert [row for row in text.splitlines() if row not in changed] == ['length = "2 mm" # then this']
+        bench.drop_relief("a")
+        assert desk.text.rstrip() == TWO.rstrip()
+
+
+def test_the_map_beside_the_slider_of_a_pair_with_a_width_is_that_of_runs_at_its_loads(tmp_path):
+    text = TWO.replace("[gear.b]", 'width = "slices"\n[gear.b]').replace(
+        'compliance = { source = "weber-banaschek" }', "loads = ['2.5 kN', '7.5 kN']"
+    )
+    text = (
+        text.replace('"load-sharing"', '"transmission-error"')
+        + "[load_distribution]\npositions = 6\npanels = 5\n[accuracy]\ntolerance = 0.05\n"
+    )
+    scene = scene_of(Asked(text, "c", str(tmp_path)))
+    hands = hands_of(scene)["I"]
+    assert [len(hands["reliefs"]), hands["designs"], hands["load"]["text"]] == [2, False, "5 kN"]
+    results = run_plan(scene, make_plan(scene, STAGES))
+    found = HarrisMaps().at_rest(results)["I"]
+    assert "up to 10000 N" in found["figure"]["caption"]
+    data = results.outcomes[Task("loaded-flanks", "I")].data
+    over_roll, over_load = slider_map("I", data, 10_000.0).panels
+    drawn = {one.name: one for one in over_roll.items}
+    load, x, te = load_now(data)
+    assert load == 5000.0
+    np.testing.assert_array_equal([drawn[NOW].x, drawn[NOW].y], [x, te])
+    # Loads that the case names were solved together with the nominal one: the family has the same.
+    family = over_load.items[0]
+    for i, one in enumerate(data.found.load.tolist()):
+        if one in family.x:
+            swing = np.ptp(data.found.transmission_error[:, i]) * 1e6
+            assert family.y[list(family.x).index(one)] == pytest.approx(swing, rel=1e-6)
+    assert (np.ptp(te), results.values["I.te_peak_to_peak"].si * 1e6) == pytest.approx([over_load.items[1].y[0]] * 2)
 
 
 def test_a_gear_that_meets_its_like_gets_a_name_of_its_own(tmp_path):
