@@ -8,6 +8,7 @@ import time
 from collections import Counter, OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Source = Literal["computed", "memory", "disk"]
 _SECONDS = struct.Struct("<d")
+#: Solutions that wait to be written at most; each takes memory, some 15 MB of a gear.
+_MOST_UNWRITTEN = 4
 
 
 class Codec(NamedTuple, Generic[T]):
@@ -76,6 +79,8 @@ class SolutionCache:
         Solutions in memory; the ones unused for longest go first. A gear's influence functions take some 10 MB.
     check : callable, optional
         Called before something computed is kept; what it raises is raised on, and nothing is kept.
+    at_leisure : bool
+        Whether what is to go to the disk waits for `write_one`: nobody who wants an answer then waits for it.
 
     Attributes
     ----------
@@ -83,8 +88,13 @@ class SolutionCache:
         Whole results, and the tooth shapes among what they are made of.
     """
 
-    def __init__(self, disk: Store | None = None, most: int = 128, check: Callable[[], None] | None = None) -> None:
+    def __init__(
+        self, disk: Store | None = None, most: int = 128, check: Callable[[], None] | None = None, *,
+        at_leisure: bool = False,
+    ) -> None:  # fmt: skip
         self.disk, self._check = disk, check
+        self._at_leisure = at_leisure
+        self._unwritten: dict[str, Callable[[], None]] = {}
         self.solutions, self.shapes = Account(), Account()
         self._memory: OrderedDict[str, tuple[Any, float]] = OrderedDict()
         self._most = most
@@ -169,10 +179,22 @@ class SolutionCache:
 
     def _computed_and_written(self, key: str, compute: Callable[[], T], codec: Codec[T]) -> Solution[T]:
         found = self._timed(compute)
+        self._unwritten[key] = partial(self._write, key, found, codec)
+        while len(self._unwritten) > (_MOST_UNWRITTEN if self._at_leisure else 0):
+            self.write_one()
+        return found
+
+    def _write(self, key: str, found: Solution[T], codec: Codec[T]) -> None:
         if self.disk is not None:
             with contextlib.suppress(OSError):  # a full disk or a read-only folder costs the next run time, no more
                 self.disk.write(key, _SECONDS.pack(found.seconds) + codec.write(found.value))
-        return found
+
+    def write_one(self) -> bool:
+        """Write what has waited for longest to go to the disk; whether there was anything."""
+        if not self._unwritten:
+            return False
+        self._unwritten.pop(next(iter(self._unwritten)))()
+        return True
 
 
 def cache_on_disk(folder: Path | None = None) -> SolutionCache:

@@ -177,6 +177,8 @@ def _replies(
         yield from on_cluster(Job(function, shares_cache, cache.disk is not None, None), todo, executor.scheduler)
     else:
         folder = str(cache.disk.folder.parent) if cache.disk else None
+        while cache.write_one():  # the processes find there what has been solved
+            pass
         yield from on_cores(
             Job(function, shares_cache, cache.disk is not None, folder), todo, executor.workers or cores()
         )

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from fegear.drafts import KINDS, Answers, draft
 from fegear.errors import InputError
 from fegear.window.case_text import literal, with_value
-from fegear.window.computing import Computing
 from fegear.window.desk import Desk
 from fegear.window.jobs import Asked, Compare, Compute, Design, Export, Said
 from fegear.window.reliefs import moved_relief, own_name, without_relief
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.results.relief_for_case import How
+    from fegear.window.computing import Computing
 
 #: Accuracy against time: factor of the case's own tolerance.
 LEVELS = {"draft": 10.0, "normal": 1.0, "fine": 0.1}
@@ -44,6 +44,8 @@ class Bench:
     ----------
     case : Path, optional
         The case to begin with.
+    computing : Computing, optional
+        What answers; without it nothing does.
 
     Attributes
     ----------
@@ -55,13 +57,13 @@ class Bench:
         The variant A that is compared with.
     """
 
-    def __init__(self, case: Path | None) -> None:
+    def __init__(self, case: Path | None, computing: Computing | None = None) -> None:
         self.desk = Desk.of_file(case) if case is not None else None
         self.level = "normal"
         self.pinned: Asked | None = None
         self._listeners: list[Callable[[str, _Content], None]] = []
         self._numbers = itertools.count(1)
-        self._computing: Computing | None = None
+        self._computing = computing
         self._loop: asyncio.AbstractEventLoop | None = None
         self._number = self._first = self._laid = 0
         self._sight: tuple[str, ...] = ()
@@ -72,15 +74,11 @@ class Bench:
         self._last: dict[str, _Content] = {}
 
     def begin(self) -> None:
-        """Start computing; called within the loop that the pages run in."""
+        """Listen to what is computed, and ask for the case; called within the loop that the pages run in."""
         self._loop = asyncio.get_running_loop()
-        self._computing = Computing(self._from_process)
-        self.compute()
-
-    def close(self) -> None:
-        """End the computing process."""
         if self._computing is not None:
-            self._computing.close()
+            self._computing.hear = self._from_process
+        self.compute()
 
     # ---- pages ---------------------------------------------------------------------------------------------------
 

@@ -29,14 +29,15 @@ _GRACE = 2.0
 class Computing:
     """One computing process at a time.
 
-    Parameters
+    Attributes
     ----------
-    hear : callable
-        Receives every `Said`, in a thread of its own.
+    hear : callable or None
+        Receives every `Said`, in a thread of its own; whoever asks for something sets it before.
     """
 
-    def __init__(self, hear: Callable[[Said], None]) -> None:
-        self._hear, self._scratch = hear, Scratch()
+    def __init__(self) -> None:
+        self.hear: Callable[[Said], None] | None = None
+        self._scratch = Scratch()
         self._lock = threading.Lock()
         self._open: dict[int, Job] = {}
         self._unwanted: dict[int, float] = {}  # since when
@@ -111,7 +112,8 @@ class Computing:
                 with self._lock:
                     self._open.pop(said.number, None)
                     self._unwanted.pop(said.number, None)
-            self._hear(said)
+            if self.hear is not None:
+                self.hear(said)
         with self._lock:
             if self._closed or process is not self._process:
                 return
@@ -119,8 +121,9 @@ class Computing:
             self._open.clear()
             self._again()
         for number in lost:
-            self._hear(Said(number, "refused", {"sentence": "It ended before it was done (out of memory?).",
-                                                "key": ""}))  # fmt: skip
+            if self.hear is not None:
+                self.hear(Said(number, "refused", {"sentence": "It ended before it was done (out of memory?).",
+                                                   "key": ""}))  # fmt: skip
 
     def close(self) -> None:
         """End the process and remove what it kept."""

@@ -119,6 +119,11 @@ class Inbox:
             self._connection.send(said)
 
     @property
+    def empty(self) -> bool:
+        """Whether nothing waits to be done."""
+        return not self._jobs
+
+    @property
     def newest(self) -> Compute | None:
         """The case that waits to be computed."""
         return next((one for one in list(self._jobs) if isinstance(one, Compute)), None)

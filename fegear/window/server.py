@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from fegear.engine.processes import end_tracker
 from fegear.errors import InputError, MissingLibraryError
-from fegear.window.bench import Bench
+from fegear.window.computing import Computing
 from fegear.window.doorkeeper import Doorkeeper
 
 if TYPE_CHECKING:
@@ -89,9 +89,21 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
     MissingLibraryError
         If NiceGUI is not installed.
     """
-    port, secret = free_port(port), secrets.token_urlsafe(24)
+    port = free_port(port)
+    computing = Computing()  # it loads what computes while this process loads what serves, which takes as long
+    try:
+        _serve(case, port, computing, browser=browser, say=say)
+    finally:
+        computing.close()
+        end_tracker()
+
+
+def _serve(case: Path | None, port: int, computing: Computing, *, browser: bool, say: Callable[[str], None]) -> None:
+    from fegear.window.bench import Bench
+
+    secret = secrets.token_urlsafe(24)
     address = f"http://{HOST}:{port}/?key={secret}"
-    bench = Bench(case)
+    bench = Bench(case, computing)
     with _without_clients():
         try:
             import nicegui
@@ -110,15 +122,11 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
 
     _end_with_the_terminal()
     nicegui.app.on_startup(opened)
-    nicegui.app.on_shutdown(bench.close)
+    nicegui.app.on_shutdown(computing.close)
     nicegui.app.add_middleware(Doorkeeper, port=port, secret=secret)
-    try:
-        ui.run(
-            lambda: show(bench), host=HOST, port=port, title="fegear", dark=None, reload=False, show=False,
-            show_welcome_message=False, favicon="data:,", reconnect_timeout=30.0, tailwind=False,
-            gzip_middleware_factory=None, ws_per_message_deflate=False,  # nothing is far away
-            message_history_length=100,  # each may be a figure of a hundred kilobytes
-        )  # fmt: skip
-    finally:
-        bench.close()
-        end_tracker()
+    ui.run(
+        lambda: show(bench), host=HOST, port=port, title="fegear", dark=None, reload=False, show=False,
+        show_welcome_message=False, favicon="data:,", reconnect_timeout=30.0, tailwind=False,
+        gzip_middleware_factory=None, ws_per_message_deflate=False,  # nothing is far away
+        message_history_length=100,  # each may be a figure of a hundred kilobytes
+    )  # fmt: skip

@@ -55,7 +55,7 @@ class Worker:
 
     def __init__(self, connection: Connection, folder: Path) -> None:
         self._inbox = Inbox(connection)
-        self._cache = SolutionCache(Store(folder, _MOST_ON_DISK), check=lambda: self._inbox.look())
+        self._cache = SolutionCache(Store(folder, _MOST_ON_DISK), check=lambda: self._inbox.look(), at_leisure=True)
         self._meshes: dict[str, object] = {}
         self._on_gears: dict[Task, object] = {}
         self._seconds: dict[str, float] = {}
@@ -71,6 +71,8 @@ class Worker:
         while True:
             try:
                 self.answer(self._inbox.take())
+                while self._inbox.empty and self._cache.write_one():
+                    pass
             except (EOFError, OSError):
                 return
 

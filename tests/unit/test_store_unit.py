@@ -113,6 +113,24 @@ def test_an_entry_of_another_key_is_not_taken_for_this_one(tmp_path):
     assert cache.solve(other, lambda: b"made again", codec).source == "computed"
 
 
+def test_what_nobody_waits_for_is_written_later_and_is_the_same(tmp_path):
+    store, codec = Store(tmp_path), Codec(bytes, bytes)
+    cache = SolutionCache(store, at_leisure=True)
+    keys = [content_key(i) for i in range(6)]
+    for i, key in enumerate(keys):
+        cache.solve(key, lambda i=i: bytes([i]), codec)
+    assert [key in store for key in keys] == [True, True, False, False, False, False]  # no more than four wait
+    assert cache.solve(keys[5], pytest.fail, codec).source == "memory"
+    while cache.write_one():
+        pass
+    assert all(key in store for key in keys)
+    assert SolutionCache(store).solve(keys[3], pytest.fail, codec)[::2] == (b"\x03", "disk")
+    at_once = SolutionCache(store)
+    at_once.solve(content_key("x"), lambda: b"x", codec)
+    assert content_key("x") in store
+    assert not at_once.write_one()
+
+
 def test_the_store_drops_what_was_unused_for_longest(tmp_path):
     store = Store(tmp_path, limit=10_000)
     keys = [content_key(i) for i in range(12)]

@@ -512,7 +512,8 @@ class Heard:
 @pytest.fixture(scope="module")
 def computing():
     heard = Heard()
-    made = Computing(heard)
+    made = Computing()
+    made.hear = heard
     yield made, heard
     pid = made.pid
     made.close()
