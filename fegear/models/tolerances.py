@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.robustness import TolerancePart
     from fegear.design.tolerance_draws import Kind, Limits
+    from fegear.geometry import GearPair
     from fegear.models.gear_deviations import Deviation
 
 #: Deviations of a gear by the kinds that are drawn.
@@ -53,6 +54,17 @@ def refuse_no_tolerance(scene: Scene, name: str, limits: Limits) -> None:
         raise InputError(
             "robustness", "no tolerance", "leaves nothing to draw",
             f"give gear.{gear_name(scene, name, 'driver')}.tolerance_class or deviations",
+        )  # fmt: skip
+
+
+def refuse_jammed(pair: GearPair, name: str, limits: Limits) -> None:
+    """Refuse deviations of the centre distance at which the teeth of the drawing touch on both flanks."""
+    room = pair.centre_distance - pair.tight_centre_distance
+    if limits.centre_distance > room * (1.0 + 1e-9) + 1e-12:
+        raise InputError(
+            "robustness.centre_distance", f"{limits.centre_distance * 1e3:.6g} mm",
+            f"jams the teeth: pair {name} has {room * 1e3:.4g} mm until they touch on both flanks",
+            f"give a gear of pair {name} a thickness_allowance, or the pair a larger centre_distance",
         )  # fmt: skip
 
 

@@ -15,7 +15,14 @@ from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_flanks import FLANK_EFFECTS, flanks_to_load
 from fegear.models.pair_inputs import gear_name
 from fegear.models.solid_influence import solid_gear_to_solve
-from fegear.models.tolerances import chosen_pair, limits_of, refuse_no_tolerance, tolerance_part, untold
+from fegear.models.tolerances import (
+    chosen_pair,
+    limits_of,
+    refuse_jammed,
+    refuse_no_tolerance,
+    tolerance_part,
+    untold,
+)
 from fegear.results.flank_root_stress import places_along
 from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
@@ -26,13 +33,13 @@ from fegear.results.tolerance_tables import OWN
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.case.robustness import TolerancePart
-    from fegear.design.deviated_flanks import FlankBench
+    from fegear.design.deviated_flanks import FlankBench, FlankBenches
     from fegear.design.tolerance_draws import Deviations, Kind, Limits
     from fegear.engine.stage import Task, Upstream, Work
     from fegear.models.loaded_flanks import FlanksToLoad
 
 #: Kinds that are drawn of teeth with a width unless the case names others.
-_OVER_FACE: tuple[Kind, ...] = ("profile-slope", "profile-form", "helix-slope", "pitch")
+_OVER_FACE: tuple[Kind, ...] = ("centre-distance", "profile-slope", "profile-form", "helix-slope", "pitch")
 #: Draws that a process is given at a time: influences over the face are larger than those of plane teeth.
 _CHUNK = 100
 #: Processor seconds of a draw at one roll position.
@@ -81,7 +88,7 @@ class FlankChunk:
     """Some draws: all that a process needs."""
 
     inputs: FlankDrawInputs
-    bench: FlankBench
+    benches: FlankBenches
     deviations: Deviations
 
 
@@ -91,13 +98,13 @@ def compute_flank_chunk(chunk: FlankChunk) -> dict[str, object]:
     from fegear.one_thread import one_thread
 
     with one_thread():
-        found = drawn_flank_outcomes(chunk.bench, chunk.deviations)
+        found = drawn_flank_outcomes(chunk.benches, chunk.deviations)
     return {"values": found.values, "reasons": found.reasons}
 
 
 def flank_chunk_content(chunk: FlankChunk) -> object:
     """All that the numbers of a chunk depend on: its own draws, not how many there are besides."""
-    return chunk.inputs.asked, chunk.inputs.solved, chunk.deviations
+    return chunk.inputs.asked, chunk.inputs.solved, chunk.benches.largest, chunk.deviations
 
 
 def _subjects(scene: Scene) -> tuple[str, ...]:
@@ -105,19 +112,14 @@ def _subjects(scene: Scene) -> tuple[str, ...]:
 
 
 def _check(scene: Scene, name: str) -> None:
-    part = tolerance_part(scene)
-    if part.centre_distance or "centre-distance" in (part.deviations or ()):
-        raise InputError(
-            "robustness.centre_distance", f"{part.centre_distance * 1e3:.6g} mm",
-            "is drawn of plane teeth alone: over the face every centre distance has contact lines of its own",
-            f'leave it out, or give pair.{name} width = "plane" if its gears are spur gears',
-        )  # fmt: skip
+    part, limits = tolerance_part(scene), limits_of(scene, name, _OVER_FACE)
     if part.reliefs is not None:
         raise InputError(
             "robustness.reliefs", "a table", "is for plane teeth",
             "leave it out; flank-design finds reliefs over the face, for misalignment that scatters too",
         )  # fmt: skip
-    refuse_no_tolerance(scene, name, limits_of(scene, name, _OVER_FACE))
+    refuse_no_tolerance(scene, name, limits)
+    refuse_jammed(flanks_to_load(scene, name).pair, name, limits)
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -134,29 +136,44 @@ def _inputs(scene: Scene, name: str) -> FlankDrawInputs:
     )  # fmt: skip
 
 
-def _compute(inputs: FlankDrawInputs, upstream: Upstream, work: Work) -> ToleranceData:
+def _bench(inputs: FlankDrawInputs, upstream: Upstream, moved: float = 0.0) -> FlankBench:
+    """The pair set up for draws, at a centre distance that is off by `moved` [m]."""
     from fegear.contact.flank.root_stress import rooted_lines
-    from fegear.design.deviated_flanks import FLANK_OUTCOMES, FlankBench, drawn_flank_outcomes
+    from fegear.design.deviated_flanks import FlankBench
+
+    loaded, none = loaded_flanks(upstream, inputs.name), np.empty(0)
+    flanks, known = loaded.flanks, loaded.known
+    if moved:
+        pair = replace(flanks.pair, centre_distance=flanks.pair.centre_distance + moved)
+        flanks = replace(flanks, pair=pair)
+        known = flanks.compliance(inputs.load)
+    gaps = replace(loaded.gaps, driver_spacing=none, driven_spacing=none)
+    z, coupling = places_along(loaded), loaded.asked.effects.neighbour_coupling
+    one, other = (
+        rooted_lines(
+            flanks.pair, member, known.lines, solid_solution_of(upstream, gear).fine, coupling=coupling
+        ).influence("tension", z)
+        for member, gear in zip(MEMBERS, inputs.gears, strict=True)
+    )
+    return FlankBench(flanks.pair, known, gaps, flanks.points, inputs.load, (one, other))
+
+
+def _compute(inputs: FlankDrawInputs, upstream: Upstream, work: Work) -> ToleranceData:
+    from fegear.design.deviated_flanks import FLANK_OUTCOMES, FlankBenches, drawn_flank_outcomes
     from fegear.design.tolerance_draws import NO_LIMITS, draw
     from fegear.one_thread import one_thread
 
-    part, loaded = inputs.part, loaded_flanks(upstream, inputs.name)
-    none = np.empty(0)
-    gaps = replace(loaded.gaps, driver_spacing=none, driven_spacing=none)
-    found, z = loaded.found, places_along(loaded)
-    coupling = loaded.asked.effects.neighbour_coupling
-    roots = [
-        rooted_lines(
-            found.pair, member, found.lines, solid_solution_of(upstream, gear).fine, coupling=coupling
-        ).influence("tension", z)
-        for member, gear in zip(MEMBERS, inputs.gears, strict=True)
-    ]
-    bench = FlankBench(found.pair, loaded.known, gaps, loaded.flanks.points, inputs.load, (roots[0], roots[1]))
-    deviations = draw(inputs.limits, part.draws, part.seed, bench.teeth, part.sequence, part.distribution)
+    part, largest = inputs.part, inputs.limits.centre_distance
+    benches = FlankBenches(_bench(inputs, upstream))
+    if largest:
+        nearer, farther = (_bench(inputs, upstream, moved) for moved in (-largest, largest))
+        benches = FlankBenches(benches.nominal, nearer, farther, largest)
+    teeth = benches.nominal.teeth
+    deviations = draw(inputs.limits, part.draws, part.seed, teeth, part.sequence, part.distribution)
     with one_thread():
-        nominal = drawn_flank_outcomes(bench, draw(NO_LIMITS, 1, 0, bench.teeth)).values[0]
+        nominal = drawn_flank_outcomes(benches, draw(NO_LIMITS, 1, 0, teeth)).values[0]
     chunks = [
-        FlankChunk(inputs, bench, deviations.rows(slice(first, first + _CHUNK)))
+        FlankChunk(inputs, benches, deviations.rows(slice(first, first + _CHUNK)))
         for first in range(0, part.draws, _CHUNK)
     ]
     values, reasons = together(drawn(compute_flank_chunk, chunks, flank_chunk_content, inputs.name, work), _CHUNK)
@@ -165,8 +182,8 @@ def _compute(inputs: FlankDrawInputs, upstream: Upstream, work: Work) -> Toleran
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     part, asked = tolerance_part(scene), flanks_to_load(scene, name)
-    chunks = math.ceil(part.draws / _CHUNK)
-    return Forecast({"draws": part.draws, "chunks": chunks}, part.draws * asked.positions * _AT_A_POSITION)
+    chunks, each = math.ceil(part.draws / _CHUNK), 2.0 if limits_of(scene, name, _OVER_FACE).centre_distance else 1.0
+    return Forecast({"draws": part.draws, "chunks": chunks}, part.draws * asked.positions * _AT_A_POSITION * each)
 
 
 FLANK_TOLERANCE_ROBUSTNESS = Stage(

@@ -16,7 +16,14 @@ from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_checks import check_relief
 from fegear.models.pair_inputs import gear_name, pair_inputs
 from fegear.models.root_stress_source import FINITE_ELEMENTS, check_formulas, root_stress_source
-from fegear.models.tolerances import chosen_pair, limits_of, refuse_no_tolerance, tolerance_part, untold
+from fegear.models.tolerances import (
+    chosen_pair,
+    limits_of,
+    refuse_jammed,
+    refuse_no_tolerance,
+    tolerance_part,
+    untold,
+)
 from fegear.models.tooth_influence import gear_to_solve
 from fegear.results.drawn_tolerances import tolerance_figures
 from fegear.results.gear_solution import solution_of
@@ -162,14 +169,7 @@ def _check(scene: Scene, name: str) -> None:
         )  # fmt: skip
     limits = limits_of(scene, name, _PLANE)
     refuse_no_tolerance(scene, name, limits)
-    pair = scene.pairs[name]
-    room = pair.centre_distance - pair.tight_centre_distance
-    if limits.centre_distance > room * (1.0 + 1e-9) + 1e-12:
-        raise InputError(
-            "robustness.centre_distance", f"{limits.centre_distance * 1e3:.6g} mm",
-            f"jams the teeth: pair {name} has {room * 1e3:.4g} mm until they touch on both flanks",
-            f"give a gear of pair {name} a thickness_allowance, or the pair a larger centre_distance",
-        )  # fmt: skip
+    refuse_jammed(scene.pairs[name], name, limits)
     check_relief(scene, name)
     check_formulas(scene, name, tips=scene.case.effects.corner_contact)
 
