@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
-from fegear.formulas.agma908_pair import bending_factor, contact_geometry, pinion_of, pitting_factor
+from fegear.formulas.agma908_pair import bending_factor, contact_geometry, pitting_factor
 from fegear.formulas.agma2101_factors import (
     Curve,
     Mounting,
@@ -160,7 +160,7 @@ def rate(
     RangeError
         If the pair or the service lies outside the standard.
     """
-    first = pinion_of(pair)
+    first = pair.pinion
     second: Member = "driven" if first == "driver" else "driver"
     pinion, wheel = pair.gear(first), pair.gear(second)
     face, d = pair.face_width, 2.0 * pinion.base_radius / math.cos(pair.working_pressure_angle)

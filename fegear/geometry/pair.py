@@ -158,6 +158,12 @@ class GearPair:
         """Gear ratio u = z_driven / z_driver."""
         return self.driven.teeth / self.driver.teeth
 
+    @property
+    def pinion(self) -> Member:
+        """The gear with fewer teeth; of equal ones that with more profile shift, and of equal shifts the driver."""
+        sizes = [(gear.teeth, -gear.tooth.profile_shift) for gear in (self.driver, self.driven)]
+        return "driver" if sizes[0] <= sizes[1] else "driven"
+
     def gear(self, member: Member) -> Gear:
         """Driver or driven."""
         return self.driver if member == "driver" else self.driven

@@ -127,3 +127,11 @@ def test_equivalent_torque_is_where_a_material_just_fails():
 def test_equivalent_torque_of_one_level_at_the_knee_is_itself():
     assert equivalent_torque(np.array([50.0]), np.array([5e7]), 6.61, 5e7) == pytest.approx(50.0, rel=1e-12)
     assert equivalent_torque(np.array([50.0]), np.array([5e9]), 6.61, 5e7) == pytest.approx(50.0, rel=1e-12)
+
+
+def test_a_level_curve_has_no_equivalent_torque_but_the_largest():
+    """Where static strength rules up to the knee, only the largest load can break; smaller ones do no damage."""
+    level = Knots((1e5, 2e6, 1e10), (1.1, 1.1, 0.9))
+    assert math.isinf(wohler_exponent(level))
+    found = equivalent_torque(np.array([50.0, 70.0, 60.0]), np.array([1e6, 10.0, 1e9]), math.inf, 2e6)
+    assert found == 70.0

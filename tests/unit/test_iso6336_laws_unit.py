@@ -138,6 +138,35 @@ def test_root_strength_lies_between_static_and_long(group, module, rz, q, y_s, c
     assert below == pytest.approx(above, rel=0.02)
 
 
+@given(
+    group=st.tuples(GROUP, GROUP), limit=st.tuples(*[st.floats(400e6, 1600e6)] * 2), nu=st.floats(10e-6, 1e-3),
+    rz=st.floats(0.5e-6, 10e-6), cycles=st.floats(1.0, 1e11),
+)  # fmt: skip
+def test_what_is_borne_never_rises_with_the_load_cycles(group, limit, nu, rz, cycles):
+    """Nitrocarburized flanks bear 1.1 at rest, and a thick film on a smooth flank would lift endurance to 1.2."""
+    c = rated()
+    materials = strength(group[0], limit[0]), strength(group[1], limit[1])
+    quality = replace(c.quality[0], flank_roughness=rz)
+    stress, root_stress = [], []
+    for n in (cycles, 3.0 * cycles, 1e12):
+        duty = replace(c.duty, cycles=(n, n), viscosity=nu)
+        stress.append([one.permissible for one in flank.flank_strength(c.geometry, materials, (quality,) * 2, duty)])
+        root_stress.append(root.root_strength(materials[0], 4e-3, 16e-6, (3.5, 2.2), n).permissible)
+    for one, other, last in (*zip(*stress, strict=True), root_stress):
+        assert one >= other * (1.0 - 1e-12) >= last * (1.0 - 1e-12)
+
+
+def test_static_strength_rules_nitrocarburized_flanks_under_a_good_film_and_says_so():
+    c = rated(group="NV (nitrocar.)", cycles=1e6)
+    c = replace(c, duty=replace(c.duty, viscosity=460e-6), quality=(replace(c.quality[0], flank_roughness=1e-6),) * 2)
+    rating = rate_pair(c)
+    film = math.prod(rating[one].value for one in ("Z_L", "Z_v", "Z_R"))
+    assert film > 1.1
+    assert rating["sigma_HP"].value == rating["sigma_HP_static"].value == pytest.approx(1.1 * 1400e6, rel=1e-12)
+    assert "static strength of nitrocarburized" in rating["sigma_HP"].remark
+    assert rate_pair(rated(group="NV (nitrocar.)"))["sigma_HP"].remark == ""
+
+
 def test_reference_gear_has_factors_of_one():
     for group in groups.GROUPS:
         layer, _ = root.slip_layer(strength(group))

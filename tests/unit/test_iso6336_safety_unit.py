@@ -37,6 +37,16 @@ def test_pinion_comes_first_whichever_gear_drives():
     assert other.bending_safety == pytest.approx(one.bending_safety, rel=1e-12)
 
 
+def test_of_equal_teeth_the_pinion_is_the_gear_with_more_profile_shift():
+    """c' of ISO 6336-1 tells x_1 from x_2, so who drives would move it."""
+    rack = BasicRack.named("A")
+    small, large = (Gear(Tooth(30, rack, x), 3e-3, 10e-3, 30e-3) for x in (0.1, 0.4))
+    ahead, back = of_pair(GearPair(small, large)), of_pair(GearPair(large, small))
+    assert (ahead.members, back.members) == (("driven", "driver"), ("driver", "driven"))
+    assert ahead.gears == back.gears
+    assert rate_pair(conditions(ahead)).contact_safety == rate_pair(conditions(back)).contact_safety
+
+
 def test_every_factor_has_a_clause_and_its_name_once():
     for beta in (0.0, math.radians(20.0)):
         rating = rate_pair(conditions(of_pair(pair(beta=beta))))

@@ -39,6 +39,11 @@ class Knots:
                 return float(y_0 * (y_1 / y_0) ** part)
         return self.values[-1]
 
+    @property
+    def falling(self) -> Knots:
+        """The same, no value above an earlier one: what breaks at few load cycles is not borne at more of them."""
+        return Knots(self.cycles, tuple(itertools.accumulate(self.values, min)))
+
     def scaled(self, factors: tuple[float, ...]) -> Knots:
         """The same cycles, each value times its factor."""
         return Knots(self.cycles, tuple(v * f for v, f in zip(self.values, factors, strict=True)))

@@ -233,7 +233,9 @@ def _shape(gear: Gear, rim_thickness: float | None) -> GearShape:
 
 
 def of_pair(pair: GearPair, rim_thickness: tuple[float | None, float | None] = (None, None)) -> PairGeometry:
-    """Geometry of a gear pair; the pinion is the gear with fewer teeth, of equal ones the driver.
+    """Geometry of a gear pair; the pinion is the gear with fewer teeth, of equal ones that with more profile shift.
+
+    ISO 6336-1, 9.3.1.1, wants x_1 >= x_2 for c'; of equal shifts it is the driver.
 
     Parameters
     ----------
@@ -242,7 +244,7 @@ def of_pair(pair: GearPair, rim_thickness: tuple[float | None, float | None] = (
         s_R of driver and driven [m]; None for a solid gear.
     """
     driver, driven = (_shape(g, s) for g, s in zip((pair.driver, pair.driven), rim_thickness, strict=True))
-    first = driver.teeth <= driven.teeth
+    first = pair.pinion == "driver"
     return PairGeometry(
         gears=(driver, driven) if first else (driven, driver),
         module=pair.driver.module,

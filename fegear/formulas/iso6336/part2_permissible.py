@@ -39,6 +39,8 @@ class FlankStrength:
     static, reference, permissible : float
         sigma_HP of a safety of 1, static, at N_ref and at N_L [Pa].
     remark : str
+    static_rules : bool
+        Whether the film would let the flank bear more at many load cycles than its static strength, which holds then.
     """
 
     Z_NT: float
@@ -52,6 +54,7 @@ class FlankStrength:
     reference: float
     permissible: float
     remark: str = ""
+    static_rules: bool = False
 
 
 def life_knots(strength: Strength) -> Knots:
@@ -178,11 +181,13 @@ def flank_strength(
         whole = math.log(knots.cycles[reference] / knots.cycles[0])
         parts = [math.log(n / knots.cycles[0]) / whole for n in knots.cycles]
         scale = tuple(z_w_static[i] * (film / z_w_static[i]) ** min(p, 1.0) for p in parts)
-        stress = Knots(knots.cycles, tuple(material.contact * v for v in knots.values)).scaled(scale)
+        unbounded = Knots(knots.cycles, tuple(material.contact * v for v in knots.values)).scaled(scale)
+        stress = unbounded.falling
         found.append(
             FlankStrength(
                 knots.at(duty.cycles[i]), z_l, z_v, z_r, z_w[i], 1.0, z_w_static[i],
                 stress.values[0], stress.values[reference], stress.at(duty.cycles[i]), remark,
+                static_rules=stress != unbounded,
             )
         )  # fmt: skip
     return found[0], found[1]

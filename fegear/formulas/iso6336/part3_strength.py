@@ -210,7 +210,7 @@ def root_strength(
     whole = delta * surface * size
     base, endured = strength.bending * STANDARD_GEAR, whole * mean_stress[1]
     stress = Knots(knots.cycles, tuple(base * v for v in knots.values))
-    stress = stress.scaled((static * mean_stress[0], endured, endured))
+    stress = stress.scaled((static * mean_stress[0], endured, endured)).falling
     remark = "; ".join(r for r in (unsure, rough) if r)
     return RootStrength(
         knots.at(cycles), delta, surface, size, mean_stress[1], static, mean_stress[0],

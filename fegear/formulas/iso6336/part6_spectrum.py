@@ -105,10 +105,10 @@ def service_life(bins: Sequence[Bin], life: float) -> float:
 
 
 def wohler_exponent(curve: Knots) -> float:
-    """p of the S-N line between its static and its reference knot: N ~ stress^-p."""
+    """p of the S-N line between its static and its reference knot: N ~ stress^-p; inf of a level one."""
     reference = len(curve.cycles) - 2
     rise = math.log(curve.values[0] / curve.values[reference])
-    return math.log(curve.cycles[reference] / curve.cycles[0]) / rise
+    return math.log(curve.cycles[reference] / curve.cycles[0]) / rise if rise > 0.0 else math.inf
 
 
 def equivalent_torque(torque: Array, cycles: Array, exponent: float, limit: float) -> float:

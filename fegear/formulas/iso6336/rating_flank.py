@@ -54,5 +54,11 @@ def permissible_contact(table: FactorTable, conditions: Conditions) -> tuple[Fla
     table.add("Z_X", (one.Z_X, two.Z_X), f"{part}, clause 14")
     table.add("sigma_HP_static", (one.static, two.static), f"{part}, 5.3", "Pa")
     table.add("sigma_HP_reference", (one.reference, two.reference), f"{part}, 5.3", "Pa")
-    table.add("sigma_HP", (one.permissible, two.permissible), f"{part}, 5.3", "Pa")
+    bound = ""
+    if one.static_rules or two.static_rules:
+        bound = (
+            "sigma_HP: Z_L Z_v Z_R Z_W would lift it above the static strength of nitrocarburized flanks (Z_NT = 1.1), "
+            "which holds for all load cycles then"
+        )
+    table.add("sigma_HP", (one.permissible, two.permissible), f"{part}, 5.3", "Pa", bound)
     return found
