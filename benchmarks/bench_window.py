@@ -324,8 +324,19 @@ class Kept:
 
     @classmethod
     def now(cls, window: Window) -> Kept:
-        """Of a window at rest; the browser lets garbage lie as long as memory is free, so it is told to collect it."""
-        window.rest()
+        """Of a window at rest with its case as it was at first.
+
+        The browser lets garbage lie as long as memory is free, so it is told to collect it.
+        """
+        for words in ("Unpin A", "normal", "Give up changes"):
+            window.browser.run(_press(words))
+        for switch in ("Root stress", "Deformed", "Tool"):
+            window.browser.run(
+                "[...document.querySelectorAll('.mesh-tools [aria-pressed=true]')]"
+                f".find((one) => one.textContent === '{switch}')?.click()"
+            )
+        time.sleep(1.0)
+        window.settle()
         window.browser("HeapProfiler.collectGarbage")
         heap = window.browser("Runtime.getHeapUsage")["usedSize"] / 1e6
         pids = window.pids()[0]

@@ -9,6 +9,7 @@ import os
 import shutil
 import sys
 import threading
+import time
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
     Todo = Mapping[int, object]
 
+#: Who is spoken to no longer waits so long for the end of the parent, in whose place it clears away [s].
+_FAREWELL = 2.0
 #: Libraries of linear algebra that would start threads of their own.
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -68,13 +71,18 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def settle(scratch: str = "") -> None:
+def settle(scratch: str = "") -> threading.Thread:
     """Begin a worker's life: what ends the parent is the parent's business, and no worker outlives one that was killed.
 
     Parameters
     ----------
     scratch : str
         Folder that the parent would have removed.
+
+    Returns
+    -------
+    Thread
+        What waits for the end of the parent, and then ends this process.
     """
     import signal
     from multiprocessing import connection, parent_process
@@ -87,11 +95,22 @@ def settle(scratch: str = "") -> None:
     def follow() -> None:
         if parent is not None:
             connection.wait([parent.sentinel])
-            while scratch and os.path.isdir(scratch):  # noqa: PTH112  (the main thread may still write into it)
-                shutil.rmtree(scratch, ignore_errors=True)
+            if scratch:
+                _remove_after_the_end(scratch)
             os._exit(1)
 
-    threading.Thread(target=follow, daemon=True).start()
+    following = threading.Thread(target=follow, daemon=True)
+    following.start()
+    return following
+
+
+def _remove_after_the_end(scratch: str) -> None:
+    """Remove a folder as soon as this process has ended, which may be writing into it until then."""
+    own = os.getpid()
+    if not hasattr(os, "fork") or os.fork() == 0:  # what is forked is this thread alone
+        while hasattr(os, "fork") and os.getppid() == own:
+            time.sleep(0.005)
+        shutil.rmtree(scratch, ignore_errors=True)
 
 
 def on_cores(job: Job, todo: Todo, workers: int) -> Generator[tuple[int, Reply]]:
@@ -160,8 +179,9 @@ def start_process(module: str, connection: Connection, scratch: str) -> BaseProc
 
 
 def _begin(module: str, connection: Connection, scratch: str) -> None:
-    settle(scratch)  # before anything is loaded, which takes a second
+    following = settle(scratch)  # before anything is loaded, which takes a second
     importlib.import_module(module).serve(connection, scratch)
+    following.join(_FAREWELL)
 
 
 def end_tracker(patience: float = 2.0) -> None:

@@ -65,7 +65,7 @@ class Bench:
         self._numbers = itertools.count(1)
         self._computing = computing
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._number = self._first = self._laid = 0
+        self._number = self._first = self._laid = self._comparing = 0
         self._sight: tuple[str, ...] = ()
         self._shows: tuple[tuple[str, str], ...] = ()
         self._meshed: dict[tuple[str, str], _Content] = {}
@@ -186,12 +186,12 @@ class Bench:
 
     def pin(self) -> None:
         """Keep the present state as variant A."""
-        self.pinned = self.asked()
+        self.pinned, self._comparing = self.asked(), 0
         self.tell("pinned")
 
     def unpin(self) -> None:
         """Compare no more."""
-        self.pinned = None
+        self.pinned, self._comparing = None, 0
         self._last.pop("compared", None)
         self.tell("unpinned")
 
@@ -272,8 +272,12 @@ class Bench:
             self.tell(what, content)
             self._take_reliefs(content["reliefs"])
             return
-        if what in ("exported", "compared"):
-            self._last |= {what: content} if what == "compared" and self.pinned else {}
+        if what == "compared":
+            if said.number == self._comparing:  # else with an A that is pinned no longer, or of an earlier B
+                self._last[what] = content
+                self.tell(what, content)
+            return
+        if what == "exported":
             self.tell(what, content)
             return
         if said.number < self._first:  # of the case that lay here before
@@ -286,7 +290,8 @@ class Bench:
         self._keep(what, content)
         self.tell(what, content)
         if what == "done" and not content["moving"] and self.pinned is not None and self._computing is not None:
-            self._computing.ask(Compare(self._aside(), self.pinned, self.asked()))
+            self._comparing = self._aside()
+            self._computing.ask(Compare(self._comparing, self.pinned, self.asked()))
 
     def _keep(self, what: str, content: _Content) -> None:
         """Remember what a page that opens later has to be told."""

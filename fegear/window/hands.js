@@ -113,7 +113,7 @@ const fegearHands = (() => {
 
   async function show({ pairs }, { made, paint, sections }) {
     for (const [pair, kept] of shown) {
-      if (!(pair in pairs) || !kept.host.isConnected) { kept.host.remove(); shown.delete(pair); sections.delete(`hand ${pair}`); sections.delete(`hand map ${pair}`); }
+      if (!(pair in pairs) || !kept.host.isConnected) { fegearFigure.drop(kept.host); shown.delete(pair); sections.delete(`hand ${pair}`); sections.delete(`hand map ${pair}`); }
     }
     for (const [pair, content] of Object.entries(pairs)) {
       if (!shown.has(pair)) {
@@ -158,7 +158,9 @@ const fegearHands = (() => {
         plot.on?.("plotly_afterplot", () => { if (!held) placeHandles(figure, relief); });
       }
       for (const figure of [...kept.reliefs.querySelectorAll(".figures figure")]) {
-        if (!content.reliefs.some((one) => one.figure.key === figure.dataset.key)) figure.remove();
+        if (content.reliefs.some((one) => one.figure.key === figure.dataset.key)) continue;
+        section.shown.delete(figure.dataset.key);
+        fegearFigure.drop(figure);
       }
     }
   }
@@ -166,12 +168,12 @@ const fegearHands = (() => {
   async function harris({ pairs }, { paint, sections }) {
     for (const [pair, kept] of shown) {
       const content = pairs[pair], key = `hand map ${pair}`;
-      if (!content) { kept.map.querySelector(".figures").replaceChildren(); sections.delete(key); kept.now = null; continue; }
+      if (!content) { [...kept.map.querySelectorAll("figure")].forEach(fegearFigure.drop); sections.delete(key); kept.now = null; continue; }
       const section = sections.get(key) ?? { element: kept.map, specs: new Map(), shown: new Map(), darker: {} };
       sections.set(key, section);
       section.darker = content.darker;
       const { figure } = content, text = JSON.stringify(figure);
-      kept.now = { label: content.now, key: figure.key };
+      kept.now = { label: content.now, key: figure.key, section };
       if (section.shown.get(figure.key) === text) continue;
       section.shown.set(figure.key, text);
       section.specs.set(figure.key, figure);
@@ -183,6 +185,7 @@ const fegearHands = (() => {
     if (!plot) return;
     const at = plot.data.flatMap((one, i) => one.name === kept.now.label ? [i] : []);
     if (at.length !== 2) return;
+    kept.now.section.shown.delete(kept.now.key); // it is another figure now, though it may come back to what it was
     return Plotly.restyle(plot, { x: [x, [load]], y: [te, [Math.max(...te) - Math.min(...te)]] }, at);
   }
   return { show, harris, follow };

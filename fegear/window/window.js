@@ -3,7 +3,7 @@
 const fegear = (() => {
   const $ = (id) => document.getElementById(id);
   const sections = new Map(); // task -> { element, specs, shades }
-  const { dark, shadesOf, draw } = fegearFigure;
+  const { dark, shadesOf, draw, drop } = fegearFigure;
   let template = null;
   const made = (tag, cls, text) => {
     const one = document.createElement(tag);
@@ -84,17 +84,24 @@ const fegear = (() => {
   }
 
   const FOLLOWED = 250; // ms
-  let following = null, loadNow = null;
+  const loadsNow = new Map(); // pair -> what its load has come to
+  let following = null;
   let ended = ""; // what the last computation came to
   const say = (words) => { if ($("state")) $("state").textContent = words; };
   const heard = {
     hands(content) { return fegearHands.show(content, { made, paint, sections }); },
-    harris(content) { return fegearHands.harris(content, { paint, sections }); },
+    harris(content) {
+      loadsNow.clear(); // of places on the way to where it stands now
+      return fegearHands.harris(content, { paint, sections });
+    },
     load_now(content) { // after the results that are waited for, and not for every one of them
       following ??= setTimeout(() => {
-        line = line.then(() => { following = null; return fegearHands.follow(loadNow); }).catch((problem) => console.error(problem));
+        line = line.then(async () => {
+          following = null;
+          for (const [pair, now] of loadsNow) { loadsNow.delete(pair); await fegearHands.follow(now); }
+        }).catch((problem) => console.error(problem));
       }, FOLLOWED);
-      loadNow = content;
+      loadsNow.set(content.pair, content);
     },
     meshed(content) { fegearGears.meshed(content); },
     asked() { document.body.classList.add("computing"); say("computing ..."); },
@@ -102,7 +109,7 @@ const fegear = (() => {
     plan({ tasks }) {
       fegearGears.plan(tasks);
       for (const [task, kept] of sections) {
-        if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { sight.unobserve(kept.element); seen.delete(task); kept.element.remove(); sections.delete(task); }
+        if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { sight.unobserve(kept.element); seen.delete(task); drop(kept.element); sections.delete(task); }
       }
       const host = $("results"), wanted = tasks.map((task) => section(task).element);
       for (const element of wanted) element.classList.add("stale");
@@ -118,7 +125,7 @@ const fegear = (() => {
       kept.element.hidden = !values && !figures.length;
       const keys = figures.map((one) => one.key);
       for (const figure of [...kept.element.querySelectorAll(".figures figure")]) {
-        if (!keys.includes(figure.dataset.key)) { figure.remove(); kept.specs.delete(figure.dataset.key); }
+        if (!keys.includes(figure.dataset.key)) { drop(figure); kept.specs.delete(figure.dataset.key); }
       }
       for (const spec of figures) {
         if (spec.same) continue;
@@ -186,7 +193,7 @@ const fegear = (() => {
       kept.darker = darker;
       kept.element.querySelector(".numbers").innerHTML = parts.map(([title, html]) => `<h3>${title}</h3>${html}`).join("");
       for (const figure of [...kept.element.querySelectorAll(".figures figure")]) {
-        if (!figures.some((one) => one.key === figure.dataset.key)) figure.remove();
+        if (!figures.some((one) => one.key === figure.dataset.key)) drop(figure);
       }
       for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
     },
@@ -205,13 +212,13 @@ const fegear = (() => {
       kept.darker = darker;
       for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
     },
-    unpinned() { sections.get("compared")?.element.remove(); sections.delete("compared"); },
+    unpinned() { if (sections.has("compared")) drop(sections.get("compared").element); sections.delete("compared"); },
     laid() {
       sections.clear();
       unpainted.clear();
       seen.clear();
       sight.disconnect();
-      document.querySelectorAll("#results, #remarks, #compared, #designed, #hands").forEach((one) => one.replaceChildren());
+      document.querySelectorAll("#results, #remarks, #compared, #designed, #hands").forEach((one) => [...one.children].forEach(drop));
     },
   };
 

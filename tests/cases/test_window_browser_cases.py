@@ -206,6 +206,26 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.click(button("Undo"))
     browser.until("document.querySelector('textarea').value.includes('load = \"7 kN\"')")
 
+    # The map beside the slider follows the load that moves, and shows the one that stands still afterwards.
+    browser.run("{ const hear = fegear.hear; fegear.hear = (what, content) => {"
+                " if (what === 'harris') window.map = content; return hear(what, content); }; }")  # fmt: skip
+    browser.until(f"document.querySelector('[data-slider]').value === '140' && {IDLE}")
+    browser.run("document.querySelector('[data-slider]').focus()")
+    press(browser, "ArrowRight", 39)
+    browser.until("window.map !== undefined")
+    browser.run("document.querySelector('.map').scrollIntoView({block: 'center', behavior: 'instant'})")
+    mark = "document.querySelector('.map .plot')._fullData.filter(one => one.name === map.pairs.I.now).at(-1)"
+    shown = f"Math.round({mark}.x[0])"
+    browser.until(f"{shown} === 7050")
+    moved = "fegear.hear('load_now', {pair: 'I', load: 1, x: [0, 1], te: [0, 1]});"
+    browser.run(moved)
+    browser.until(f"{shown} === 1")
+    browser.run(f"fegear.hear('harris', map); {moved} fegear.hear('harris', map)")
+    browser.run("new Promise(done => setTimeout(done, 400))")
+    assert browser.run(shown) == 7050
+    browser.click(button("Undo"))
+    browser.until(f"{shown} === 7000")
+
     # At the gears: the tool is drawn, what these compliances cannot tell is said.
     drawn = "document.querySelector('.mesh-stage canvas').toDataURL()"
     empty = browser.run(drawn)

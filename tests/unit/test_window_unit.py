@@ -282,6 +282,33 @@ def test_what_is_refused_beside_the_case_is_told_and_a_design_does_not_reach_the
     assert (bench.desk.text, len(told)) == (other, count)
 
 
+def test_a_comparison_with_what_is_pinned_no_longer_is_not_shown(tmp_path):
+    class Quiet:
+        def ask(self, job):
+            asked.append(job)
+
+    bench, told, asked = Bench(None), [], []
+    bench.lay(Desk(TWO, "c", tmp_path))
+    bench._computing = Quiet()
+    bench.listen(lambda what, _content: told.append(what))
+    bench.pin()
+    for pinned_anew in (False, True):
+        bench.changed()
+        bench._hear(Said(asked[-1].number, "done", {"moving": False}))
+        late = asked[-1].number
+        bench.unpin()
+        if pinned_anew:
+            bench.pin()
+        bench._hear(Said(late, "compared", {"sections": []}))
+        assert "compared" not in told
+        bench.pin()
+    bench.changed()
+    bench._hear(Said(asked[-1].number, "done", {"moving": False}))
+    bench._hear(Said(asked[-1].number, "compared", {"sections": []}))
+    assert told[-1] == "compared"
+    assert bench.shown_now()[-1][0] == "compared"
+
+
 def test_every_case_has_hands_and_every_handle_can_be_moved_to_where_it_is():
     for path in CASES:
         asked = Asked(path.read_text("utf-8"), path.stem, str(path.parent))
@@ -791,15 +818,16 @@ def test_what_a_killed_server_left_is_removed_by_the_next_and_nothing_else(tmp_p
     assert not alive.folder.exists()
 
 
-def test_a_process_whose_parent_is_killed_ends_and_clears_away_after_it(tmp_path):
-    """From its first moment on, however it is kept busy."""
+@pytest.mark.parametrize("life", ["while True: path.mkdir(parents=True, exist_ok=True)", "connection.poll(None)"])
+def test_a_process_whose_parent_is_killed_ends_and_clears_away_after_it(tmp_path, life):
+    """Whether it goes on writing or ends by itself because nobody speaks to it any more."""
     (tmp_path / "busy.py").write_text(
         "import os, pathlib\n"
         "def serve(connection, scratch):\n"
+        "    path = pathlib.Path(scratch, 'ab')\n"
+        "    path.mkdir(parents=True)\n"
         "    connection.send(os.getpid())\n"
-        "    while True:\n"
-        "        pathlib.Path(scratch, 'ab').mkdir(parents=True, exist_ok=True)\n"
-        "        pathlib.Path(scratch, 'ab', 'x').write_bytes(b'x')\n"
+        f"    {life}\n"
     )
     scratch = tmp_path / "scratch"
     parent = subprocess.Popen(

@@ -41,5 +41,9 @@ const fegearFigure = (() => {
     place.style.height = `${layout.height}px`; // the room stays taken while plotly fits the plot to a new width
     await (again ? Plotly.react : Plotly.newPlot)(place, spec.data, layout, optionsOf(spec.key));
   }
-  return { dark, printing, theme, shadesOf, draw };
+  function drop(element) { // else the window's own listeners hold every plot that was ever drawn
+    for (const plot of element.querySelectorAll(".js-plotly-plot")) Plotly.purge(plot);
+    element.remove();
+  }
+  return { dark, printing, theme, shadesOf, draw, drop };
 })();
