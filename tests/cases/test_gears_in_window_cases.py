@@ -86,3 +86,27 @@ def test_drawn_flanks_touch_and_every_layer_is_painted(program, tmp_path):
             assert browser.run(f"draw(0.4, {layer}), painted()") > 2000
         assert browser.run("draw(sent.stress.largest.at, { stress, deformed, tool: sent.tool }), painted()") > 10000
         assert [one for one in browser.complaints if "getImageData" not in one] == []
+
+
+def test_sections_of_a_pair_with_a_width_are_painted(program, tmp_path):
+    case = json.loads(json.dumps(CASE))
+    case["pair"]["I"]["width"] = "slices"
+    scene = build_scene(case | {"load_distribution": {"positions": 6, "panels": 4}}, "case", None)
+    (task,), _ = wanted_on_gears(scene, [("I", "stress")])
+    stress = on_the_gears(task, run_plan(scene, make_plan(scene, STAGES, [task])).outcomes[task].data)
+    light = stress | {"limit": 1e6 * stress["limit"]}  # the same on a scale on which it is nothing
+    script = (resources.files("fegear.window") / "layers.js").read_text("utf-8")
+    page = tmp_path / "page.html"
+    told = {"stress": stress, "light": light, "mesh": gears_in_mesh(scene, "I"), "deformed": {"gears": {}}}
+    page.write_text(PAGE % (script, json.dumps(told)))
+    with chromium.Browser(program("chromium"), 900, 600) as browser:
+        browser.open(page)
+        sections = (stress["z"][0], stress["largest"]["z"])
+        drawn = {
+            (name, z): browser.run(f"draw({stress['largest']['at']}, {{ stress: {of}, z: {z} }}), canvas.toDataURL()")
+            for z in sections
+            for name, of in (("own", "stress"), ("light", "fegearLayers.stressOf(sent.light)"))
+        }
+        assert len(set(drawn.values())) == 4  # stress differs along the face, the ring stands in one section
+        assert browser.run(f"draw(0.4, {{ stress, z: {sections[1]} }}), painted()") > 2000
+        assert [one for one in browser.complaints if "getImageData" not in one] == []
