@@ -184,8 +184,7 @@ class SolidSolution(TwistedFlank):
                 "zeta", f"{off[0]:.6g} modules", f"lies off the face, which runs from {-half:.6g} to {half:.6g} modules"
             )
         values, slopes = self.face.at(z)
-        known = self.displacement[k, side]  # as one matrix: its parts alone are too small to be worth the threads
-        moved = (known.reshape(-1, known.shape[-1]) @ loads).reshape(*known.shape[:-1], loads.shape[1])
+        moved = self.displacement[k, side] @ loads
         return surface_stress(self.fillets[side], self.tau, self.poisson_ratio, moved, values, slopes)
 
 
