@@ -6,65 +6,29 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from fegear.case.part import at
 from fegear.errors import InputError
-from fegear.formulas.iso1328 import flank_tolerances
-from fegear.formulas.iso6336.alignment import Alignment, PinionShaft
-from fegear.formulas.iso6336.groups import SOFT_IRON, TOUGH_IRON
 from fegear.formulas.iso6336.pair_geometry import of_pair
-from fegear.formulas.iso6336.part5_materials import BRINELL, MATERIALS, allowable, usual_hardness
-from fegear.formulas.iso6336.rated import Duty, Quality, Strength
+from fegear.formulas.iso6336.rated import Duty
 from fegear.formulas.iso6336.safety import Conditions
 from fegear.geometry.pair import MEMBERS
-from fegear.models.gear_deviations import gear_deviations
 from fegear.models.pair_inputs import gear_name
+from fegear.models.rated_alignment import pair_alignment
+from fegear.models.rated_duty import in_order, load_cycles, mates_of, refuse_fast, spectrum_levels
+from fegear.models.rated_quality import gear_quality
+from fegear.models.rated_strength import gear_strength
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
-    from fegear.case.gear import GearPart
-    from fegear.case.operation import HelixModification, SpectrumPart
-    from fegear.case.pair import PairPart, Width
+    from fegear.case.pair import Width
     from fegear.case.reading import Scene
     from fegear.formulas.iso6336.rated import Both
-    from fegear.geometry import Gear, GearPair
+    from fegear.geometry import GearPair
     from fegear.geometry.pair import Member
-    from fegear.models.gear_deviations import Deviation
+    from fegear.models.rated_duty import Level
 
-#: What is taken where a case says nothing: Rz of flanks and fillets [m], nu_40 of ISO VG 220 [m^2/s], load cycles.
-USUAL_FLANK, USUAL_ROOT, USUAL_VISCOSITY, UNLIMITED = 4.8e-6, 20e-6, 220e-6, 1e10
-#: Young's modulus above which a material is no iron: nodular iron has about 175 GPa (ISO 6336-2, table of Z_E) [Pa].
-_STIFFEST_IRON = 190e9
-#: Deviations that a rating asks for.
-_RATED: tuple[Deviation, ...] = ("base_pitch", "profile_form", "helix_slope")
-#: What a gear outside the sizes of ISO 1328-1 has to say, as an example.
-_OWN = 'deviations = { base_pitch = "5 um", profile_form = "4 um", helix_slope = "6 um" }'
-#: Pitch line velocity above which there is no gear, five times that of the fastest turbo gears [m/s].
-_FASTEST = 1000.0
-#: The class whose helix slope a favourable contact pattern takes off.
-_CLASS_5 = 5
-
-
-@dataclass(frozen=True)
-class Level:
-    """One level of a load spectrum.
-
-    Parameters
-    ----------
-    tangential : float
-        F_t at the reference circle [N], 0 for idling.
-    speed : float
-        Of the pinion [rad/s].
-    share : float
-        Of the life.
-    cycles : (float, float)
-        Load cycles of pinion and wheel over the life.
-    """
-
-    tangential: float
-    speed: float
-    share: float
-    cycles: Both
+#: nu_40 of ISO VG 220, which is taken where a case names no oil [m^2/s].
+USUAL_VISCOSITY = 220e-6
 
 
 @dataclass(frozen=True)
@@ -157,8 +121,8 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     rims = scene.case.gear[gears[0]].rim_thickness, scene.case.gear[gears[1]].rim_thickness
     geometry = of_pair(pair, rims)
     names = [gears[MEMBERS.index(member)] for member in geometry.members]
-    strength = tuple(_strength(scene, gear, said) for gear in names)
-    quality = tuple(_quality(scene, name, gear, said) for gear in names)
+    strength = tuple(gear_strength(scene, gear, said) for gear in names)
+    quality = tuple(gear_quality(scene, name, gear, said) for gear in names)
     load, operation = part.normal_load(pair) or math.nan, part.operation
     tangential = load * pair.driver.base_radius / pair.driver.pitch_radius
     speed = (part.speed or math.nan) * pair.driver.teeth / pair.gear(geometry.members[0]).teeth
@@ -166,18 +130,18 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
         said.append(f"Pair {name}: an oil of ISO VG 220 was assumed (lubricant).")
     viscosity = USUAL_VISCOSITY if part.lubricant is None else part.lubricant.viscosity_40
     first = geometry.members[0] == "driver"
-    _refuse_fast(part, pair, name)
-    cycles = _in_order(_cycles(part, pair, said, name), first=first)
+    refuse_fast(part, pair, name)
+    cycles = in_order(load_cycles(part, pair, said, name), first=first)
     duty = Duty(
         tangential, speed, cycles, viscosity, operation.application_factor, operation.mesh_load_factor,
-        meshes=_mates(operation.contacts, first=first),
+        meshes=mates_of(operation.contacts, first=first),
     )  # fmt: skip
     conditions = Conditions(
         geometry, (strength[0], strength[1]), (quality[0], quality[1]), duty,
-        _alignment(scene, name, names, said), part.iso_6336.edition or 2019,
+        pair_alignment(scene, name, names, said), part.iso_6336.edition or 2019,
     )  # fmt: skip
     given = {"K_v": operation.dynamic_factor, "K_Halpha": operation.transverse_load_factor}
-    levels, life = _levels(scene, name, tangential, speed, first=first)
+    levels, life = spectrum_levels(scene, name, tangential, speed, first=first)
     idler = [operation.idler in ("both", member) for member in geometry.members]
     if levels and operation.application_factor != 1.0:
         said.append(
@@ -192,223 +156,3 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
         tuple(dict.fromkeys(said)), name, gears,
         scene.case.effects.misalignment and not (part.misalignment is None and part.line_error is None),
     )  # fmt: skip
-
-
-def _in_order(values: Both, *, first: bool) -> Both:
-    """Of driver and driven as of pinion and wheel."""
-    return values if first else (values[1], values[0])
-
-
-def _mates(contacts: Sequence[int], *, first: bool) -> tuple[int, int]:
-    """With how many mates pinion and wheel mesh: each loads a flank once per revolution."""
-    one, other = contacts
-    return (one, other) if first else (other, one)
-
-
-def _strength(scene: Scene, gear: str, said: list[str]) -> Strength:
-    """What a gear's material bears."""
-    part = scene.case.gear[gear].strength
-    if part is None:
-        raise InputError(f"gear.{gear}.strength", "(not given)", "is missing")
-    found: dict[str, float] = {}
-    own = part.bending if part.bending_allowable is None else 0.5 * part.bending_allowable
-    try:
-        for stress, given in (("contact", part.contact), ("bending", own)):
-            if given is not None:
-                found[stress] = given
-                continue
-            law = allowable(
-                part.material, "contact" if stress == "contact" else "bending", part.quality, part.hardness,
-                core_hardness=part.core_hardness, jominy_12=part.jominy_12,
-            )  # fmt: skip
-            found[stress] = law.stress
-            said += [f"Gear {gear}: {one}." for one in law.remark.split("; ") if one]
-        hardness = usual_hardness(part.material, part.quality) if part.hardness is None else part.hardness
-        if part.hardness is None and len(found) == 2:  # of own numbers no law has said it; Z_W asks for it
-            said.append(f"Gear {gear}: hardness {hardness:.4g} HV was assumed, the middle of the range.")
-        modulus = scene.gears[gear].material.young_modulus
-        if MATERIALS[part.material] in TOUGH_IRON | SOFT_IRON and modulus > _STIFFEST_IRON:
-            said.append(
-                f"Gear {gear}: strength names {part.material}, but its Young's modulus of {modulus * 1e-9:.4g} GPa is "
-                "that of steel (material); irons have 110 to 180 GPa, with which the contact stress is lower."
-            )
-        return Strength(
-            MATERIALS[part.material], found["contact"], found["bending"], BRINELL * hardness,
-            part.yield_strength or math.nan, part.tensile_strength or math.nan, part.pitting_allowed,
-            (part.long_life, part.long_life),
-        )  # fmt: skip
-    except InputError as error:
-        raise at(f"gear.{gear}.strength", error) from None
-
-
-def _quality(scene: Scene, name: str, gear: str, said: list[str]) -> Quality:
-    """How well a gear is made."""
-    part, made = scene.case.gear[gear], scene.gears[gear]
-    grade = part.tolerance_class
-    if grade is None:
-        grade = max(scene.case.pair[name].iso_6336.accuracy_grade, 1)
-        rest = "" if part.deviations is None else ", for what its own deviations do not say"
-        said.append(
-            f"Gear {gear}: tolerance class {grade} was assumed{rest}, accuracy_grade of iso_6336 (tolerance_class)."
-        )
-    pitch, form, slope = _deviations(part, made, grade, gear)
-    rough = part.roughness
-    flank, root = (None, None) if rough is None else (rough.flank_height, rough.root_height)
-    if flank is None:
-        said.append(f"Gear {gear}: Rz = {USUAL_FLANK * 1e6:g} um of the flanks was assumed (roughness).")
-    if root is None:
-        said.append(f"Gear {gear}: Rz = {USUAL_ROOT * 1e6:g} um of the fillets was assumed (roughness).")
-    return Quality(
-        grade, pitch, form, slope, flank or USUAL_FLANK, root or USUAL_ROOT, _tip_relief(scene, gear, part, said)
-    )  # fmt: skip
-
-
-def _deviations(part: GearPart, made: Gear, grade: int, gear: str) -> tuple[float, float, float]:
-    """f_pb, f_falpha and f_Hbeta [m]: the gear's own, else by class."""
-    try:
-        found = gear_deviations(part, made, grade, _RATED, rounded=True)
-    except InputError as error:
-        remedy = f"give gear.{gear}.{_OWN}: a rating needs them, and no class has them for such a gear"
-        error = type(error)(error.key, error.value, error.rule, remedy)
-        raise at(f"gear.{gear}", error, {"normal_module": "module"} if not part.is_helical else None) from None
-    return found["base_pitch"], found["profile_form"], found["helix_slope"]
-
-
-def _tip_relief(scene: Scene, gear: str, part: GearPart, said: list[str]) -> float:
-    """C_a that the case gives [m]; 0 without, and where the effect is off."""
-    amounts = [end.amount for end in part.relief.tip if end.amount] if part.relief else []
-    if not amounts:
-        return 0.0
-    if not scene.case.effects.relief:
-        said.append(f"Gear {gear} has a relief, but effects.relief is off: its rating has none.")
-        return 0.0
-    return float(max(amounts))
-
-
-def _alignment(scene: Scene, name: str, gears: Sequence[str], said: list[str]) -> Alignment:
-    """What K_Hbeta by method C asks for."""
-    part = scene.case.pair[name]
-    shafts, given = part.shafts, part.operation.face_load_factor
-    if given is not None:
-        return Alignment(face_load_factor=given)
-    modification = (shafts.modification if shafts else None) or _modification(scene, gears, said)
-    if shafts is None:
-        said.append(
-            f"Pair {name}: no shafts were given; K_Hbeta of ISO 6336 knows the misalignment from manufacture alone "
-            "(f_sh = 0)."
-        )
-        return Alignment(deformation=0.0, modification=modification)
-    shaft = None
-    if shafts.arrangement and shafts.bearing_span and shafts.diameter:
-        shaft = PinionShaft(
-            shafts.arrangement, shafts.bearing_span, shafts.offset, shafts.diameter, shafts.power_share
-        )  # fmt: skip
-    slope = None
-    if shafts.contact_pattern == "favourable":
-        try:
-            slope = max(
-                flank_tolerances(_CLASS_5, 2.0 * g.pitch_radius, g.module, g.face_width).rounded.helix_slope
-                for g in (scene.gears[gear] for gear in gears)
-            )
-        except InputError as error:
-            rule = f"takes off the helix slope of class 5, which a gear of {error.key} = {error.value} has none of"
-            key, remedy = f"pair.{name}.shafts.contact_pattern", "leave it out, or give face_load_factor (operation)"
-            raise InputError(key, shafts.contact_pattern, rule, remedy) from None
-    return Alignment(shaft, shafts.deformation, shafts.misalignment, modification, shafts.contact_pattern, slope)
-
-
-def _modification(scene: Scene, gears: Sequence[str], said: list[str]) -> HelixModification:
-    """What lead of the gears makes of the flanks, in the rows of the standard's table."""
-    leads = [lead for gear in gears if (lead := scene.case.gear[gear].lead) is not None]
-    if not leads:
-        return "none"
-    if not scene.case.effects.relief:
-        said.append("The gears have a lead modification, but effects.relief is off: K_Hbeta of ISO 6336 has none.")
-        return "none"
-    crowned, sloped = any(lead.crowning for lead in leads), any(lead.slope for lead in leads)
-    if sloped:
-        return "helix corrected and crowned" if crowned else "helix corrected"
-    if crowned:
-        return "crowned for manufacture"
-    return "end relief" if any(lead.end_relief for lead in leads) else "none"
-
-
-def _cycles(part: PairPart, pair: GearPair, said: list[str], name: str) -> Both:
-    """N_L of driver and driven over the life."""
-    operation, speed = part.operation, part.speed or math.nan
-    one, other = operation.contacts
-    ratio = pair.driver.teeth / pair.driven.teeth
-    if operation.load_cycles is not None:
-        return operation.load_cycles, operation.load_cycles / one * ratio * other
-    life = operation.life
-    if life is None and operation.spectrum and operation.spectrum[0].time is not None:
-        life = sum(level.time or 0.0 for level in operation.spectrum)
-    if life is None:
-        if not operation.spectrum:
-            said.append(f"Pair {name}: no life was given; it is rated for {UNLIMITED:g} load cycles (operation.life).")
-        return UNLIMITED, UNLIMITED
-    turns = life * speed / (2.0 * math.pi)
-    if max(turns * one, turns * ratio * other) < 1.0:
-        raise InputError(
-            f"pair.{name}.operation.life", f"{life:.4g} s", "ends before the first load cycle", "check its unit"
-        )
-    return turns * one, turns * ratio * other
-
-
-def _refuse_fast(part: PairPart, pair: GearPair, name: str) -> None:
-    """Refuse speeds at which any gear has burst; the formulas know no limit."""
-    bins = part.operation.spectrum or []
-    for key, speed in (
-        ("speed", part.speed),
-        *((f"operation.spectrum[{i}].speed", b.speed) for i, b in enumerate(bins)),
-    ):
-        velocity = (speed or 0.0) * pair.driver.pitch_radius
-        if velocity > _FASTEST:
-            raise InputError(
-                f"pair.{name}.{key}", f"{(speed or 0.0) * 30.0 / math.pi:.4g} rpm",
-                f"gives a pitch line velocity of {velocity:.4g} m/s, and gears burst below {_FASTEST:g} m/s",
-                "check its unit",
-            )  # fmt: skip
-
-
-def _levels(
-    scene: Scene, name: str, tangential: float, speed: float, *, first: bool
-) -> tuple[tuple[Level, ...], float | None]:
-    """Levels of the spectrum and its life [s]."""
-    part, pair = scene.case.pair[name], scene.pairs[name]
-    operation = part.operation
-    bins = operation.spectrum
-    if not bins:
-        return (), None
-    times = [level.time for level in bins]
-    total = sum(time or 0.0 for time in times)
-    life = operation.life or (total or None)
-    if life is None:
-        rule = "is missing: shares of a spectrum are shares of a life"
-        raise InputError(f"pair.{name}.operation.life", "(not given)", rule, 'write life = "20000 h"')
-    shares = sum(level.share or 0.0 for level in bins)
-    one, other = operation.contacts
-    ratio = pair.driver.teeth / pair.driven.teeth
-    found = []
-    for level in bins:
-        share = level.time / total if level.time is not None else (level.share or 0.0) / shares
-        turning = part.speed or math.nan if level.speed is None else level.speed
-        turns = share * life * turning / (2.0 * math.pi)
-        found.append(
-            Level(
-                _tangential(level, pair, tangential), speed * turning / (part.speed or math.nan), share,
-                _in_order((turns * one, turns * ratio * other), first=first),
-            )
-        )  # fmt: skip
-    if not any(level.tangential > 0.0 and level.share > 0.0 for level in found):
-        raise InputError(
-            f"pair.{name}.operation.spectrum", "(a list)", "has no level with a load and a share of the time"
-        )
-    return tuple(found), life
-
-
-def _tangential(level: SpectrumPart, pair: GearPair, nominal: float) -> float:
-    """F_t of a level [N]."""
-    if level.torque is not None:
-        return level.torque / pair.driver.pitch_radius
-    return (level.load_factor or 0.0) * nominal
