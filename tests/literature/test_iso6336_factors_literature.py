@@ -9,9 +9,15 @@ import math
 import pytest
 
 from fegear.formulas.iso6336 import part1_dynamic as dynamic
+from fegear.formulas.iso6336 import part1_face_load as face_load
+from fegear.formulas.iso6336 import part1_misalignment as misalignment
 from fegear.formulas.iso6336 import part1_running_in as running_in
+from fegear.formulas.iso6336 import part2_contact as contact
 from fegear.formulas.iso6336 import part2_permissible as flank
+from fegear.formulas.iso6336 import part3_root_stress as tooth_root
 from fegear.formulas.iso6336 import part3_strength as root
+from fegear.formulas.iso6336.alignment import Alignment, PinionShaft
+from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
 from fegear.formulas.iso6336.rated import Strength
 
 HARD = Strength("Eh", 1500e6, 430e6)
@@ -71,3 +77,46 @@ def test_mean_stress_of_an_idler():
     ratio = root.mean_stress_ratio("Eh", 2.0)
     assert ratio == pytest.approx(0.5)
     assert root.mean_stress_factor(ratio, -1.2) == pytest.approx(1.0 / 1.4, rel=1e-12)
+
+
+def test_a_spur_pair_by_another_program_s_din_3990():
+    """19/104 teeth, module 4 mm, x = .5/.15, 55 kW at 980/min; github.com/hanslhansl/din3990, tests/test_1.py.
+
+    DIN 3990-11 of 1989 shares these formulas. The program stops its iteration of theta early (1e-4 of Y_F) and takes
+    c_gamma = 20 N/(mm um); its K_v is DIN's, so the mean load is taken as printed.
+    """
+    gears = (
+        GearShape(19, 0.5, 88e-3, 70e-3, 48.64e-3, 1.25, 0.25),
+        GearShape(104, 0.15, 425.2e-3, 407.2e-3, 48.64e-3, 1.25, 0.25),
+    )
+    pair = PairGeometry(gears, 4e-3, math.radians(20.0), 0.0, 248.506843355171e-3)
+    assert math.degrees(pair.working_pressure_angle) == pytest.approx(21.531902292465457, rel=1e-9)
+    assert pair.contact_ratio == pytest.approx(1.5363235945832296, rel=1e-9)
+    assert contact.contact_ratio_factor(pair.contact_ratio, 0.0) == pytest.approx(0.906214912960638, rel=1e-9)
+    inner, single = contact.single_pair_factors(pair)
+    assert inner == pytest.approx((1.00554704549864, 0.8835590102280203), rel=1e-9)
+    assert single == pytest.approx((1.00554704549864, 1.0), rel=1e-9)
+    assert contact.zone_factor(pair) == pytest.approx(2.3959406670899934, rel=1e-9)
+    factors = contact.zone_factor(pair), 189.8e3, contact.contact_ratio_factor(pair.contact_ratio, 0.0), 1.0
+    assert contact.nominal_contact_stress(pair, 14103.41869503906, factors) == pytest.approx(
+        875.3827378988153e6, rel=1e-9
+    )
+    line_load = 25368.536123904036 / 48.64e-3
+    seat = PinionShaft("a", 0.1, 0.0, 0.05)
+    f_sh, _ = misalignment.shaft_deformation(seat, line_load, 48.64e-3, 76e-3)
+    assert f_sh == pytest.approx(4.913484891366676e-6, rel=1e-9)
+    wider = misalignment.initial_misalignment(Alignment(seat), f_sh, 0.0, 0.0, 0.0)
+    assert wider == pytest.approx(6.534934905517679e-6, rel=1e-9)
+    k = face_load.face_load_factor(5.550790414924349e-6, 20e9, line_load)
+    assert k == pytest.approx(1.1064272863295082, rel=1e-9)
+    exponent = face_load.root_exponent((48.64e-3, 48.64e-3), (9e-3, 9e-3))
+    assert k**exponent == pytest.approx(1.0864854433487987, rel=1e-9)
+    printed = (
+        (8.748743355951145, 8.174657642839318, 1.3161477577049423, 2.246336378902072, 1.9147262565947287),
+        (9.239504610725831, 7.834245947926714, 1.325999192893118, 2.1616566798058514, 2.008781657562889),
+    )
+    for gear, numbers in zip(gears, printed, strict=True):
+        tooth = tooth_root.RackTooth(gear.teeth, gear.profile_shift, 1.25, 0.25)
+        form = tooth_root.root_form(tooth, gear.tip_diameter / pair.module)  # at the tip: Y_Fa, Y_Sa
+        found = 4.0 * form.root_chord, 4.0 * form.moment_arm, 4.0 * form.fillet_radius, form.Y_F, form.Y_S
+        assert found == pytest.approx(numbers, rel=1.1e-4)
