@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.contact.load_sharing import SharedLoad, pair_tangent, share_load
-from fegear.contact.meshing import Contacts, Meshing
+from fegear.contact.roll_grids import RollGrid, RollGrids
 from fegear.geometry.relief import UNMODIFIED, Relief
 from fegear.tally import note
 
@@ -18,25 +18,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.contact.pair_compliance import PairCompliance, PairMatrices
+    from fegear.contact.meshing import Contacts, Meshing
+    from fegear.contact.pair_compliance import PairCompliance
     from fegear.geometry.pair import GearPair
-
-
-@dataclass(frozen=True)
-class RollGrid:
-    """All that load sharing needs at P roll positions, evaluated once.
-
-    Parameters
-    ----------
-    x : ndarray, shape (P,)
-        Roll positions [m].
-    contacts : Contacts
-    matrices : PairMatrices
-    """
-
-    x: Array
-    contacts: Contacts
-    matrices: PairMatrices
 
 
 @dataclass(frozen=True)
@@ -122,6 +106,9 @@ class Engagement:
     driver_spacing, driven_spacing : ndarray
         Spacing error of each tooth in the order of meshing, removal positive [m]; empty for none.
     corner_contact : bool
+    grids : RollGrids, optional
+        Of the same gears under another load or with other reliefs, so that their contacts and compliances are
+        evaluated once; its own where it has none or they are of other gears.
     """
 
     compliance: PairCompliance
@@ -130,16 +117,22 @@ class Engagement:
     driver_spacing: Array = field(default_factory=lambda: np.empty(0))
     driven_spacing: Array = field(default_factory=lambda: np.empty(0))
     corner_contact: bool = False
+    grids: RollGrids = field(default=None, repr=False, compare=False)  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        """Begin anew where the grids are of other gears: a copy with another compliance has them handed down, too."""
+        if self.grids is None or not self.grids.serves(self.compliance, self.corner_contact):
+            object.__setattr__(self, "grids", RollGrids(self.compliance, self.corner_contact))
 
     @property
     def pair(self) -> GearPair:
         """The gears."""
         return self.compliance.pair
 
-    @cached_property
+    @property
     def meshing(self) -> Meshing:
         """Finds the contacts."""
-        return Meshing(self.pair, self.corner_contact)
+        return self.grids.meshing
 
     def unmodified(self) -> Engagement:
         """The same pair with perfect involutes at equal distances."""
@@ -155,13 +148,13 @@ class Engagement:
             self.driver_spacing, self.corner_contact,
         )  # fmt: skip
 
-    def grid(self, x: ArrayLike) -> RollGrid:
-        """Evaluate contacts and compliances at roll positions, shape (P,) [m], brought into one base pitch."""
-        at = np.atleast_1d(np.asarray(x, dtype=float))
-        start, pitch = self.pair.x_start, self.pair.base_pitch
-        outside = (at < start) | (at > start + pitch)
-        contacts = self.meshing.contacts(np.where(outside, self.meshing.reduced(at), at))
-        return RollGrid(at, contacts, self.compliance.matrices(contacts))
+    def grid(self, x: ArrayLike, *, again: bool = True) -> RollGrid:
+        """Evaluate contacts and compliances at roll positions, shape (P,) [m], brought into one base pitch.
+
+        `again` says whether the same positions may be asked for again.
+        """
+        at = np.atleast_1d(np.array(x, dtype=float))
+        return self.grids.at(at) if again else self.grids.new(at)
 
     def modification(self, contacts: Contacts) -> Array:
         """m_j of both gears together, shape (n, P) [m]."""

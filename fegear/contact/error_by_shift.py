@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.engagement import Loaded, RollGrid
+from fegear.contact.engagement import Loaded
 from fegear.contact.fourier import fourier_series
 from fegear.contact.load_sharing import share_load
 from fegear.contact.mesh_curve import mean_secant_stiffness
+from fegear.contact.roll_grids import RollGrid
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

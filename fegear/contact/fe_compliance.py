@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from fegear.arrays import Array
     from fegear.contact.compliance import Side
+    from fegear.contact.stress_rows import StressRows
     from fegear.fem.gear import GearInfluence
     from fegear.geometry import Gear
 
@@ -49,6 +51,11 @@ class FiniteElementCompliance:
     kinks = ()
     power = 0.0
     remarks = ()
+
+    @cached_property
+    def stress_rows(self) -> dict[tuple[Side, int], StressRows]:
+        """Root stress at the contacts asked for last, by fillet and by how many neighbours count."""
+        return {}
 
     @property
     def reach(self) -> int:

@@ -6,6 +6,7 @@ Gauss quadrature converges there faster than any power.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from itertools import pairwise
@@ -65,7 +66,7 @@ def panels(start: float, period: float, breaks: ArrayLike = (), waves: int = 12,
     keep = np.concatenate([[True], np.diff(edges) > 1e-12 * period])
     edges = edges[keep]
     edges[-1] = period
-    t, w = np.polynomial.legendre.leggauss(order)
+    t, w = _gauss(order)
     t, w = 0.5 * (t + 1.0), 0.5 * w
     xs, ws = [], []
     for a, b in pairwise(edges):
@@ -74,6 +75,12 @@ def panels(start: float, period: float, breaks: ArrayLike = (), waves: int = 12,
         xs.append(a + (b - a) * s * s * (3.0 - 2.0 * s))
         ws.append((b - a) * np.tile(w, parts) / parts * 6.0 * s * (1.0 - s))
     return Panels(start + np.concatenate(xs), np.concatenate(ws), period, start + edges)
+
+
+@functools.cache
+def _gauss(order: int) -> tuple[Array, Array]:
+    """Points and weights between -1 and 1: their eigenvalues take longer than laying the points."""
+    return np.polynomial.legendre.leggauss(order)
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,10 +136,21 @@ def fourier_series(points: Panels, values: ArrayLike, harmonics: int) -> Fourier
     harmonics : int
         N.
     """
-    n = np.arange(harmonics + 1)
-    kernel = np.exp(-2j * math.pi / points.period * np.multiply.outer(n, points.x)) * points.weights / points.period
     f = np.asarray(values, dtype=float)
-    return FourierSeries(np.tensordot(kernel, f, axes=(1, 0)), points.period)
+    weighted = (points.weights / points.period).reshape(-1, *[1] * (f.ndim - 1)) * f
+    waves = _powers(np.exp(-2j * math.pi / points.period * points.x), harmonics)
+    return FourierSeries(np.tensordot(waves, weighted, axes=(1, 0)), points.period)
+
+
+def _powers(of: NDArray[np.complex128], highest: int) -> NDArray[np.complex128]:
+    """Powers 0 to `highest`, one row each, by doubling: the last is log2 of its number multiplications deep."""
+    found = np.empty((highest + 1, of.size), dtype=complex)
+    found[0], number = 1.0, 1
+    while number <= highest:
+        more = min(number, highest + 1 - number)
+        np.multiply(found[:more], found[number - 1] * of, out=found[number : number + more])
+        number += more
+    return found
 
 
 def effective_error(series: FourierSeries, harmonics: int = 12) -> Array:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.stress_rows import StressRows
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
@@ -15,10 +16,8 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.contact.compliance import RootStressInfluence, Side
     from fegear.contact.engagement import Engagement, Loaded
-    from fegear.contact.meshing import Contacts
+    from fegear.contact.stress_rows import Rows
     from fegear.geometry.pair import Member
-
-    Kernels = dict[int, Array]
 
 
 @dataclass(frozen=True)
@@ -47,56 +46,13 @@ class RootStressHistory:
         return np.asarray(flat.max(axis=0) if self.side == "tension" else flat.min(axis=0))
 
 
-def root_stress_kernels(
-    engagement: Engagement,
-    contacts: Contacts,
-    member: Member,
-    side: Side = "tension",
-    beyond: int = 0,
-    source: RootStressInfluence | None = None,
-) -> Kernels:
-    """Stress along the fillet of tooth k per unit line load at each contact, (points, n, P) for each k [1/m].
-
-    It is zero where the pair is out of reach and carries nothing.
-
-    Parameters
-    ----------
-    engagement, contacts, member, side, beyond
-        See `root_stress_history`.
-    source : RootStressInfluence, optional
-        Where this gear's root stress comes from; by default where its compliance does.
-
-    Raises
-    ------
-    InputError
-        If the source knows no root stress.
-    """
-    source = source or engagement.compliance.source(member)
-    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
-    n = radius.shape[0]
-    reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
-    kernels: Kernels = {}
-    for k in range(-reach, reach + 1):
-        kernel = source.root_stress(k, radius[contacts.present], side)
-        if kernel is None:
-            raise InputError(
-                "results",
-                '"root-stress"',
-                "cannot come from a compliance source that knows deflections alone",
-                'set pair.root_stress.source = "fe" or a formula',
-            )
-        kernels[k] = np.zeros((kernel.shape[0], *radius.shape))
-        kernels[k][:, contacts.present] = kernel
-    return kernels
-
-
 def root_stress_history(
     engagement: Engagement,
     loaded: Loaded,
     member: Member,
     side: Side = "tension",
     beyond: int = 0,
-    kernels: Kernels | None = None,
+    source: RootStressInfluence | None = None,
 ) -> RootStressHistory:
     """Superpose the fillet stress of a tooth's own load and of its neighbours' loads, then take the extreme.
 
@@ -109,45 +65,74 @@ def root_stress_history(
         The tension fillet lies below the loaded flank.
     beyond : int
         Teeth before the first and after the last pair that can touch, in addition: they feel their neighbours' loads.
-    kernels : dict, optional
-        From `root_stress_kernels` with the same arguments, when many loads are superposed at the same contacts.
+    source : RootStressInfluence, optional
+        Where this gear's root stress comes from; by default where its compliance does.
 
     Raises
     ------
     InputError
-        If the compliance source of this gear knows no root stress.
+        If the source knows no root stress.
     """
-    contacts = loaded.grid.contacts
-    if kernels is None:
-        kernels = root_stress_kernels(engagement, contacts, member, side, beyond)
     signed = np.max if side == "tension" else np.min
     stress = np.stack(
-        [signed(total, axis=0) for total in superposed_stress(engagement, loaded, member, beyond, kernels)]
+        [signed(total, axis=-1) for total in superposed_stress(engagement, loaded, member, side, beyond, source)]
     )
+    contacts = loaded.grid.contacts
     teeth = np.arange(-beyond, contacts.x.shape[0] + beyond)
     return RootStressHistory(member, side, contacts.x[0] + teeth[:, None] * engagement.pair.base_pitch, stress)
 
 
 def superposed_stress(
-    engagement: Engagement, loaded: Loaded, member: Member, beyond: int, kernels: Kernels
+    engagement: Engagement,
+    loaded: Loaded,
+    member: Member,
+    side: Side = "tension",
+    beyond: int = 0,
+    source: RootStressInfluence | None = None,
 ) -> Iterator[Array]:
-    """Stress along the fillet of one tooth after the other, from its own load and its neighbours', (points, P, L) [Pa].
+    """Stress along the fillet of one tooth after the other, from its own load and its neighbours', (P, L, points) [Pa].
 
     Parameters
     ----------
-    engagement, loaded, member, beyond
+    engagement, loaded, member, side, beyond, source
         See `root_stress_history`; teeth come in its order.
-    kernels : dict
-        From `root_stress_kernels` at the contacts of `loaded`.
     """
-    n = loaded.loads.shape[0]
+    source = source or engagement.compliance.source(member)
+    contacts = loaded.grid.contacts
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    n = radius.shape[0]
+    reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
     towards_load = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
     line_load = loaded.loads / engagement.compliance.face_width
-    carrying = [other for other in range(n) if (line_load[other] > 0.0).any()]
+    carries = np.asarray((line_load > 0.0).any(axis=2))
+    rows = _rows(source, reach, radius[carries], side)
+    first = np.concatenate([[0], np.cumsum(carries.sum(axis=1))])
+    carrying = [(j, np.flatnonzero(carries[j]), slice(first[j], first[j + 1])) for j in range(n) if carries[j].any()]
     for tooth in range(-beyond, n + beyond):
-        total = np.zeros((kernels[0].shape[0], *line_load.shape[1:]))
-        for other in carrying:
+        total = np.zeros((*line_load.shape[1:], rows[0].shape[1]))
+        for other, at, of_other in carrying:
             k = towards_load * (tooth - other)
-            if k in kernels:
-                total += kernels[k][:, other, :, None] * line_load[other][None]
+            if k in rows:
+                total[at] += line_load[other, at, :, None] * rows[k][of_other, None, :]
         yield total
+
+
+def _rows(source: RootStressInfluence, reach: int, radius: Array, side: Side) -> Rows:
+    """Stress along the fillet of teeth -reach..reach per unit line load at radii, shape (Q, points) each [1/m]."""
+
+    def evaluate(at: Array) -> Rows:
+        found = {}
+        for k in range(-reach, reach + 1):
+            stress = source.root_stress(k, at, side)
+            if stress is None:
+                raise InputError(
+                    "results",
+                    '"root-stress"',
+                    "cannot come from a compliance source that knows deflections alone",
+                    'set pair.root_stress.source = "fe" or a formula',
+                )
+            found[k] = np.ascontiguousarray(stress.T)
+        return found
+
+    kept: dict[tuple[Side, int], StressRows] | None = getattr(source, "stress_rows", None)
+    return evaluate(radius) if kept is None else kept.setdefault((side, reach), StressRows()).at(radius, evaluate)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fegear.contact.error_by_shift import solve_again
-from fegear.contact.root_stress_history import root_stress_history, root_stress_kernels
+from fegear.contact.root_stress_history import root_stress_history
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,28 +43,24 @@ class ToothStress:
     tension_error: Array
 
 
-def _states(e: Engagement, x: Array, loads: Sequence[float]) -> list[tuple[int, Loaded]]:
-    """Row of each tooth and the loaded state for it: the same state unless teeth differ by their spacing errors."""
-    grid = e.grid(x)
-    numbers = np.concatenate([[grid.contacts.number[0] - 1], grid.contacts.number, [grid.contacts.number[-1] + 1]])
-    if not (e.driver_spacing.size or e.driven_spacing.size):
-        state = e.solve(grid, loads)
-        return [(row, state) for row in range(numbers.size)]
-    # The tooth of interest carries pair number j in base pitch number j.
-    return [(row, e.solve(grid, loads, int(number))) for row, number in enumerate(numbers)]
+class LoadedStates(NamedTuple):
+    """States that the teeth of both gears pass through.
+
+    Attributes
+    ----------
+    rows : list of Loaded
+        Of each tooth, from the one before the first pair that can touch to the one after the last: the same state
+        unless teeth differ by their spacing errors.
+    shifted : list of list of Loaded
+        The same with one compliance each off by its error.
+    """
+
+    rows: list[Loaded]
+    shifted: list[list[Loaded]]
 
 
-def tooth_stress(
-    e: Engagement,
-    shifted: Sequence[Engagement],
-    loads: Sequence[float],
-    x: ArrayLike,
-    member: Member,
-    source: RootStressInfluence | None = None,
-    *,
-    estimates: bool = True,
-) -> ToothStress:
-    """Follow one tooth of a gear from a base pitch before its contact to one after it.
+def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[float], x: ArrayLike) -> LoadedStates:
+    """Share loads for a base pitch before and after a tooth's contact, once for both gears.
 
     Parameters
     ----------
@@ -75,6 +71,34 @@ def tooth_stress(
         Along the line of action [N].
     x : array_like, shape (P,)
         Roll positions over one base pitch [m].
+    """
+    grid = e.grid(x)
+    teeth = grid.contacts.number.size + 2
+    if not (e.driver_spacing.size or e.driven_spacing.size):
+        state = e.solve(grid, loads)
+        again = [solve_again(other, state) for other in shifted]
+        return LoadedStates([state] * teeth, [again] * teeth)
+    # The tooth of interest carries pair number j in base pitch number j.
+    first = int(grid.contacts.number[0]) - 1
+    rows = [e.solve(grid, loads, first + row) for row in range(teeth)]
+    return LoadedStates(rows, [[solve_again(other, state) for other in shifted] for state in rows])
+
+
+def tooth_stress(
+    e: Engagement,
+    states: LoadedStates,
+    member: Member,
+    source: RootStressInfluence | None = None,
+    *,
+    estimates: bool = True,
+) -> ToothStress:
+    """Follow one tooth of a gear from a base pitch before its contact to one after it.
+
+    Parameters
+    ----------
+    e : Engagement
+    states : LoadedStates
+        Of this engagement.
     member : {"driver", "driven"}
     source : RootStressInfluence, optional
         Where the gear's root stress comes from; by default where its compliance does, which must be finite elements.
@@ -86,25 +110,20 @@ def tooth_stress(
     InputError
         If the source knows no root stress.
     """
-    states = _states(e, np.asarray(x, dtype=float), loads)
-    contacts = states[0][1].grid.contacts
-    pull = root_stress_kernels(e, contacts, member, "tension", 1, source)
     ends = np.array([e.pair.radius(end, member) for end in (e.pair.x_start, e.pair.x_end)])
     knows_both = (source or e.compliance.source(member)).root_stress(0, ends, "compression") is not None
-    press = root_stress_kernels(e, contacts, member, "compression", 1, source) if knows_both else {}
     xs: list[Array] = []
     tension: list[Array] = []
     compression: list[Array] = []
     error: list[Array] = []
     known: dict[int, tuple[Array, Array, Array, Array]] = {}
-    for row, state in states:
+    for row, (state, shifted) in enumerate(zip(*states, strict=True)):
         if id(state) not in known:
-            pulled = root_stress_history(e, state, member, "tension", 1, pull)
-            pressed = root_stress_history(e, state, member, "compression", 1, press) if press else pulled
+            pulled = root_stress_history(e, state, member, "tension", 1, source)
+            pressed = root_stress_history(e, state, member, "compression", 1, source) if knows_both else pulled
             off = np.zeros_like(pulled.stress)
-            for other in shifted:
-                again = solve_again(other, state)
-                off = off + np.abs(root_stress_history(e, again, member, "tension", 1, pull).stress - pulled.stress)
+            for again in shifted:
+                off = off + np.abs(root_stress_history(e, again, member, "tension", 1, source).stress - pulled.stress)
             off[1:-1] += _own_error(e, member, state, source) if estimates else np.nan
             known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
         for found, values in zip((xs, tension, compression, error), known[id(state)], strict=True):
@@ -114,7 +133,7 @@ def tooth_stress(
     pitch = e.pair.base_pitch
     order = order[(x[order] > e.pair.x_start - pitch) & (x[order] < e.pair.x_end + pitch)]
     t, c, off = (np.concatenate(parts)[order] for parts in (tension, compression, error))
-    return ToothStress(x[order], t, c if press else None, off)
+    return ToothStress(x[order], t, c if knows_both else None, off)
 
 
 def _own_error(e: Engagement, member: Member, state: Loaded, source: RootStressInfluence | None) -> Array:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from fegear.arrays import Array
     from fegear.contact.engagement import Engagement, Loaded
+    from fegear.contact.roll_grids import RollGrid
 
 #: Contact changes are bracketed by so many divisions into so many parts each.
 _PASSES, _PARTS = 3, 32
@@ -88,7 +89,7 @@ def contact_changes(engagement: Engagement, load: float, cycle: int = 0, samples
             )
             piece.append(np.full(n + 2, i))
     x, which = np.concatenate(xs), np.concatenate(piece)
-    active = _active(engagement, x, load, cycle)
+    active = _active(engagement, engagement.grid(x), load, cycle)
     changed = (active[:, 1:] != active[:, :-1]).any(axis=0) & (which[1:] == which[:-1])
     low, high, state = x[:-1][changed], x[1:][changed], active[:, :-1][:, changed]
     if not low.size:
@@ -96,15 +97,16 @@ def contact_changes(engagement: Engagement, load: float, cycle: int = 0, samples
     every, inside = np.arange(low.size), np.arange(1, _PARTS) / _PARTS
     for _ in range(_PASSES):
         ends = np.concatenate([low[None], low + inside[:, None] * (high - low), high[None]])
-        found = _active(engagement, ends[1:-1].ravel(), load, cycle).reshape(-1, _PARTS - 1, low.size)
+        grid = engagement.grid(ends[1:-1].ravel(), again=False)
+        found = _active(engagement, grid, load, cycle).reshape(-1, _PARTS - 1, low.size)
         differs = np.concatenate([(found != state[:, None]).any(axis=0), np.ones((1, low.size), dtype=bool)])
         first = differs.argmax(axis=0)
         low, high = ends[first, every], ends[first + 1, every]
     return np.asarray(0.5 * (low + high))
 
 
-def _active(engagement: Engagement, x: Array, load: float, cycle: int) -> NDArray[np.bool_]:
-    return np.asarray(engagement.solve(engagement.grid(x), [load], cycle).loads[:, :, 0] > 0.0)
+def _active(engagement: Engagement, grid: RollGrid, load: float, cycle: int) -> NDArray[np.bool_]:
+    return np.asarray(engagement.solve(grid, [load], cycle).loads[:, :, 0] > 0.0)
 
 
 def transmission_error(

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
     from fegear.arrays import Array
     from fegear.contact.compliance import RootStressInfluence
-    from fegear.contact.engagement import Engagement, RollGrid
+    from fegear.contact.engagement import Engagement
     from fegear.contact.fourier import Panels
+    from fegear.contact.roll_grids import RollGrid
     from fegear.design.tolerance_draws import Deviations
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Relief

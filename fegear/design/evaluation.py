@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.contact.engagement import Engagement, RollGrid
+    from fegear.contact.engagement import Engagement
+    from fegear.contact.roll_grids import RollGrid
     from fegear.geometry.relief import Relief
 
 _BATCH = 40_000

@@ -19,7 +19,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from fegear.arrays import Floats
-    from fegear.contact.engagement import RollGrid
+    from fegear.contact.roll_grids import RollGrid
 
 
 @dataclass(frozen=True)

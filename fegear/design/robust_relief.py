@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.arrays import Array, Floats
-    from fegear.contact.engagement import Engagement, RollGrid
+    from fegear.contact.engagement import Engagement
+    from fegear.contact.roll_grids import RollGrid
     from fegear.design.deviated_pair import Bench
     from fegear.design.tolerance_draws import Deviations
     from fegear.geometry.pair import Member

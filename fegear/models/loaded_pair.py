@@ -54,46 +54,59 @@ class LoadedPair:
     sources: tuple[str, ...]
 
 
-def compliance_sources(
-    asked: PairInputs, influences: Mapping[str, GearInfluence], *, estimates: bool = True
-) -> tuple[Sources, tuple[Sources, ...]]:
-    """The sources of driver and driven, and the pairs of sources that are off by their estimated errors.
+def compliance_sources(asked: PairInputs, influences: Mapping[str, GearInfluence]) -> Sources:
+    """The sources of driver and driven.
 
     Parameters
     ----------
     asked : PairInputs
     influences : mapping of str to GearInfluence
         By the gears' names; needed for ``source = "fe"``.
-    estimates : bool
-        Whether the second are wanted.
     """
     part, pair = asked.compliance, asked.pair
     try:
         if asked.table is not None:
             from fegear.contact import table_sources
 
-            return table_sources(pair, *asked.table, part.of or "tooth", part.fit or "cubic"), ()
+            return table_sources(pair, *asked.table, part.of or "tooth", part.fit or "cubic")
         if part.source != "fe":
             from fegear.contact import closed_form_compliance
 
             driver, driven = (closed_form_compliance(pair.gear(member), part.source) for member in MEMBERS)
-            return (driver, driven), ()
+            return driver, driven
     except InputError as error:
         raise at(f"pair.{asked.name}", error) if error.key.startswith("compliance") else error from None
     from fegear.contact import finite_element_compliance
-    from fegear.contact.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
 
     solved = {gear: finite_element_compliance(influences[gear]) for gear in dict.fromkeys(asked.gears)}
     first, second = (solved[gear] for gear in asked.gears)
-    if not estimates:
-        return (first, second), ()
+    return first, second
+
+
+def shifted_sources(asked: PairInputs, sources: Sources) -> tuple[Sources, ...]:
+    """The pairs of sources that are off by their estimated errors; none where the sources state none."""
+    from fegear.contact.fe_compliance import FiniteElementCompliance
+    from fegear.contact.shifted_compliance import neighbours_shifted_by_error, shifted_by_error
+
+    first, second = sources
+    if not (isinstance(first, FiniteElementCompliance) and isinstance(second, FiniteElementCompliance)):
+        return ()
     own1 = shifted_by_error(first)
     own2 = own1 if second is first else shifted_by_error(second)
     shifted: list[Sources] = [(own1, second), (first, own2)]
     if asked.effects.neighbour_coupling:
-        beside = {gear: neighbours_shifted_by_error(found) for gear, found in solved.items()}
-        shifted.append((beside[asked.gears[0]], beside[asked.gears[1]]))
-    return (first, second), tuple(shifted)
+        beside1 = neighbours_shifted_by_error(first)
+        shifted.append((beside1, beside1 if second is first else neighbours_shifted_by_error(second)))
+    return tuple(shifted)
+
+
+def engagement_at_rest(asked: PairInputs, sources: Sources) -> Engagement:
+    """The engagement of a pair without modifications and errors, with the other effects of its case."""
+    from fegear.contact import Engagement, PairCompliance
+
+    effects = asked.effects
+    compliance = PairCompliance(asked.pair, *sources, effects.neighbour_coupling, effects.hertz, asked.nominal)
+    return Engagement(compliance, corner_contact=effects.corner_contact)
 
 
 # ---- modifications -----------------------------------------------------------------------------------------------
@@ -196,33 +209,31 @@ def relieved(asked: PairInputs, engagement: Engagement) -> Engagement:
     return replace(engagement, driver_relief=built["driver"], driven_relief=built["driven"])
 
 
-def build_loaded_pair(asked: PairInputs, sources: Sources, shifted: tuple[Sources, ...] = ()) -> LoadedPair:
+def build_loaded_pair(asked: PairInputs, at_rest: Engagement, shifted: tuple[Sources, ...] = ()) -> LoadedPair:
     """Make the engagement of a pair with the effects of its case.
 
     Parameters
     ----------
     asked : PairInputs
-    sources : tuple of GearCompliance
-        See `compliance_sources`.
-    shifted : tuple of the same
-        Off by their estimated errors.
+    at_rest : Engagement
+        See `engagement_at_rest`; under whatever load.
+    shifted : tuple of tuple of GearCompliance
+        See `shifted_sources`.
 
     Raises
     ------
     InputError
         If a relief or an error list does not fit its gear; the key is the one of the case file.
     """
-    from fegear.contact import Engagement, PairCompliance
-
     effects = asked.effects
-    compliance = PairCompliance(asked.pair, *sources, effects.neighbour_coupling, effects.hertz, asked.nominal)
-    engagement = Engagement(compliance, corner_contact=effects.corner_contact)
+    compliance = replace(at_rest.compliance, nominal_load=asked.nominal)
+    engagement = replace(at_rest, compliance=compliance)
     if effects.spacing_errors:
         engagement = spaced(asked, engagement)
     if effects.relief:
         engagement = relieved(asked, engagement)
     others = tuple(replace(engagement, compliance=_with(compliance, *pair)) for pair in shifted)
-    described = tuple(dict.fromkeys(source.describe() for source in sources))
+    described = tuple(dict.fromkeys(source.describe() for source in (compliance.driver, compliance.driven)))
     return LoadedPair(engagement, others, asked.loads, asked.nominal, described)
 
 

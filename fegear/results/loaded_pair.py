@@ -10,10 +10,17 @@ import numpy as np
 from fegear.engine.figure import Axis, Mark, few, ramp
 from fegear.engine.outcome import Column, Outcome
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.models.loaded_pair import LoadedPair, build_loaded_pair, compliance_sources
+from fegear.models.loaded_pair import (
+    LoadedPair,
+    build_loaded_pair,
+    compliance_sources,
+    engagement_at_rest,
+    shifted_sources,
+)
 from fegear.models.neglected_effects import Neglected, neglected_effects, neglected_remarks
 from fegear.models.pair_checks import check_pair
 from fegear.models.pair_inputs import pair_inputs
+from fegear.plain import content_key
 from fegear.results.drawn_pair import path_marks
 from fegear.results.gear_solution import needs_solution, solution_of
 from fegear.results.sources import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
@@ -24,6 +31,7 @@ if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
+    from fegear.contact import Engagement
     from fegear.contact.neglected_effects import Answer
     from fegear.engine.citation import Citation
     from fegear.engine.stage import Upstream, Work
@@ -144,11 +152,25 @@ def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
     return needs_solution(part.driver, part.driven) if part.compliance.source == "fe" else ()
 
 
-def _compute(inputs: LoadedPairInputs, upstream: Upstream, _work: Work) -> LoadedPairData:
-    asked = inputs.asked
+def _at_rest(asked: PairInputs, upstream: Upstream, work: Work) -> Engagement:
+    """The pair without modifications, the same one for every load and relief: it keeps what they do not change."""
     influences = {gear: solution_of(upstream, gear) for gear in asked.gears} if upstream else {}
-    sources, shifted = compliance_sources(asked, influences, estimates=inputs.estimates)
-    pair = build_loaded_pair(asked, sources, shifted)
+    effects = asked.effects
+    key = content_key(
+        "pair at rest", asked.pair, asked.compliance, asked.table,
+        [effects.neighbour_coupling, effects.hertz, effects.corner_contact],
+        asked.nominal if effects.hertz == "linear" else None,
+        # what is kept holds them, so that no other can have their identity
+        [id(influences[gear]) for gear in asked.gears] if influences else [],
+    )  # fmt: skip
+    return work.cache.solve(key, lambda: engagement_at_rest(asked, compliance_sources(asked, influences))).value
+
+
+def _compute(inputs: LoadedPairInputs, upstream: Upstream, work: Work) -> LoadedPairData:
+    asked = inputs.asked
+    at_rest = _at_rest(asked, upstream, work)
+    shifted = shifted_sources(asked, (at_rest.compliance.driver, at_rest.compliance.driven)) if inputs.estimates else ()
+    pair = build_loaded_pair(asked, at_rest, shifted)
     if not inputs.estimates:
         return LoadedPairData(pair, Neglected({}, {}))
     return LoadedPairData(pair, neglected_effects(asked, pair, inputs.answers, inputs.loads))

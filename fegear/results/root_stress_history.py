@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from fegear.case.reading import Scene
+    from fegear.contact.compliance import RootStressInfluence
     from fegear.contact.tooth_stress import ToothStress
     from fegear.engine.stage import Task, Upstream, Work
     from fegear.geometry.pair import Member
@@ -104,23 +105,23 @@ def _inputs(scene: Scene, name: str) -> RootStressInputs:
 
 def _compute(asked: RootStressInputs, upstream: Upstream, work: Work) -> RootStressData:
     from fegear.contact.mesh_curve import roll_positions
-    from fegear.contact.tooth_stress import tooth_stress
+    from fegear.contact.tooth_stress import loaded_states, tooth_stress
 
     pair = loaded_pair(upstream, asked.name)
     solved = {} if FINITE_ELEMENTS not in asked.sources else {g: solution_of(upstream, g) for g in asked.gears.values()}
-    x = roll_positions(pair.engagement, POSITIONS)
+    states = loaded_states(pair.engagement, pair.shifted, pair.loads, roll_positions(pair.engagement, POSITIONS))
     stress: dict[Member, dict[str, ToothStress]] = {}
     notes: dict[Member, dict[str, tuple[str, ...]]] = {}
     for number, member in enumerate(MEMBERS):
         gear = asked.gears[member]
         stress[member], notes[member] = {}, {}
         for name in asked.sources:
-            source = root_stress_source(
-                name, asked.name, gear, pair.engagement.pair, member, solved, tips=asked.tips
-            )  # fmt: skip
-            stress[member][name] = tooth_stress(
-                pair.engagement, pair.shifted, pair.loads, x, member, source, estimates=asked.estimates
-            )
+            source: RootStressInfluence = pair.engagement.compliance.source(member)  # knows what was asked before
+            if name != FINITE_ELEMENTS or getattr(source, "influence", None) is not solved[gear]:
+                source = root_stress_source(
+                    name, asked.name, gear, pair.engagement.pair, member, solved, tips=asked.tips
+                )  # fmt: skip
+            stress[member][name] = tooth_stress(pair.engagement, states, member, source, estimates=asked.estimates)
             notes[member][name] = source.remarks
         work.progress((number + 1) / len(MEMBERS))
     return RootStressData(pair, stress, notes)

@@ -110,7 +110,7 @@ class StressInMeshData:
 
 def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshData:
     from fegear.contact.mesh_curve import roll_positions
-    from fegear.contact.root_stress_history import root_stress_kernels, superposed_stress
+    from fegear.contact.root_stress_history import superposed_stress
 
     found = loaded_pair(upstream, asked.name)
     e, pair = found.engagement, found.engagement.pair
@@ -124,8 +124,7 @@ def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshD
         source = root_stress_source(FINITE_ELEMENTS, asked.name, gear, pair, member, solved, tips=asked.tips)
         places, stress = {}, {}
         for side in _SIDES:
-            kernels = root_stress_kernels(e, contacts, member, side, 1, source)
-            teeth = [one[:, :, 0].T for one in superposed_stress(e, state, member, 1, kernels)]
+            teeth = [one[:, 0] for one in superposed_stress(e, state, member, side, 1, source)]
             fillet = solved[gear].fine.fillets[side]
             points = np.stack([fillet.radius * np.sin(fillet.angle), fillet.radius * np.cos(fillet.angle)])
             own = points * pair.gear(member).module

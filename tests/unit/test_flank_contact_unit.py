@@ -16,7 +16,7 @@ from fegear.contact.flank.error import flank_error
 from fegear.contact.flank.lines import ContactLines
 from fegear.contact.flank.root_stress import rooted_lines
 from fegear.contact.flank.touching import unloaded_error
-from fegear.contact.tooth_stress import tooth_stress
+from fegear.contact.tooth_stress import loaded_states, tooth_stress
 from fegear.errors import InputError
 from fegear.fem import solve_gear
 from fegear.fem.solid import SolidSettings, solve_solid
@@ -94,7 +94,7 @@ def test_a_spur_pair_that_cannot_move_along_the_axis_is_the_plane_pair():
     np.testing.assert_allclose(found.face_load_factor, 1.0, atol=3e-3)
     # root stress of the whole way through the mesh, neighbours' loads included, is that of the plane everywhere
     for member in MEMBERS:
-        wanted_stress = tooth_stress(engagement, (), [2000.0], flanks.roll, member)
+        wanted_stress = tooth_stress(engagement, loaded_states(engagement, (), [2000.0], flanks.roll), member)
         rooted = rooted_lines(pair, member, found.lines, solution, coupling=True)
         for side, sign, plane_stress in (
             ("tension", 1.0, wanted_stress.tension), ("compression", -1.0, wanted_stress.compression)
@@ -503,7 +503,7 @@ def test_a_wide_spur_pair_free_to_move_tends_to_the_plane_in_the_middle_of_its_f
         flanks = FlankPair(pair, {"driver": solution, "driven": solution}, positions=12)
         found = flanks.solve([load])
         engagement = Engagement(PairCompliance(pair, plane, plane))
-        wanted = tooth_stress(engagement, (), [load], flanks.roll, "driver")
+        wanted = tooth_stress(engagement, loaded_states(engagement, (), [load], flanks.roll), "driver")
         te = engagement.solve(engagement.grid(flanks.roll), [load]).transmission_error[:, 0]
         rooted = rooted_lines(pair, "driver", found.lines, solution, coupling=True)
         middle = rooted.stress("tension", found.contact.force[:, :, 0], np.zeros(1)).value[:, 0]

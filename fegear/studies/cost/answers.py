@@ -11,7 +11,7 @@ from fegear.dynamics.single_tooth import force_history
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
 from fegear.geometry.pair import MEMBERS
-from fegear.models.loaded_pair import build_loaded_pair
+from fegear.models.loaded_pair import build_loaded_pair, engagement_at_rest
 from fegear.models.motion import motion_inputs, motion_model
 from fegear.models.neglected_effects import Neglected
 from fegear.models.pair_inputs import pair_inputs
@@ -37,7 +37,8 @@ HARMONICS, FORCE_HARMONICS = 64, 256
 def loaded(asked: Asked, source: Source, name: str) -> LoadedPair:
     """A pair with the compliances of a source."""
     driver, driven = (source.compliance(name, member, asked) for member in MEMBERS)
-    return build_loaded_pair(pair_inputs(asked.scene, name), (driver, driven))
+    inputs = pair_inputs(asked.scene, name)
+    return build_loaded_pair(inputs, engagement_at_rest(inputs, (driver, driven)))
 
 
 def pair_error(asked: Asked, source: Source, order: int = 16) -> TransmissionError:

@@ -1,0 +1,147 @@
+"""What is kept of a pair at roll positions is what would be evaluated anew, to the last bit."""
+
+import pickle
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+import pytest
+
+from fegear.contact import Engagement, PairCompliance, closed_form_compliance, root_stress_history
+from fegear.contact.roll_grids import RollGrids
+from fegear.contact.stress_rows import StressRows
+from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.relief import CombinedRelief, tip_relief
+
+PAIR = GearPair(*(Gear(Tooth(z, BasicRack(1.0, 1.25, 0.2), 0.0), 2e-3, 4e-3, 1e-2) for z in (21, 34)))
+
+
+@dataclass(frozen=True)
+class Coupled:
+    """A closed form with neighbours of its own."""
+
+    base: object
+    reach: int = 2
+
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.base, name)
+
+    def neighbour(self, k, p, q):
+        return 1e-13 * np.exp(-abs(k)) * (1.0 + np.sin(300.0 * p) * np.cos(200.0 * q))
+
+    def root_stress(self, k, radius, side):
+        sign = 1.0 if side == "tension" else -1.0
+        return sign * np.exp(-abs(k)) * np.sin(np.arange(1, 6)[:, None] * 400.0 * np.asarray(radius)) ** 2
+
+
+def compliance(coupling=True, **more):
+    return PairCompliance(
+        PAIR,
+        *(Coupled(closed_form_compliance(PAIR.gear(m), "cornell")) for m in ("driver", "driven")),
+        coupling,
+        **more,
+    )
+
+
+def same(one, other):
+    assert np.array_equal(one.x, other.x)
+    for part, wanted in ((one.contacts, other.contacts), (one.matrices, other.matrices)):
+        for field in fields(part):
+            a, b = getattr(part, field.name), getattr(wanted, field.name)
+            if field.name == "tilt" and (a is None) != (b is None):
+                a, b = (-np.inf if c is None else c for c in (a, b))
+            assert np.array_equal(*np.broadcast_arrays(a, b)), field.name
+
+
+@pytest.mark.parametrize("corners", [False, True])
+def test_grids_of_any_positions_in_any_order_are_those_evaluated_anew(corners):
+    chance, of = np.random.default_rng(4), compliance()
+    kept, anew = RollGrids(of, corners), RollGrids(of, corners)
+    start, pitch = PAIR.x_start, PAIR.base_pitch
+    pool = np.concatenate([start + pitch * chance.uniform(-1.5, 1.5, 60), [start, start + pitch, start - pitch]])
+    for _ in range(40):
+        x = chance.choice(pool, chance.integers(1, 50), replace=chance.random() < 0.3)
+        fresh = start + pitch * chance.random(chance.integers(0, 4))
+        same(kept.at(np.concatenate([x, fresh])), anew.new(np.concatenate([x, fresh])))
+
+
+def test_a_grid_is_recalled_for_other_loads_and_reliefs_and_not_for_another_pair():
+    one = Engagement(compliance(nominal_load=500.0), corner_contact=True)
+    x = np.linspace(PAIR.x_start, PAIR.x_start + PAIR.base_pitch, 30)
+    grid = one.grid(x)
+    relief = CombinedRelief((tip_relief(PAIR.driver, 8e-6, length=0.4e-3),))
+    assert replace(one, driver_relief=relief).grid(x) is grid
+    assert replace(one, compliance=replace(one.compliance, nominal_load=900.0)).grid(x) is grid
+    uncoupled = replace(one, compliance=replace(one.compliance, coupling=False))
+    same(uncoupled.grid(x), RollGrids(uncoupled.compliance, True).new(x))
+    without = replace(one, corner_contact=False)
+    same(without.grid(x), RollGrids(one.compliance, False).new(x))
+    linear = replace(one, compliance=replace(one.compliance, hertz="linear"))
+    other = replace(linear, compliance=replace(linear.compliance, nominal_load=900.0))
+    assert linear.grid(x) is not other.grid(x)
+    same(other.grid(x), RollGrids(other.compliance, True).new(x))
+
+
+def test_what_is_kept_is_bounded_and_does_not_travel():
+    grids = RollGrids(compliance(), True)
+    empty = len(pickle.dumps(grids))
+    for shift in np.linspace(0.0, 0.4, 30):
+        grids.at(PAIR.x_start + PAIR.base_pitch * (shift + np.linspace(0.0, 0.5, 40)))
+    assert len(grids._kept) < 20
+    assert len(pickle.dumps(grids)) == empty
+
+
+def test_who_is_interrupted_keeps_nothing_half():
+    grids, x = RollGrids(compliance(), True), PAIR.x_start + PAIR.base_pitch * np.linspace(0.0, 1.0, 20)
+    matrices = PairCompliance.matrices
+
+    def stop(_self, _contacts):
+        raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(PairCompliance, "matrices", stop)
+        with pytest.raises(KeyboardInterrupt):
+            grids.at(x)
+    assert PairCompliance.matrices is matrices
+    same(grids.at(x), RollGrids(compliance(), True).new(x))
+
+
+def test_rows_of_any_contacts_are_those_evaluated_anew_and_are_bounded():
+    chance, rows, asked = np.random.default_rng(2), StressRows(), []
+
+    def evaluate(radius):
+        asked.append(radius.size)
+        return {k: np.sin(np.multiply.outer(radius, np.arange(1.0, 5.0) + k)) for k in (-1, 0, 1)}
+
+    pool = chance.random(200)
+    for _ in range(60):
+        radius = np.concatenate([chance.choice(pool, 25), chance.random(chance.integers(0, 3))])
+        found = rows.at(radius, evaluate)
+        for k in (-1, 0, 1):
+            assert np.array_equal(found[k], np.sin(np.multiply.outer(radius, np.arange(1.0, 5.0) + k)))
+        assert rows._table.row.size <= 4 * 27 + 27
+    assert sum(asked) < 0.9 * 60 * 25
+    before = len(asked)
+    rows.at(radius[::-1], evaluate)
+    assert len(asked) == before
+
+
+@pytest.mark.parametrize("member", ["driver", "driven"])
+@pytest.mark.parametrize("side", ["tension", "compression"])
+def test_superposed_stress_is_the_sum_over_every_load_on_every_tooth(member, side):
+    e = Engagement(compliance(), corner_contact=True)
+    x = PAIR.x_start + PAIR.base_pitch * np.linspace(0.0, 1.0, 13)
+    state = e.solve(e.grid(x), [300.0, 3000.0])
+    source, n = e.compliance.source(member), state.loads.shape[0]
+    radius = state.grid.contacts.radius_driver if member == "driver" else state.grid.contacts.radius_driven
+    towards = 1 if member == "driver" else -1
+    wanted = np.zeros((n + 2, x.size, 2, 5))
+    for tooth in range(-1, n + 1):
+        for other in range(n):
+            if abs(tooth - other) <= 2:
+                kernel = source.root_stress(towards * (tooth - other), radius[other], side)
+                wanted[tooth + 1] += np.einsum("ip,pl->pli", kernel, state.loads[other] / 0.01)
+    largest = wanted.max(axis=-1) if side == "tension" else wanted.min(axis=-1)
+    found = root_stress_history(e, state, member, side, 1)
+    assert found.stress == pytest.approx(largest, rel=1e-13)
