@@ -100,7 +100,10 @@ class SolutionCache:
         self._most = most
         self._new: set[str] = set()
         self._used: set[str] = set()
-        self._arrays: dict[str, dict[int, int]] = {}
+        self._held: dict[str, dict[int, int]] = {}
+        self._holders: Counter[int] = Counter()
+        self._sizes: dict[int, int] = {}
+        self._total = 0
 
     def __contains__(self, key: str) -> bool:
         """Whether a solution is in memory."""
@@ -137,11 +140,11 @@ class SolutionCache:
             with self.disk.claim(key):
                 found = _read(self.disk.read(key), codec) or self._computed_and_written(key, compute, codec)
         account.add(*((1, 0, 0, 0.0) if found.source == "computed" else (0, 1, 1, found.seconds)))
+        self._forget(key)
         self._memory[key] = found.value, found.seconds
-        self._arrays.pop(key, None)
         self._new.add(key)
         while len(self._memory) > self._most:
-            self._memory.popitem(last=False)
+            self._forget(next(iter(self._memory)))
         return found
 
     def shrink(self, most: int) -> bool:
@@ -154,21 +157,30 @@ class SolutionCache:
         bool
             Whether anything was forgotten.
         """
-        arrays = {key: self._arrays.get(key) or arrays_of(value) for key, (value, _) in self._memory.items()}
-        self._arrays = arrays
-        holders = Counter(array for held in arrays.values() for array in held)
-        total = sum({array: size for held in arrays.values() for array, size in held.items()}.values())
+        for key, (value, _) in self._memory.items():
+            if key not in self._held:  # the others are counted already
+                self._held[key] = arrays_of(value)
+                for array, size in self._held[key].items():
+                    self._holders[array] += 1
+                    if array not in self._sizes:
+                        self._sizes[array] = size
+                        self._total += size
         unused = [key for key in self._memory if key not in self._used]
         self._used.clear()
         for number, key in enumerate(unused):
-            if total <= most:
+            if self._total <= most:
                 return number > 0
-            held = arrays[key]
-            del self._memory[key], self._arrays[key]
-            for array, size in held.items():
-                holders[array] -= 1
-                total -= 0 if holders[array] else size
+            self._forget(key)
         return bool(unused)
+
+    def _forget(self, key: str) -> None:
+        """Drop a solution, if it is there, and what it alone holds from the count."""
+        self._memory.pop(key, None)
+        for array in self._held.pop(key, ()):
+            self._holders[array] -= 1
+            if not self._holders[array]:
+                del self._holders[array]
+                self._total -= self._sizes.pop(array)
 
     def _timed(self, compute: Callable[[], T]) -> Solution[T]:
         started = time.perf_counter()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.load_sharing import SharedLoad, pair_tangent, share_load
+from fegear.contact.load_sharing import SharedLoad, pair_tangent
 from fegear.contact.roll_grids import RollGrid, RollGrids
 from fegear.geometry.relief import UNMODIFIED, Relief
 from fegear.tally import note
@@ -186,9 +186,7 @@ class Engagement:
         """Share loads, shape (L,) [N], at the positions of a grid."""
         e = self.separation(grid.contacts, cycle)
         loads = np.atleast_1d(np.asarray(load, dtype=float))
-        m = grid.matrices
-        shared = share_load(m.compliance, e, loads, m.log_slope, m.reference_load, m.tilt, m.power)
-        return Loaded(grid, loads, shared, e)
+        return Loaded(grid, loads, self.grids.share(grid, e, loads), e)
 
     @property
     def breaks(self) -> tuple[float, ...]:

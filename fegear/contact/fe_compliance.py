@@ -148,7 +148,17 @@ def chebyshev_over(lowest: float, highest: float, p: Array, q: Array, coefficien
     """A Chebyshev series in two roll lengths [m] between the same ends, shape of p and q broadcast."""
     middle, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest)
     first, second = np.broadcast_arrays((p - middle) / half, (q - middle) / half)
-    return np.asarray(np.polynomial.chebyshev.chebval2d(first, second, coefficients))
+    at = np.stack([first.ravel(), second.ravel()])
+    if first.size == 1:  # one place alone would be summed in another order than in company
+        at = np.repeat(at, 2, axis=1)
+    waves = np.empty((coefficients.shape[0], *at.shape))
+    waves[0], waves[1] = 1.0, at
+    for n in range(2, waves.shape[0]):
+        np.multiply(2.0 * at, waves[n - 1], out=waves[n])
+        waves[n] -= waves[n - 2]
+    along = np.einsum("ij,jp->ip", coefficients, waves[:, 1])
+    along *= waves[:, 0]
+    return np.asarray(along.sum(axis=0)[: first.size].reshape(first.shape))
 
 
 def finite_element_compliance(influence: GearInfluence) -> FiniteElementCompliance:

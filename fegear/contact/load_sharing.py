@@ -270,7 +270,9 @@ def _solve(problem: _Problem) -> tuple[Array, Array, int]:
     n, size = problem.diagonal.shape
     shares, approach = np.zeros((n, size)), np.zeros(size)
     index = np.arange(size)
-    active = problem.reach.copy()
+    # What is farther off than the nearest pair gives way under the whole load begins unloaded.
+    most = np.where(problem.reach & (problem.gap == 0.0), problem.diagonal, 0.0).max(axis=0)
+    active = problem.reach & (problem.gap <= most)
     v = np.where(active, 1.0 / np.maximum(active.sum(axis=0), 1), _SMALLEST_SHARE)
     steps = 0
     while index.size and steps < _MOST_STEPS:
@@ -288,10 +290,12 @@ def _solve(problem: _Problem) -> tuple[Array, Array, int]:
         done = settled.all(axis=0) & (close | straight)
         if done.any():
             shares[:, index[done]], approach[index[done]] = np.where(stays, new, 0.0)[:, done], z[done]
-        left = np.flatnonzero(~done)
-        index, problem = index[left], problem.only(left)
-        active = (stays | enters)[:, left]
-        v = np.where(stays, np.minimum(new, 1.0), _SMALLEST_SHARE)[:, left]
+        active = stays | enters
+        v = np.where(stays, np.minimum(new, 1.0), _SMALLEST_SHARE)
+        if done.any():
+            left = np.flatnonzero(~done)
+            index, problem = index[left], problem.only(left)
+            active, v = active[:, left], v[:, left]
     if index.size:
         shares[:, index], approach[index] = _enumerate(problem)
     return shares, approach, steps

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fegear.contact.load_sharing import share_load
 from fegear.contact.meshing import Contacts, Meshing
 
 if TYPE_CHECKING:
@@ -17,10 +18,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.arrays import Array, Mask
+    from fegear.contact.load_sharing import SharedLoad
     from fegear.contact.pair_compliance import PairCompliance, PairMatrices
 
 #: So many grids are kept for each pair: those of its history, its table, its quadrature, its stiffness, for two loads.
 _KEPT = 8
+#: So many of the states under load that were found last.
+_STATES = 2
 #: Of longer ones none: they serve one question of a design.
 _LONGEST = 4000
 #: A grid that shares this part of its positions with one that is kept takes their columns from it.
@@ -55,6 +59,15 @@ class _Kept(NamedTuple):
     column: NDArray[np.intp]
 
 
+class _Shared(NamedTuple):
+    """Loads that were shared last."""
+
+    grid: RollGrid
+    separation: Array
+    load: Array
+    found: SharedLoad
+
+
 class RollGrids:
     """Contacts and compliances of one pair, of which the grids asked for last are kept.
 
@@ -67,6 +80,7 @@ class RollGrids:
     def __init__(self, compliance: PairCompliance, corner_contact: bool) -> None:
         self._compliance, self._corner_contact = compliance, corner_contact
         self._kept: tuple[_Kept, ...] = ()
+        self._shared: tuple[_Shared, ...] = ()
 
     def __reduce__(self) -> tuple[type[RollGrids], tuple[PairCompliance, bool]]:
         """Travel to other processes without what is kept."""
@@ -110,6 +124,16 @@ class RollGrids:
         outside = (x < start) | (x > start + pitch)
         contacts = self.meshing.contacts(np.where(outside, self.meshing.reduced(x), x))
         return RollGrid(x, contacts, self._compliance.matrices(contacts))
+
+    def share(self, grid: RollGrid, separation: Array, load: Array) -> SharedLoad:
+        """Share loads, shape (L,) [N], at the positions of a grid: for root stress the same ones as just before."""
+        for one in self._shared:
+            if one.grid is grid and np.array_equal(one.load, load) and np.array_equal(one.separation, separation):
+                return one.found
+        m = grid.matrices
+        found = share_load(m.compliance, separation, load, m.log_slope, m.reference_load, m.tilt, m.power)
+        self._shared = (*self._shared[-_STATES + 1 :], _Shared(grid, separation, load, found))
+        return found
 
     def _with_known(self, x: Array) -> RollGrid:
         """Columns of a kept grid where it has the same positions, new ones elsewhere."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import tempfile
 import time
 from pathlib import Path
@@ -23,6 +24,7 @@ from fegear.window.order import in_order
 from fegear.window.sent import Sent
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from multiprocessing.connection import Connection
 
     from fegear.case.reading import Scene
@@ -36,6 +38,8 @@ from fegear.window.jobs import Asked, Job
 _STROKE = 1.5
 #: A value that has not moved for so long stands still [s].
 _STILL = 0.2
+#: After so many answers to a value being moved what is kept is bounded again.
+_STROKES = 8
 #: Bytes that results in memory may take beside those of the present case; a plane gear takes some 35 MB, and comes
 #: back from the folder of solved teeth.
 _MOST = 120_000_000
@@ -63,6 +67,8 @@ class Worker:
         self._asked: Asked | None = None
         self._laid, self._sent = 0, Sent()
         self._maps = HarrisMaps()
+        self._untidy = 0
+        self._later: list[Callable[[], None]] = []
 
     def serve(self) -> None:
         """Answer jobs until nobody is there to ask."""
@@ -82,7 +88,8 @@ class Worker:
     def answer(self, job: Job) -> None:
         """Do one job."""
         self._number, self._begun, self._wait_before = job.number, time.monotonic(), 0
-        self._asked = job.asked if isinstance(job, Compute) else None
+        self._asked, self._later = (job.asked if isinstance(job, Compute) else None), []
+        moving = self._asked is not None and self._asked.moving
         self._inbox.watch(self._gives_way if isinstance(job, Compute) else None, Worker._do.__code__)
         try:
             self._do(job)
@@ -100,6 +107,13 @@ class Worker:
         finally:
             self._inbox.watch(None)
             self._asked = None
+            self._tidy(moving)
+
+    def _tidy(self, moving: bool) -> None:
+        """Bound what is kept; while a value moves the next answer waits, and each adds little."""
+        self._untidy = self._untidy + 1 if moving else _STROKES
+        if self._untidy >= _STROKES:
+            self._untidy = 0
             if self._cache.shrink(_MOST):
                 _give_back()
 
@@ -119,6 +133,7 @@ class Worker:
     def begin(self, title: str, number: int, count: int) -> None:
         """Tell that a task begins; what nobody waits for does not begin while a value moves."""
         if number == self._wait_before:
+            self._tell_later()
             self._wait_before = -1
             self._inbox.wait(_STILL)
         self._inbox.look()
@@ -160,13 +175,9 @@ class Worker:
             on_gears = dict.fromkeys(map(str, more), 0.0)  # what is switched on there follows a value that moves
             plan, at_once = in_order(plan, scene, (*asked.sight, *on_gears), {**self._seconds, **on_gears})
             self._wait_before = at_once + 1 if asked.moving and at_once < len(plan.steps) else 0
-            pairs = hands_of(scene)
-            meshes = {name: one["mesh"] for name, one in pairs.items()}
-            for name, one in pairs.items():  # outlines are long, and most changes leave them as they are
-                if self._meshes.get(name) == one["mesh"]:
-                    one["mesh"] = None
-            self._meshes = meshes
-            self._say("hands", pairs=pairs)
+            self._later.append(lambda: self._tell_hands(scene))
+            if not asked.moving:
+                self._tell_later()
             for content in () if asked.moving else at_once_told:
                 self._say("meshed", **content)
             self._on_gears = {task: data for task, data in self._on_gears.items() if str(task) in tasks}
@@ -175,6 +186,22 @@ class Worker:
             scene, plan, self, cache=self._cache, found=(lambda task, outcome: self._found(scene, plan, task, outcome))
             if told else None,
         )  # fmt: skip
+
+    def _tell_later(self) -> None:
+        """Tell what comes behind the answers while a value moves: the page itself moves what is in the hand."""
+        later, self._later = self._later, []
+        for tell in later:
+            tell()
+
+    def _tell_hands(self, scene: Scene) -> None:
+        """Tell what is changed by hand."""
+        pairs = hands_of(scene)
+        meshes = {name: one["mesh"] for name, one in pairs.items()}
+        for name, one in pairs.items():  # outlines are long, and most changes leave them as they are
+            if self._meshes.get(name) == one["mesh"]:
+                one["mesh"] = None
+        self._say("hands", pairs=pairs)
+        self._meshes = meshes
 
     def _draft(self, asked: Asked, scene: Scene, plan: Plan) -> None:
         """Tell a first answer where a gear has to be solved anew."""
@@ -189,6 +216,7 @@ class Worker:
     def _compute(self, asked: Asked) -> None:
         started = time.perf_counter()
         results = self._results(asked, told=True)
+        self._tell_later()
         seconds = {str(task): (one.seconds, one.origin) for task, one in results.timings.items()}
         tolerance = results.scene.case.accuracy.tolerance
         self._seconds.update({str(task): one.when_computed for task, one in results.timings.items()})
@@ -206,8 +234,9 @@ class Worker:
         from fegear.output.report.blocks import Values
         from fegear.output.report.rendering import fragment
 
-        if isinstance(outcome.data, LOADED) and self._asked is not None and self._asked.moving:
-            self._say("load_now", **load_now_of(task.subject, outcome.data))
+        data = outcome.data
+        if isinstance(data, LOADED) and self._asked is not None and self._asked.moving:
+            self._later.append(lambda: self._say("load_now", **load_now_of(task.subject, data)))
         title = next(step.stage.title for step in plan.steps if step.task == task)
         figures = [one for one in outcome.figures if isinstance(one, Figure) and one.drawable_in_page]
         values = Values(outcome.values, scene.case.accuracy.tolerance)
@@ -327,7 +356,6 @@ def scene_of(asked: Asked) -> Scene:
 def _give_back() -> None:
     """Hand freed memory back to the system; the C library keeps it otherwise, in pieces."""
     import ctypes
-    import gc
 
     gc.collect()
     with contextlib.suppress(OSError, AttributeError, TypeError):  # only glibc has it
@@ -346,6 +374,8 @@ def _load() -> None:
     import fegear.contact
     import fegear.design
     import fegear.fem  # noqa: F401
+
+    gc.freeze()  # what is loaded stays: the collector need not look through it again and again
 
 
 def serve(connection: Connection, folder: str) -> None:
