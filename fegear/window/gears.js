@@ -128,6 +128,8 @@ const fegearGears = (() => {
       told.textContent = found.length ? found.join(", ") : `roll position ${(first * 1e3).toFixed(3)} mm`;
     }
     new ResizeObserver(() => draw()).observe(stage);
+    let due = 0; // at most once in a frame
+    kept.soon = () => { due ||= requestAnimationFrame(() => { due = 0; draw(); }); };
     kept.draw = draw;
     kept.take = more.take;
     kept.retell = more.tell;
@@ -296,6 +298,6 @@ const fegearGears = (() => {
       }
     },
     frames: (pair) => shown.get(pair)?.frames ?? [],
-    loads({ pair, x, load }) { loadsOf.set(pair, { x, load }); shown.get(pair)?.draw(); },
+    loads({ pair, x, load }) { loadsOf.set(pair, { x, load }); shown.get(pair)?.soon(); },
   };
 })();

@@ -71,6 +71,9 @@ const fegearHands = (() => {
   function reliefTools(figure, relief) {
     let tools = figure.querySelector(".tools");
     if (!tools) { tools = document.createElement("p"); tools.className = "tools"; figure.append(tools); }
+    const offered = JSON.stringify([relief.gear, relief.given, relief.usual, relief.over_face, relief.on]);
+    if (tools.dataset.offered === offered) return; // most changes leave them as they are
+    tools.dataset.offered = offered;
     tools.replaceChildren();
     for (const end of ["tip", "root"]) {
       if (relief.given.includes(end)) continue;
@@ -134,8 +137,8 @@ const fegearHands = (() => {
       const kept = shown.get(pair), section = sections.get(`hand ${pair}`);
       kept.mesh.set(content.mesh);
       kept.load.set(content.load);
-      const tools = kept.host.querySelector(".pair-tools");
-      tools.replaceChildren(...(!content.designs && content.load ? [
+      const tools = kept.host.querySelector(".pair-tools"), offered = content.load ? `${!!content.designs} ${content.reliefs.length}` : "";
+      if (kept.offered !== offered) tools.replaceChildren(...(!content.designs && content.load ? [
         Object.assign(document.createElement("span"), { className: "quiet", textContent: "Reliefs by theory and the nearest that can be ground are those of plane teeth; tip relief, crowning and slope of gears with a width are what the result flank-design finds." }),
       ] : content.reliefs.length === 1 && content.load ? [
         button("Give the driven gear a name of its own", "Driver and driven are one gear of the case; relief by theory gives each its own", () => emitEvent("name_driven", { pair })),
@@ -143,6 +146,7 @@ const fegearHands = (() => {
         button("Remove the transmission error", "Reliefs of both gears that leave none at this load (Mark, Eq. 4.6), as tables of the case", () => emitEvent("design", { pair, how: "exact" })),
         button("Nearest that can be ground", "Linear or parabolic tip reliefs of both gears that leave the least at this load", () => emitEvent("design", { pair, how: "ground" })),
       ] : []));
+      kept.offered = offered;
       for (const relief of content.reliefs) {
         const key = relief.figure.key, text = JSON.stringify(relief);
         if (section.shown.get(key) === text) continue;

@@ -80,14 +80,16 @@ const fegearLayers = (() => {
 
   // ---- gears ---------------------------------------------------------------------------------------------------------
   function gears(canvas, view, shown) { // view: half width and height [mm] and the pair; shown: what is on, and the place
+    const { stress, deformed, tool, place, factor, z = 0 } = shown, nothing = !stress && !deformed && !tool;
+    if (nothing && canvas.dataset.empty) return;
+    canvas.dataset.empty = nothing ? "yes" : "";
     const box = canvas.getBoundingClientRect(), ratio = devicePixelRatio || 1;
     const wide = Math.round(box.width * ratio), tall = Math.round(box.height * ratio);
     if (canvas.width !== wide || canvas.height !== tall) Object.assign(canvas, { width: wide, height: tall });
     const context = canvas.getContext("2d");
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, wide, tall);
-    const { stress, deformed, tool, place, factor, z = 0 } = shown;
-    if (!stress && !deformed && !tool) return;
+    if (nothing) return;
     const scale = Math.min(wide / (2 * view.wide), tall / (2 * view.tall)), pixel = ratio / scale;
     const look = getComputedStyle(canvas), line = { driver: look.getPropertyValue("--driver"), driven: look.getPropertyValue("--driven") };
     const d = view.data, first = d.start + place * d.base_pitch - z * 1e-3 * d.twist; // in the section at z

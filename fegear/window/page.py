@@ -40,6 +40,7 @@ def _serve_files() -> None:
     for folder, name in (
         (report, "figure.js"),
         (report, "page.css"),
+        (own, "moved.js"),
         (own, "window.js"),
         (own, "layers.js"),
         (own, "gears.js"),
@@ -158,6 +159,6 @@ def show(bench: Bench) -> None:
     _serve_files()
     for name in ("page.css", "window.css"):
         ui.add_head_html(f'<link rel="stylesheet" href="{_AT}/{name}">')
-    for name in ("figure.js", "window.js", "layers.js", "gears.js", "hands.js"):
+    for name in ("figure.js", "moved.js", "window.js", "layers.js", "gears.js", "hands.js"):
         ui.add_head_html(f'<script src="{_AT}/{name}"></script>')
     Page(bench)

@@ -2,7 +2,7 @@
 // The results side of the page: keeps each task's section, and changes of it what has changed.
 const fegear = (() => {
   const $ = (id) => document.getElementById(id);
-  const sections = new Map(); // task -> { element, specs, shades }
+  const sections = new Map(); // task -> { element, specs, darker, ... }
   const { dark, shadesOf, draw, drop } = fegearFigure;
   let template = null;
   const made = (tag, cls, text) => {
@@ -28,7 +28,11 @@ const fegear = (() => {
   const seen = new Set();
   let telling = 0;
   const sight = new IntersectionObserver((entries) => {
-    for (const { target, isIntersecting } of entries) isIntersecting ? seen.add(target.dataset.task) : seen.delete(target.dataset.task);
+    for (const { target, isIntersecting } of entries) {
+      const { task } = target.dataset, kept = sections.get(task);
+      if (isIntersecting) seen.add(task); else seen.delete(task);
+      if (isIntersecting && kept?.late) line = line.then(() => put(kept));
+    }
     clearTimeout(telling);
     telling = setTimeout(() => emitEvent("sight", { tasks: [...seen].filter((task) => sections.has(task)) }), 300);
   });
@@ -41,9 +45,35 @@ const fegear = (() => {
       element.hidden = true;
       $("results").append(element);
       sight.observe(element);
-      sections.set(task, { element, specs: new Map(), shown: new Map(), darker: {} });
+      sections.set(task, { element, specs: new Map(), drawn: new Map(), darker: {}, late: null, dim: 0 });
     }
     return sections.get(task);
+  }
+
+  // A page that flickers at every step of a moved value is no use: only what takes a while is dimmed.
+  const AWHILE = 250; // ms
+  function wait(kept) {
+    kept.dim ||= setTimeout(() => kept.element.classList.add("stale"), AWHILE);
+  }
+  function answered(kept) {
+    clearTimeout(kept?.dim);
+    if (kept) kept.dim = 0;
+    kept?.element.classList.remove("stale");
+  }
+
+  function otherTexts(old, now) { // texts in which two elements differ; null if they differ in more
+    if (old.nodeName !== now.nodeName || old.childNodes.length !== now.childNodes.length) return null;
+    if (old.nodeType === Node.TEXT_NODE) return old.data === now.data ? [] : [[old, now.data]];
+    if (old.attributes && !old.cloneNode().isEqualNode(now.cloneNode())) return null;
+    const found = [...old.childNodes].map((one, i) => otherTexts(one, now.childNodes[i]));
+    return found.includes(null) ? null : found.flat();
+  }
+  function renew(host, html) { // made and escaped by the report's own templates
+    const now = host.cloneNode();
+    now.innerHTML = html;
+    const others = otherTexts(host, now);
+    if (others) for (const [text, words] of others) text.data = words;
+    else host.replaceChildren(...now.childNodes);
   }
 
   // plotly.js is large: it is fetched once the form can be used, and figures wait for it.
@@ -73,21 +103,44 @@ const fegear = (() => {
     owners.set(figure, { kept, key });
     late.delete(figure);
     if (drawn && away.has(figure)) { late.add(figure); return; } // painted when it comes into sight
-    figure.querySelector(".plot-title").textContent = spec.heading;
-    figure.querySelector("figcaption").textContent = spec.caption;
-    place.setAttribute("aria-label", `${spec.heading}. ${spec.caption}`);
+    const words = `${spec.heading}. ${spec.caption}`;
+    if (place.ariaLabel !== words) {
+      figure.querySelector(".plot-title").textContent = spec.heading;
+      figure.querySelector("figcaption").textContent = spec.caption;
+      place.ariaLabel = words;
+    }
+    kept.drawn?.set(key, spec);
+    if (drawn && moving && await fegearMoved.move(place, spec, mode)) return;
     const shaded = shadesOf(JSON.stringify({ data: spec.data, layout: spec.layout }), mode, kept.darker);
     const look = shadesOf(JSON.stringify(template), mode, kept.darker);
     shaded.layout.uirevision = key; // what the reader has zoomed into stays
+    const roomy = drawn && moving ? fegearMoved.roomy(place, spec, shaded) : {};
     await draw(place, { key, ...shaded }, look, drawn);
+    fegearMoved.whole(place, spec, mode, roomy);
     place.dataset.count = Number(place.dataset.count || 0) + 1;
+  }
+
+  async function put(kept) { // what was found last
+    const { title, values, figures, draft } = kept.late, keys = figures.map((one) => one.key);
+    kept.late = null;
+    for (const [name, words] of [["h2", title], [".draft", draft ?? ""]]) {
+      const one = kept.element.querySelector(name);
+      if (one.textContent !== words) one.textContent = words;
+    }
+    renew(kept.element.querySelector(".numbers"), values);
+    kept.element.hidden = !values && !figures.length;
+    for (const figure of [...kept.element.querySelectorAll(".figures figure")]) {
+      if (!keys.includes(figure.dataset.key)) { drop(figure); kept.specs.delete(figure.dataset.key); kept.drawn.delete(figure.dataset.key); }
+    }
+    for (const key of keys) if (kept.drawn.get(key) !== kept.specs.get(key)) await paint(kept, key);
   }
 
   const FOLLOWED = 250; // ms
   const loadsNow = new Map(); // pair -> what its load has come to
   let following = null;
+  let moving = false; // whether a value is being moved
   let ended = ""; // what the last computation came to
-  const say = (words) => { if ($("state")) $("state").textContent = words; };
+  const say = (words) => { if ($("state") && $("state").textContent !== words) $("state").textContent = words; };
   const heard = {
     hands(content) { return fegearHands.show(content, { made, paint, sections }); },
     harris(content) {
@@ -104,7 +157,11 @@ const fegear = (() => {
       loadsNow.set(content.pair, content);
     },
     meshed(content) { fegearGears.meshed(content); },
-    asked() { document.body.classList.add("computing"); say("computing ..."); },
+    asked(content) {
+      if (content.moving !== undefined) ({ moving } = content); // not asked beside the case
+      document.body.classList.add("computing");
+      say("computing ...");
+    },
     begin({ number, count, title }) { say(`${number} of ${count}: ${title} ...`); },
     plan({ tasks }) {
       fegearGears.plan(tasks);
@@ -112,30 +169,18 @@ const fegear = (() => {
         if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { sight.unobserve(kept.element); seen.delete(task); drop(kept.element); sections.delete(task); }
       }
       const host = $("results"), wanted = tasks.map((task) => section(task).element);
-      for (const element of wanted) element.classList.add("stale");
+      for (const task of tasks) wait(sections.get(task));
       if (wanted.some((element, i) => host.children[i] !== element)) host.append(...wanted);
     },
-    async found({ task, title, values, figures, darker, loads, draft }) {
-      const kept = section(task);
+    async found(content) {
+      const { task, figures, darker, loads } = content, kept = section(task);
       if (loads) fegearGears.loads(loads);
+      answered(kept);
       kept.darker = darker;
-      kept.element.querySelector("h2").textContent = title;
-      kept.element.querySelector(".draft").textContent = draft ?? "";
-      kept.element.querySelector(".numbers").innerHTML = values; // made and escaped by the report's own templates
-      kept.element.hidden = !values && !figures.length;
-      const keys = figures.map((one) => one.key);
-      for (const figure of [...kept.element.querySelectorAll(".figures figure")]) {
-        if (!keys.includes(figure.dataset.key)) { drop(figure); kept.specs.delete(figure.dataset.key); }
-      }
-      for (const spec of figures) {
-        if (spec.same) continue;
-        const text = JSON.stringify([spec.data, spec.layout, spec.heading, spec.caption]);
-        if (kept.shown.get(spec.key) === text && kept.specs.has(spec.key)) continue;
-        kept.shown.set(spec.key, text);
-        kept.specs.set(spec.key, spec);
-        await paint(kept, spec.key);
-      }
-      kept.element.classList.remove("stale");
+      for (const spec of figures) if (!spec.same) kept.specs.set(spec.key, spec);
+      kept.late = content;
+      // While a value moves, what is out of sight waits until it is in sight or all is at rest.
+      if (!moving || kept.element.hidden || seen.has(task)) await put(kept);
     },
     picture({ task, key, heading, caption, data }) {
       const kept = section(task), host = kept.element.querySelector(".stills");
@@ -151,13 +196,17 @@ const fegear = (() => {
       figure.querySelector("img").src = `data:image/png;base64,${data}`;
       figure.querySelector("img").alt = `${heading}. ${caption}`;
       kept.element.hidden = false;
-      kept.element.classList.remove("stale");
+      answered(kept);
     },
-    done({ remarks, told, moving, seconds, tolerance, level }) {
-      say(ended = `${seconds.toFixed(2)} s at tolerance ${Number(tolerance.toPrecision(3))}${level}`);
-      if (moving) return; // remarks and errors come when it stands still
+    async done({ remarks, told, moving: goesOn, seconds, tolerance, level }) {
+      ended = `${seconds.toFixed(2)} s at tolerance ${Number(tolerance.toPrecision(3))}${level}`;
+      if (goesOn) return; // remarks and errors come when it stands still
+      say(ended);
+      for (const kept of sections.values()) {
+        answered(kept);
+        for (const key of kept.specs.keys()) if (fegearMoved.rough($(`plot-${key}`))) await paint(kept, key);
+      }
       document.body.classList.remove("computing");
-      for (const { element } of sections.values()) element.classList.remove("stale");
       // A remark stands where its result is shown, else with the pair or gear that it is about; the rest above all.
       document.querySelectorAll(".remarks").forEach((one) => one.remove());
       const placed = new Set();
@@ -184,7 +233,7 @@ const fegear = (() => {
     async compared({ sections: parts, figures, darker }) {
       say(ended);
       const host = $("compared");
-      const kept = sections.get("compared") ?? { element: made("section", "task"), specs: new Map(), shown: new Map() };
+      const kept = sections.get("compared") ?? { element: made("section", "task"), specs: new Map(), };
       if (!kept.element.isConnected) {
         kept.element.append(made("h2", "", "A, pinned, and B, as it is now"), made("div", "numbers"), made("div", "figures"));
         host.replaceChildren(kept.element);
@@ -199,13 +248,12 @@ const fegear = (() => {
     },
     async designed({ pair, told, figures, darker }) {
       say(ended);
-      say(ended);
       const key = `hand design ${pair}`;
       if (!sections.get(key)?.element.isConnected) {
         const element = made("section", "task design");
         element.append(made("h2", "", `Relief of pair ${pair} by theory`), made("p"), made("div", "figures"));
         $("designed").append(element);
-        sections.set(key, { element, specs: new Map(), shown: new Map(), darker: {} });
+        sections.set(key, { element, specs: new Map(), darker: {} });
       }
       const kept = sections.get(key);
       kept.element.querySelector("p").textContent = told;

@@ -282,3 +282,58 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
         one for one in browser.complaints if "favicon" not in one and "WebSocket" not in one and "ERR_" not in one
     ] == []
     assert served.end(signal.SIGHUP) == 128 + signal.SIGTERM  # the terminal is closed: it ends in order
+
+
+#: What a page shows of every figure, each scrolled to so that it is painted, and of every table.
+STATE = """(async () => {
+  const soon = () => new Promise((done) => setTimeout(done, 120)), found = {};
+  for (const plot of document.querySelectorAll(".plot")) {
+    plot.scrollIntoView({ block: "center", behavior: "instant" });
+    await soon();
+    const axes = Object.entries(plot._fullLayout).filter(([name]) => /^[xy]axis/.test(name));
+    found[plot.id] = [plot.data, plot.layout, axes.map(([name, one]) => [name, one.range]), plot.ariaLabel,
+      [...plot.querySelectorAll(".plot path")].map((one) => one.getAttribute("d"))];
+  }
+  found.values = [...document.querySelectorAll(".numbers")].map((one) => one.innerHTML);
+  return JSON.stringify(found);
+})()"""
+
+
+@pytest.mark.long
+def test_a_page_on_which_values_were_moved_shows_what_a_fresh_page_shows(browser, serve, tmp_path):
+    path = tmp_path / "drive.toml"
+    path.write_text(TEXT.replace('["load-sharing"]', '["load-sharing", "transmission-error"]'))
+    served = serve(str(path))
+    go(browser, served.address)
+    browser.until(f"{DRAWN} && {field('pair.I.load')} !== null")
+    settled = json.loads(browser.run(STATE))
+    browser.run("window.cheap = 0; const animate = Plotly.animate;"
+                "Plotly.animate = (...given) => { cheap += 1; return animate(...given); }")  # fmt: skip
+
+    def change(script: str, task: str) -> None:
+        browser.run(f"new Promise((done) => {{ const hear = fegear.hear; fegear.hear = (what, content) => {{"
+                    f"const line = hear(what, content); if (content.task === '{task} of I') {{"
+                    f"fegear.hear = hear; line.then(done); }} return line; }}; {script} }})")  # fmt: skip
+
+    for i in range(12):  # near one figure, then near the other
+        browser.run(f"document.querySelectorAll('#results .plot')[{i // 6}]"
+                    ".scrollIntoView({block: 'center', behavior: 'instant'})")  # fmt: skip
+        change(f"emitEvent('load', {{pair: 'I', key: 'load', text: '{5 + 0.03 * i:.2f} kN', moving: true}})",
+               "transmission-error")  # fmt: skip
+    for i in range(12):
+        change("emitEvent('relief', {gear: 'a', end: 'tip', start: 28,"
+               f"amount: {(4 + 0.1 * i) * (1 + i // 8)}, moving: true}})", "transmission-error")  # fmt: skip
+    assert browser.run("cheap") >= 6
+    # The last place again, let go of: nothing is sent anew but that it is at rest.
+    change(f"emitEvent('relief', {{gear: 'a', end: 'tip', start: 28, amount: {(4 + 0.1 * 11) * 2}, moving: false}})",
+           "transmission-error")  # fmt: skip
+    browser.until(IDLE)
+    moved = json.loads(browser.run(STATE))
+    go(browser, served.address)
+    browser.until(DRAWN)
+    fresh = json.loads(browser.run(STATE))
+    assert moved.keys() == fresh.keys() == settled.keys()
+    for name, one in fresh.items():
+        assert moved[name] == one, name
+    assert [name for name, one in fresh.items() if settled[name] == one] == []
+    served.end()
