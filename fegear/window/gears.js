@@ -277,7 +277,7 @@ const fegearGears = (() => {
           allow(vain);
         }
         tell();
-        draw();
+        kept.soon(); // stress, deformed teeth and loads of one answer come one after the other
       },
     };
   }
