@@ -94,9 +94,9 @@ def machine_code(function: Callable[..., Any], made_from: str = "") -> Callable[
         it was made from fit; without a folder to keep it in, each process compiles for itself.
     """
     try:
-        made = numba.njit(cache=True)(function)
+        made = numba.njit(cache=True, no_cfunc_wrapper=True)(function)  # nobody calls it from C
     except RuntimeError:  # neither the package's folder nor the user's can be written to
-        return numba.njit(function)
+        return numba.njit(no_cfunc_wrapper=True)(function)
     kept = made._cache  # noqa: SLF001  (numba has no open door to it)
     files = kept._cache_file  # noqa: SLF001
     kept._cache_file = _CheckedFiles(kept.cache_path, kept._impl.filename_base, (files._source_stamp, made_from))  # noqa: SLF001

@@ -103,7 +103,8 @@ def propagate(
     if tangents:
         X[:, 1 : n + 1], V[:, n + 1 :] = np.eye(n), np.eye(n)
     active = np.zeros(packed.springs, dtype=np.int8) if status is None else np.array(status, dtype=np.int8)
-    rule = kernel.Rule(order, tolerance, longest, record or 20_000 + int(200 * duration), peaks, record)
+    friction = bool(packed.poly[:, 2:].any())
+    rule = kernel.Rule(order, tolerance, longest, record or 20_000 + int(200 * duration), peaks, record, friction)
     found: kernel.Travelled = kernel.compiled()(
         packed.train_arrays, packed.mesh_arrays, packed.spring_arrays, radau(), rule,
         X, V, start, start + duration, active, status is None,

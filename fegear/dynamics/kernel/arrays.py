@@ -57,7 +57,10 @@ class Collocation(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """How to step: Taylor order, tolerance, longest step, most steps, whether to look for peaks, steps to record."""
+    """How to step: Taylor order, tolerance, longest step, most steps, whether to look for peaks, steps to record.
+
+    `friction`: whether any spring has friction torques.
+    """
 
     order: int
     tolerance: float
@@ -65,6 +68,7 @@ class Rule(NamedTuple):
     max_steps: int
     want_peaks: bool
     keep: int
+    friction: bool
 
 
 class Travelled(NamedTuple):

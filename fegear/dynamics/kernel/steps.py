@@ -50,11 +50,6 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
     record_t = np.zeros(rule.keep + 1)
     record_x = np.zeros((rule.keep, order + 1, n))
     record_status = np.zeros((rule.keep, count), np.int8)
-    friction = False
-    for p in range(springs.poly.shape[0]):
-        for k in range(degree + 1):
-            if springs.poly[p, 2, k] != 0.0 or springs.poly[p, 3, k] != 0.0:
-                friction = True
     long_steps = math.isinf(rule.longest) and radau.nodes.shape[0] <= order - 2
     t, steps, events, code = t0, 0, 0, DONE
     # what a collocation step costs in Taylor steps: a long train needs a longer stretch for it
@@ -100,7 +95,7 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
                 pushes = side == 0.0 or side * gap > 0.0 or (gap == 0.0 and side * slope > 0.0)
                 status[s] = 1 if exists[s] == 1 and pushes else 0
             check[s] = 0
-        motion_series(train, meshes, springs, work, status, x, v, friction)
+        motion_series(train, meshes, springs, work, status, x, v, rule.friction)
         h = taylor_step(train, rule, X, x, v)
         waited += 1
         if long_steps and waited >= wait and limit - t > worth * h:
@@ -114,7 +109,7 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
                     reach = shorter
                 else:
                     reach, wait, waited = 0.0, min(2 * wait, LONGEST_WAIT * shortest), 0
-                motion_series(train, meshes, springs, work, status, x, v, friction)
+                motion_series(train, meshes, springs, work, status, x, v, rule.friction)
         to_limit = h >= limit - t
         if to_limit:
             h = limit - t
