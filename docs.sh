@@ -5,4 +5,6 @@ root=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 . "$root/setup.sh"
 fegear_setup "${FEGEAR_VENV:-$root/.venv}" docs
 cd "$root"
+# Pages and cases start the program some hundred times: its bytecode is kept.
+unset PYTHONDONTWRITEBYTECODE
 exec "${FEGEAR_VENV:-$root/.venv}/bin/python" -m mkdocs build --strict "$@"
