@@ -4,6 +4,7 @@ Tests that run another program ask the fixture `program` for it: where it is mis
 that installs it. ``--no-skips`` lets no test be skipped.
 """
 
+import gc
 import os
 import re
 import shutil
@@ -55,7 +56,7 @@ def scheduler():
     )
     yield process.stdout.readline().strip()
     process.stdin.close()
-    process.wait(timeout=30)
+    process.wait(timeout=60)
 
 
 def pytest_addoption(parser):
@@ -87,6 +88,17 @@ def is_long_run(config):
 
 def pytest_configure(config):
     settings.load_profile("long" if is_long_run(config) else "ordinary")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Collecting makes a million objects that all stay: they are not searched for garbage while it lasts, nor later."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 #: Seconds after which a browser that does not answer counts as hung.
-_PATIENCE = 20.0
+_PATIENCE = 60.0
 #: The protocol's file descriptors are 3 and 4: puts the two pipes there and becomes the browser.
 _LAUNCH = """
 import fcntl, os, sys
@@ -94,7 +94,7 @@ class Browser:
         with contextlib.suppress(OSError):
             os.close(self._write)
         try:
-            self._process.wait(5)
+            self._process.wait(20)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()

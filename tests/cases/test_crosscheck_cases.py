@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from helical_gears import helical_gear
+from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.cli import app
@@ -34,7 +35,7 @@ CASES = ROOT / "cases"
 
 def run(name, *overrides):
     scene = read_scene(CASES / f"{name}.toml", overrides)
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     tables = {table.name: {column.name: column.values for column in table.columns} for table in results.tables}
     return tables, {value.name: value.value for value in results.values}, results
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
@@ -21,7 +22,7 @@ POUND = 4.4482216152605
 @cache
 def run(name, *overrides):
     scene = read_scene(CASES / f"{name}.toml", overrides)
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     tables = {table.name: {column.head: column.values for column in table.columns} for table in results.tables}
     return tables, {value.name: value.value for value in results.values}, results
 
@@ -188,7 +189,7 @@ def test_a_mesh_like_another_is_one_without_modification(tmp_path):
     for into, overrides in ((values, ()), (plain, ("results=['transmission-error']", "effects.relief=false",
                                                    "pair.I.load='3500 N'"))):  # fmt: skip
         scene = read_scene(path, overrides)
-        into.update({v.name: v.value for v in run_plan(scene, make_plan(scene, STAGES)).values})
+        into.update({v.name: v.value for v in run_plan(scene, make_plan(scene, STAGES), cache=CACHE).values})
     assert values["II.mean_force"] == pytest.approx(7000.0, rel=1e-6)
     assert values["II.static_te_peak_to_peak"] == pytest.approx(plain["I.te_peak_to_peak"], rel=1e-3)
     assert values["I.static_te_peak_to_peak"] != pytest.approx(plain["I.te_peak_to_peak"], rel=0.1)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.cli import app
@@ -19,7 +20,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 def run(name, *overrides):
     scene = read_scene(CASES / f"{name}.toml", overrides)
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     tables = {table.name: {column.name: column.values for column in table.columns} for table in results.tables}
     return tables, {value.name: value.value for value in results.values}, results
 

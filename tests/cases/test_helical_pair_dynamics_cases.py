@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
@@ -17,7 +18,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 def run(case, *overrides):
     scene = read_scene(case if isinstance(case, Path) else CASES / f"{case}.toml", overrides)
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     tables = {table.name: {column.name: column.values for column in table.columns} for table in results.tables}
     figures = {figure.key: figure for outcome in results.outcomes.values() for figure in outcome.figures}
     return tables, {value.name: value.value for value in results.values}, figures, results.remarks

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.reading import build_scene, read_scene
 from fegear.cli import app
@@ -24,7 +25,7 @@ CASES = Path(__file__).parents[2] / "cases"
 @functools.cache
 def run(name: str, *overrides: str):
     scene = read_scene(CASES / f"{name}.toml", overrides)
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     tables = {table.name: {column.name: column.values for column in table.columns} for table in results.tables}
     return tables, {value.name: value for value in results.values}, results
 
@@ -238,7 +239,7 @@ def test_spacing_errors_give_rotational_harmonics():
     document["pair"]["I"]["driven"] = "other"
     document["pair"]["I"]["compliance"]["of"] = "pair"
     scene = build_scene(document, "eccentric", CASES)
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     tables = {table.name: {column.name: column.values for column in table.columns} for table in results.tables}
     values = {value.name: value for value in results.values}
     rotational = tables["transmission_error_rotational_I"]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
@@ -39,7 +40,7 @@ def test_every_picture_shows_something(case, names, tmp_path):
 
     wanted = ('results=["relief", "relief-chart", "robustness"]',) if case == "nasa_relief_design" else ()
     scene = read_scene(CASES / f"{case}.toml", (*QUICK, *wanted))
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     drawing = Drawing(tmp_path / "plots")
     for task, outcome in results.outcomes.items():
         drawing.begin(task, outcome)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.reading import build_scene, read_scene
 from fegear.contact import pair_history
@@ -41,7 +42,7 @@ PAIRS = {
 @functools.cache
 def run(name: str, *overrides: str):
     scene = read_scene(CASES / f"{name}.toml", (COARSE, *PAIRS.get(name, ()), *overrides))
-    return run_plan(scene, make_plan(scene, STAGES))
+    return run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
 
 
 def columns(results, table: str) -> dict[str, np.ndarray]:
@@ -215,7 +216,7 @@ def test_sizes_of_random_pairs_and_loads(seed):
 
     def made(**chosen):
         built = scene(**chosen)
-        return run_plan(built, make_plan(built, STAGES))
+        return run_plan(built, make_plan(built, STAGES), cache=CACHE)
 
     whole = {"neighbour_coupling": True, "hertz": "load-dependent", "corner_contact": True}
     after = made(**whole)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
@@ -26,7 +27,7 @@ BASE_RADIUS = 371.3294 / 8890.0
 def run(load: float, *overrides: str):
     loaded = (f"pair.I.load='{load} N'", f"train.torque={{ motor = '{load * BASE_RADIUS} N*m' }}")
     scene = read_scene(CASES / "lin_dynamic_factor.toml", ('results=["dynamic-factor"]', SPEEDS, *loaded, *overrides))
-    return run_plan(scene, make_plan(scene, STAGES))
+    return run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
 
 
 def factors(results) -> np.ndarray:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import in_process
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -63,18 +64,16 @@ def test_the_first_commands_write_a_case_that_is_one(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["drive.toml", "fegear.schema.json"]
 
 
-def test_every_command_has_its_line_and_its_section():
+def test_every_command_has_its_line_and_its_section(tmp_path):
     from fegear.cli import COMMANDS
 
     page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     names = [command.__name__ for command, _ in COMMANDS]
     assert re.findall(r"^  \| `fegear (\w+)", README, re.MULTILINE) == names
     assert re.findall(r"^## `fegear (\w+)", page, re.MULTILINE) == names
-    program = "import sys\nfrom fegear.cli import main\nsys.argv[0] = 'fegear'\nmain()"
     for name in names:
         section = page.split(f"## `fegear {name}")[1].split("\n## ")[0]
-        command = [sys.executable, "-c", program, name, "-h"]
-        told = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+        told = in_process.fegear(name, "-h", cwd=tmp_path).stdout
         options = set(re.findall(r"^ +(?:-\w, )?(--[a-z-]+)", told, re.MULTILINE)) - {"--help", "--quiet", "--json"}
         assert {option for option in options if f"`{option}" not in section} == set(), name
 

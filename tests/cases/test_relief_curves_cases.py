@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
@@ -18,7 +19,7 @@ CASES = Path(__file__).parents[2] / "cases"
 @cache
 def run(*overrides, case="sources/lin_townsend_oswald_fig4"):
     scene = read_scene(CASES / f"{case}.toml", overrides)
-    results = run_plan(scene, make_plan(scene, STAGES))
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
     tables = {t.name: {c.head: np.asarray(c.values) for c in t.columns} for t in results.tables}
     return tables, {value.name: value.value for value in results.values}
 

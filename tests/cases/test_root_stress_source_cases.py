@@ -6,6 +6,7 @@ from typing import get_args
 
 import numpy as np
 import pytest
+from solved_once import CACHE
 
 from fegear.case.pair import RootStressName
 from fegear.case.reading import read_scene
@@ -17,9 +18,7 @@ from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
 from fegear.geometry import Gear, Tooth
 from fegear.results.catalogue import STAGES
 from fegear.results.sources import ROOT_STRESS_CITATIONS
-from fegear.solution_cache import SolutionCache
 
-CACHE = SolutionCache()
 CASES = Path(__file__).parents[2] / "cases"
 HISTORY = 'results=["root-stress-history"]'
 #: A pair in closed form throughout, and the rig with the paper's own root.

@@ -74,9 +74,9 @@ class Served:
         children = [int(one) for task in tasks for one in task.read_text().split()]
         self.process.send_signal(number)
         self.process.stdout.close()
-        code = self.process.wait(20)
+        code = self.process.wait(60)
         if number == signal.SIGKILL:  # who it leaves behind has to notice first, and is its heir's to bury
-            end = time.monotonic() + 20.0
+            end = time.monotonic() + 60.0
             while any(map(alive, children)) or any(self.scratch.iterdir()):
                 assert time.monotonic() < end
                 time.sleep(0.02)

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from fegear.errors import GeometryError
@@ -50,8 +50,8 @@ def closest_approach(gear: Gear, points, height):
         across = (px - r * phi + height * math.tan(beta)) * math.cos(beta)
         return distance_to_rack(tooth.rack, tooth.generating_shift, across, py - r)
 
-    step = 0.04 / r
-    grid = np.arange(-7.0, 7.0, 0.04) / r
+    step = 0.05 / r
+    grid = turn + np.arange(-8.5, 8.5, 0.05) / r  # a section farther up is generated later
     phi = grid[np.argmin([distance(p) for p in grid], axis=0)]
     for _ in range(24):  # the least distance is smooth enough for a search that halves its step
         step *= 0.5
@@ -78,8 +78,17 @@ def helical_gears(draw):
         assume(False)
 
 
-@settings(max_examples=25)
+#: Many teeth and steep flanks: touched 7 modules from the pitch point, and the more of them off by the helix.
+FAR = Gear(
+    Tooth(200, BasicRack(1.0, 1.25, 0.0, 15.0 * DEG), -0.3, helix_angle=33.0 * DEG), 1.0, 31.46, 8.0, Material(1.0),
+    hand="left",
+)  # fmt: skip
+
+
+@pytest.mark.examples(12, 400)
 @given(helical_gears(), st.sampled_from([0.0, 0.7, -2.3]))
+@example(FAR, 0.7)
+@example(FAR, -2.3)
 def test_the_rack_rolled_in_space_touches_every_point_of_the_section_and_cuts_into_none(gear, height):
     for name, curve in gear.tooth.outline.items():
         points = curve.points(np.linspace(curve.start, curve.end, 9))

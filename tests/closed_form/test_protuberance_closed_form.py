@@ -82,7 +82,7 @@ racks = st.builds(
 )  # fmt: skip
 
 
-@pytest.mark.examples(25, 400)
+@pytest.mark.examples(15, 400)
 @given(racks, st.integers(12, 120), st.floats(-0.3, 0.6))
 def test_the_outline_is_what_the_rolling_rack_leaves(numbers, teeth, shift):
     a, d, rho, cut, stock, p = numbers

@@ -64,7 +64,7 @@ def largest_gear_angle(pair, phi_1, n=161, zooms=9):
     st.integers(19, 60), st.integers(19, 120), st.sampled_from([0.0, 1e-6, 5.0, 20.0, 35.0]),
     st.floats(0.01, 0.15), st.sampled_from(["left", "right"]), st.sampled_from([0.0, 2e-4]),
 )  # fmt: skip
-@pytest.mark.examples(20, 400)
+@pytest.mark.examples(12, 400)
 def test_aligned_drives_transmit_exactly(n1, n2, beta, width, hand, apart):
     pair = make(n1, n2, beta, hand if beta else "spur", width, errors=Misalignment(centre_distance=apart))
     assume(pair.transverse_contact_ratio > 1.02)
@@ -92,6 +92,7 @@ def test_the_range_of_figure_8_is_that_of_a_plain_search():
 angles = st.floats(-6.0, 6.0).map(lambda a: a * ARCMIN)
 
 
+@pytest.mark.examples(25, 1000)
 @given(
     st.integers(19, 60), st.integers(19, 120), st.sampled_from([0.0, 0.5, 12.0, 30.0]), angles, angles, angles,
     st.sampled_from([0.0, 1e-4]), st.sampled_from([0.0, 2.0]), st.sampled_from([0.0, 4.0]), st.floats(0.0, 1.0),

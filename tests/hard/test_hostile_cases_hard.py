@@ -269,7 +269,7 @@ def test_an_interrupt_while_the_program_is_still_loading_is_reported_in_one_line
         "class Slow:\n"
         "    def find_spec(self, name, *rest):\n"
         "        if name == 'fegear.cli':\n"
-        "            print('loading', flush=True); time.sleep(60)\n"
+        "            print('loading', flush=True); time.sleep(600)\n"
         "sys.meta_path.insert(0, Slow())\n"
         "from fegear.__main__ import main\n"
         "main()\n"
@@ -280,7 +280,7 @@ def test_an_interrupt_while_the_program_is_still_loading_is_reported_in_one_line
     assert process.stdout is not None
     assert process.stdout.readline() == "loading\n"
     os.kill(process.pid, signal.SIGINT)
-    _, errors = process.communicate(timeout=30)
+    _, errors = process.communicate(timeout=60)
     assert process.returncode == 130
     assert errors == "fegear: interrupted; results of earlier runs are as they were.\n"
 

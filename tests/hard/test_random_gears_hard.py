@@ -120,7 +120,7 @@ def test_closed_form_compliance_grows_toward_the_tip_and_keeps_its_scale(gear, n
 
 
 # ---- finite elements ------------------------------------------------------------------------------------------------
-@pytest.mark.examples(25, 1000)
+@pytest.mark.examples(15, 1000)
 @given(gears(), st.floats(0.0, 1.0), st.floats(0.0, 1.0))
 def test_finite_elements_keep_the_laws_of_elasticity(gear, a, b):
     """Reciprocity, positive energy, linearity and Castigliano's bound, to round-off, on any gear and any mesh."""

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
+from solved_once import CACHE
 
 from fegear.case.reading import read_scene
 from fegear.dynamics.increments import dynamic_increments
@@ -30,7 +31,7 @@ ORDERS = np.arange(-LINES, LINES + 1)
 @cache
 def rig(name):
     scene = read_scene(CASES / f"{name}.toml", ("results=['gear-train']",))
-    return run_plan(scene, make_plan(scene, STAGES)).outcomes[Task("gear-train")].data
+    return run_plan(scene, make_plan(scene, STAGES), cache=CACHE).outcomes[Task("gear-train")].data
 
 
 def per_tooth(mesh):

@@ -98,6 +98,7 @@ def test_fine_settings_are_within_half_a_per_cent(case):
     assert max(off.values()) < 0.005, off
 
 
+@pytest.mark.long  # the ordinary run holds the same solver against CalculiX' kept answers, above
 def test_calculix_solves_a_small_deck_now(tmp_path, program):
     """Three teeth with free sides and a narrow face: coarse, but no sign and no direction can be wrong."""
     face, tau = 2.0, calculix.twist_of(math.radians(20.0))

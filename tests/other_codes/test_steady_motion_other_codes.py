@@ -6,13 +6,13 @@ functions, no events and no shooting, only small steps; it shares no code with t
 """
 
 import math
-import time
 from dataclasses import dataclass
 
 import numba
 import numpy as np
 import pytest
 
+from fegear.dynamics import kernel
 from fegear.dynamics.excitation import MeshExcitation
 from fegear.dynamics.lin_model import FourInertia
 from fegear.dynamics.motion_model import MotionModel
@@ -258,7 +258,11 @@ def holds(rig):
     return "periodic, slow"
 
 
-@pytest.mark.parametrize("seed", [*range(6), 313, 352])
+#: Periodic from rest and from afar, and two that end elsewhere (313, 352); four more in the long run, with 374 others.
+SEEDS = [0, 3, 313, 352, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2, 4, 5))]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_random_rigs_report_the_motion_that_the_reference_settles_on(seed):
     holds(drawn(seed))
 
@@ -318,7 +322,10 @@ def multiplier(depth, zeta, ratio):
     return float(np.abs(np.linalg.eigvals((ends[1:] - ends[0]).T)).max())
 
 
-@pytest.mark.parametrize(("depth", "zeta"), [(0.2, 0.02), (0.3, 0.02), (0.25, 0.05), (0.15, 0.02)])
+@pytest.mark.parametrize(("depth", "zeta"), [
+    pytest.param(0.2, 0.02, marks=pytest.mark.long), (0.3, 0.02), (0.25, 0.05),
+    pytest.param(0.15, 0.02, marks=pytest.mark.long),
+])  # fmt: skip
 def test_motion_in_the_principal_parametric_resonance_is_that_which_grows_out_of_it(depth, zeta):
     """The smooth motion of one period exists and is unstable; the teeth part, and a motion of two periods is left."""
     assert multiplier(depth, zeta, 2.0) > 1.01
@@ -398,16 +405,23 @@ def test_slow_decay_towards_a_motion_that_repeats_is_not_called_quasi_periodic()
 
 
 # ---- low speed ------------------------------------------------------------------------------------------------------
-def test_time_at_low_speed_is_that_of_settling():
+def test_time_at_low_speed_is_that_of_settling(monkeypatch):
     """At 0.01 rpm a period holds 10^7 natural periods; only what follows a change of teeth is vibration."""
-    steady_state(Rig(10.0, relief=1e-5).model())
-    seconds = []
+    travel, taken = kernel.compiled(), []
+
+    def counted(*arguments):
+        found = travel(*arguments)
+        taken.append(found.steps)
+        return found
+
+    monkeypatch.setattr(kernel, "compiled", lambda: counted)
+    steps = []
     for rpm in (0.1, 0.01, 0.001):
-        start = time.process_time()
+        taken.clear()
         state = steady_state(Rig(rpm, relief=1e-5).model(), tolerance=1e-6)
-        seconds.append(time.process_time() - start)
+        steps.append(sum(taken))
         assert state.kind == "periodic"
-    assert seconds[2] < 3.0 * seconds[0]
+    assert 0 < steps[2] < 3 * steps[0]
     # what is left of dynamics then is what a pair that enters with a jump of stiffness strikes: the same at any speed
     slow = steady_state(Rig(10.0, relief=1e-5).model())
     _, largest = run(Rig(10.0, relief=1e-5).numbers(), started(slow), 1, 400_000)

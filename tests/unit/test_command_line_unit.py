@@ -122,7 +122,7 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     slow = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # background jobs ignore it
         "import time, fegear.results.geometry as g\n"
-        "g.interference = lambda *a: (print('working', flush=True), time.sleep(60))\n"
+        "g.interference = lambda *a: (print('working', flush=True), time.sleep(600))\n"
         "from fegear.cli import main; main()"
     )
     process = subprocess.Popen(
@@ -136,7 +136,7 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     assert process.stdout.readline() == "working\n"
     time.sleep(0.1)
     os.kill(process.pid, signal.SIGINT)
-    _, errors = process.communicate(timeout=30)
+    _, errors = process.communicate(timeout=60)
     assert process.returncode == 130
     assert errors == "fegear: interrupted; results of earlier runs are as they were.\n"
     assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
@@ -168,7 +168,7 @@ def test_ctrl_c_while_a_sweep_starts_its_processes_is_one_line(case, tmp_path):
         "import pathlib, sys, time\n"
         "if any('spawn_main' in word for word in sys.orig_argv):\n"
         f"    pathlib.Path({str(tmp_path / 'loading')!r}).touch()\n"
-        "    time.sleep(20)\n"
+        "    time.sleep(600)\n"
     )
     # A background job of a shell without job control ignores SIGINT, and its children would inherit that.
     program = (

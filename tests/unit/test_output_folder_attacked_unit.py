@@ -177,7 +177,7 @@ def test_two_runs_at_once_are_refused_with_the_holder(tmp_path):
         with pytest.raises(InputError, match=f"another run .process {other.pid} on"):
             write(out, {})
         write(tmp_path / "elsewhere", {})
-        other.communicate(timeout=30)
+        other.communicate(timeout=60)
     assert other.returncode == 0
     write(out, {"a.csv": ""})
     assert set(contents(out)) == {"a.csv", "summary.json"}
@@ -209,7 +209,7 @@ def test_a_stop_request_clears_the_scratch_folder_away(tmp_path):
         [sys.executable, "-m", "fegear", "run", str(case), "--out", str(tmp_path / "out")],
         env=ENVIRONMENT, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    for _ in range(600):
+    for _ in range(3000):
         if (tmp_path / ".fegear-out").is_dir():
             break
         time.sleep(0.02)

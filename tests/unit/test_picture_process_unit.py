@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -91,10 +90,9 @@ def test_leaving_ends_it_whatever_it_draws(monkeypatch, tmp_path):
     monkeypatch.setattr("fegear.output.picture_process._pays", lambda: True)
     with PictureProcess() as process:
         waiting = [process.draw(figure(str(i), 200_000), tmp_path) for i in range(50)]
-        started = time.perf_counter()
-    assert time.perf_counter() - started < 10.0
     assert process._child is not None
     assert process._child.poll() is not None
+    # Pictures that take seconds each: whoever waited for them would have them.
     assert all(one.cancelled() or one.result() is None for one in waiting[5:])
 
 

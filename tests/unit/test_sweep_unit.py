@@ -200,7 +200,7 @@ def test_a_killed_sweep_goes_on_and_equals_an_uninterrupted_one_bit_for_bit(case
         command(case, *asked, "--out", "resumed"),
         cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
-    for _ in range(2000):
+    for _ in range(6000):
         finished = len(list((kept / "solutions").rglob("*.entry"))) - shapes
         if finished >= early or process.poll() is not None:
             break

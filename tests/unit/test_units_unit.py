@@ -259,7 +259,7 @@ def test_no_text_takes_long_to_refuse():
     for text in hostile:
         with pytest.raises(InputError):
             to_si(text, "length")
-    assert time.process_time() - start < 0.5
+    assert time.process_time() - start < 2.0  # 0.1 s or so of the processor; one that is computed takes minutes
 
 
 def test_a_unit_of_a_column_is_named_as_the_head_has_it():

@@ -624,7 +624,7 @@ def test_of_many_changes_the_last_is_computed_and_those_before_are_given_up(comp
     finished = [said.number for said in heard.all if said.what == "done" and said.number >= 10]
     assert finished[-1] == 17
     assert len(finished) <= 2
-    for _ in range(100):  # what is forgotten in there would end the process later
+    for _ in range(1200):  # what is forgotten in there would end the process later
         if not made._open:
             break
         time.sleep(0.05)

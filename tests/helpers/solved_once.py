@@ -1,0 +1,8 @@
+"""What the tests of one process have solved: runs with equal inputs compute them once, as the tasks of one run do.
+
+Not for tests that count what is computed, or that change how it is.
+"""
+
+from fegear.solution_cache import SolutionCache
+
+CACHE = SolutionCache(most=48)
