@@ -6,6 +6,7 @@ come back bit for bit, and equal data give equal bytes.
 
 from __future__ import annotations
 
+import copyreg
 import dataclasses
 import functools
 import hashlib
@@ -13,17 +14,29 @@ import json
 import struct
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+K = TypeVar("K")
+V = TypeVar("V")
 _ALIGN = 64
 _KINDS = "biufcSU"
 #: Libraries whose version may change the last bits of a result.
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
+
+
+def read_only(content: Mapping[K, V]) -> MappingProxyType[K, V]:
+    """Copy a mapping into one that nobody changes, which travels between processes as other data do."""
+    return MappingProxyType(dict(content))
+
+
+# Python itself cannot pickle its read-only mappings: a solved gear could not be sent to another process.
+copyreg.pickle(MappingProxyType, lambda mapping: (read_only, (dict(mapping),)))
 
 
 def pack(value: object) -> bytes:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from fegear.fem.boundary import check_bore
@@ -15,7 +14,7 @@ from fegear.fem.sector import mesh_sector
 from fegear.fem.settings import COARSEST_LEVEL, FINEST_LEVEL, LEVEL_RATIO, MeshSettings, settings_at
 from fegear.fem.shape_cache import known_or_solved
 from fegear.geometry.gear import Gear, Material
-from fegear.plain import content_key
+from fegear.plain import content_key, read_only
 from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
@@ -214,7 +213,7 @@ def _errors_of_shape(
     def largest() -> Mapping[str, float]:
         gear = Gear(tooth, 1.0, bore_radius, material=Material(1.0, nu), plane=plane)
         solved = solve_gear(gear, settings, reach=reach, coarser=coarser, cache=cache)
-        return MappingProxyType(solved.largest_errors())
+        return read_only(solved.largest_errors())
 
     return cache.solve(content_key("largest errors", shape, settings, coarser, reach), largest).value
 

@@ -297,6 +297,20 @@ def test_four_square_from_finite_elements():
     assert any("mean load" in remark for remark in results.remarks)
 
 
+@pytest.mark.long
+def test_a_chart_of_finite_elements_is_computed_in_processes():
+    """Its points carry the solved gears, which could not be sent to a worker."""
+    chart = (
+        "pair.I.compliance={ source = 'fe' }",
+        "accuracy.tolerance=0.05",
+        "dynamics.chart={ amounts = [0.75, 1.0], lengths = [0.6, 1.0, 1.2] }",
+        "dynamics.speeds={ start = '7000 rpm', stop = '13000 rpm', count = 61 }",
+    )
+    tables, _, _ = run("lin_design_chart", *chart)
+    assert np.isfinite(tables["design_chart_I"]["dynamic_factor"]).all()
+    assert not any(tables["design_chart_I"]["failure"])
+
+
 def test_lin_design_chart(tmp_path):
     """Figs. 9 and 10: with 0.75 Delta the best length is near 1.09; with a disk, a chart keeps its finished points."""
     overrides = (

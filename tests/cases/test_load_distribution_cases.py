@@ -1,6 +1,7 @@
 """``load-distribution``: from a case to line load, K_Hbeta, shares and pictures, and what it refuses."""
 
 import math
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -84,6 +85,12 @@ def test_the_load_goes_to_the_end_without_a_gap_and_crowning_takes_it_from_there
     assert value(even, "K_Hbeta").si < value(outcome, "K_Hbeta").si
     (told,) = (r for r in neglected(even) if "effects.misalignment" in r)
     assert f"{value(outcome, 'te_mean').si * 1e6:.4g} um for {value(even, 'te_mean').si * 1e6:.4g} um" in told
+
+
+def test_loaded_flanks_travel_between_processes(outcome):
+    there = pickle.loads(pickle.dumps(outcome.data))  # noqa: S301  (our own)
+    np.testing.assert_array_equal(there.found.transmission_error, outcome.data.found.transmission_error)
+    assert there.neglected == outcome.data.neglected
 
 
 def test_a_table_over_the_face_is_the_same_as_its_key(cache, outcome, tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -59,3 +60,7 @@ def test_numbers_and_units_agree_everywhere(name):
             assert np.array_equal(values, data[f"{table.name}.{column.name}"].values, equal_nan=True)
             np.testing.assert_allclose([float(row[place]) for row in rows], values, rtol=1e-11)
             np.testing.assert_allclose(column.quantity.to_base_units().magnitude, column.si, rtol=1e-12)
+    # What a stage has found travels between processes: charts and draws send it to every worker.
+    for task, outcome in found.outcomes.items():
+        there = pickle.loads(pickle.dumps(outcome.data))  # noqa: S301  (our own)
+        assert type(there) is type(outcome.data), task

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +23,7 @@ from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
 from fegear.fem.solid.solution import SolidSolution
 from fegear.fem.trace import LoadedFlank
-from fegear.plain import code_version, content_key, pack, unpack
+from fegear.plain import code_version, content_key, pack, read_only, unpack
 from fegear.solution_cache import Codec, SolutionCache
 
 if TYPE_CHECKING:
@@ -171,11 +170,11 @@ class SolidInfluence:
             of those above 35 % of the flank).
         """
         if self.known_error is not None:
-            return MappingProxyType(dict(self.known_error))
+            return read_only(self.known_error)
         if self.settings.source == "slices":
             return missed_by_slices(self.fine.tau)
         if self.coarse is None:
-            return MappingProxyType({})
+            return read_only({})
         found = dict.fromkeys(("contact", "neighbour", "root_tension", "root_compression"), 0.0)
         for radius, stations, high in sample_lines(self.fine):
             one, other = (contact_line(x, radius, stations) for x in (self.fine, self.coarse))
@@ -197,7 +196,7 @@ class SolidInfluence:
                     apart = np.abs(first.max(axis=0) / second.max(axis=0) - 1.0)
                     worst[f"root_{side}"] = float(apart.max())
             found = {key: max(value, worst.get(key, 0.0)) for key, value in found.items()}
-        return MappingProxyType({key: _SHARES[key] * value for key, value in found.items()})
+        return read_only({key: _SHARES[key] * value for key, value in found.items()})
 
     def with_error(self, cache: SolutionCache) -> SolidInfluence:
         """The same with `error` found now, or recalled: all contact lines of the flank are solved for it."""
@@ -294,4 +293,4 @@ def solid_influence(
     fine = solve(settings)
     coarse = solve(settings.coarser()) if estimate_error else None
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
-    return SolidInfluence(fine, coarse, MappingProxyType(seconds))
+    return SolidInfluence(fine, coarse, read_only(seconds))
