@@ -10,14 +10,18 @@ from __future__ import annotations
 import logging
 import os
 import re
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from snippets import execute, runs
 
 from fegear.plain import code_version, content_key
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 DOCS = Path(__file__).resolve().parent
 MADE = DOCS.parent / "results" / "pages"
@@ -49,10 +53,13 @@ def _run(page: Path) -> None:
     stamp.write_text(key)
 
 
+def jobs() -> list[Callable[[], None]]:
+    """What is to be run before the pages can show it."""
+    return [partial(_run, page) for page in pages()]
+
+
 def on_files(files, config):
-    """Run the pages, two at a time, and add the files that they show."""
-    with ThreadPoolExecutor(max(1, min(4, os.cpu_count() or 1))) as pool:
-        list(pool.map(_run, pages()))
+    """Add the files that the pages show, which docs/made.py has run."""
     for page in pages():
         relative = page.relative_to(DOCS)
         for link in dict.fromkeys(_MADE_LINK.findall(page.read_text("utf-8"))):

@@ -306,22 +306,31 @@ def take(path: Path) -> None:
         camera.save(path)
 
 
-def on_files(files, config):
-    """Take the film unless it is there, made by the same program, and add it to the site."""
-    film, stamp = MADE / "window.webp", MADE / "window.key"
+def _wanted() -> bool:
     wanted = os.environ.get("FEGEAR_GALLERY")
-    if wanted is not None and "window" not in wanted.split(","):
-        return files
-    if reason := why_not():
-        log.info("The site has no film of the window: %s", reason)
-        return files
+    return (wanted is None or "window" in wanted.split(",")) and not why_not()
+
+
+def make() -> None:
+    """Take the film unless it is there, made by the same program."""
+    film, stamp = MADE / "window.webp", MADE / "window.key"
+    if not _wanted():
+        if reason := why_not():
+            log.info("The site has no film of the window: %s", reason)
+        return
     own = [Path(__file__), *sorted((ROOT / "fegear" / "window").iterdir())]
     key = content_key(code_version(), {one.name: one.read_text("utf-8") for one in own if one.is_file()})
     if not (film.is_file() and stamp.is_file() and stamp.read_text() == key):
         log.info("Filming the window")
         take(film)
         stamp.write_text(key)
-    files.append(File.generated(config, "how-to/window_files/window.webp", abs_src_path=str(film)))
+
+
+def on_files(files, config):
+    """Add the film to the site, which docs/made.py has had taken."""
+    if _wanted():
+        place = "how-to/window_files/window.webp"
+        files.append(File.generated(config, place, abs_src_path=str(MADE / "window.webp")))
     return files
 
 

@@ -15,8 +15,9 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
@@ -24,6 +25,9 @@ from pygments.formatters import HtmlFormatter
 
 from fegear.engine.citation import bibliography
 from fegear.plain import code_version, content_key
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 ROOT = Path(__file__).resolve().parents[1]
 CASES = ROOT / "cases"
@@ -65,12 +69,12 @@ def _run(path: Path) -> None:
     if stamp.is_file() and stamp.read_text() == key and (out / "summary.json").is_file():
         return
     log.info("Running cases/%s.toml", case_name(path))
+    stamp.parent.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(out, ignore_errors=True)
     command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(path), "--out", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise PluginError(f"the case {path.name} does not run: {done.stderr.strip()}")
-    stamp.parent.mkdir(parents=True, exist_ok=True)
     stamp.write_text(key)
 
 
@@ -151,6 +155,11 @@ def references() -> str:
     )
 
 
+def jobs() -> list[Callable[[], None]]:
+    """What is to be run before the pages can be made."""
+    return [partial(_run, path) for path in cases()]
+
+
 # ---- what mkdocs calls -------------------------------------------------------------------------------------------
 def _with_unlisted(nav: list[dict[str, object]]) -> list[dict[str, object]]:
     """Navigation with every page: those that mkdocs.yml does not list come last in "How it is done"."""
@@ -171,10 +180,7 @@ def on_config(config):
 
 
 def on_files(files, config):
-    """Run the cases, two at a time, and add their pages with all that these show."""
-    MADE.mkdir(parents=True, exist_ok=True)
-    with ThreadPoolExecutor(max(1, min(4, os.cpu_count() or 1))) as pool:
-        list(pool.map(_run, cases()))
+    """Add the pages of the cases, which docs/made.py has run, with all that these show."""
     colours = HtmlFormatter(style="default").get_style_defs(".highlight")
     files.append(File.generated(config, "code.css", content=colours))
     files.append(File.generated(config, "references.md", content=references()))

@@ -185,18 +185,27 @@ def take_all() -> None:
             Image.open(io.BytesIO(shot)).convert("RGB").save(FOLDER / f"{name}.png", optimize=True)
 
 
-def on_files(files, config):
-    """Take the pictures unless they are there, made by the same program, and add them to the site."""
-    wanted, stamp = os.environ.get("FEGEAR_GALLERY"), FOLDER / "key"
-    if (wanted is not None and PAGE.stem not in wanted.split(",")) or why_not():
-        return files
+def _wanted() -> bool:
+    wanted = os.environ.get("FEGEAR_GALLERY")
+    return (wanted is None or PAGE.stem in wanted.split(",")) and not why_not()
+
+
+def make() -> None:
+    """Take the pictures unless they are there, made by the same program."""
+    stamp = FOLDER / "key"
+    if not _wanted():
+        return
     own = [Path(__file__), PAGE, DOCS / "tutorial.md", *sorted((DOCS.parent / "fegear" / "window").iterdir())]
     key = content_key(code_version(), {one.name: one.read_text("utf-8") for one in own if one.is_file()})
     if not (stamp.is_file() and stamp.read_text() == key):
         log.info("Going through the tutorial in the window")
         take_all()
         stamp.write_text(key)
-    for step in STEPS:
+
+
+def on_files(files, config):
+    """Add the pictures to the site, which docs/made.py has had taken."""
+    for step in STEPS if _wanted() else ():
         name = f"{step.__name__}.png"
         place = f"tutorial-in-the-window_files/{name}"
         files.append(File.generated(config, place, abs_src_path=str(FOLDER / name)))
