@@ -124,10 +124,13 @@ def solved_case(g, tolerance):
     return found, replace(results.outcomes[Task("stiffness", name)], remarks=results.remarks)
 
 
-@pytest.mark.parametrize("tolerance", [1e-2, *(pytest.param(fine, marks=pytest.mark.long) for fine in (1e-3, 1e-4))])
-def test_ten_gears_meet_the_tolerance_of_their_case(tolerance):
+@pytest.mark.parametrize(
+    ("tolerance", "gears"), [(1e-2, 4), *(pytest.param(one, 10, marks=pytest.mark.long) for one in (1e-2, 1e-3, 1e-4))]
+)
+def test_gears_meet_the_tolerance_of_their_case(tolerance, gears):
+    assert len(FOR_TOLERANCES) == 10
     missed = {}
-    for g in FOR_TOLERANCES:
+    for g in FOR_TOLERANCES[:gears]:
         found, outcome = solved_case(g, tolerance)
         errors = true_errors(found, g)
         rounds = outcome.settings["rounds"]

@@ -101,7 +101,8 @@ def silent_misses(names, tolerance):
 
 
 def test_no_tolerance_is_missed_in_silence():
-    assert not silent_misses(QUICK, 1e-3)
+    """At a coarse tolerance; every gear at finer ones in the long run."""
+    assert not silent_misses(QUICK, 1e-2)
 
 
 @pytest.mark.long
