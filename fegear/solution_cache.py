@@ -9,6 +9,7 @@ from collections import Counter, OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -157,9 +158,10 @@ class SolutionCache:
         bool
             Whether anything was forgotten.
         """
+        known = {id(value): self._held[key] for key, (value, _) in self._memory.items() if key in self._held}
         for key, (value, _) in self._memory.items():
             if key not in self._held:  # the others are counted already
-                self._held[key] = arrays_of(value)
+                known[id(value)] = self._held[key] = arrays_of(value, known)
                 for array, size in self._held[key].items():
                     self._holders[array] += 1
                     if array not in self._sizes:
@@ -214,8 +216,11 @@ def cache_on_disk(folder: Path | None = None) -> SolutionCache:
     return SolutionCache(Store((folder or cache_folder()) / "solutions"))
 
 
-def arrays_of(value: object) -> dict[int, int]:
-    """Bytes of every array that an object holds, however deep, by the array's identity: shared ones are the same."""
+def arrays_of(value: object, known: Mapping[int, Mapping[int, int]] = MappingProxyType({})) -> dict[int, int]:
+    """Bytes of every array that an object holds, however deep, by the array's identity: shared ones are the same.
+
+    `known` has those of objects that have been looked through, by the object's identity.
+    """
     found: dict[int, int] = {}
     seen: set[int] = set()
     todo: list[object] = [value]
@@ -230,7 +235,9 @@ def arrays_of(value: object) -> dict[int, int]:
         if isinstance(one, (str, bytes, int, float, type(None))) or id(one) in seen:
             continue
         seen.add(id(one))
-        if isinstance(one, Mapping):
+        if id(one) in known:
+            found.update(known[id(one)])
+        elif isinstance(one, Mapping):
             todo.extend(one.values())
         elif isinstance(one, (list, tuple, set, frozenset)):
             todo.extend(one)

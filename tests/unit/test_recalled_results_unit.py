@@ -66,6 +66,15 @@ def test_what_is_tabulated_of_a_solved_gear_does_not_hold_it_in_a_circle(first):
         assert 0 < held < 0.02 * sum(arrays_of(influence).values())
 
 
+def test_what_is_held_is_the_same_whether_or_not_its_parts_have_been_looked_through(first):
+    _, results = first
+    known = {}
+    for outcome in results.outcomes.values():
+        found = arrays_of(outcome.data, known)
+        assert found == arrays_of(outcome.data)
+        known[id(outcome.data)] = found
+
+
 def test_a_changed_load_solves_no_gear_again(first):
     cache, _before = first
     after = run(cache, load="1100 N")
