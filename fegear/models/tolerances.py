@@ -93,7 +93,8 @@ def limits_of(scene: Scene, name: str, usual: tuple[Kind, ...]) -> Limits:
         except InputError as error:
             missing = ", ".join(one for one in kinds if own_deviation(drawn, one) is None)
             remedy = f"give {missing} of gear.{gear}.deviations, or name other robustness.deviations"
-            raise at(f"gear.{gear}", type(error)(error.key, error.value, error.rule, remedy)) from None
+            error = type(error)(error.key, error.value, error.rule, remedy)
+            raise at(f"gear.{gear}", error, None if drawn.is_helical else {"normal_module": "module"}) from None
 
     def both(kind: Deviation) -> tuple[float, float]:
         return found[0].get(kind, 0.0), found[1].get(kind, 0.0)

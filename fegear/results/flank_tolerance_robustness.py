@@ -42,8 +42,8 @@ if TYPE_CHECKING:
 _OVER_FACE: tuple[Kind, ...] = ("centre-distance", "profile-slope", "profile-form", "helix-slope", "pitch")
 #: Draws that a process is given at a time: influences over the face are larger than those of plane teeth.
 _CHUNK = 100
-#: Processor seconds of a draw at one roll position.
-_AT_A_POSITION = 0.001
+#: Processor seconds of a draw at one roll position, and of setting up the roots at one, over the panels squared.
+_AT_A_POSITION, _ROOTS = 0.001, 6e-4
 
 
 @dataclass(frozen=True)
@@ -182,8 +182,11 @@ def _compute(inputs: FlankDrawInputs, upstream: Upstream, work: Work) -> Toleran
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     part, asked = tolerance_part(scene), flanks_to_load(scene, name)
-    chunks, each = math.ceil(part.draws / _CHUNK), 2.0 if limits_of(scene, name, _OVER_FACE).centre_distance else 1.0
-    return Forecast({"draws": part.draws, "chunks": chunks}, part.draws * asked.positions * _AT_A_POSITION * each)
+    chunks = math.ceil(part.draws / _CHUNK)
+    roots, draws = asked.positions * asked.panels**2 * _ROOTS, part.draws * asked.positions * _AT_A_POSITION
+    if limits_of(scene, name, _OVER_FACE).centre_distance:  # three centre distances, of which a draw stands between two
+        roots, draws = 3.0 * roots, 2.0 * draws
+    return Forecast({"draws": part.draws, "chunks": chunks}, roots + draws)
 
 
 FLANK_TOLERANCE_ROBUSTNESS = Stage(

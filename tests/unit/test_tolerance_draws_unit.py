@@ -293,6 +293,15 @@ def test_a_draw_is_an_ordinary_case_with_its_deviations_written_down():
     assert mine["largest_load"] == pytest.approx(found["I.largest_load"], rel=1e-9)
 
 
+def test_teeth_too_small_for_a_class_are_refused_under_the_name_of_their_module():
+    own = {"base_pitch": "3 um", "profile_form": "2 um", "helix_slope": "4 um"}
+    small = {name: part | {"module": "0.4 mm", "deviations": own} for name, part in CASE["gear"].items()}
+    scene = build_scene(CASE | {"gear": small}, "case", None)
+    with pytest.raises(InputError) as refused:
+        limits_of(scene, "I", ("profile-slope",))
+    assert refused.value.key == "gear.pinion.module"
+
+
 def test_own_deviations_take_the_place_of_those_by_class_when_drawn():
     """Each for itself; of a gear too small for ISO 1328-1 nothing else is asked, and one without a class says so."""
     kinds = ("profile-slope", "profile-form", "pitch")
