@@ -64,7 +64,7 @@ def _computed(job: Job, todo: Todo, address: str) -> Generator[tuple[int, Reply]
             except KilledWorker as error:
                 reply = Reply(failed(error), lasting=False)
             except CancelledError:
-                raise _refused(address, "has gone away", "start it again; finished points are kept") from None
+                raise _gone(address) from None
             except ImportError as problem:
                 raise MissingLibraryError(f"the workers of {address} cannot import fegear ({problem})") from None
             yield futures.pop(future), reply
@@ -72,6 +72,10 @@ def _computed(job: Job, todo: Todo, address: str) -> Generator[tuple[int, Reply]
 
 def _refused(address: str, rule: str, remedy: str) -> InputError:
     return InputError("--scheduler", f'"{address}"', rule, remedy)
+
+
+def _gone(address: str) -> InputError:
+    return _refused(address, "has gone away", "start it again; finished points are kept")
 
 
 def _connected(address: str) -> Client:
@@ -115,11 +119,15 @@ def _quiet(library: str) -> Iterator[None]:
 
 def _check_workers(client: Client, address: str) -> None:
     """Refuse a cluster without workers, or one that has no fegear: a worker that cannot read a point just dies."""
+    from distributed.comm import CommClosedError
+
     try:
         client.wait_for_workers(1, timeout=_PATIENCE)
-    except OSError:
+        found = {"scheduler": client.run_on_scheduler(find_spec, "fegear"), **client.run(find_spec, "fegear")}
+    except CommClosedError:
+        raise _gone(address) from None
+    except TimeoutError:
         raise _refused(address, "has no workers", f"start some with `dask worker {address} --nthreads 1`") from None
-    found = {"scheduler": client.run_on_scheduler(find_spec, "fegear"), **client.run(find_spec, "fegear")}
     without = [name for name, spec in found.items() if spec is None]
     if without:
         raise MissingLibraryError(

@@ -16,6 +16,7 @@ import threading
 import time
 
 import pytest
+from distributed.comm import CommClosedError
 
 from fegear.engine.executor import Executor, count_kept, map_points
 from fegear.engine.point_job import Failure
@@ -152,6 +153,16 @@ def test_a_cluster_that_is_lost_ends_the_wait(monkeypatch, capfd, lost):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(cluster.pid, signal.SIGKILL)
         cluster.wait()
+
+
+@pytest.mark.parametrize("at", ["wait_for_workers", "run"])
+def test_a_scheduler_lost_while_its_workers_are_looked_at_is_one_sentence(scheduler, monkeypatch, at):
+    def closed(*_arguments, **_options):
+        raise CommClosedError("in <TCP (closed)>: Stream is closed")
+
+    monkeypatch.setattr(f"distributed.Client.{at}", closed)
+    with pytest.raises(InputError, match="has gone away"):
+        map_points(math.sqrt, [1.0], Executor(scheduler))
 
 
 def refused_for_want_of(error: type[Exception], point: float) -> float:
