@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import gc
 import importlib
 import os
 import shutil
@@ -69,6 +70,22 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextlib.contextmanager
+def loading() -> Iterator[None]:
+    """Load code without a search for cyclic garbage on the way, which takes a fifth of the time and finds nothing.
+
+    What is loaded stays; later searches leave it out, too.
+    """
+    before = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        if before:
+            gc.enable()
 
 
 def settle(scratch: str = "") -> threading.Thread:
@@ -180,7 +197,9 @@ def start_process(module: str, connection: Connection, scratch: str) -> BaseProc
 
 def _begin(module: str, connection: Connection, scratch: str) -> None:
     following = settle(scratch)  # before anything is loaded, which takes a second
-    importlib.import_module(module).serve(connection, scratch)
+    with loading():
+        found = importlib.import_module(module)
+    found.serve(connection, scratch)
     following.join(_FAREWELL)
 
 

@@ -11,7 +11,7 @@ import threading
 import webbrowser
 from typing import TYPE_CHECKING
 
-from fegear.engine.processes import end_tracker
+from fegear.engine.processes import end_tracker, loading
 from fegear.errors import InputError, MissingLibraryError
 from fegear.window.computing import Computing
 from fegear.window.doorkeeper import Doorkeeper
@@ -99,19 +99,21 @@ def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[
 
 
 def _serve(case: Path | None, port: int, computing: Computing, *, browser: bool, say: Callable[[str], None]) -> None:
-    from fegear.window.bench import Bench
+    with loading():
+        from fegear.window.bench import Bench
+
+        bench = Bench(case, computing)
+        with _without_clients():
+            try:
+                import nicegui
+            except ImportError:
+                raise MissingLibraryError(EXTRA) from None
+        from nicegui import ui
+
+        from fegear.window.page import show
 
     secret = secrets.token_urlsafe(24)
     address = f"http://{HOST}:{port}/?key={secret}"
-    bench = Bench(case, computing)
-    with _without_clients():
-        try:
-            import nicegui
-        except ImportError:
-            raise MissingLibraryError(EXTRA) from None
-    from nicegui import ui
-
-    from fegear.window.page import show
 
     def opened() -> None:
         bench.begin()

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fegear.engine.processes import loading
 from fegear.errors import FegearError, InputError
 from fegear.solution_cache import SolutionCache
 from fegear.store import Store
@@ -73,7 +74,8 @@ class Worker:
     def serve(self) -> None:
         """Answer jobs until nobody is there to ask."""
         self._inbox.open()
-        _load()
+        with loading():
+            _load()
         while True:
             try:
                 self.answer(self._inbox.take())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import json
 import os
 import queue
@@ -23,6 +24,7 @@ from fegear.case.keys import flat
 from fegear.case.reading import read_scene
 from fegear.drafts import KINDS, Answers, draft
 from fegear.engine.plan import make_plan
+from fegear.engine.processes import loading
 from fegear.engine.run import key_without_needs, run_plan
 from fegear.engine.stage import Task
 from fegear.errors import InputError
@@ -515,6 +517,25 @@ def test_a_port_that_cannot_be_had_and_a_case_that_is_not_there_are_refused(tmp_
             free_port(taken.getsockname()[1])
     with pytest.raises(InputError, match="does not exist"):
         serve(tmp_path / "missing.toml", None, browser=False, say=print)
+
+
+def test_loading_does_without_searches_for_garbage_and_leaves_them_as_they_were():
+    before = gc.get_freeze_count()
+    try:
+        with loading():
+            assert not gc.isenabled()
+        assert gc.isenabled()
+        with pytest.raises(ZeroDivisionError), loading():
+            1 / 0  # noqa: B018
+        assert gc.isenabled()
+        assert gc.get_freeze_count() > before
+        gc.disable()
+        with loading():
+            pass
+        assert not gc.isenabled()
+    finally:
+        gc.unfreeze()
+        gc.enable()
 
 
 # ---- computing process -----------------------------------------------------------------------------------------------
