@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from fegear.engine.run import key_without_needs
-from fegear.window.order import in_order
+from fegear.window.order import ANSWERS, in_order
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -41,7 +41,7 @@ class Draft(NamedTuple):
 
 
 def draft_of(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
-    """The draft of a case; None where every gear is known, or nothing would be coarser.
+    """The draft of a case; None where it has no answers, every gear is known, or nothing would be coarser.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ def draft_of(scene: Scene, plan: Plan, cache: SolutionCache) -> Draft | None:
     cache : SolutionCache
     """
     own = scene.case.accuracy.tolerance
-    if own > _COARSEST:
-        return None
+    if own > _COARSEST or not any(step.task.stage in ANSWERS for step in plan.steps):
+        return None  # without them everything comes first, and a robustness or a motion would be computed twice
     ordered = in_order(plan, scene, (), {})
     steps = ordered.plan.steps[: ordered.at_once]
     solved = [step for step in steps if step.task.stage == _SOLVED]

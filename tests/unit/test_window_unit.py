@@ -16,6 +16,7 @@ import tomllib
 from dataclasses import replace
 from multiprocessing import Pipe
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -727,6 +728,7 @@ def test_a_gear_that_has_to_be_solved_anew_is_answered_by_a_draft_first(tmp_path
     scene = scene_of(Asked(text, "c", str(tmp_path)))
     assert draft(text, scene) is None  # the gear is known, as where only the load changes
     assert draft(TEXT) is None  # a formula needs none
+    assert draft(text.replace("load-sharing", "stiffness")) is None  # nothing that would come before the rest
     assert draft(f"{text}[accuracy]\ntolerance = 0.01\n") is None
     assert draft(f"{text}[accuracy]\ntolerance = 1e-4\n").scene.drafts == {"a": pytest.approx(3.2e-3)}
     assert draft(f"{text}[accuracy]\nflank_edge_length = 0.08\n") is None  # solved with those settings
@@ -744,6 +746,19 @@ def test_a_gear_that_has_to_be_solved_anew_is_answered_by_a_draft_first(tmp_path
     }
     assert keys["before", "b"] == keys["draft", "b"] == keys["after", "b"]
     assert len({keys["before", "a"], keys["draft", "a"], keys["after", "a"]}) == 3
+
+
+def test_nothing_is_computed_while_only_one_of_two_gears_has_the_new_pressure_angle(tmp_path):
+    path, jobs = tmp_path / "c.toml", []
+    other = '[gear.b]\nteeth = 31\nmodule = "3 mm"\nface_width = "20 mm"\n'
+    path.write_text(TEXT.replace('driven = "a"', 'driven = "b"') + other)
+    bench = Bench(path, SimpleNamespace(ask=jobs.append))
+    for gear, refused in (("a", True), ("b", False)):
+        bench.desk.set(("gear", gear, "pressure_angle"), '"21 deg"')
+        bench.changed()
+        assert (bench.desk.refusal is not None) == refused
+    assert len(jobs) == 1
+    assert jobs[0].asked.text.count("21 deg") == 2
 
 
 def test_the_draft_of_a_gear_is_what_the_error_of_its_solution_is_estimated_from(tmp_path):
