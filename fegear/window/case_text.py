@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import functools
 import itertools
 import json
 import re
@@ -102,17 +103,23 @@ def with_value(text: str, path: Path, value: str | None) -> str:
     InputError
         If the key stands where it cannot be changed by itself, or the value is no TOML.
     """
-    before = tomllib.loads(text)
+    before = _read(text)
     wanted = _changed(before, path, value)
     if wanted == before:
         return text
     for made in _removed(text, path, wanted) if value is None else _added(text, path, value):
         try:
-            if _solid(tomllib.loads(made)) == _solid(wanted):
+            if _solid(_read(made)) == _solid(wanted):
                 return made
         except ValueError:
             continue
     raise InputError(".".join(path), value or "(removed)", "cannot be changed by itself", "change it in the text")
+
+
+@functools.lru_cache(maxsize=8)
+def _read(text: str) -> Mapping[str, Any]:
+    """A text as plain tables, which nobody changes: a moved relief sets one key after the other."""
+    return tomllib.loads(text)
 
 
 def _solid(document: Mapping[str, Any]) -> dict[str, Any]:
