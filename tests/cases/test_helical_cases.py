@@ -304,7 +304,7 @@ def test_a_run_leaves_tables_and_pictures(tmp_path):
 
     out = tmp_path / "out"
     case = str(CASES / "litvin_localised.toml")
-    done = CliRunner().invoke(app, ["run", case, "--out", str(out), "--set", "tooth_contact.positions=40"])
+    done = CliRunner().invoke(app, ["run", case, "--out", str(out), "--set", "tooth_contact.positions=16"])
     assert done.exit_code == 0, done.output
     head = (out / "tables" / "tooth_contact_I.csv").read_text().splitlines()[0]
     assert head.startswith("phi1 [deg],te [arcsec],contact,r1 [mm],z1 [mm],r2 [mm],z2 [mm]")

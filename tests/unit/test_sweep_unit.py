@@ -220,15 +220,18 @@ def test_a_killed_sweep_goes_on_and_equals_an_uninterrupted_one_bit_for_bit(case
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "resumed", "two", "two.toml", "whole"]
 
 
-def test_executors_are_bit_equal(case, scheduler, tmp_path):
+@pytest.mark.parametrize("cluster", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_executors_are_bit_equal(case, request, tmp_path, cluster):
+    """Points on a cluster are those computed here: tests of the executor, in the ordinary run too."""
+    scheduler = [("cluster", ("--scheduler", request.getfixturevalue("scheduler")))] if cluster else []
     axis = ("--set", 'results=["stiffness"]', "--over", "gear.a.profile_shift=0:2:3", "--no-cache", "--no-plots")
-    for name, more in (("cores", ()), ("one", ("--workers", 1)), ("cluster", ("--scheduler", scheduler))):
+    for name, more in (("cores", ()), ("one", ("--workers", 1)), *scheduler):
         done = fegear(case, *axis, *more, "--out", name, cwd=tmp_path, cache=tmp_path / "cache")
         assert done.returncode == 0, done.stderr
         assert "2 of 3 points have results." in done.stdout
     first = (tmp_path / "cores" / "sweep.nc").read_bytes()
-    assert (tmp_path / "one" / "sweep.nc").read_bytes() == first
-    assert (tmp_path / "cluster" / "sweep.nc").read_bytes() == first
+    for name in ("one", *dict(scheduler)):
+        assert (tmp_path / name / "sweep.nc").read_bytes() == first
     assert not (tmp_path / "cache").exists()
 
 
