@@ -340,8 +340,12 @@ class Kept:
         window.browser("HeapProfiler.collectGarbage")
         heap = window.browser("Runtime.getHeapUsage")["usedSize"] / 1e6
         pids = window.pids()[0]
+        sizes = []  # what comes after the results, pictures for one, takes memory for a moment
+        for _ in range(10):
+            sizes.append(memory(window.server.pid))
+            time.sleep(0.3)
         return cls(
-            memory(window.server.pid), memory(window.browser.pid), heap, window.browser("Memory.getDOMCounters"),
+            min(sizes), memory(window.browser.pid), heap, window.browser("Memory.getDOMCounters"),
             sum(path.stat().st_size for path in window.scratch.rglob("*") if path.is_file()) / 1e6,
             sum(len(list(Path(f"/proc/{pid}/task").iterdir())) for pid in pids),
             sum(len(list(Path(f"/proc/{pid}/fd").iterdir())) for pid in pids),

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Accuracy against time: factor of the case's own tolerance.
 LEVELS = {"draft": 10.0, "normal": 1.0, "fine": 0.1}
+#: A value that has not moved for so long stands still, whether or not anybody has said so [s].
+_HELD = 2.0
 #: Figures and values of so many tasks are kept for pages that open later.
 _Content = dict[str, Any]
 
@@ -65,6 +67,7 @@ class Bench:
         self._numbers = itertools.count(1)
         self._computing = computing
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._held: asyncio.TimerHandle | None = None
         self._number = self._first = self._laid = self._comparing = 0
         self._sight: tuple[str, ...] = ()
         self._shows: tuple[tuple[str, str], ...] = ()
@@ -152,6 +155,10 @@ class Bench:
         """Show the case as it is now everywhere, and compute it; a value that is moved has its errors later."""
         self.tell("changed", {"moving": moving})
         self.compute(moving=moving)
+        if self._held is not None:
+            self._held.cancel()
+        # Who has let go may not have been able to say so: the page was closed, or loaded again.
+        self._held = self._loop.call_later(_HELD, self.changed) if moving and self._loop is not None else None
 
     def asked(self) -> Asked:
         """The case as it would be computed now."""

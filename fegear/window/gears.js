@@ -243,7 +243,7 @@ const fegearGears = (() => {
       for (const kind of Object.keys(KINDS)) {
         if (!kept.on[kind]) continue;
         if (kept.sent[kind]?.refused) lines.push(`${KINDS[kind][0]}: ${kept.sent[kind].refused}`);
-        else if (!kept.sent[kind]) lines.push(`${KINDS[kind][0]}: being computed.`);
+        else if (!kept.sent[kind]) lines.push(`${KINDS[kind][0]}: comes with the next results.`); // at once, or when the case holds
       }
       told.textContent = lines.join(" ");
       told.hidden = !lines.length;

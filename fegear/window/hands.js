@@ -57,7 +57,7 @@ const fegearHands = (() => {
         else handle.amount = now.yaxis.p2l(event.clientY - box.y - now.yaxis._offset);
         within(); put(); send(true);
       };
-      one.onpointerup = () => { if (held === one) { held = null; send(false); } };
+      one.onpointerup = one.onpointercancel = () => { if (held === one) { held = null; send(false); } };
       one.onkeydown = (event) => {
         const way = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: 1, ArrowDown: -1 }[event.key];
         if (!way) return;

@@ -175,6 +175,7 @@ const fegear = (() => {
     async found(content) {
       const { task, figures, darker, loads } = content, kept = section(task);
       if (loads) fegearGears.loads(loads);
+      for (const still of kept.element.querySelector(".stills").children) still.classList.add("old"); // drawn anew after all results
       answered(kept);
       kept.darker = darker;
       for (const spec of figures) if (!spec.same) kept.specs.set(spec.key, spec);
@@ -194,6 +195,7 @@ const fegear = (() => {
       figure.querySelector(".plot-title").textContent = heading;
       figure.querySelector("figcaption").textContent = caption;
       figure.querySelector("img").src = `data:image/png;base64,${data}`;
+      figure.classList.remove("old");
       figure.querySelector("img").alt = `${heading}. ${caption}`;
       kept.element.hidden = false;
       answered(kept);

@@ -285,6 +285,27 @@ def test_what_is_refused_beside_the_case_is_told_and_a_design_does_not_reach_the
     assert (bench.desk.text, len(told)) == (other, count)
 
 
+def test_a_value_that_nobody_moves_any_more_stands_still_though_nobody_said_so(tmp_path, monkeypatch):
+    """A page that is closed while a value moves says nothing more."""
+
+    class Quiet:
+        def ask(self, job):
+            asked.append(job.asked.moving)
+
+    async def moved():
+        bench._loop = asyncio.get_running_loop()
+        for load in ("6 kN", "7 kN"):
+            bench.move_load("I", "load", load, moving=True)
+        await asyncio.sleep(0.05)
+
+    monkeypatch.setattr("fegear.window.bench._HELD", 0.01)
+    bench, asked = Bench(None), []
+    bench.lay(Desk(TWO, "c", tmp_path))
+    bench._computing = Quiet()
+    asyncio.run(moved())
+    assert asked == [True, True, False]
+
+
 def test_a_comparison_with_what_is_pinned_no_longer_is_not_shown(tmp_path):
     class Quiet:
         def ask(self, job):
