@@ -42,7 +42,7 @@ class Computing:
         self._open: dict[int, Job] = {}
         self._unwanted: dict[int, float] = {}  # since when
         self._timer: threading.Timer | None = None
-        self._closed = False
+        self._closed = self._loaded = False
         self._process: BaseProcess
         self._connection: Connection
         self._start()
@@ -55,6 +55,7 @@ class Computing:
     def _start(self) -> None:
         from multiprocessing import Pipe
 
+        self._loaded = False
         self._connection, theirs = Pipe()
         self._process = start_process(_WORKER, theirs, str(self._scratch.folder))
         theirs.close()
@@ -88,7 +89,10 @@ class Computing:
             self._timer = None
             if self._closed:
                 return
-            if any(time.monotonic() - since >= PATIENCE for since in self._unwanted.values()):
+            now = time.monotonic()
+            if not self._loaded:  # it takes what is wanted as soon as it is there; another would be there later
+                self._unwanted = dict.fromkeys(self._unwanted, now)
+            elif any(now - since >= PATIENCE for since in self._unwanted.values()):
                 for number in self._unwanted:
                     self._open.pop(number, None)
                 self._again()
@@ -108,6 +112,8 @@ class Computing:
                 said: Said = connection.recv()
             except (EOFError, OSError):
                 break
+            if process is self._process:
+                self._loaded = True
             if said.what in ("done", "refused", "dropped", "exported", "compared", "designed"):
                 with self._lock:
                     self._open.pop(said.number, None)

@@ -904,6 +904,30 @@ def test_a_process_whose_parent_is_killed_ends_and_clears_away_after_it(tmp_path
         time.sleep(0.01)
 
 
+def test_a_process_that_takes_long_to_load_is_not_replaced_by_one_that_takes_as_long(tmp_path, monkeypatch):
+    (tmp_path / "slow.py").write_text(
+        "import time\n"
+        "from fegear.window.jobs import Said\n"
+        "time.sleep(0.5)\n"
+        "def serve(connection, scratch):\n"
+        "    while True:\n"
+        "        connection.send(Said(connection.recv().number, 'done'))\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("fegear.window.computing._WORKER", "slow")
+    monkeypatch.setattr("fegear.window.computing.PATIENCE", 0.02)
+    heard = Heard()
+    made = Computing()
+    made.hear = heard
+    pid = made.pid
+    for number in (1, 2, 3):
+        made.ask(Compute(number, Asked(TEXT, "c", str(tmp_path))))
+        time.sleep(0.05)
+    heard.until(3, "done")
+    assert made.pid == pid
+    made.close()
+
+
 def test_a_process_that_dies_is_replaced_and_says_so(computing, tmp_path):
     made, heard = computing
     made.ask(Compute(40, Asked(TEXT.replace("weber-banaschek", "fe"), "c", str(tmp_path))))
