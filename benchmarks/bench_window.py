@@ -127,6 +127,7 @@ class Window:
             "FEGEAR_STATE": self._state.name, "TMPDIR": str(self.scratch), "PYTHONUNBUFFERED": "1",
             "PYTHONPATH": str(checkout),
         }  # fmt: skip
+        env.pop("PYTHONDONTWRITEBYTECODE", None)  # else every start compiles all of fegear's source
         self.started = time.monotonic()
         self.server = subprocess.Popen(
             [sys.executable, "-m", "fegear", "open", "--no-browser", str(ROOT / "cases" / f"{case}.toml")],
