@@ -52,7 +52,7 @@ class StressRows:
             Radii to rows, where they are not known; always that of the same teeth.
         """
         wanted, inverse = np.unique(radius, return_inverse=True)
-        table = self._table
+        table = self._table if self._table is not None and self._table.row.size else None  # none carried load before
         known = np.zeros(wanted.size, dtype=bool)
         if table is not None:
             place = np.minimum(np.searchsorted(table.ascending, wanted), table.ascending.size - 1)

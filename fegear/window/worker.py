@@ -6,6 +6,7 @@ import contextlib
 import gc
 import tempfile
 import time
+import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,17 +60,22 @@ class Worker:
     """
 
     def __init__(self, connection: Connection, folder: Path) -> None:
-        self._inbox = Inbox(connection)
-        self._cache = SolutionCache(Store(folder, _MOST_ON_DISK), check=lambda: self._inbox.look(), at_leisure=True)
-        self._meshes: dict[str, object] = {}
-        self._on_gears: dict[Task, object] = {}
+        self._inbox, self._folder = Inbox(connection), folder
         self._seconds: dict[str, float] = {}
         self._number, self._begun, self._wait_before = 0, 0.0, 0
         self._asked: Asked | None = None
+        self._later: list[Callable[[], None]] = []
+        self._begin_anew()
+
+    def _begin_anew(self) -> None:
+        """Keep nothing of what was computed and told, but for what is on the disk."""
+        store = Store(self._folder, _MOST_ON_DISK)
+        self._cache = SolutionCache(store, check=lambda: self._inbox.look(), at_leisure=True)
+        self._meshes: dict[str, object] = {}
+        self._on_gears: dict[Task, object] = {}
         self._laid, self._sent = 0, Sent()
         self._maps = HarrisMaps()
         self._untidy = 0
-        self._later: list[Callable[[], None]] = []
 
     def serve(self) -> None:
         """Answer jobs until nobody is there to ask."""
@@ -98,14 +104,19 @@ class Worker:
         except Unwanted:
             self._say("dropped")
         except MemoryError:
+            self._begin_anew()
             self._say("refused", sentence="Out of memory: ask for less at once, or allow more.", key="")
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 - told and printed below; the window stays open
             if self._inbox.given_up:
                 self._say("dropped")
             elif isinstance(error, FegearError):
                 self._say("refused", sentence=str(error), key=error.key if isinstance(error, InputError) else "")
             else:
-                raise
+                traceback.print_exc()
+                self._begin_anew()  # nobody knows what it has left half done
+                fault = f"{type(error).__name__}: {error}"
+                sentence = f"A fault of fegear, not of the case ({fault}); the terminal shows where."
+                self._say("refused", sentence=sentence, key="")
         finally:
             self._inbox.watch(None)
             self._asked = None

@@ -66,6 +66,8 @@ class Served:
             cwd=folder, env=outside_of_tests() | {
                 "FEGEAR_STATE": str(folder / "state"), "PYTHONUNBUFFERED": "1", "TMPDIR": str(self.scratch),
             },
+            # tests may themselves run under nohup, which is inherited
+            preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # noqa: PLW1509
         )  # fmt: skip
         self.address = self.process.stdout.readline().split()[-1]
 

@@ -114,6 +114,7 @@ def test_rows_of_any_contacts_are_those_evaluated_anew_and_are_bounded():
         asked.append(radius.size)
         return {k: np.sin(np.multiply.outer(radius, np.arange(1.0, 5.0) + k)) for k in (-1, 0, 1)}
 
+    assert rows.at(np.empty(0), evaluate)[0].shape == (0, 4)  # nothing carries load, and then something does
     pool = chance.random(200)
     for _ in range(60):
         radius = np.concatenate([chance.choice(pool, 25), chance.random(chance.integers(0, 3))])

@@ -928,6 +928,14 @@ def test_a_process_that_takes_long_to_load_is_not_replaced_by_one_that_takes_as_
     made.close()
 
 
+def test_a_fault_of_fegear_is_said_to_be_one_and_the_next_case_is_computed(computing):
+    made, heard = computing
+    made.ask(Compute(38, Asked(TEXT, "c", None)))
+    assert "fault of fegear, not of the case (TypeError: " in heard.until(38, "refused").content["sentence"]
+    made.ask(Compute(39, Asked(TEXT, "c", ".")))
+    heard.until(39, "done")
+
+
 def test_a_process_that_dies_is_replaced_and_says_so(computing, tmp_path):
     made, heard = computing
     made.ask(Compute(40, Asked(TEXT.replace("weber-banaschek", "fe"), "c", str(tmp_path))))
