@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import tomllib
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
@@ -109,6 +110,8 @@ class Page:
             do()
         except FegearError as error:
             ui.notify(str(error), type="warning", multi_line=True)
+        except tomllib.TOMLDecodeError as error:
+            ui.notify(f"The case is no valid TOML: {error}; mend the text first.", type="warning", multi_line=True)
 
     def _hear(self, what: str, content: dict[str, Any]) -> None:
         if what == "changed":

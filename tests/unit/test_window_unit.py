@@ -928,6 +928,22 @@ def test_a_process_that_takes_long_to_load_is_not_replaced_by_one_that_takes_as_
     made.close()
 
 
+def test_what_is_moved_by_hand_while_the_text_is_no_toml_is_refused_in_words(monkeypatch, tmp_path):
+    from nicegui import ui
+
+    from fegear.window.bench import Bench
+    from fegear.window.page import Page
+
+    told = []
+    monkeypatch.setattr(ui, "notify", lambda words, **_: told.append(words))
+    bench = Bench(None)
+    bench.desk = Desk("a = [", "c", tmp_path)
+    Page._by_hand(lambda: bench.move_load("I", "load", "3 kN", moving=True))
+    Page._by_hand(lambda: bench.move_relief("a", "tip", 26.0, 5.0, moving=True))
+    assert len(told) == 2
+    assert all("no valid TOML" in one and "mend the text first" in one for one in told)
+
+
 def test_a_fault_of_fegear_is_said_to_be_one_and_the_next_case_is_computed(computing):
     made, heard = computing
     made.ask(Compute(38, Asked(TEXT, "c", None)))
