@@ -117,7 +117,7 @@ class Engagement:
     driver_spacing: Array = field(default_factory=lambda: np.empty(0))
     driven_spacing: Array = field(default_factory=lambda: np.empty(0))
     corner_contact: bool = False
-    grids: RollGrids = field(default=None, repr=False, compare=False)  # type: ignore[assignment]
+    grids: RollGrids = field(default=None, repr=False, compare=False)  # type: ignore[assignment]  # set below
 
     def __post_init__(self) -> None:
         """Begin anew where the grids are of other gears: a copy with another compliance has them handed down, too."""
