@@ -2,14 +2,21 @@
 
 Tests that run another program ask the fixture `program` for it: where it is missing they are skipped, with the line
 that installs it. ``--no-skips`` lets no test be skipped.
+
+``--last-bit SEED`` computes as another processor might: with noise of one unit in the last place where rounding enters
+(`helpers/other_processor`). It runs the tests marked ``last_bit`` and every tenth of the others, always the same;
+``--last-bit-every 1`` runs all.
 """
 
 import gc
+import importlib
 import os
 import re
 import shutil
 import subprocess
 import sys
+import zlib
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -61,6 +68,8 @@ def scheduler():
 
 def pytest_addoption(parser):
     parser.addoption("--no-skips", action="store_true", help="a test that cannot run here has failed")
+    parser.addoption("--last-bit", type=int, metavar="SEED", help="noise in the last place, of this seed")
+    parser.addoption("--last-bit-every", type=int, default=10, metavar="N", help="run every N-th ordinary test with it")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -88,6 +97,15 @@ def is_long_run(config):
 
 def pytest_configure(config):
     settings.load_profile("long" if is_long_run(config) else "ordinary")
+    if (seed := config.getoption("last_bit")) is not None:
+        sys.path.insert(0, str(Path(__file__).parent / "helpers" / "other_processor"))
+        importlib.import_module("last_bit").install(seed)
+
+
+def _is_for_last_bit(config, item):
+    """Whether a test is run with noise in the last place: those of hard cases, and a fixed share of all."""
+    share = zlib.crc32(item.nodeid.encode()) % config.getoption("last_bit_every") == 0
+    return share or item.get_closest_marker("last_bit") is not None
 
 
 @pytest.hookimpl(wrapper=True)
@@ -118,3 +136,7 @@ def pytest_collection_modifyitems(config, items):
             seen.add(function)
             ordinary, many = marker.args
             settings(profile, max_examples=many if long_run else ordinary)(function)
+    if config.getoption("last_bit") is not None:
+        chosen = [_is_for_last_bit(config, item) for item in items]
+        config.hook.pytest_deselected(items=[item for item, one in zip(items, chosen, strict=True) if not one])
+        items[:] = [item for item, one in zip(items, chosen, strict=True) if one]
