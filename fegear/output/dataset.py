@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.engine.run import Results
 
 
-def _errors(table: Table) -> dict[str, str]:
+def error_columns(table: Table) -> dict[str, str]:
     """Which column holds the estimated error of which: ``c_self_error``, whose meaning may name several columns."""
     found: dict[str, str] = {}
     for column in table.columns:
@@ -47,7 +47,7 @@ def _is_index(column: Column) -> bool:
 
 
 def _add_table(file: netcdf_file, table: Table) -> None:
-    rows, first, errors = table.name, table.columns[0], _errors(table)
+    rows, first, errors = table.name, table.columns[0], error_columns(table)
     file.createDimension(rows, len(table))
     if _is_index(first):
         put(file, rows, (rows,), first.values, first.unit, first.meaning or first.name)
