@@ -10,6 +10,9 @@
   (after ``+-``) by a factor of five; ``...`` stands for anything in a line, and alone for any lines.
 
 Commands end with code 0 unless the page shows the refusal (a line that starts with ``fegear: ``).
+
+``python docs/snippets.py --accept PAGE FOLDER`` writes the numbers that are printed now into the page; words stay, and
+lines that are new or gone are refused: they are for a writer. Numbers in the prose of the page are for a writer, too.
 """
 
 from __future__ import annotations
@@ -25,6 +28,10 @@ import sys
 import traceback
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 ROOT = Path(__file__).resolve().parents[1]
 _FENCE = re.compile(r"^```([\w-]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -79,33 +86,78 @@ def runs(page: Path) -> bool:
 
 def compare(expected: str, got: str) -> None:
     """Raise `DifferentError` unless `got` is what a page says (see the module)."""
+    _aligned(expected, got, _same_numbers)
+
+
+def accepted(expected: str, got: str) -> str:
+    """What a page says, with the numbers that are printed now where they are not the same.
+
+    Raises
+    ------
+    DifferentError
+        If more than numbers differs.
+    """
+    pairs = _aligned(expected, got, lambda _expected, _got: True)
+    return "".join(line + "\n" if found is None else _renewed(line, found) + "\n" for line, found in pairs)
+
+
+def _aligned(expected: str, got: str, same: Callable[[str, str], bool]) -> list[tuple[str, str | None]]:
+    """Lines of a page with the printed lines that they stand for; none for ``...`` alone."""
     have = [line.rstrip() for line in got.strip("\n").splitlines()]
+    pairs: list[tuple[str, str | None]] = []
     where = 0
     skipping = False
+
+    def fits(line: str) -> bool:
+        return _numbers(line, have[where]) is not None and same(line, have[where])
+
     for line in expected.strip("\n").splitlines():
         if line.strip() == "...":
             skipping = True
+            pairs.append((line, None))
             continue
-        while skipping and where < len(have) and not _same_line(line, have[where]):
+        while skipping and where < len(have) and not fits(line):
             where += 1
-        if where >= len(have) or not _same_line(line, have[where]):
+        if where >= len(have) or not fits(line):
             found = have[where] if where < len(have) else "(the end)"
             raise DifferentError(f"expected\n  {line}\nprinted\n  {found}\nin\n{got}")
+        pairs.append((line, have[where]))
         where, skipping = where + 1, False
     if where < len(have) and not skipping:
         raise DifferentError(f"more is printed than expected:\n{chr(10).join(have[where:])}")
+    return pairs
 
 
-def _same_line(expected: str, got: str) -> bool:
-    parts = re.split(rf"((?<![\w.]){_NUMBER}|\.\.\.)", expected.rstrip())
+def _parts(expected: str) -> list[str]:
+    """A line of a page cut at its numbers and ``...``, which are the odd parts."""
+    return re.split(rf"((?<![\w.]){_NUMBER}|\.\.\.)", expected.rstrip())
+
+
+def _numbers(expected: str, got: str) -> list[tuple[str, str, str]] | None:
+    """Numbers of two lines that are the same but for them, each with the words before it; None for other lines."""
+    parts = _parts(expected)
     pattern = "".join(
         re.escape(part) if i % 2 == 0 else (".*?" if part == "..." else f"({_NUMBER})") for i, part in enumerate(parts)
     )
     found = re.fullmatch(pattern, got)
     if not found:
-        return False
+        return None
     said = [(parts[i - 1], part) for i, part in enumerate(parts) if i % 2 and part != "..."]
-    return all(_same_number(before, part, g) for (before, part), g in zip(said, found.groups(), strict=True))
+    return [(before, part, printed) for (before, part), printed in zip(said, found.groups(), strict=True)]
+
+
+def _same_numbers(expected: str, got: str) -> bool:
+    return all(_same_number(*one) for one in _numbers(expected, got) or ())
+
+
+def _renewed(expected: str, got: str) -> str:
+    numbers = iter(_numbers(expected, got) or ())
+    parts = _parts(expected)
+    for i in range(1, len(parts), 2):
+        if parts[i] != "...":
+            before, said, printed = next(numbers)
+            parts[i] = said if _same_number(before, said, printed) else printed
+    return "".join(parts)
 
 
 def _same_number(before: str, expected: str, got: str) -> bool:
@@ -120,8 +172,10 @@ def _same_number(before: str, expected: str, got: str) -> bool:
     return abs(a - b) <= max(1.5 * last, _RELATIVE * abs(a))
 
 
-def run_page(page: Path) -> int:
+def run_page(page: Path, *, accept: bool = False) -> int:
     """Run a page in the current folder; the number of blocks that were run or compared.
+
+    With `accept` the numbers that are printed now are written into the page.
 
     Raises
     ------
@@ -137,7 +191,7 @@ def run_page(page: Path) -> int:
         if block.kind == "text":
             if printed is not None:
                 try:
-                    compare(block.text, printed)
+                    (_accept if accept else _compare)(page, block, printed)
                 except DifferentError as error:
                     raise DifferentError(f"{where}: {error}") from None
                 if refused and not re.search(r"^fegear: ", block.text, re.MULTILINE):
@@ -163,6 +217,18 @@ def run_page(page: Path) -> int:
     if refused:
         raise DifferentError(refused)
     return done
+
+
+def _compare(_page: Path, block: Block, printed: str) -> None:
+    compare(block.text, printed)
+
+
+def _accept(page: Path, block: Block, printed: str) -> None:
+    """Write the numbers that are printed now into a block of a page."""
+    text = accepted(block.text, printed)
+    lines = page.read_text("utf-8").splitlines(keepends=True)
+    lines[block.line : block.line + block.text.count("\n")] = text.splitlines(keepends=True)
+    page.write_text("".join(lines), "utf-8")
 
 
 def _python(block: Block, names: dict[str, object], where: str) -> str:
@@ -197,13 +263,13 @@ def prepare(folder: Path) -> dict[str, str]:
     }
 
 
-def execute(page: Path, folder: Path) -> str:
+def execute(page: Path, folder: Path, *, accept: bool = False) -> str:
     """Run a page in a folder of its own, in a process of its own; what went wrong, or nothing.
 
     What the page's commands left running in the background, a cluster for example, ends with it.
     """
     environment = prepare(folder)
-    command = [sys.executable, str(Path(__file__)), str(page)]
+    command = [sys.executable, str(Path(__file__)), *(["--accept"] if accept else []), str(page)]
     pipe = subprocess.PIPE
     running = subprocess.Popen(
         command, cwd=folder, env=environment, stdout=pipe, stderr=pipe, text=True, start_new_session=True
@@ -217,12 +283,14 @@ def execute(page: Path, folder: Path) -> str:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 2:
-        made = Path(sys.argv[2]).resolve()
+    accepts = sys.argv[1] == "--accept"
+    asked, *into = sys.argv[2:] if accepts else sys.argv[1:]
+    if into:
+        made = Path(into[0]).resolve()
         if made.exists() and not (made / ".bin").is_dir():
             sys.exit(f"{made} is there and not from an earlier run of a page; it would be emptied")
-        sys.exit(execute(Path(sys.argv[1]).resolve(), made) or 0)
+        sys.exit(execute(Path(asked).resolve(), made, accept=accepts) or 0)
     try:
-        run_page(Path(sys.argv[1]))
+        run_page(Path(asked), accept=accepts)
     except DifferentError as difference:
         sys.exit(str(difference))

@@ -161,6 +161,17 @@ def test_what_a_page_says_is_not_what_is_printed(said, printed):
         snippets.compare(said, printed)
 
 
+def test_numbers_that_are_printed_now_are_written_into_a_page_and_words_are_not(tmp_path):
+    page = tmp_path / "page.md"
+    text = "A.\n\n```python\nprint('a = 2.50 um\\nmore\\nb = 7.00 +- 0.3 mm')\n```\n\n```text\n{}\n```\n\n2.4\n"
+    page.write_text(text.format("a = 2.40 um\n...\nb = 7.01 +- 0.1 mm"))
+    assert "expected\n  a = 2.40 um" in snippets.execute(page, tmp_path / "compared")
+    assert snippets.execute(page, tmp_path / "run", accept=True) == ""
+    assert page.read_text() == text.format("a = 2.50 um\n...\nb = 7.01 +- 0.1 mm")
+    with pytest.raises(snippets.DifferentError):
+        snippets.accepted("c = 2.40 um", "a = 2.40 um")
+
+
 def test_a_refusal_counts_only_where_the_page_shows_it(tmp_path):
     page = tmp_path / "page.md"
     command = "```sh\nfegear run missing.toml\n```\n"
