@@ -2,31 +2,38 @@
 
 The estimate takes the contact problem itself, not a formula for it: the same teeth and loads, one effect more, at under
 a hundred roll positions instead of the thousands of a run, without quadrature and without error estimates. It is exact
-where it looks, and it looks on either side of every jump, where effects show most.
+where it looks, and it looks on either side of every jump and follows the largest changes between its positions. The
+largest root tension has a place of its own with each effect, which is searched for, too: two maxima over the same
+positions would differ by what both miss.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fegear.contact.peaks import refined_peaks
 from fegear.contact.root_stress_history import root_stress_history
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.contact.engagement import Engagement, Loaded
+    from fegear.contact.engagement import Engagement
 
 Answer = Literal["transmission error", "load on a tooth pair", "root tension"]
 
 #: Roll positions spread over the base pitch.
 _SPREAD = 32
+#: Changes are large where contacts begin a little sooner or later, over less than the distance of two positions: how
+#: far a sample may be below the largest whose neighbourhood is looked at, and how many are.
+_NARROW = (1.0, 8)
 #: Distances from a jump at which both sides of it are looked at [base pitches]: corners take over within hundredths.
 _BESIDE = (1e-7, *(float(d) for d in np.geomspace(1e-3, 6e-2, 13)))
 
@@ -107,38 +114,57 @@ def changes(
     """
     x, w = few_positions([engagement, *others.values()]), np.atleast_1d(np.asarray(loads, dtype=float))
     before = engagement.solve(engagement.grid(x), w, cycle)
-    stress = _largest_tensions(engagement, before) if "root tension" in answers and others else np.zeros(w.size)
+    scales: dict[Answer, Array] = {
+        "transmission error": before.transmission_error.mean(axis=0), "load on a tooth pair": w,
+    }  # fmt: skip
+    if "root tension" in answers and others:
+        scales["root tension"] = _largest_tensions(engagement, x, w, cycle)
     found = {}
     for name, other in others.items():
-        after = other.solve(other.grid(x), w, cycle)
         parts: dict[Answer, Change] = {}
-        if "transmission error" in answers:
-            difference = after.transmission_error - before.transmission_error
-            parts["transmission error"] = _worst(
-                "transmission error", difference, before.transmission_error.mean(axis=0), w, x
-            )
-        if "load on a tooth pair" in answers:
-            parts["load on a tooth pair"] = _worst("load on a tooth pair", _load_changes(before, after), w, w, x)
-        if "root tension" in answers:
-            grown = _largest_tensions(other, after) - stress
-            parts["root tension"] = _worst("root tension", grown[None], stress, w, np.array([np.nan]))
+        for answer in answers:
+            if answer == "root tension":
+                grown = _largest_tensions(other, x, w, cycle) - scales[answer]
+                parts[answer] = _worst(answer, grown, scales[answer], w, np.full(w.size, np.nan))
+            else:
+                difference = partial(_DIFFERENCES[answer], engagement, other, w, cycle)
+                at, _ = refined_peaks(partial(_sizes, difference), x, *_NARROW)
+                parts[answer] = _worst(answer, np.diagonal(difference(at)), scales[answer], w, at)
         found[name] = tuple(parts[answer] for answer in answers)
     return found
 
 
-def _worst(answer: Answer, difference: Array, scale: Array, loads: Array, x: Array) -> Change:
-    """Pick the load and the position at which a difference, shape (P, L), is the largest share of its scale."""
-    p, i = np.unravel_index(int(np.argmax(np.abs(difference) / scale)), difference.shape)
-    return Change(answer, float(difference[p, i]), float(scale[i]), float(loads[i]), float(x[p]))
+def _worst(answer: Answer, differences: Array, scales: Array, loads: Array, x: Array) -> Change:
+    """Pick the load, of L, at which a difference is the largest share of its scale."""
+    i = int(np.argmax(np.abs(differences) / scales))
+    return Change(answer, *(float(of[i]) for of in (differences, scales, loads, x)))
 
 
-def _largest_tensions(engagement: Engagement, state: Loaded) -> Array:
-    """Of the loaded teeth of both gears, shape (L,) [Pa]."""
-    return np.max([root_stress_history(engagement, state, member).largest for member in MEMBERS], axis=0)
+def _largest_tensions(engagement: Engagement, x: Array, loads: Array, cycle: int) -> Array:
+    """Of the loaded teeth of both gears over the base pitch, shape (L,) [Pa]; x has both sides of every jump."""
+
+    def curves(at: Array) -> Array:
+        state = engagement.solve(engagement.grid(at, again=False), loads, cycle)
+        both = [root_stress_history(engagement, state, member).stress.max(axis=0) for member in MEMBERS]
+        return np.max(both, axis=0).T
+
+    return refined_peaks(curves, x)[1]
 
 
-def _load_changes(before: Loaded, after: Loaded) -> Array:
+def _sizes(difference: Callable[[Array], Array], x: Array) -> Array:
+    """As curves over the positions, shape (L, P)."""
+    return np.abs(difference(x)).T
+
+
+def _error_change(engagement: Engagement, other: Engagement, loads: Array, cycle: int, x: Array) -> Array:
+    """Change of the transmission error, shape (P, L) [m]."""
+    after, before = (one.solve(one.grid(x), loads, cycle) for one in (other, engagement))
+    return np.asarray(after.transmission_error - before.transmission_error)
+
+
+def _load_change(engagement: Engagement, other: Engagement, loads: Array, cycle: int, x: Array) -> Array:
     """Change of that pair's load which changes most, shape (P, L) [N]; pairs are matched by their place."""
+    after, before = (one.solve(one.grid(x), loads, cycle) for one in (other, engagement))
     numbers = before.grid.contacts.number, after.grid.contacts.number
     first = min(n[0] for n in numbers)
     difference = np.zeros((int(max(n[-1] for n in numbers) - first) + 1, *before.loads.shape[1:]))
@@ -146,3 +172,6 @@ def _load_changes(before: Loaded, after: Loaded) -> Array:
         difference[number - first] += sign * state.loads
     row = np.argmax(np.abs(difference), axis=0)
     return np.take_along_axis(difference, row[None], axis=0)[0]
+
+
+_DIFFERENCES = {"transmission error": _error_change, "load on a tooth pair": _load_change}

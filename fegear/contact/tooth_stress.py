@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from fegear.contact.error_by_shift import solve_again
+from fegear.contact.peaks import refined_peaks
 from fegear.contact.root_stress_history import root_stress_history
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.contact.compliance import RootStressInfluence
+    from fegear.contact.compliance import RootStressInfluence, Side
     from fegear.contact.engagement import Engagement, Loaded
     from fegear.geometry.pair import Member
+
+
+#: Both fillets of a tooth, and the sign of the stress that is looked for.
+_FILLETS: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))
 
 
 @dataclass(frozen=True)
@@ -84,6 +89,48 @@ def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[
     return LoadedStates(rows, [[solve_again(other, state) for other in shifted] for state in rows])
 
 
+def with_peaks(e: Engagement, load: float, x: Array, sources: Mapping[Member, Sequence[RootStressInfluence]]) -> Array:
+    """Roll positions and, in addition, those where a tooth's root stress is largest, ascending [m].
+
+    Parameters
+    ----------
+    e : Engagement
+    load : float
+        [N].
+    x : ndarray, shape (P,)
+        Over one base pitch, with both sides of every jump, ascending [m].
+    sources : mapping of member to sequence of RootStressInfluence
+        Of root stress.
+    """
+    wanted = [
+        (member, source, side, sign)
+        for member, several in sources.items()
+        for source in several
+        for side, sign in _FILLETS
+        if _knows(e, member, source, side)
+    ]
+
+    def curves(at: Array) -> Array:
+        rows = loaded_states(e, (), [load], at).rows
+        alike = all(state is rows[0] for state in rows)
+        found = []
+        for member, source, side, sign in wanted:
+            stress = [
+                root_stress_history(e, state, member, side, 1, source).stress for state in (rows[:1] if alike else rows)
+            ]
+            teeth = stress[0] if alike else np.stack([one[row] for row, one in enumerate(stress)])
+            found.append((sign * teeth[:, :, 0]).max(axis=0))
+        return np.array(found)
+
+    return np.union1d(x, refined_peaks(curves, x)[0])
+
+
+def _knows(e: Engagement, member: Member, source: RootStressInfluence, side: Side) -> bool:
+    """Whether a source knows the stress of a fillet; formulas know that of the tension fillet alone."""
+    ends = np.array([e.pair.radius(end, member) for end in (e.pair.x_start, e.pair.x_end)])
+    return source.root_stress(0, ends, side) is not None
+
+
 def tooth_stress(
     e: Engagement,
     states: LoadedStates,
@@ -110,8 +157,7 @@ def tooth_stress(
     InputError
         If the source knows no root stress.
     """
-    ends = np.array([e.pair.radius(end, member) for end in (e.pair.x_start, e.pair.x_end)])
-    knows_both = (source or e.compliance.source(member)).root_stress(0, ends, "compression") is not None
+    knows_both = _knows(e, member, source or e.compliance.source(member), "compression")
     xs: list[Array] = []
     tension: list[Array] = []
     compression: list[Array] = []

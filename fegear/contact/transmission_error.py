@@ -166,8 +166,20 @@ def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> 
 
     By Maxwell's theorem it is the load on pair j, per unit approach, of a pair without modifications or errors (A.11);
     with a load-dependent contact it is the secant stiffness under `load` [N].
+
+    Raises
+    ------
+    InputError
+        If the contact ratio is below 1: perfect flanks then have positions without any pair on the path, whether tip
+        corners touch beyond it or not.
     """
     pair = engagement.pair
+    if pair.contact_ratio < 1.0:
+        raise InputError(
+            "pair", f"contact ratio {pair.contact_ratio:.4f}", "leaves perfect flanks no stiffness where no tooth pair "
+            "is on the path of contact, so that Mark's K_T and its mean compliance do not exist below 1",
+            'take transmission_error.method = "quadrature", which has tip corners in contact there',
+        )  # fmt: skip
     points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics)
     grid = engagement.grid(points.x)
     m = grid.matrices

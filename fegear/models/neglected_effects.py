@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from fegear.models.pair_inputs import PairInputs
 
 _UNITS = {"transmission error": ("um", 1e6), "load on a tooth pair": ("N", 1.0), "root tension": ("MPa", 1e-6)}
+#: Contact ratios nearer to a whole number than this leave transmission error a spike of almost no width.
+_NEAR_WHOLE = 1e-3
 _SCALES = {"transmission error": "its mean", "load on a tooth pair": "the load", "root tension": "its largest value"}
 
 
@@ -152,6 +154,22 @@ def neglected_remarks(
         if sizes:
             said.append(remark(f"Pair {name}", effects, tolerance, effect, sizes))
     return tuple(said)
+
+
+def whole_ratio_remarks(name: str, engagement: Engagement, effects: EffectsPart) -> tuple[str, ...]:
+    """What a contact ratio next to a whole number does to the peak to peak where tip corners do not touch."""
+    ratio = engagement.pair.contact_ratio
+    off = ratio - round(ratio)
+    if engagement.corner_contact or abs(off) >= _NEAR_WHOLE:
+        return ()
+    said = (
+        f"Pair {name}: the contact ratio is {ratio:.9g}, within {_NEAR_WHOLE:g} of a whole number, and corner_contact "
+        f"is off: one tooth pair {'more' if off >= 0.0 else 'less'} is in contact over "
+        f"{abs(off) * engagement.pair.base_pitch * 1e6:.3g} um of the base pitch alone, a spike of transmission error "
+        "and stiffness of almost no width. Peak to peak jumps where the ratio passes the whole number, and with it all "
+        f"that is searched for by it. {remedy(effects, 'corner_contact')} With it both are continuous."
+    )
+    return (said,)
 
 
 def neglected_in_design(

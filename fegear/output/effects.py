@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 import fegear
 from fegear.engine.outcome import Column, Table
 from fegear.output.folder import SUMMARY, files_in
-from fegear.output.report.effects import effects_page
+from fegear.output.report.effects import effects_page, stated_errors
 from fegear.output.report.page import write_page
 from fegear.output.summary import write_json
 from fegear.output.tables import write_table
@@ -29,33 +30,40 @@ if TYPE_CHECKING:
     Curve = tuple[Table, Table, str, str]
 
 
+#: Name, unit and meaning of the columns.
+_HEADS = (
+    ("effect", "", "which effect"),
+    ("in_the_case", "", "whether the case has it on"),
+    ("result", "", "name of the value"),
+    ("unit", "", "of the value"),
+    ("without", "", "value without the effect"),
+    ("with", "", "value with the effect"),
+    ("change", "", "with less without"),
+    ("share", "", "change over the larger of the two"),
+    ("error_without", "", "estimated error of the value without the effect"),
+    ("error_with", "", "estimated error of the value with the effect"),
+    ("resolved", "", "whether the change exceeds the sum of both errors, or 1e-9 of a value without one"),
+    ("processor_without", "s", "processor seconds without the effect"),
+    ("processor_with", "s", "processor seconds with the effect"),
+    ("kernels", "", "calls of the kernels without -> with"),
+)
+
+
 def effects_table(switched: Sequence[Switched]) -> Table:
     """One row for each effect and value: without and with the effect, seconds, and the kernels that it calls more."""
     rows = []
     for found in switched:
         kernels = kernel_changes(found)
-        for a, b in found.values():
-            change = b.value - a.value
-            scale = max(abs(a.value), abs(b.value))
+        for pair in found.changes():
+            a, b = pair.both
+            errors = [math.nan if value.error is None else value.error for value in (a, b)]
             rows.append(
-                (found.effect, "on" if found.named else "off", a.name, a.unit, a.value, b.value, change,
-                 change / scale if scale > 0.0 else 0.0, found.without.seconds, found.with_it.seconds, kernels)
+                (found.effect, "on" if found.named else "off", a.name, a.unit, a.value, b.value, pair.change,
+                 pair.share, *errors, "yes" if pair.resolved else "no", found.without.seconds, found.with_it.seconds,
+                 kernels)
             )  # fmt: skip
-    columns = list(zip(*rows, strict=True)) if rows else [()] * 11
-    heads = (
-        ("effect", "", "which effect"),
-        ("in_the_case", "", "whether the case has it on"),
-        ("result", "", "name of the value"),
-        ("unit", "", "of the value"),
-        ("without", "", "value without the effect"),
-        ("with", "", "value with the effect"),
-        ("change", "", "with less without"),
-        ("share", "", "change over the larger of the two"),
-        ("processor_without", "s", "processor seconds without the effect"),
-        ("processor_with", "s", "processor seconds with the effect"),
-        ("kernels", "", "calls of the kernels without -> with"),
-    )
-    made = [Column(h, np.array(c), unit, meaning) for (h, unit, meaning), c in zip(heads, columns, strict=True)]
+    columns = list(zip(*rows, strict=True)) if rows else [()] * len(_HEADS)
+    made = [Column(h, np.array(c), unit, meaning) for (h, unit, meaning), c in zip(_HEADS, columns, strict=True)]
     return Table("effects", tuple(made), "What each effect changes and what it costs")
 
 
@@ -122,12 +130,18 @@ def write_effects(scene: Scene, switched: Sequence[Switched], fixed: Sequence[Fi
 
 
 def sentence(found: Switched) -> str:
-    """The value that an effect changes most, and what that costs."""
-    a, b = found.without.seconds, found.with_it.seconds
-    cost = f"processor time {a:.2f} s without, {b:.2f} s with"
-    changes = [(abs(q.value - p.value) / max(abs(p.value), abs(q.value)), p, q) for p, q in found.values()
-               if max(abs(p.value), abs(q.value)) > 0.0]  # fmt: skip
-    if not changes or max(c for c, _, _ in changes) == 0.0:
+    """The value that an effect changes most, of those by more than their errors, and what that costs."""
+    cost = f"processor time {found.without.seconds:.2f} s without, {found.with_it.seconds:.2f} s with"
+    most = found.largest_change()
+    if most is not None:
+        a, b = most.both
+        return f"{found.effect} changes {a.name} most: {a.value:.5g} -> {b.value:.5g} {a.unit}; {cost}.".replace(
+            " ;", ";"
+        )
+    unresolved = [pair for pair in found.changes() if pair.change != 0.0]
+    if not unresolved:
         return f"{found.effect} changes no value; {cost}."
-    _, p, q = max(changes, key=lambda c: c[0])
-    return f"{found.effect} changes {p.name} most: {p.value:.5g} -> {q.value:.5g} {p.unit}; {cost}.".replace(" ;", ";")
+    most = max(unresolved, key=lambda pair: abs(pair.share))
+    change = f"{most.change:+.3g} {most.both[0].unit}".rstrip()
+    not_resolved = f"{most.name}: {change}, not resolved ({stated_errors(most)})"
+    return f"{found.effect} changes no value by more than its error; {not_resolved}; {cost}."

@@ -17,7 +17,7 @@ from fegear.models.loaded_pair import (
     engagement_at_rest,
     shifted_sources,
 )
-from fegear.models.neglected_effects import Neglected, neglected_effects, neglected_remarks
+from fegear.models.neglected_effects import Neglected, neglected_effects, neglected_remarks, whole_ratio_remarks
 from fegear.models.pair_checks import check_pair
 from fegear.models.pair_inputs import pair_inputs
 from fegear.plain import content_key
@@ -188,7 +188,8 @@ def _present(data: LoadedPairData, inputs: LoadedPairInputs) -> Outcome:
         "loads": list(pair.loads),
     }
     neglected = neglected_remarks(asked.name, data.neglected, inputs.effects, inputs.tolerance, pair.nominal)
-    return Outcome(data, (), (), settings, tuple(dict.fromkeys((*asked.assumed, *neglected))))
+    whole = whole_ratio_remarks(asked.name, pair.engagement, inputs.effects)
+    return Outcome(data, (), (), settings, tuple(dict.fromkeys((*asked.assumed, *whole, *neglected))))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:

@@ -105,22 +105,28 @@ def _inputs(scene: Scene, name: str) -> RootStressInputs:
 
 def _compute(asked: RootStressInputs, upstream: Upstream, work: Work) -> RootStressData:
     from fegear.contact.mesh_curve import roll_positions
-    from fegear.contact.tooth_stress import loaded_states, tooth_stress
+    from fegear.contact.tooth_stress import loaded_states, tooth_stress, with_peaks
 
     pair = loaded_pair(upstream, asked.name)
     solved = {} if FINITE_ELEMENTS not in asked.sources else {g: solution_of(upstream, g) for g in asked.gears.values()}
-    states = loaded_states(pair.engagement, pair.shifted, pair.loads, roll_positions(pair.engagement, POSITIONS))
-    stress: dict[Member, dict[str, ToothStress]] = {}
-    notes: dict[Member, dict[str, tuple[str, ...]]] = {}
-    for number, member in enumerate(MEMBERS):
+    sources: dict[Member, dict[str, RootStressInfluence]] = {member: {} for member in MEMBERS}
+    for member in MEMBERS:
         gear = asked.gears[member]
-        stress[member], notes[member] = {}, {}
         for name in asked.sources:
             source: RootStressInfluence = pair.engagement.compliance.source(member)  # knows what was asked before
             if name != FINITE_ELEMENTS or getattr(source, "influence", None) is not solved[gear]:
                 source = root_stress_source(
                     name, asked.name, gear, pair.engagement.pair, member, solved, tips=asked.tips
                 )  # fmt: skip
+            sources[member][name] = source
+    x = roll_positions(pair.engagement, POSITIONS)
+    x = with_peaks(pair.engagement, pair.nominal, x, {member: (*sources[member].values(),) for member in MEMBERS})
+    states = loaded_states(pair.engagement, pair.shifted, pair.loads, x)
+    stress: dict[Member, dict[str, ToothStress]] = {}
+    notes: dict[Member, dict[str, tuple[str, ...]]] = {}
+    for number, member in enumerate(MEMBERS):
+        stress[member], notes[member] = {}, {}
+        for name, source in sources[member].items():
             stress[member][name] = tooth_stress(pair.engagement, states, member, source, estimates=asked.estimates)
             notes[member][name] = source.remarks
         work.progress((number + 1) / len(MEMBERS))

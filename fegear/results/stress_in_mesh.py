@@ -111,17 +111,24 @@ class StressInMeshData:
 def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshData:
     from fegear.contact.mesh_curve import roll_positions
     from fegear.contact.root_stress_history import superposed_stress
+    from fegear.contact.tooth_stress import with_peaks
 
     found = loaded_pair(upstream, asked.name)
     e, pair = found.engagement, found.engagement.pair
     solved = {gear: solution_of(upstream, gear) for gear in asked.gears.values()}
-    state = e.solve(e.grid(roll_positions(e, POSITIONS)), [found.nominal])
+    sources = {
+        member: root_stress_source(
+            FINITE_ELEMENTS, asked.name, asked.gears[member], pair, member, solved, tips=asked.tips
+        )
+        for member in MEMBERS
+    }
+    at_peaks = {member: (source,) for member, source in sources.items()}
+    state = e.solve(e.grid(with_peaks(e, found.nominal, roll_positions(e, POSITIONS), at_peaks)), [found.nominal])
     contacts = state.grid.contacts
     pairs = np.arange(contacts.number[0] - 1, contacts.number[-1] + 2)
     gears: dict[Member, FilletStress] = {}
     for member in MEMBERS:
-        gear = asked.gears[member]
-        source = root_stress_source(FINITE_ELEMENTS, asked.name, gear, pair, member, solved, tips=asked.tips)
+        gear, source = asked.gears[member], sources[member]
         places, stress = {}, {}
         for side in _SIDES:
             teeth = [one[:, 0] for one in superposed_stress(e, state, member, side, 1, source)]

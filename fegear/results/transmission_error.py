@@ -64,8 +64,8 @@ class TransmissionErrorData:
         Over the hunting cycle, with spacing errors.
     shift : TransmissionErrorShift or None
         Estimated errors at the nominal load.
-    mesh_compliance : float
-        Mean of 1/K_T of perfect flanks [m/N].
+    mesh_compliance : float or None
+        Mean of 1/K_T of perfect flanks [m/N]; none below a contact ratio of 1.
     by_mark : MarkData or None
         Mark's series at the nominal load, where the case asks for it.
     """
@@ -76,7 +76,7 @@ class TransmissionErrorData:
     stiffness: Array
     rotational: FourierSeries | None
     shift: TransmissionErrorShift | None
-    mesh_compliance: float
+    mesh_compliance: float | None
     by_mark: MarkData | None
 
 
@@ -108,7 +108,8 @@ def _compute(asked: TransmissionErrorInputs, upstream: Upstream, work: Work) -> 
     curve = e.solve(e.grid(roll_positions(e, POSITIONS)), pair.loads)
     uneven = bool(e.driver_spacing.size or e.driven_spacing.size)
     rotational = revolution(e, pair.nominal, e.cycles, 3 * e.cycles) if uneven and e.cycles <= _MOST_CYCLES else None
-    compliance = pair_stiffness(e, pair.nominal, HARMONICS).mean_compliance
+    bridged = e.pair.contact_ratio >= 1.0
+    compliance = pair_stiffness(e, pair.nominal, HARMONICS).mean_compliance if bridged else None
     shift = transmission_error_shift(exact[i], pair.shifted)
     by_mark = mark_data(e, exact[i], asked.part.terms) if asked.part.method == "mark-series" else None
     return TransmissionErrorData(
@@ -132,8 +133,15 @@ def _present(data: TransmissionErrorData, inputs: TransmissionErrorInputs) -> Ou
     name, pair = inputs.name, data.pair
     e, shown = pair.engagement, _shown(name, data)
     tables = error_tables(shown)
-    values = [*error_values(shown), mesh_compliance_value(shown, data.mesh_compliance)]
-    remarks, cycles = [], e.cycles
+    values, remarks, cycles = error_values(shown), [], e.cycles
+    if data.mesh_compliance is None:
+        remarks.append(
+            f"Pair {name}: {name}.mesh_compliance_mean, Mark's mean of 1/K_T of perfect flanks, is not given: with "
+            f"a contact ratio of {e.pair.contact_ratio:.4g} tip corners alone carry where no pair is on the path of "
+            "contact."
+        )
+    else:
+        values.append(mesh_compliance_value(shown, data.mesh_compliance))
     if data.rotational is not None:
         tables.append(_rotational_table(name, data.rotational, cycles))
         low = data.rotational.amplitude[: cycles - 1]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from fegear.case.effects import EffectsPart
 from fegear.case.names import nearest
@@ -16,6 +15,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
+from fegear.studies.comparison.values import paired
 from fegear.tally import tallying
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fegear.case.reading import Scene
-    from fegear.engine.outcome import Value
     from fegear.engine.run import Results
+    from fegear.studies.comparison.values import Pairing
 
     Document = dict[str, Any]
 
@@ -58,11 +58,17 @@ class Switched:
     without: Measured
     with_it: Measured
 
-    def values(self) -> list[tuple[Value, Value]]:
+    def changes(self) -> list[Pairing]:
         """Values of the same name and unit, without the effect and with it."""
-        after = {value.name: value for value in self.with_it.results.values}
-        pairs = [(value, after[value.name]) for value in self.without.results.values if value.name in after]
-        return [(a, b) for a, b in pairs if a.unit == b.unit and np.isfinite([a.value, b.value]).all()]
+        return [
+            pair
+            for pair in paired(dict(self.without.results.values.items()), dict(self.with_it.results.values.items()))
+            if math.isfinite(pair.change)
+        ]
+
+    def largest_change(self) -> Pairing | None:
+        """The value that the effect changes most, of those by more than their estimated errors."""
+        return max((pair for pair in self.changes() if pair.resolved), key=lambda pair: abs(pair.share), default=None)
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,9 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.engine.figure import Figure
     from fegear.output.report.blocks import Block
+    from fegear.studies.comparison.values import Pairing
     from fegear.studies.effect_figures import EffectCurve
     from fegear.studies.effect_study import Fixed, Switched
-
-#: Changes of values by less than this share are round-off.
-_ROUND_OFF = 1e-12
 
 
 def _carried(effect: str, found: EffectCurve) -> tuple[Table, Table]:
@@ -33,17 +31,23 @@ def _carried(effect: str, found: EffectCurve) -> tuple[Table, Table]:
     return tables[0], tables[1]
 
 
+def stated_errors(pair: Pairing) -> str:
+    """Estimated errors of a value without an effect and with it; none is stated where both are unknown."""
+    known = [f"+- {value.error:.2g}" for value in pair.both if value.error]
+    return " and ".join(known) or "round-off"
+
+
 def _values(found: Switched) -> Block:
     rows = []
-    for a, b in found.values():
-        scale = max(abs(a.value), abs(b.value))
-        share = (b.value - a.value) / scale if scale > 0.0 else 0.0
-        if abs(share) > _ROUND_OFF:
-            rows.append((abs(share), (a.name, a.value, b.value, pretty_unit(a.unit), f"{100.0 * share:+.3g} %")))
-    rows.sort(key=lambda row: -row[0])
+    for pair in sorted(found.changes(), key=lambda pair: -abs(pair.share)):
+        if pair.change == 0.0:
+            continue
+        a, b = pair.both
+        change = f"{100.0 * pair.share:+.3g} %" if pair.resolved else f"not resolved ({stated_errors(pair)})"
+        rows.append((a.name, a.value, b.value, pretty_unit(a.unit), change))
     if not rows:
         return Paragraph("It changes no value.")
-    grid = Grid(("Value", "Without", "With", "Unit", "Change"), [row for _, row in rows])
+    grid = Grid(("Value", "Without", "With", "Unit", "Change"), rows)
     return Folded(f"The {len(rows)} values that it changes", (grid,))
 
 
@@ -108,14 +112,10 @@ def effects_page(
 
 def _largest(found: Switched) -> tuple[str, str, str]:
     """The value that an effect changes most, by how much, and what the effect costs."""
-    changes = [
-        (abs(b.value - a.value) / max(abs(a.value), abs(b.value)), a, b)
-        for a, b in found.values()
-        if max(abs(a.value), abs(b.value)) > 0.0
-    ]
     cost = f"{found.without.seconds:.2f} without, {found.with_it.seconds:.2f} with"
-    share, a, b = max(changes, key=lambda change: change[0], default=(0.0, None, None))
-    if a is None or b is None or share <= _ROUND_OFF:
-        return "none", "", cost
+    most = found.largest_change()
+    if most is None:
+        return "none by more than its error" if any(pair.change for pair in found.changes()) else "none", "", cost
+    a, b = most.both
     unit = f" {pretty_unit(a.unit)}".rstrip()
-    return a.name, f"{plain_number(a.value, 5)} to {plain_number(b.value, 5)}{unit}", cost
+    return most.name, f"{plain_number(a.value, 5)} to {plain_number(b.value, 5)}{unit}", cost

@@ -11,12 +11,23 @@ if TYPE_CHECKING:
     from fegear.engine.outcome import Value
 
 
+#: Share that the last digits of a processor may change of a number without an estimated error.
+_ROUND_OFF = 1e-9
+
+
 class Pairing(NamedTuple):
     """A value in both runs; None where a run has none."""
 
     name: str
     first: Value | None
     second: Value | None
+
+    @property
+    def both(self) -> tuple[Value, Value]:
+        """The two values, where no run lacks it."""
+        if self.first is None or self.second is None:
+            raise LookupError(f"{self.name} is missing on one side")
+        return self.first, self.second
 
     @property
     def change(self) -> float:
@@ -37,6 +48,11 @@ class Pairing(NamedTuple):
         """Whether the estimated errors of the two explain the change."""
         errors = [value.error or 0.0 for value in (self.first, self.second) if value is not None]
         return abs(self.change) <= sum(errors)
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the change exceeds the estimated errors of the two, and the round-off of numbers without one."""
+        return abs(self.share) > _ROUND_OFF and not self.within_errors
 
     def differs(self, tolerance: float) -> bool:
         """Whether it is missing on one side, or changes by more than a share."""

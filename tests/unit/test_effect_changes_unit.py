@@ -1,0 +1,53 @@
+"""What `fegear effects` says of changes: those below the errors of both runs are called not resolved."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from fegear.engine.named import Named
+from fegear.engine.outcome import Value
+from fegear.output.effects import effects_table, sentence
+from fegear.output.report.effects import effects_page
+from fegear.studies.effect_study import Measured, Switched
+
+
+def run(*values: Value) -> Measured:
+    return Measured(SimpleNamespace(values=Named(values), tables=()), 1.0, {})
+
+
+def te(value: float, error: float | None) -> Value:
+    return Value("I.te_peak_to_peak", value * 1e-6, "um", None if error is None else error * 1e-6)
+
+
+def mean(value: float, error: float | None) -> Value:
+    return Value("I.te_mean", value * 1e-6, "um", None if error is None else error * 1e-6)
+
+
+def test_a_change_below_the_errors_of_both_runs_is_called_not_resolved():
+    found = Switched("hertz", True, run(te(8.0, 1.2), mean(20.0, 0.1)), run(te(8.216, 2.5), mean(20.05, 0.1)))
+    said = sentence(found)
+    assert "hertz changes no value by more than its error" in said
+    assert "I.te_peak_to_peak: +0.216 um, not resolved (+- 1.2 and +- 2.5)" in said
+    assert effects_table([found])["resolved"].tolist() == ["no", "no"]
+    assert effects_table([found])["error_with"].tolist() == pytest.approx([2.5, 0.1])
+
+
+def test_the_largest_change_is_taken_of_those_that_are_resolved():
+    found = Switched("hertz", True, run(te(8.0, 1.2), mean(20.0, 0.1)), run(te(9.0, 2.5), mean(20.5, 0.1)))
+    assert sentence(found).startswith("hertz changes I.te_mean most: 20 -> 20.5 um")
+    assert effects_table([found])["resolved"].tolist() == ["no", "yes"]
+
+
+@pytest.mark.parametrize(("share", "resolved"), [(1e-10, "no"), (1e-8, "yes")])
+def test_a_value_without_an_error_has_round_off(share, resolved):
+    found = Switched("hertz", False, run(te(8.0, None)), run(te(8.0 * (1.0 + share), None)))
+    assert effects_table([found])["resolved"].tolist() == [resolved]
+    assert ("not resolved (round-off)" in sentence(found)) == (resolved == "no")
+
+
+def test_the_page_names_what_is_not_resolved():
+    found = Switched("hertz", True, run(te(8.0, 1.2)), run(te(8.216, 2.5)))
+    scene = SimpleNamespace(case=SimpleNamespace(title="A pair"), name="pair", text="")
+    page = effects_page(scene, [found], [], effects_table([found]), {"hertz": None}, {"hertz": None}, {"hertz": ""})
+    assert "not resolved (+- 1.2 and +- 2.5)" in str(page.sections)
+    assert "none by more than its error" in str(page.sections)
