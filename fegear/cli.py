@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -98,9 +99,20 @@ def main() -> None:
     except OSError as error:
         give_up(sys.stdout)
         if error.errno not in NO_ROOM:
+            if _nowhere():
+                leave("the folder that it was started in does not exist any more; change into another one.", 2)
             raise
         where = f" to {error.filename}" if error.filename else ""
         leave(f"cannot write{where} ({error.strerror}); what stands in output folders is whole.", 2)
+
+
+def _nowhere() -> bool:
+    """Whether the working folder has been deleted, on which whatever asks for it fails."""
+    try:
+        Path.cwd()
+    except OSError:
+        return True
+    return False
 
 
 class _Stopped(BaseException):

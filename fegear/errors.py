@@ -10,13 +10,15 @@ NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno
 NOTEBOOK_EXTRA = "install it with: pip install 'fegear[notebook]'"
 #: Most characters of an input that a message repeats.
 _SHOWN = 60
+#: Most characters of a path that a message repeats: its end counts as much as its beginning.
+PATH = 300
 
 
-def shown(value: object) -> str:
-    """Return an input as messages repeat it: on one line, texts in quotes, long ones cut short."""
+def shown(value: object, most: int = _SHOWN) -> str:
+    """Return an input as messages repeat it: on one line, texts in quotes, longer ones than `most` cut short."""
     text = value if isinstance(value, str) else repr(value)
-    if len(text) > _SHOWN:
-        text = f"{text[:_SHOWN]}..."
+    if len(text) > most:
+        text = f"{text[:most]}..."
     text = "".join(sign if sign.isprintable() else " " for sign in text)
     return f'"{text}"' if isinstance(value, str) else text
 

@@ -12,6 +12,8 @@ from fegear.units import DIMENSIONS, EVERYDAY
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+#: By which a schema of fegear is known.
+TITLE = "A case of fegear"
 #: A number with a point, and a unit.
 _PATTERN = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*([^\s\d.,]|1\s*/\s*[^\s\d]).*$"
 
@@ -33,7 +35,7 @@ def case_schema(results: Mapping[str, str]) -> dict[str, Any]:
     schema["properties"]["results"]["items"] = {
         "anyOf": [{"const": name, "description": about} for name, about in results.items()]
     }
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "A case of fegear"}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": TITLE}
 
 
 #: What pydantic writes for limits behind a validator, and what JSON schema calls them.

@@ -3,17 +3,52 @@
 from __future__ import annotations
 
 import codecs
-from typing import TYPE_CHECKING
+import contextlib
+import hashlib
+import os
+import stat
+import tempfile
+import unicodedata
+from pathlib import Path
+from typing import NamedTuple
 
-from fegear.errors import InputError
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from fegear.errors import PATH, InputError, shown
 
 #: Largest file that is read [bytes]; a table of a million lines is smaller.
 _LARGEST = 100_000_000
 #: What other programs save as text; a file in UTF-16 begins with its mark, and so does one in UTF-32.
 _MARKS = {codecs.BOM_UTF16_LE: "UTF-16", codecs.BOM_UTF16_BE: "UTF-16", codecs.BOM_UTF32_BE: "UTF-32"}
+
+
+class TextFile(NamedTuple):
+    """A file as it was read.
+
+    Attributes
+    ----------
+    text : str
+        With line feeds alone at the ends of its lines, without a byte order mark.
+    digest : str
+        SHA-256 of its bytes.
+    ends : str
+        What most of its lines end with.
+    mark : bool
+        Whether it begins with a byte order mark.
+    """
+
+    text: str
+    digest: str = ""
+    ends: str = "\n"
+    mark: bool = False
+
+    def written(self, text: str) -> bytes:
+        """Another text in the form of this file.
+
+        Raises
+        ------
+        UnicodeEncodeError
+            If it holds half a character.
+        """
+        return (codecs.BOM_UTF8 if self.mark else b"") + text.replace("\n", self.ends).encode()
 
 
 def read_text(path: Path, key: str) -> str:
@@ -30,24 +65,129 @@ def read_text(path: Path, key: str) -> str:
     InputError
         If it is not there, cannot be read, is too large or in another encoding.
     """
-    try:
-        if path.is_file() and path.stat().st_size > _LARGEST:
-            raise InputError(key, f'"{path}"', f"is larger than {_LARGEST // 1_000_000} MB", "check which file it is")
-        data = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(key, f'"{path}"', "does not exist", f"check the path of the {key} file") from None
-    except OSError as error:
-        raise InputError(key, f'"{path}"', f"cannot be read ({error.strerror or error})") from None
+    return read_file(path, key).text
+
+
+def read_file(path: Path, key: str) -> TextFile:
+    """Return the text of a file, and what tells whether and how it was changed; as `read_text`."""
+    data = _data(path, key)
     for mark, name in _MARKS.items():
         if data.startswith(mark):
             raise InputError(key, f'"{path.name}"', f"is in {name}, not in UTF-8", "save it as UTF-8")
     if b"\0" in data:
         raise InputError(key, f'"{path.name}"', "is no text", "check which file it is")
     try:
-        return data.decode("utf-8-sig").replace("\r\n", "\n")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
         raise InputError(
             key, f'"{path.name}"', f"is not in UTF-8: line {line} has the byte {data[error.start]:#04x}",
             "save it as UTF-8, not in an encoding such as Latin-1 or Windows-1252",
         ) from None  # fmt: skip
+    ends = "\r\n" if 2 * text.count("\r\n") > text.count("\n") else "\n"
+    return TextFile(text.replace("\r\n", "\n"), digest_of(data), ends, data.startswith(codecs.BOM_UTF8))
+
+
+def digest_of(data: bytes) -> str:
+    """SHA-256 of the content of a file."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def _data(path: Path, key: str) -> bytes:
+    """The bytes of an ordinary file: a pipe or a device may never end, or never begin."""
+    try:
+        # A pipe that is put there between looking and opening must not be waited for.
+        with open(path, "rb", opener=_at_once) as file:
+            state = os.fstat(file.fileno())
+            if not stat.S_ISREG(state.st_mode):
+                raise InputError(
+                    key, shown(str(path), PATH), "is a pipe or a device, not a file", "save it as a file first"
+                )
+            if state.st_size > _LARGEST:
+                rule = f"is larger than {_LARGEST // 1_000_000} MB"
+                raise InputError(key, shown(str(path), PATH), rule, "check which file it is")
+            return file.read()
+    except FileNotFoundError:
+        raise InputError(key, shown(str(path), PATH), "does not exist", f"check the path of the {key} file") from None
+    except OSError as error:
+        raise InputError(key, shown(str(path), PATH), f"cannot be read ({error.strerror or error})") from None
+    except ValueError:
+        raise InputError(key, shown(str(path), PATH), "can be no file's name", "check its characters") from None
+
+
+def _at_once(name: str, flags: int) -> int:
+    return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def named_path(text: str, key: str, *, home: bool = False) -> Path:
+    """Return the path that somebody typed.
+
+    Parameters
+    ----------
+    text : str
+    key : str
+        Where it was typed, for messages.
+    home : bool
+        Whether ``~`` begins a home folder; on the command line the shell has seen to that.
+
+    Raises
+    ------
+    InputError
+        If it can be no path: empty, of a home folder that nobody has, of characters that no file's name may have.
+    """
+    if not text.strip():
+        raise InputError(key, shown(text), "must not be empty", 'write for example "drive" or "." for this folder')
+    if any(unicodedata.category(sign) in ("Cc", "Cs") for sign in text):
+        raise InputError(key, shown(text), "has a character that a file's name must not have", "leave it out")
+    try:
+        return Path(text).expanduser() if home else Path(text)
+    except RuntimeError:
+        raise InputError(key, shown(text), "begins with a home folder that is not known", "write it in full") from None
+
+
+def write_file(path: Path, data: bytes, key: str) -> None:
+    """Write a file, which is whole at any moment; a link stays one, and what it leads to is written.
+
+    Parameters
+    ----------
+    path : Path
+    data : bytes
+    key : str
+        Where the file is named, for messages.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    try:
+        place = Path(os.path.realpath(path))
+        mode = 0o666 & ~_umask()
+        with contextlib.suppress(FileNotFoundError):
+            state = place.stat()
+            if not stat.S_ISREG(state.st_mode):
+                raise InputError(
+                    key, shown(str(path), PATH), "is a folder, a pipe or a device, not a file", "choose another"
+                )
+            mode = state.st_mode & 0o777
+        handle, scratch = tempfile.mkstemp(prefix=".", dir=place.parent)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            Path(scratch).chmod(mode)
+            Path(scratch).replace(place)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                Path(scratch).unlink()
+            raise
+    except OSError as error:
+        reason = error.strerror or error
+        raise InputError(key, shown(str(path), PATH), f"cannot be written ({reason})", "choose another name") from None
+    except ValueError:
+        raise InputError(key, shown(str(path), PATH), "can be no file's name", "check its characters") from None
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

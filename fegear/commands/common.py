@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from contextlib import AbstractContextManager
 
+    from typer.models import OptionInfo
+
     from fegear.engine.run import Watcher
 
 INTERRUPTED = "interrupted; results of earlier runs are as they were."
@@ -51,7 +53,21 @@ Wanted = Annotated[
         autocompletion=_complete_results,
     ),
 ]
-Out = Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>.")]
+
+
+def named(text: str) -> Path:
+    """Path of an option; a text that can be none is refused."""
+    from fegear.case.text_file import named_path
+
+    return named_path(text, "--out")
+
+
+def out_option(about: str) -> OptionInfo:
+    """The option ``--out`` with its meaning."""
+    return typer.Option("--out", help=about, parser=named, metavar="PATH")
+
+
+Out = Annotated[Path | None, out_option("Output folder; default results/<case>.")]
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw nothing: tables, dataset and report alone.")]
 Scheduler = Annotated[
     str | None,

@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fegear.commands.common import INTERRUPTED, AsJson, NoPlots, Overrides, Quiet, Voice, Wanted, changes, leave
-from fegear.errors import InputError
+from fegear.commands.common import (
+    INTERRUPTED,
+    AsJson,
+    NoPlots,
+    Overrides,
+    Quiet,
+    Voice,
+    Wanted,
+    changes,
+    leave,
+    out_option,
+)
+from fegear.errors import PATH, InputError, shown
 
 if TYPE_CHECKING:
     from fegear.studies.comparison import Side
@@ -25,7 +37,7 @@ def compare(
     tolerance: Annotated[
         float, typer.Option("--tolerance", metavar="SHARE", help="Changes up to this share of a value are none.")
     ] = 1e-9,
-    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<a>_<b>_compare.")] = None,
+    out: Annotated[Path | None, out_option("Output folder; default results/<a>_<b>_compare.")] = None,
     no_plots: NoPlots = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
@@ -46,6 +58,7 @@ def compare(
         raise InputError("--set", ", ".join(asked), "changes cases, and both are folders", "give a case file")
     try:
         target = out or default_folder(f"{a.resolve().stem}_{b.resolve().stem}", "_compare")
+        _refuse_to_replace(target, a, b)
         with whole_or_nothing(target) as scratch:
             found = comparison.compare(_side(a, asked, voice), _side(b, asked, voice), tolerance)
             write_comparison(found, scratch, plots=not no_plots)
@@ -57,6 +70,16 @@ def compare(
     voice.tell_folder(target)
     if found.results_differ:
         raise typer.Exit(1)
+
+
+def _refuse_to_replace(target: Path, *compared: Path) -> None:
+    """Refuse to write a comparison over a run that it compares."""
+    for path in compared:
+        if os.path.realpath(target) == os.path.realpath(path):
+            raise InputError(
+                "--out", shown(str(target), PATH), "is one of the runs that are compared, which it would replace",
+                "choose another folder with --out",
+            )  # fmt: skip
 
 
 def _side(path: Path, asked: list[str], voice: Voice) -> Side:

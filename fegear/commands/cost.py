@@ -7,13 +7,13 @@ from typing import Annotated
 
 import typer
 
-from fegear.commands.common import INTERRUPTED, AsJson, CaseFile, NoPlots, Overrides, Quiet, Voice, leave
+from fegear.commands.common import INTERRUPTED, AsJson, CaseFile, NoPlots, Overrides, Quiet, Voice, leave, out_option
 
 
 def cost(
     case: CaseFile,
     overrides: Overrides = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_cost.")] = None,
+    out: Annotated[Path | None, out_option("Output folder; default results/<case>_cost.")] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="A few configurations instead of all, for a first look.")
     ] = False,

@@ -19,6 +19,7 @@ from fegear.commands.common import (
     changes,
     complete_effects,
     leave,
+    out_option,
 )
 
 
@@ -26,7 +27,7 @@ def effects(
     case: CaseFile,
     overrides: Overrides = None,
     wanted: Wanted = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_effects.")] = None,
+    out: Annotated[Path | None, out_option("Output folder; default results/<case>_effects.")] = None,
     only: Annotated[
         list[str] | None,
         typer.Option(

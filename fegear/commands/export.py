@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fegear.commands.common import INTERRUPTED, AsJson, CaseFile, Overrides, Quiet, Voice, leave
+from fegear.commands.common import INTERRUPTED, AsJson, CaseFile, Overrides, Quiet, Voice, leave, out_option
 
 
 def export(
@@ -20,7 +20,7 @@ def export(
             "--format", help="Any of dxf, step, relief, msh, vtu, inp, solid-inp, solid-vtu, separated by commas."
         ),
     ] = "dxf,msh,vtu,inp",
-    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_export.")] = None,
+    out: Annotated[Path | None, out_option("Output folder; default results/<case>_export.")] = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import stat
 import sys
 from functools import partial
 from pathlib import Path
@@ -12,8 +13,8 @@ import typer
 
 from fegear.commands.common import Quiet, Voice, leave
 from fegear.commands.help import two_columns
-from fegear.commands.schema import SCHEMA_FILE, schema_text
-from fegear.errors import InputError
+from fegear.commands.schema import SCHEMA_FILE, write_schema
+from fegear.errors import PATH, InputError, shown
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,6 +60,7 @@ def new(
 
     For example: fegear new drive --teeth 21 53 --module 3mm --torque "260 N m"
     """
+    from fegear.case.text_file import write_file
     from fegear.drafts import Answers, draft
 
     voice = Voice(quiet)
@@ -69,11 +71,7 @@ def new(
         raise InputError("NAME", " ".join(name), "must be one name", "write for example fegear new drive")
     if numbers and (teeth is None) == (profile_shift is None):
         raise InputError("NAME", " ".join(numbers), "must follow --teeth or --profile-shift")
-    path = Path(names[0] if names[0].endswith(".toml") else f"{names[0]}.toml")
-    if path.exists() and not force:
-        raise InputError("NAME", f'"{path}"', "is there already", "choose another name, or replace it with --force")
-    if not path.parent.is_dir():
-        raise InputError("NAME", f'"{path}"', "lies in a folder that is not there")
+    path = _case_file(names[0], force=force)
     given = {
         "teeth": " ".join([*(teeth or ()), *(numbers if teeth else ())]),
         "module": module,
@@ -93,12 +91,36 @@ def new(
         answers = Answers(kind or ("helical" if helix_angle else "gear" if single else "pair"), told)
     text = draft(answers, path.stem, "" if no_schema else SCHEMA_FILE)
     _check(text, path)
-    path.write_text(text, "utf-8")
     if not no_schema:
         beside = path.with_name(SCHEMA_FILE)
-        beside.write_text(schema_text(), "utf-8")
+        write_schema(beside, "schema", remedy="move it elsewhere, or write none with --no-schema")
         voice.say(f"Wrote {beside}, by which editors complete and check case files")
+    write_file(path, text.encode(), "NAME")
     voice.say(f"Wrote {path}; next: fegear run {path}")
+
+
+def _case_file(name: str, *, force: bool) -> Path:
+    """The file of a new case, below a folder that is there and in nobody's place."""
+    from fegear.case.text_file import named_path
+
+    path = named_path(name, "NAME")
+    if path.name in ("", ".."):
+        raise InputError("NAME", shown(name), "is a folder, not the name of a case", "write for example drive")
+    path = path if path.name.endswith(".toml") and path.stem != ".toml" else path.with_name(f"{path.name}.toml")
+    told = shown(str(path), PATH)
+    try:
+        state = path.lstat()
+    except FileNotFoundError:
+        state = None
+    except OSError as error:
+        raise InputError("NAME", told, f"can be no file ({error.strerror})", "choose another name") from None
+    if state is not None and stat.S_ISDIR(state.st_mode):
+        raise InputError("NAME", told, "is a folder", "choose another name")
+    if state is not None and not force:
+        raise InputError("NAME", told, "is there already", "choose another name, or replace it with --force")
+    if not path.parent.is_dir():
+        raise InputError("NAME", told, "lies in a folder that is not there", "make it first")
+    return path
 
 
 def _asked() -> Answers:

@@ -20,6 +20,7 @@ from fegear.commands.common import (
     Wanted,
     changes,
     leave,
+    out_option,
 )
 
 
@@ -35,7 +36,7 @@ def sweep(
     ],
     overrides: Overrides = None,
     wanted: Wanted = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Output folder; default results/<case>_sweep.")] = None,
+    out: Annotated[Path | None, out_option("Output folder; default results/<case>_sweep.")] = None,
     scheduler: Scheduler = None,
     workers: Annotated[
         int | None, typer.Option("--workers", min=1, help="Processes on this machine; default one for each core.")

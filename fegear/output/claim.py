@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import platform
@@ -10,13 +11,13 @@ import shutil
 import stat
 import tempfile
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from fegear.output.undisturbed import undisturbed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 #: Who is at work; locked while he is, by a lock that the system releases when he dies.
 HOLDER = "holder.json"
@@ -36,6 +37,8 @@ def folder_for(base: Path, name: str) -> Path:
 def claimed(folder: Path) -> Iterator[Path]:
     """Hold a folder: made, locked, removed at the end with all that is in it.
 
+    It is one that was made here, never what a link leads to and never a folder that somebody else filled.
+
     Parameters
     ----------
     folder : Path
@@ -51,18 +54,16 @@ def claimed(folder: Path) -> Iterator[Path]:
     HeldError
         If another process holds it.
     OSError
-        If it cannot be made.
+        If it cannot be made, or what stands there is not fegear's.
     """
     with contextlib.ExitStack() as held:
         with undisturbed():  # a stop between making the folder and knowing of it would leave it behind
             holder = _locked(folder)
             if holder is None:
-                folder = folder.with_name(f"{folder.name}-{os.getpid()}")
-                shutil.rmtree(folder, ignore_errors=True)
-                folder.mkdir()
+                folder = Path(tempfile.mkdtemp(prefix=f"{folder.name}-", dir=folder.parent))
             else:
                 held.enter_context(holder)
-            held.callback(_removed, folder)
+            held.callback(_removed, folder, folder.lstat())
         yield folder
 
 
@@ -74,10 +75,12 @@ def clear_abandoned(base: Path, keep: str) -> None:
                 pass
 
 
-def _removed(folder: Path) -> None:
+def _removed(folder: Path, made: os.stat_result) -> None:
     """Remove a folder that we hold; its holder's file last, for without it the folder is anybody's."""
     with undisturbed(at_the_end=True):
         with contextlib.suppress(OSError):
+            if not os.path.samestat(folder.lstat(), made):  # somebody put another one in its place
+                return
             for item in folder.iterdir():
                 if item.is_dir() and not item.is_symlink():
                     shutil.rmtree(item, ignore_errors=True)
@@ -96,14 +99,12 @@ def _locked(folder: Path) -> TextIO | None:
         return None
     while True:
         try:
-            folder.mkdir(exist_ok=True)
+            folder.mkdir()
         except FileExistsError:
             with contextlib.suppress(FileNotFoundError):  # the last holder removed it while mkdir looked what it is
-                if not stat.S_ISDIR(folder.lstat().st_mode):
-                    raise
-            continue
+                _refuse_what_is_not_ours(folder)
         try:
-            file = (folder / HOLDER).open("a+", encoding="utf-8")
+            file = _opened(folder)
         except FileNotFoundError:  # the last holder has just removed the folder
             continue
         try:
@@ -128,10 +129,29 @@ def _locked(folder: Path) -> TextIO | None:
         return file
 
 
+def _refuse_what_is_not_ours(folder: Path) -> None:
+    """Refuse a link, a file, or a folder that fegear did not make: one with something in it, but no holder's file."""
+    if not stat.S_ISDIR(folder.lstat().st_mode):
+        raise FileExistsError(errno.EEXIST, f"{folder.name}, where it works meanwhile, is a link or a file")
+    inside = {item.name for item in folder.iterdir()}  # at one moment: the holder removes his file last
+    if inside and HOLDER not in inside:
+        raise FileExistsError(errno.EEXIST, f"{folder.name}, where it works meanwhile, is a folder of somebody else's")
+
+
+def _opened(folder: Path) -> TextIO:
+    """The holder's file, of the folder itself and not of what a link leads to."""
+    inside = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    try:
+        number = os.open(HOLDER, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW, 0o666, dir_fd=inside)
+    finally:
+        os.close(inside)
+    return os.fdopen(number, "a+", encoding="utf-8")
+
+
 def _is_still(file: TextIO, path: Path) -> bool:
     """Whether an open file is the one at `path`, and not one that was removed meanwhile."""
     try:
-        return os.path.samestat(os.fstat(file.fileno()), path.stat())
+        return os.path.samestat(os.fstat(file.fileno()), path.lstat())
     except OSError:
         return False
 

@@ -100,6 +100,10 @@ def comparison_page(comparison: Comparison) -> Page:
         for one in comparison.different_values
     ]
     alone = [f"Only {label} has the table {name}." for name, label in comparison.alone]
+    alone += [
+        f"Only {label} has the column {name} of table {joined.table.name}."
+        for joined in comparison.different_tables for name, label in joined.alone
+    ]  # fmt: skip
     return Page(
         title="Two runs compared",
         note=f"A: {first.label}. B: {second.label}.",
@@ -155,6 +159,7 @@ def comparison_summary(comparison: Comparison) -> dict[str, object]:
                 },
                 "rows_only_in_a": joined.only_first,
                 "rows_only_in_b": joined.only_second,
+                "columns_only_in": {name: label.lower() for name, label in joined.alone},
             }
             for joined in comparison.different_tables
         },

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.citation import bibliography
-from fegear.output.netcdf import head, put
+from fegear.output.netcdf import head, plain, plain_of, put, say_names
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,7 +47,7 @@ def _is_index(column: Column) -> bool:
 
 
 def _add_table(file: netcdf_file, table: Table) -> None:
-    rows, first, errors = table.name, table.columns[0], error_columns(table)
+    rows, first, errors = plain(table.name), table.columns[0], error_columns(table)
     file.createDimension(rows, len(table))
     if _is_index(first):
         put(file, rows, (rows,), first.values, first.unit, first.meaning or first.name)
@@ -63,7 +63,7 @@ def _add_value(file: netcdf_file, value: Value) -> None:
     variable = put(file, value.name, (), np.array(value.value), value.unit, value.meaning)
     if value.error is not None:
         variable.error = value.error
-        variable.ancillary_variables = f"{value.name}_error"
+        variable.ancillary_variables = plain(f"{value.name}_error")
         put(file, f"{value.name}_error", (), np.array(value.error), value.unit, f"estimated error of {value.name}")
 
 
@@ -72,6 +72,12 @@ def _references(results: Results) -> str:
     works = bibliography()
     cited = {c.key for step in results.plan.steps for c in step.stage.cites(results.scene, step.task.subject)}
     return "\n".join(work.full for key, work in works.items() if key in cited)
+
+
+def plain_names(results: Results) -> dict[str, str]:
+    """Names of tables, columns and values that the file has otherwise, by what it has."""
+    values = [name for value in results.values for name in (value.name, f"{value.name}_error")]
+    return plain_of(((table.name, table.keys()) for table in results.tables), values)
 
 
 def write_dataset(path: Path, results: Results) -> None:
@@ -90,6 +96,7 @@ def write_dataset(path: Path, results: Results) -> None:
         file.case = json.dumps(case.model_dump(mode="json", exclude_unset=True), ensure_ascii=False).encode()
         if results.remarks:
             file.comment = "\n".join(results.remarks).encode()
+        say_names(file, plain_names(results))
         for table in results.tables:
             _add_table(file, table)
         for value in results.values:

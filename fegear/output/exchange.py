@@ -127,7 +127,7 @@ def put_back(work: Path, target: Path) -> None:
     for name, other in _names(journal.get("kept")).items():
         if _inside(other) and _is_file(target, other) and not os.path.lexists(target / name):
             (target / other).rename(target / name)
-    for name in files_below(work / _OLD):
+    for name in () if (work / _OLD).is_symlink() else files_below(work / _OLD):
         (target / name).parent.mkdir(parents=True, exist_ok=True)
         (work / _OLD / name).replace(target / name)
     for item in ("new", _OLD):

@@ -8,7 +8,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fegear.errors import NO_ROOM, InputError
+from fegear.case.text_file import named_path
+from fegear.errors import NO_ROOM, PATH, InputError, shown
 from fegear.output.claim import HeldError, claimed, clear_abandoned, folder_for
 from fegear.output.exchange import JOURNAL, RECORD, check_room, exchange, put_back
 from fegear.output.file_names import file_name
@@ -63,6 +64,7 @@ def whole_or_nothing(target: Path, key: str = "--out", say: Callable[[str], None
         If the folder cannot be made or written to, or another process writes it.
     """
     made: list[Path] = []
+    target = named_path(str(target), key)
     with contextlib.ExitStack() as held:
         with undisturbed(), _refusals(key, target):
             target = _real(target, key)
@@ -89,7 +91,7 @@ def _refusals(key: str, target: Path, kinds: frozenset[int] = frozenset()) -> It
         yield
     except HeldError as holder:
         raise InputError(
-            key, f'"{target}"', f"is being written by another run ({holder})",
+            key, shown(str(target), PATH), f"is being written by another run ({holder})",
             "wait until it has ended, or choose another folder with --out",
         ) from None  # fmt: skip
     except OSError as error:
@@ -98,20 +100,27 @@ def _refusals(key: str, target: Path, kinds: frozenset[int] = frozenset()) -> It
         reason = error.strerror or str(error)
         remedy = "make room, or " if error.errno in NO_ROOM else ""
         raise InputError(
-            key, f'"{target}"', f"cannot be written to ({reason})", f"{remedy}choose another folder with --out"
+            key,
+            shown(str(target), PATH),
+            f"cannot be written to ({reason})",
+            f"{remedy}choose another folder with --out",
         ) from None
 
 
 def _real(target: Path, key: str) -> Path:
     """The folder itself where `target` is a link to one; refuses what can be none."""
     if target.is_symlink() and not target.exists():
-        raise InputError(key, f'"{target}"', "is a link to something that does not exist", "choose another folder")
+        raise InputError(
+            key, shown(str(target), PATH), "is a link to something that does not exist", "choose another folder"
+        )
     target = Path(os.path.realpath(target))
     below = next((folder for folder in target.parents if folder.exists()), target)
     if not below.is_dir():
-        raise InputError(key, f'"{target}"', f'lies below "{below}", which is a file', "choose another folder")
+        raise InputError(
+            key, shown(str(target), PATH), f'lies below "{below}", which is a file', "choose another folder"
+        )
     if target.exists() and not target.is_dir():
-        raise InputError(key, f'"{target}"', "is a file, not a folder", "choose another folder")
+        raise InputError(key, shown(str(target), PATH), "is a file, not a folder", "choose another folder")
     if target.is_dir() and not os.access(target, os.W_OK | os.X_OK):
         raise PermissionError(errno.EACCES, "the folder is read-only")
     return target

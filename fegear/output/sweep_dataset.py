@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.output.netcdf import head, put
+from fegear.output.netcdf import head, plain, plain_of, put, say_names
 from fegear.studies.sweep import Point
 from fegear.studies.swept import failures, shared_clauses, swept_values
 
@@ -59,7 +59,9 @@ def _put_table(
 ) -> None:
     points = int(np.prod(sizes))
     rows = {i: len(table.columns[0]) for i, table in found.items()}
-    file.createDimension(f"{name}.row", max(rows.values()))
+    name = plain(name)
+    row = f"{name}.row"
+    file.createDimension(row, max(rows.values()))
     if len(rows) < points or len(set(rows.values())) > 1:
         count = np.array([rows.get(i, 0) for i in range(points)]).reshape(sizes)
         put(file, f"{name}.rows", axes, count, "", "rows of the table at this point; the others are empty")
@@ -69,11 +71,21 @@ def _put_table(
         put(
             file,
             f"{name}.{column}",
-            (*axes, f"{name}.row"),
+            (*axes, row),
             values,
             unit,
             shared_clauses(c.meaning for c in same.values()),
         )
+
+
+def _plain_names(results: SweepResults) -> dict[str, str]:
+    """Names of axes, tables, columns and values that the file has otherwise, by what it has."""
+    values = [name for value in swept_values(results) for name in (value.name, f"{value.name}_error")]
+    tables = [
+        (name, ["row", "rows", *dict.fromkeys(key for table in found.values() for key in table.keys())])  # noqa: SIM118
+        for name, found in _found_tables(results).items()
+    ]
+    return plain_of(tables, [axis.key for axis in results.axes] + values)
 
 
 def write_sweep_dataset(path: Path, results: SweepResults) -> None:
@@ -87,19 +99,20 @@ def write_sweep_dataset(path: Path, results: SweepResults) -> None:
     from scipy.io import netcdf_file
 
     sizes = tuple(len(axis) for axis in results.axes)
-    names = tuple(axis.key for axis in results.axes)
+    names = tuple(plain(axis.key) for axis in results.axes)
     with netcdf_file(path, "w", version=2) as file:
-        head(file, results.title, f"sweep of case {results.name} over {', '.join(names)}")
+        head(file, results.title, f"sweep of case {results.name} over {', '.join(axis.key for axis in results.axes)}")
+        say_names(file, _plain_names(results))
         file.axes = json.dumps({axis.key: list(axis.values) for axis in results.axes}, ensure_ascii=False).encode()
         for axis in results.axes:
-            file.createDimension(axis.key, len(axis))
+            file.createDimension(plain(axis.key), len(axis))
             places = np.array([str(value) for value in axis.values] if axis.numbers is None else axis.numbers)
-            put(file, axis.key, (axis.key,), places, axis.unit)
+            put(file, axis.key, (plain(axis.key),), places, axis.unit)
         put(file, "failure", names, failures(results).reshape(sizes), "", "why the point has no result")
         for name, unit, meaning, number, error in swept_values(results):
             variable = put(file, name, names, number.reshape(sizes), unit, meaning)
             if error is not None:
-                variable.ancillary_variables = f"{name}_error"
+                variable.ancillary_variables = plain(f"{name}_error")
                 put(file, f"{name}_error", names, error.reshape(sizes), unit, f"estimated error of {name}")
         for name, found in _found_tables(results).items():
             _put_table(file, name, found, names, sizes)

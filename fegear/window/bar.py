@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
 
+from fegear.case.text_file import named_path
 from fegear.errors import FegearError, InputError
 from fegear.output.folder import default_folder
 from fegear.window.bench import LEVELS
@@ -78,8 +79,7 @@ class Bar:
         self._redo.set_enabled(desk.can_redo)
         self._give_up.set_visibility(desk.path is not None and desk.changed)
         self._pin.set_text("Unpin A" if self._bench.pinned else "Pin as A")
-        restored = f"Changes of {desk.restored} that were not saved are here again." if desk.restored else ""
-        self._told.set_text(desk.trouble or restored)
+        self._told.set_text(desk.trouble or desk.restored)
 
     def hear(self, what: str, content: dict[str, Any]) -> None:
         """Follow what goes on."""
@@ -103,7 +103,10 @@ class Bar:
             self._bench.changed()
 
     def _give_up_changes(self) -> None:
-        self._desk.give_up()
+        try:
+            self._desk.give_up()
+        except FegearError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
         self._bench.changed()
 
     def _pin_or_not(self) -> None:
@@ -137,7 +140,7 @@ class Bar:
         self._bench.changed()
 
     def _save_as(self, text: str, *, replace: bool = False) -> None:
-        path = Path(text).expanduser()
+        path = named_path(text, "case", home=True)
         try:
             self._desk.save_as(path, replace=replace)
         except InputError as error:
@@ -157,7 +160,7 @@ class Bar:
 
     def _ask_folder(self, what: str, ending: str) -> None:
         def chosen(text: str) -> None:
-            self._bench.export(what, str(Path(text).expanduser()))
+            self._bench.export(what, str(named_path(text, "folder", home=True)))
             ui.notify("Writing ...")
 
         self._ask_path("Folder to write into", str(default_folder(self._desk.name, ending).resolve()), chosen)
@@ -186,7 +189,10 @@ class Bar:
     def _confirm(said: str, yes: str, do: Callable[[], None]) -> None:
         def take() -> None:
             dialog.close()
-            do()
+            try:
+                do()
+            except FegearError as error:
+                ui.notify(str(error), type="warning", multi_line=True)
 
         with ui.dialog(value=True) as dialog, ui.card():
             ui.label(said)

@@ -123,6 +123,8 @@ class Bench:
 
     def lay(self, desk: Desk | None) -> None:
         """Lay another case on the desk, or clear it to choose one."""
+        if self.desk is not None:
+            self.desk.leave()
         self.desk, self.pinned, self._laid, self._sight = desk, None, self._laid + 1, ()
         self._found.clear()
         self._last.clear()

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fegear.case.reading import build_scene, parse_document
-from fegear.case.text_file import read_text
+from fegear.case.text_file import TextFile, digest_of, read_file, write_file
 from fegear.engine.plan import make_plan
-from fegear.errors import FegearError, InputError
+from fegear.errors import PATH, FegearError, InputError, shown
 from fegear.results.catalogue import STAGES
 from fegear.window.case_text import with_value
-from fegear.window.journal import forget, keep, kept
+from fegear.window.journal import Journal, Kept, Left, drop, left_behind, now
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -45,7 +43,7 @@ class Desk:
     refusal : FegearError or None
         What is wrong with it: the sentence that the command line prints.
     restored : str
-        When the unsaved changes were made with which it came; empty where there were none.
+        What became of unsaved changes that an earlier window left behind, in a sentence; empty where there were none.
     trouble : str
         Why the state cannot be kept beyond a crash; empty as a rule.
     """
@@ -56,6 +54,9 @@ class Desk:
         self.document: Mapping[str, Any] = {}
         self.refusal: FegearError | None = None
         self._saved = text if path else ""
+        self._file = TextFile("")
+        self._journal = Journal(path)
+        self._outdated: Left | None = None
         self._states, self._at = [text], 0
         self._stroke = False
         self.judge()
@@ -69,21 +70,40 @@ class Desk:
         InputError
             If it cannot be read as a text.
         """
-        desk = cls(read_text(path, "case"), path.stem, path.parent, path)
-        left = kept(path)
-        if left is not None and left.text != desk.text:
-            desk.change(left.text)
-            desk.restored = left.when
+        file = read_file(path, "case")
+        desk = cls(file.text, path.stem, path.parent, path)
+        desk._file = file
+        outdated: list[Left] = []
+        for left in left_behind(path):
+            if left.kept.text == file.text:
+                drop(left)
+            elif left.kept.base != file.digest:
+                outdated.append(left)
+            elif not desk.restored and desk._journal.take(left):
+                desk.change(left.kept.text)
+                desk.restored = f"Changes of {left.kept.when} that were not saved are here again."
+        if outdated and not desk.restored:
+            desk._outdated = left = outdated[0]
+            desk._states, desk._at = [left.kept.text, file.text], 1
+            desk.restored = (
+                f"The file is no longer what changes of {left.kept.when} began with, which were not saved; "
+                "Undo has the case with them."
+            )
         return desk
 
     @classmethod
-    def left_behind(cls) -> Desk | None:
-        """The case without a file that was not saved, if there is one."""
-        left = kept(None)
-        if left is None:
-            return None
-        desk = cls(left.text, left.name, Path(left.origin))
-        desk.restored = left.when
+    def of_left(cls, left: Left) -> Desk:
+        """Lay a case without a file on the desk that an earlier window left behind.
+
+        Raises
+        ------
+        InputError
+            If another window has taken it meanwhile.
+        """
+        desk = cls(left.kept.text, left.kept.name, Path(left.kept.origin))
+        if not desk._journal.take(left):
+            raise InputError("case", f'"{left.kept.name}"', "is open in another window by now", "go on there")
+        desk.restored = f"Changes of {left.kept.when} that were not saved are here again."
         return desk
 
     @property
@@ -170,9 +190,9 @@ class Desk:
         self.restored = ""
         try:
             if self.changed:
-                keep(self.path, self.text, self.folder, self.name)
+                self._journal.keep(Kept(self.text, str(self.folder), self.name, now(), self._file.digest))
             else:
-                forget(self.path)
+                self._journal.forget()
             self.trouble = ""
         except OSError as error:
             self.trouble = f"Changes are not kept beyond a crash: {error.filename or ''} {error.strerror or error}"
@@ -187,15 +207,13 @@ class Desk:
         """
         if self.path is None:
             raise InputError("case", self.name, "has no file yet", "save it under a name")
-        if not over_others and self.path.exists() and read_text(self.path, "case") != self._saved:
+        if not over_others and self.path.exists() and read_file(self.path, "case").digest != self._file.digest:
             raise InputError(
-                "case", f'"{self.path}"', "was changed by somebody else since it was opened",
+                "case", shown(str(self.path), PATH), "was changed by somebody else since it was opened",
                 "save under another name, or save again to replace it",
             )  # fmt: skip
-        _write(self.path, self.text)
-        self._saved = self.text
-        self.restored = ""
-        forget(self.path)
+        self._write(self.path)
+        self._settled()
 
     def save_as(self, path: Path, *, replace: bool = False) -> None:
         """Write the text into another file, which is the case's from then on.
@@ -205,42 +223,55 @@ class Desk:
         InputError
             If the file is there already or its folder is not, or it cannot be written.
         """
+        told = shown(str(path), PATH)
+        if path.name in ("", ".."):
+            raise InputError("case", told, "is a folder, not a file's name", "write a name behind it")
         path = path if path.suffix == ".toml" else path.with_name(f"{path.name}.toml")
-        if not path.parent.is_dir():
-            raise InputError("case", f'"{path}"', "lies in a folder that is not there")
-        if path.exists() and not replace:
-            raise InputError("case", f'"{path}"', "is there already", "choose another name")
-        _write(path, self.text)
-        forget(self.path)
-        self.path, self.name, self.folder, self._saved = path, path.stem, path.parent, self.text
-        self.restored = ""
+        if not os.path.isdir(path.parent):  # noqa: PTH112  (Path's own raises where a name is too long)
+            raise InputError("case", told, "lies in a folder that is not there", "choose another, or make it first")
+        if os.path.lexists(path) and not replace:
+            raise InputError("case", told, "is there already", "choose another name")
+        self._write(path)
+        self._journal.forget()
+        self._journal = Journal(path)
+        self._outdated = None  # of the file that it was before, with which it stays
+        self.path, self.name, self.folder = path, path.stem, path.parent
+        self._settled()
         self.judge()
 
-    def give_up(self) -> None:
-        """Go back to what the file has; the states in between can be gone back to."""
-        if self.path is not None:
-            self.change(self._saved)
-        forget(self.path)
-
-
-def _write(path: Path, text: str) -> None:
-    mode = path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask()
-    try:
-        handle, scratch = tempfile.mkstemp(prefix=".", dir=path.parent)
+    def _write(self, path: Path) -> None:
         try:
-            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-                file.write(text)
-            Path(scratch).chmod(mode)
-            Path(scratch).replace(path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                Path(scratch).unlink()
-            raise
-    except OSError as error:
-        raise InputError("case", f'"{path}"', f"cannot be written ({error.strerror or error})") from None
+            data = self._file.written(self.text)
+        except UnicodeEncodeError:
+            raise InputError(
+                "case", f'"{self.name}"', "holds half a character, which no file takes", "mend the text"
+            ) from None
+        write_file(path, data, "case")
+        self._file = self._file._replace(text=self.text, digest=digest_of(data))
 
+    def _settled(self) -> None:
+        """Keep nothing beside the file any more: it has what is on the desk."""
+        self._saved = self.text
+        self.restored = ""
+        self._journal.forget()
+        if self._outdated is not None:  # whoever saves has been told of it
+            drop(self._outdated)
+            self._outdated = None
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    def give_up(self) -> None:
+        """Go back to what the file has now; the states in between can be gone back to.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read any more.
+        """
+        if self.path is not None:
+            self._file = read_file(self.path, "case")
+            self._saved = self._file.text
+            self.change(self._saved)
+        self._settled()
+
+    def leave(self) -> None:
+        """Clear the desk: what is not saved is left behind for the next window."""
+        self._journal.leave()

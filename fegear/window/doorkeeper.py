@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hmac
-from http.cookies import CookieError, SimpleCookie
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
 
@@ -44,7 +43,10 @@ class Doorkeeper:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        heads = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
+        heads: dict[str, str] = {}
+        for name, value in scope["headers"]:
+            head = name.decode("latin-1").lower()
+            heads[head] = "; ".join(filter(None, [heads.get(head), value.decode("latin-1")]))
         key = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("key", [""])[0]
         if not self._welcome(heads, key):
             await _refuse(scope, send)
@@ -73,14 +75,14 @@ class Doorkeeper:
             return False
         if heads.get("sec-fetch-site", "none") not in ("none", "same-origin"):
             return False
-        try:
-            cookies = SimpleCookie(heads.get("cookie", ""))
-        except CookieError:
-            return False
-        shown = cookies.get(f"fegear-{self._port}")
-        return any(
-            hmac.compare_digest(one.encode(), self._secret.encode()) for one in (key, shown.value if shown else "")
-        )
+        shown = [key, *_cookies(heads.get("cookie", ""), f"fegear-{self._port}")]
+        return any(hmac.compare_digest(one.encode(), self._secret.encode()) for one in shown)
+
+
+def _cookies(head: str, name: str) -> list[str]:
+    """All cookies of a name, whatever other programs on this machine have put beside them."""
+    parts = (part.partition("=") for part in head.split(";"))
+    return [value.strip() for one, _, value in parts if one.strip() == name]
 
 
 async def _refuse(scope: Scope, send: Callable[..., Awaitable[None]]) -> None:

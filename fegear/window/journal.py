@@ -1,4 +1,8 @@
-"""What has been changed and not saved, kept beyond a crash: one small file for each case in the user's state folder."""
+"""What has been changed and not saved, kept beyond a crash: a small file for each window and case in the user's folder.
+
+Every window has its own, which it holds locked as long as it lives: what a living window keeps nobody else takes up,
+and nobody else forgets it.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +10,14 @@ import contextlib
 import hashlib
 import json
 import os
+import secrets
 import tempfile
 import time
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from typing import TextIO
 
 
 class Kept(NamedTuple):
@@ -25,12 +33,22 @@ class Kept(NamedTuple):
         Its name.
     when : str
         Local time.
+    base : str
+        Digest of what its file had when the changes began; empty where there was none.
     """
 
     text: str
     origin: str
     name: str
     when: str
+    base: str = ""
+
+
+class Left(NamedTuple):
+    """A state that a window left behind which is no more, and its file."""
+
+    place: Path
+    kept: Kept
 
 
 def journal_folder() -> Path:
@@ -43,46 +61,128 @@ def journal_folder() -> Path:
     return Path(platformdirs.user_state_dir("fegear", appauthor=False)) / "unsaved"
 
 
-def _place(path: Path | None) -> Path:
-    """The journal of a case file, or the one of cases without a file."""
+def _stem(path: Path | None) -> str:
+    """How the journals of a case file begin, or those of cases without a file."""
     if path is None:
-        return journal_folder() / "unnamed.json"
-    digest = hashlib.sha256(str(path.resolve()).encode("utf-8", "surrogatepass")).hexdigest()[:16]
-    return journal_folder() / f"{digest}.json"
+        return "unnamed"
+    return hashlib.sha256(os.path.realpath(path).encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
-def keep(path: Path | None, text: str, origin: Path, name: str) -> None:
-    """Keep a state; what was kept of that case before is replaced as a whole.
+class Journal:
+    """What one window keeps of one case.
 
-    Raises
-    ------
-    OSError
-        If the folder cannot be written to.
+    Parameters
+    ----------
+    path : Path, optional
+        The case's file; None for a case without one.
     """
-    place = _place(path)
-    place.parent.mkdir(parents=True, exist_ok=True)
-    kept = Kept(text, str(origin), name, time.strftime("%Y-%m-%d %H:%M"))
-    handle, scratch = tempfile.mkstemp(prefix=".", dir=place.parent)  # readable by its owner alone
+
+    def __init__(self, path: Path | None) -> None:
+        self._path = path
+        self._place: Path | None = None
+        self._held: TextIO | None = None
+
+    def keep(self, state: Kept) -> None:
+        """Keep a state; the one before is replaced as a whole.
+
+        Raises
+        ------
+        OSError
+            If the folder cannot be written to.
+        """
+        folder = journal_folder()
+        folder.mkdir(parents=True, exist_ok=True)
+        place = self._place or folder / f"{_stem(self._path)}-{secrets.token_hex(4)}.json"
+        handle, scratch = tempfile.mkstemp(prefix=".", dir=folder)  # readable by its owner alone
+        file = os.fdopen(handle, "w", encoding="utf-8")
+        try:
+            json.dump(state._asdict(), file)
+            file.flush()
+            _lock(file)  # before it stands where others look
+            Path(scratch).replace(place)
+        except BaseException:
+            file.close()
+            with contextlib.suppress(OSError):
+                Path(scratch).unlink()
+            raise
+        self.leave()
+        self._place, self._held = place, file
+
+    def take(self, left: Left) -> bool:
+        """Hold what another window left behind as one's own; False if somebody else has taken it meanwhile."""
+        try:
+            file = left.place.open("r+", encoding="utf-8")
+        except OSError:
+            return False
+        if not (_lock(file) and _is_still(file, left.place)):
+            file.close()
+            return False
+        self.leave()
+        self._place, self._held = left.place, file
+        return True
+
+    def forget(self) -> None:
+        """Keep nothing any more: the case is saved, or its changes were given up."""
+        if self._place is not None:
+            with contextlib.suppress(OSError):
+                self._place.unlink()
+        self.leave()
+        self._place = None
+
+    def leave(self) -> None:
+        """Hold it no longer: what it keeps is left behind for the next window."""
+        if self._held is not None:
+            self._held.close()
+            self._held = None
+
+
+def left_behind(path: Path | None) -> list[Left]:
+    """What windows that are no more kept of a case file, or of cases without one; the newest first."""
+    found: list[tuple[float, Left]] = []
+    for place in journal_folder().glob(f"{_stem(path)}*.json"):
+        try:
+            with place.open(encoding="utf-8") as file:
+                if not (_lock(file) and _is_still(file, place)):
+                    continue
+                content = json.load(file)
+                base = str(content.get("base", ""))
+                kept = Kept(*(str(content[key]) for key in ("text", "origin", "name", "when")), base=base)
+                found.append((os.fstat(file.fileno()).st_mtime, Left(place, kept)))
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            continue
+    return [left for _, left in sorted(found, key=lambda one: one[0], reverse=True)]
+
+
+def drop(left: Left) -> None:
+    """Forget a state that was left behind, unless somebody has taken it."""
+    journal = Journal(None)
+    if journal.take(left):
+        journal.forget()
+
+
+def now() -> str:
+    """Local time, as a journal says when a state was left."""
+    return time.strftime("%Y-%m-%d %H:%M")
+
+
+def _lock(file: TextIO) -> bool:
+    """Hold a file until it is closed; False if another window holds it."""
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            json.dump(kept._asdict(), file, ensure_ascii=False)
-        Path(scratch).replace(place)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            Path(scratch).unlink()
-        raise
-
-
-def kept(path: Path | None) -> Kept | None:
-    """What was kept of a case; None if nothing was, or it cannot be read."""
+        import fcntl
+    except ImportError:
+        return True  # Windows: the journal of a living window may be taken up by another, which changes no file
     try:
-        found = json.loads(_place(path).read_text("utf-8"))
-        return Kept(*(str(found[key]) for key in Kept._fields))
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True
 
 
-def forget(path: Path | None) -> None:
-    """Keep nothing of a case any more: it is saved, or its changes were given up."""
-    with contextlib.suppress(OSError):
-        _place(path).unlink()
+def _is_still(file: TextIO, place: Path) -> bool:
+    """Whether an open file is the one at its place, and not one that was replaced meanwhile."""
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), place.lstat())
+    except OSError:
+        return False

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import tomllib
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nicegui import ui
 
+from fegear.case.text_file import named_path
 from fegear.errors import FegearError
 from fegear.window.bench import TEMPLATES, gallery
 from fegear.window.desk import Desk
+from fegear.window.journal import left_behind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.window.bench import Bench
+    from fegear.window.journal import Left
 
 
 def _offer(name: str, about: str, chosen: Callable[[], None]) -> None:
@@ -29,19 +31,27 @@ def start_page(bench: Bench) -> None:
 
     def open_file() -> None:
         try:
-            bench.from_file(Path(path.value.strip()).expanduser())
+            bench.from_file(named_path(path.value.strip(), "case", home=True))
         except FegearError as error:
             path.props["error"] = True
             path.props["error-message"] = str(error)
             path.update()
 
+    def lay_left(left: Left) -> None:
+        try:
+            bench.lay(Desk.of_left(left))
+        except FegearError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+
     with ui.element("div").classes("start"):
         ui.html("fegear", tag="h1")
-        left = Desk.left_behind()
-        if left is not None:
+        unsaved = left_behind(None)
+        if unsaved:
             ui.html("Left unsaved", tag="h2")
             with ui.element("div").classes("offers"):
-                _offer(left.name, f"not saved under a name, last changed {left.restored}", lambda: bench.lay(left))
+                for left in unsaved:
+                    about = f"not saved under a name, last changed {left.kept.when}"
+                    _offer(left.kept.name, about, lambda left=left: lay_left(left))  # type: ignore[misc]
         ui.html("Begin with a template", tag="h2")
         with ui.element("div").classes("offers"):
             for kind, about in TEMPLATES.items():

@@ -33,6 +33,17 @@ if TYPE_CHECKING:
 _FEW, _CLAUSE = 12, 140
 
 
+def _by_name(data: xr.Dataset, names: dict[str, str]) -> xr.Dataset:
+    """A dataset by the names of gears and pairs, which the file has in ASCII."""
+    data = data.rename({plain: name for plain, name in names.items() if plain in {*data.variables, *data.dims}})
+    for variable in data.variables.values():
+        for attribute in ("ancillary_variables", "coordinates"):
+            if attribute in variable.attrs:
+                variable.attrs[attribute] = names.get(variable.attrs[attribute], variable.attrs[attribute])
+    data.attrs.pop("fegear_names", None)
+    return data
+
+
 class Results(Found):
     """Everything that a run found: single values, tables, figures and remarks, each by its name.
 
@@ -134,14 +145,14 @@ class Results(Found):
             import xarray as xr
         except ImportError:
             raise MissingLibraryError(f"xarray is not installed; {NOTEBOOK_EXTRA}.") from None
-        from fegear.output.dataset import write_dataset
+        from fegear.output.dataset import plain_names, write_dataset
 
         first = self.tables[table].columns[0].name if table else ""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "results.nc"
             write_dataset(path, self)
             content = io.BytesIO(path.read_bytes())
-        whole = xr.load_dataset(content, engine="scipy")
+        whole = _by_name(xr.load_dataset(content, engine="scipy"), plain_names(self))
         if not table:
             return whole
         prefix, indexed = f"{table}.", table in whole.indexes

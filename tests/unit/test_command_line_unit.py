@@ -209,3 +209,28 @@ def test_version(tmp_path):
     import fegear as package
 
     assert fegear("--version", cwd=tmp_path).stdout == f"fegear {package.__version__}\n"
+
+
+@pytest.mark.parametrize("command", ["run", "export", "effects", "cost", "compare", "sweep"])
+def test_an_output_folder_without_a_name_is_refused(case, tmp_path, command):
+    """`--out "$UNSET"` wrote into the folder that somebody stood in."""
+    more = {"compare": [case], "sweep": ["--over", "gear.a.teeth=28,29"]}.get(command, [])
+    done = fegear(command, case, *more, "--out", "", cwd=tmp_path)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert '--out = "": must not be empty' in done.stderr
+    assert [one.name for one in tmp_path.iterdir()] == ["one.toml"]
+
+
+@pytest.mark.parametrize(
+    "arguments", [("new", "x"), ("schema", "--out", "x"), ("run",), ("compare", "a.toml", "b.toml")]
+)
+def test_a_working_folder_that_was_deleted_is_one_sentence(case, tmp_path, arguments):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    program = (
+        "import os, shutil, sys\nfrom fegear.cli import main\n"
+        f"os.chdir({str(gone)!r})\nshutil.rmtree({str(gone)!r})\nmain()\n"
+    )
+    done = fegear(*arguments, *([case] if arguments == ("run",) else []), cwd=tmp_path, program=program)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert not gone.exists()

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 import fegear.cli
-from fegear.engine.table import Column, Table
+from fegear.engine.outcome import Column, Table, Value
 from fegear.output.comparison import read_side
 from fegear.studies.comparison import compare, comparison_figures, different_inputs, join
 from fegear.studies.comparison.side import Side
+from fegear.studies.comparison.values import paired
 
 CASE = """
 results = ["geometry", "load-sharing"]
@@ -200,3 +201,52 @@ def test_a_table_over_a_grid_is_no_curve():
     other = join(one, grid([1.1, 1.9], [1, 2, 3, 4, 5, 6]))
     assert other.only_first == other.only_second == 6
     assert np.isnan(other.differences[0].largest)
+
+
+def test_a_comparison_is_not_written_over_a_run_that_it_compares(say, runs):
+    """`fegear compare ra rb --out rb` removed rb's tables and dataset, with exit code 0."""
+    link = runs / "link"
+    link.symlink_to("shifted")
+    before = {path: path.read_bytes() for path in (runs / "shifted").rglob("*") if path.is_file()}
+    for out in ("shifted", "./shifted/", "link"):
+        code, _, complaint = say("compare", "one", "shifted", "--out", out)
+        assert code == 2
+        assert "is one of the runs that are compared, which it would replace" in complaint
+    assert {path: path.read_bytes() for path in (runs / "shifted").rglob("*") if path.is_file()} == before
+
+
+def test_columns_that_only_one_table_has_are_a_difference():
+    """A column, all columns or a whole table of one side were passed over, and the runs said to be the same."""
+
+    def table(**columns):
+        return Table("t", tuple(Column(name, np.array(values)) for name, values in columns.items()))
+
+    def found(one, other):
+        sides = (Side(label, {}, {}, {"t": table}) for label, table in (("a", one), ("b", other)))
+        return compare(*sides, 1e-9)
+
+    both = table(x=[1.0, 2.0], te=[3.0, 4.0], name=["p", "q"])
+    assert not found(both, both).results_differ
+    for one, other, told in (
+        (both, table(x=[1.0, 2.0], name=["p", "q"]), "t: only A has the column te"),
+        (table(x=[1.0, 2.0], name=["p", "q"]), both, "t: only B has the column te"),
+        (both, table(x=[1.0, 2.0], te=[3.0, 4.0]), "t: only A has the column name"),
+        (both, table(other=[1.0, 2.0]), "t: only A has the columns x, te, name"),
+        (table(te=[3.0]), table(), "t: only A has the column te"),
+    ):
+        comparison = found(one, other)
+        assert comparison.results_differ
+        assert any(told in line for line in comparison.lines())
+        joined = comparison.different_tables[0].table
+        assert {"te_a", "te_b"} & set(joined.keys()) or "te" in joined.keys()  # noqa: SIM118
+    # So was a number that is none any more, as long as another entry of its column stayed one.
+    lost = found(both, table(x=[1.0, 2.0], te=[3.0, np.nan], name=["p", "q"]))
+    assert lost.results_differ
+    assert any("a number on one side alone" in line for line in lost.lines())
+
+
+def test_no_number_on_both_sides_is_no_difference():
+    none = Value("I.te", float("nan"), "um", None)
+    (pair,) = paired({"I.te": none}, {"I.te": none})
+    assert not pair.differs(0.0)
+    assert paired({"I.te": none}, {"I.te": Value("I.te", 1.0, "um")})[0].differs(1.0)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import codecs
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fegear.case.csv_columns import read_columns
 from fegear.case.reading import read_scene
+from fegear.case.text_file import read_file, write_file
 from fegear.errors import InputError
 from fegear.models.pair_inputs import pair_inputs
 
@@ -125,3 +128,55 @@ def test_a_relief_table_that_ends_early_is_held_and_the_result_says_so(folder):
     assert remarks[0].endswith("held at 0 and 5 um.")
     table, tip = asked.flanks[0].tables[0], asked.pair.roll_angle(asked.pair.x_end, "driver")
     assert table.removal(float(tip)) == pytest.approx(5e-6, rel=1e-14)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+def test_a_pipe_or_a_device_is_refused_and_not_waited_for(folder):
+    """`fegear plan pipe` waited for ever: a case is read twice, and nobody writes it a second time, or a first."""
+    os.mkfifo(folder / "pipe")
+    for path in (folder / "pipe", Path(os.devnull), Path("/dev/zero")):
+        with pytest.raises(InputError, match="is a pipe or a device, not a file; save it as a file first"):
+            read_scene(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("n" * 3000, "cannot be read .File name too long.$"),
+        ("a\0b", 'case = "a b": can be no file\'s name'),
+        ("a\ud800b", 'case = "a b": can be no file\'s name'),
+        (".", "cannot be read .Is a directory.$"),
+    ],
+    ids=["3,000 characters", "NUL", "half a character", "a folder"],
+)
+def test_a_name_that_no_file_can_have_is_refused_in_a_sentence(name, words):
+    with pytest.raises(InputError, match=words.replace("$", "")) as refused:
+        read_scene(name)
+    assert len(str(refused.value)) < 500
+
+
+def test_a_file_keeps_its_link_its_line_ends_its_mark_and_its_rights(tmp_path):
+    real, link = tmp_path / "real.toml", tmp_path / "link.toml"
+    real.write_bytes(codecs.BOM_UTF8 + b"a = 1\r\nb = 2\r\n")
+    real.chmod(0o640)
+    link.symlink_to(real)
+    found = read_file(link, "case")
+    assert found.text == "a = 1\nb = 2\n"
+    write_file(link, found.written("a = 3\nb = 2\n"), "case")
+    assert link.is_symlink()
+    assert real.read_bytes() == codecs.BOM_UTF8 + b"a = 3\r\nb = 2\r\n"
+    assert real.stat().st_mode & 0o777 == 0o640
+    assert len(list(tmp_path.iterdir())) == 2
+    dangling = tmp_path / "dangling.toml"
+    dangling.symlink_to(tmp_path / "new.toml")
+    write_file(dangling, b"a = 1\n", "case")
+    assert (tmp_path / "new.toml").read_bytes() == b"a = 1\n"
+
+
+def test_no_file_is_written_in_the_place_of_a_folder_or_a_pipe(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "folder").mkdir()
+    for name in ("pipe", "folder", "none/below", "n" * 3000, "a\0b"):
+        with pytest.raises(InputError, match=r"not a file|cannot be written|can be no file"):
+            write_file(tmp_path / name, b"", "case")
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["folder", "pipe"]

@@ -179,3 +179,53 @@ def test_every_drafted_case_runs(say, tmp_path, kind):
     assert say("new", "case", "--kind", kind, "-q")[0] == 0
     assert say("run", "case.toml", "-q")[0] == 0
     assert (tmp_path / "results" / "case" / "report.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("n" * 3000, "can be no file (File name too long); choose another name."),
+        ("a\nb", "has a character that a file's name must not have; leave it out."),
+        ("a\x1bb", "has a character that a file's name must not have; leave it out."),
+        ("", "must not be empty"),
+        (".", "is a folder, not the name of a case"),
+        ("/", "is a folder, not the name of a case"),
+        ("folder", "is a folder; choose another name."),
+        ("link", "is there already; choose another name, or replace it with --force."),
+        ("nowhere/drive", "lies in a folder that is not there"),
+    ],
+    ids=["long", "newline", "escape", "empty", "here", "root", "folder", "dangling link", "no folder"],
+)
+def test_a_name_that_no_new_case_can_have_is_refused_and_nothing_written(say, tmp_path, name, words):
+    (tmp_path / "folder.toml").mkdir()
+    (tmp_path / "link.toml").symlink_to(tmp_path / "gone")
+    before = sorted(tmp_path.iterdir())
+    code, _, complaint = say("new", name)
+    assert (code, complaint.count("\n")) == (2, 1)
+    assert words in complaint
+    assert len(complaint) < 500
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_case_may_have_a_name_of_any_script(say, tmp_path):
+    assert say("new", "Räd 齿轮")[0] == 0
+    assert say("plan", "Räd 齿轮.toml")[0] == 0
+
+
+def test_a_schema_replaces_a_schema_and_nothing_else_unasked(say, tmp_path):
+    mine = tmp_path / "fegear.schema.json"
+    mine.write_text('{"mine": true}')
+    code, _, complaint = say("new", "drive")
+    assert code == 2
+    assert (
+        "is there already and is no schema of fegear; move it elsewhere, or write none with --no-schema." in complaint
+    )
+    assert [one.name for one in tmp_path.iterdir()] == [mine.name]
+    assert say("schema", "--out", mine.name)[0] == 2
+    assert mine.read_text() == '{"mine": true}'
+    assert say("schema", "--out", mine.name, "--force")[0] == 0
+    assert say("schema", "--out", mine.name)[0] == 0  # its own, of an earlier version
+    assert say("new", "drive")[0] == 0
+    for out in (".", "", "none/schema.json", "n" * 3000):
+        code, _, complaint = say("schema", "--out", out)
+        assert (code, complaint.count("\n")) == (2, 1)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from fegear.errors import InputError
-from fegear.output.claim import claimed, folder_for
+from fegear.output.claim import HOLDER, claimed, folder_for
 from fegear.output.exchange import JOURNAL, RECORD
 from fegear.output.folder import default_folder, whole_or_nothing
 
@@ -333,6 +333,7 @@ def test_a_journal_that_is_not_ours_does_no_harm(tmp_path):
     write(out, {"a.csv": "old"})
     work = folder_for(tmp_path, "out")
     (work / "old").mkdir(parents=True)
+    (work / HOLDER).write_text("")
     journal = {"made": {"../precious": "0" * 64, "a.csv": "0" * 64}, "kept": {"b.csv": "../precious", "c": "a.csv"}}
     (work / JOURNAL).write_text(json.dumps(journal))
     write(out, {"b.csv": "new"})
@@ -352,6 +353,51 @@ def test_a_claim_of_a_folder_that_cannot_be_made_is_an_error(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(OSError, match="Not a directory"), claimed(folder_for(tmp_path / "file", "x")):
         pass
+
+
+def hostile_scratch(mine: Path, work: Path, kind: str) -> None:
+    """What stands where fegear wants to work: somebody else's, by one way or another."""
+    if kind == "the folder is a link":
+        work.symlink_to(mine)
+    elif kind == "the folder is a link to a folder with a holder's file":
+        (mine / HOLDER).write_text("{}")
+        work.symlink_to(mine)
+    elif kind == "the holder's file is a link":
+        work.mkdir()
+        (work / HOLDER).symlink_to(mine / "thesis.tex")
+    elif kind == "the folder is somebody else's":
+        mine.rename(work)
+        mine.symlink_to(work)  # so that it is looked for in one place
+    else:
+        work.mkdir()
+        (work / HOLDER).write_text("{}")
+        (work / kind).symlink_to(mine)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "the folder is a link", "the folder is a link to a folder with a holder's file", "the holder's file is a link",
+        "the folder is somebody else's", "new", "old",
+    ],
+)  # fmt: skip
+def test_a_link_where_fegear_works_costs_nobody_a_file(tmp_path, kind):
+    """`ln -s $PWD/mine .fegear-out` had a run empty the folder that the link leads to, with exit code 0."""
+    out, mine = tmp_path / "out", tmp_path / "mine"
+    for folder in (out, mine):
+        folder.mkdir()
+        (folder / "thesis.tex").write_text("three years")
+    (mine / "figures").mkdir()
+    (mine / "figures" / "a.csv").write_text("measured")
+    hostile_scratch(mine, folder_for(tmp_path, "out"), kind)
+    with contextlib.suppress(InputError):
+        write(out, {"a.csv": "new"})
+    write(tmp_path / "beside", {})  # which clears what others left
+    assert {"thesis.tex": "three years", "figures/a.csv": "measured"}.items() <= contents(mine).items()
+    assert contents(out)["thesis.tex"] == "three years"
+    if kind not in ("new", "old"):
+        with pytest.raises(InputError, match=r"cannot be written to .*; choose another folder with --out\.$"):
+            write(out, {"a.csv": "new"})
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of file sizes are set through the resource module")

@@ -11,7 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from in_process import fegear
 
+import fegear as fegear_package
 from fegear.case.reading import build_scene
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.plan import Plan
@@ -208,3 +210,47 @@ def test_an_empty_table_can_be_written(results, tmp_path):
     assert (tmp_path / "tables" / "none.csv").read_text() == "x [mm]\n"
     with xr.open_dataset(tmp_path / "results.nc") as data:
         assert data.sizes["none"] == 0
+
+
+NAMES = {"Greek": ("Τροχός", "ζ"), "Chinese": ("齿轮", "轮"), "umlauts": ("Räd", "Größe"), "signs": ("a/b", "c d,e"),
+         "long": ("x" * 3000, "y"), "markup": ("<b>&", "'\"")}  # fmt: skip
+
+
+@pytest.mark.parametrize("names", NAMES.values(), ids=NAMES.keys())
+def test_gears_and_pairs_may_be_called_anything_in_every_file(tmp_path, names):
+    """They were computed to the end, and then lost in a UnicodeEncodeError of the dataset."""
+    one, other = (json.dumps(name) for name in names)
+    case = tmp_path / f"{names[1].replace('/', '_')}.toml"
+    case.write_text(
+        'results = ["geometry", "transmission-error"]\n'
+        f'[gear.{one}]\nteeth = 28\nmodule = "3 mm"\nface_width = "9 mm"\n'
+        f'[gear.{other}]\nteeth = 35\nmodule = "3 mm"\nface_width = "9 mm"\n[pair.{one}]\ndriver = {one}\n'
+        f'driven = {other}\nload = "1 kN"\ncompliance = {{ source = "weber-banaschek" }}\n',
+        encoding="utf-8",
+    )
+    done = fegear("run", case, "-q", "--no-plots", "--out", "out", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (0, "")
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text("utf-8"))
+    assert f"{names[0]}.te_mean" in summary["results"]
+    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="scipy") as data:
+        real = json.loads(data.attrs.get("fegear_names", "{}"))
+        written = {real.get(name, name): name for name in data.variables}
+        assert all(name.isascii() for name in data.variables)
+        assert {f"{names[0]}.te_mean", f"transmission_error_{names[0]}.te"} <= written.keys()
+        te = written[f"transmission_error_{names[0]}.te"]
+        assert data[te].coords[data[te].dims[0]].attrs["units"] == "mm"
+        assert data[te].size > 10
+    table = next((tmp_path / "out" / "tables").glob("transmission_error_[!h]*.csv"))
+    assert names[0] in te or te == f"{table.stem}.te"  # one name for a table's file and its dimension
+    frame = fegear_package.run(case).to_xarray()
+    assert frame[f"{names[0]}.te_mean"].item() == summary["results"][f"{names[0]}.te_mean"]["value"]
+    assert frame[f"transmission_error_{names[0]}.te"].dims == (f"transmission_error_{names[0]}",)
+    if names[0] == "Räd":
+        axis = f"gear.{names[0]}.profile_shift"
+        done = fegear("sweep", case, "--over", f"{axis}=0,0.1", "--workers", 1, "--no-cache", "-q", "--no-plots",
+                      "--out", "swept", cwd=tmp_path)  # fmt: skip
+        assert done.returncode == 0
+        with xr.open_dataset(tmp_path / "swept" / "sweep.nc", engine="scipy") as data:
+            real = json.loads(data.attrs["fegear_names"])
+            assert axis in {real.get(name, name) for name in data.dims}
+            assert f"transmission_error_{names[0]}.te" in {real.get(name, name) for name in data.variables}

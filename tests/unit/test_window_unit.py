@@ -23,6 +23,7 @@ import pytest
 
 from fegear.case.keys import flat
 from fegear.case.reading import read_scene
+from fegear.case.text_file import named_path
 from fegear.drafts import KINDS, Answers, draft
 from fegear.engine.plan import make_plan
 from fegear.engine.processes import loading
@@ -48,7 +49,7 @@ from fegear.window.hands import hands_of
 from fegear.window.harris import HarrisMaps
 from fegear.window.inbox import Inbox, Unwanted
 from fegear.window.jobs import Asked, Compute, Design, Export, Said
-from fegear.window.journal import journal_folder
+from fegear.window.journal import journal_folder, left_behind
 from fegear.window.order import in_order
 from fegear.window.scratch import Scratch, sweep
 from fegear.window.sent import whole
@@ -187,6 +188,152 @@ def test_a_file_that_somebody_else_changed_is_not_written_over_unasked(tmp_path)
     desk.save_as(tmp_path / "d")
     assert (desk.name, (tmp_path / "d.toml").read_text()) == ("d", desk.text)
     assert sorted(one.name for one in tmp_path.iterdir() if one.is_file()) == ["c.toml", "d.toml"]
+
+
+def changed_desk(path, teeth):
+    desk = Desk.of_file(path)
+    desk.set(("gear", "a", "teeth"), str(teeth))
+    return desk
+
+
+def test_unsaved_changes_do_not_win_over_an_edit_that_somebody_made_meanwhile(tmp_path):
+    """They came back as the case, and Save replaced the edit, for nobody knew what they had begun with."""
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    changed_desk(path, 30)  # and the window is closed
+    path.write_text(TEXT.replace("28", "29"))
+    again = Desk.of_file(path)
+    assert again.document["gear"]["a"]["teeth"] == 29
+    assert "Undo has the case with them" in again.restored
+    again.undo()
+    assert again.document["gear"]["a"]["teeth"] == 30
+    again.redo()
+    again.save()
+    assert path.read_text() == TEXT.replace("28", "29")
+    assert (Desk.of_file(path).restored, list(journal_folder().iterdir())) == ("", [])
+
+
+def test_two_windows_on_one_file_keep_their_changes_apart(tmp_path):
+    """The second window's Save forgot what the first one kept, and each window's changes replaced the other's."""
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    first = changed_desk(path, 30)
+    second = Desk.of_file(path)
+    assert (second.text, second.restored) == (TEXT, "")  # those of a living window are not taken up
+    second.set(("gear", "a", "teeth"), "31")
+    second.save()
+    with pytest.raises(InputError, match="was changed by somebody else"):
+        first.save()
+    assert tomllib.loads(path.read_text())["gear"]["a"]["teeth"] == 31
+    first.leave()  # a crash
+    again = Desk.of_file(path)
+    assert again.document["gear"]["a"]["teeth"] == 31
+    again.undo()
+    assert again.document["gear"]["a"]["teeth"] == 30
+
+
+def test_cases_without_a_file_are_kept_each_by_itself(tmp_path):
+    """All of them shared one journal: the second one's changes replaced those of the first."""
+    desks = [Desk(TEXT, name, tmp_path) for name in ("first", "second", "third")]
+    for number, desk in enumerate(desks):
+        desk.set(("gear", "a", "teeth"), str(30 + number))
+    assert left_behind(None) == []
+    for desk in desks[:2]:
+        desk.leave()
+    left = left_behind(None)
+    assert sorted(one.kept.name for one in left) == ["first", "second"]
+    again = Desk.of_left(next(one for one in left if one.kept.name == "first"))
+    assert again.document["gear"]["a"]["teeth"] == 30
+    for one in left:
+        if one.kept.name == "first":
+            with pytest.raises(InputError, match="is open in another window"):
+                Desk.of_left(one)
+    again.save_as(tmp_path / "first.toml")
+    assert [one.kept.name for one in left_behind(None)] == ["second"]
+
+
+def test_what_is_saved_under_another_name_is_what_that_file_opens_with(tmp_path):
+    """An old journal of the file that was replaced won over it at the next start."""
+    path, other = tmp_path / "c.toml", tmp_path / "d.toml"
+    for one in (path, other):
+        one.write_text(TEXT)
+    changed_desk(other, 40).leave()
+    desk = changed_desk(path, 30)
+    desk.save_as(other, replace=True)
+    desk.leave()
+    assert Desk.of_file(other).document["gear"]["a"]["teeth"] == 30
+    assert Desk.of_file(path).text == TEXT
+
+
+def test_journals_of_version_0_2_are_still_found(tmp_path):
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    changed_desk(path, 30).leave()
+    (place,) = journal_folder().iterdir()
+    old = json.loads(place.read_text())
+    del old["base"]
+    place.with_name(f"{place.name[:16]}.json").write_text(json.dumps(old))
+    place.unlink()
+    desk = Desk.of_file(path)
+    assert desk.text == TEXT  # nobody knows what it began with
+    desk.undo()
+    assert desk.document["gear"]["a"]["teeth"] == 30
+
+
+def test_save_keeps_links_line_ends_and_rights(tmp_path):
+    """It replaced a link by a file, and wrote line feeds alone."""
+    real, link = tmp_path / "real.toml", tmp_path / "link.toml"
+    real.write_bytes(TEXT.replace("\n", "\r\n").encode())
+    real.chmod(0o640)
+    link.symlink_to(real)
+    desk = changed_desk(link, 30)
+    desk.save()
+    assert link.is_symlink()
+    assert real.read_bytes() == TEXT.replace("28", "30").replace("\n", "\r\n").encode()
+    assert real.stat().st_mode & 0o777 == 0o640
+    assert not Desk.of_file(link).changed
+
+
+def test_changes_are_given_up_for_what_the_file_has_now(tmp_path):
+    path = tmp_path / "c.toml"
+    path.write_text(TEXT)
+    desk = changed_desk(path, 30)
+    path.write_text(TEXT.replace("28", "29"))
+    desk.give_up()
+    assert (desk.text, desk.changed) == (path.read_text(), False)
+    desk.set(("gear", "a", "teeth"), "31")
+    desk.save()  # nobody has changed it since
+    path.unlink()
+    with pytest.raises(InputError, match="does not exist"):
+        desk.give_up()
+
+
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        ("", "must not be empty"),
+        ("~nobody-of-this-name/x", "begins with a home folder that is not known"),
+        ("n" * 3000, "File name too long"),
+        ("a\0b", "has a character that a file's name must not have"),
+        ("none/x", "lies in a folder that is not there"),
+        ("..", "is a folder, not a file's name"),
+        ("c", "is there already"),
+        ("folder", "is there already"),
+    ],
+    ids=["empty", "nobody", "long", "NUL", "no folder", "above", "taken", "a folder"],
+)
+def test_a_name_that_no_case_can_be_saved_under_is_refused_in_a_sentence(tmp_path, monkeypatch, typed, words):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "c.toml").write_text(TEXT)
+    (tmp_path / "folder.toml").mkdir()
+    desk = Desk(TEXT, "c", tmp_path)
+    with pytest.raises(InputError, match=words):
+        desk.save_as(named_path(typed, "case", home=True))
+    if typed == "folder":
+        with pytest.raises(InputError, match="is a folder, a pipe or a device"):
+            desk.save_as(named_path(typed, "case", home=True), replace=True)
+    assert desk.path is None
+    assert (tmp_path / "c.toml").read_text() == TEXT
 
 
 def test_a_folder_that_takes_no_journal_is_told_and_loses_nothing_else(tmp_path, monkeypatch):
@@ -490,6 +637,10 @@ KEY = {"cookie": "other=1; fegear-5000=secret"}
         (HOST, "", False),
         (HOST, "key=Secret", False),
         (HOST, "key=", False),
+        (HOST | {"cookie": 'a[b]="x; \x01=\xff; ={; fegear-5000=secret'}, "", True),  # of other programs here
+        (HOST | {"cookie": "fegear-5000=old; fegear-5000=secret"}, "", True),
+        (HOST | {"cookie": "a=fegear-5000=secret"}, "", False),
+        (HOST | {"cookie": "\xff"}, "", False),
         (HOST | {"cookie": "fegear-5001=secret"}, "", False),
         (HOST | {"cookie": "fegear-5000="}, "", False),
         ({"host": "evil.example:5000"} | KEY, "", False),
@@ -516,7 +667,7 @@ def test_only_the_page_that_was_opened_is_let_in(heads, query, let_in, kind):
     scope = {
         "type": kind,
         "query_string": query.encode(),
-        "headers": [(k.encode(), v.encode()) for k, v in heads.items()],
+        "headers": [(k.encode(), v.encode("latin-1")) for k, v in heads.items()],
     }
     asyncio.run(Doorkeeper(app, 5000, "secret")(scope, None, send))
     assert bool(seen) is let_in

@@ -134,11 +134,15 @@ def table_lines(one: Joined, tolerance: float) -> list[str]:
         unit = f" {found.column.unit}" if found.column.unit else ""
         at = f" at {place.name} = {where}{f' {place.unit}' if place.unit else ''}" if found.where != "" else ""
         size = (
-            f"by up to {found.largest:+.4g}{unit}{at}" if math.isfinite(found.largest) else "nowhere a number in both"
+            f"by up to {found.largest:+.4g}{unit}{at}" if math.isfinite(found.largest) else "a number on one side alone"
         )
         lines.append(f"  {one.table.name}, {found.column.name}: {size}")
     if len(moving) > _COLUMNS:
         lines.append(f"  {one.table.name}: {len(moving) - _COLUMNS} more columns")
     if one.only_first or one.only_second:
         lines.append(f"  {one.table.name}: {one.only_first} rows stand in A alone, {one.only_second} in B alone")
+    for label in "AB":
+        names = [name for name, side in one.alone if side == label]
+        if names:
+            lines.append(f"  {one.table.name}: only {label} has the column{'s' * (len(names) > 1)} {', '.join(names)}")
     return lines

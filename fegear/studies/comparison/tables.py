@@ -10,7 +10,7 @@ from fegear.engine.table import Column, Table
 from fegear.units import from_si
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
+    from fegear.arrays import Array, Mask
 
 #: Digits by which rows are known: the same place, computed anew, may differ in the last ones.
 _DIGITS = 9
@@ -50,16 +50,20 @@ class Joined(NamedTuple):
         For every column of numbers that both have.
     only_first, only_second : int
         Rows that only one of them has.
+    alone : tuple of (str, str)
+        Columns that only one of them has, with the label of that one.
     """
 
     table: Table
     differences: tuple[Difference, ...]
     only_first: int
     only_second: int
+    alone: tuple[tuple[str, str], ...] = ()
 
     def differs(self, tolerance: float) -> bool:
-        """Whether a row is missing on one side, or a number changes by more than a share of its column's largest."""
-        return self.only_first + self.only_second > 0 or any(one.share > tolerance for one in self.differences)
+        """Whether rows or columns are missing on one side, or a number changes by more than a share of its largest."""
+        missing = self.only_first + self.only_second > 0 or bool(self.alone)
+        return missing or any(one.share > tolerance for one in self.differences)
 
 
 def join(first: Table, second: Table, labels: tuple[str, str] = ("a", "b")) -> Joined:
@@ -75,7 +79,8 @@ def join(first: Table, second: Table, labels: tuple[str, str] = ("a", "b")) -> J
     -------
     Joined
         Rows of the first table in its order, then those that only the second has. Where no row of a curve meets one of
-        the other, differences are those of the interpolated curves where both are.
+        the other, differences are those of the interpolated curves where both are. Columns that only one table has
+        stand at the end.
     """
     names = [name for name in first.keys() if name in second.keys()]  # noqa: SIM118  (a table iterates by columns)
     keys = [name for i, name in enumerate(names) if i == 0 or not _numeric(first, name) or not _numeric(second, name)]
@@ -100,9 +105,15 @@ def join(first: Table, second: Table, labels: tuple[str, str] = ("a", "b")) -> J
             b = np.interp(_numbers(places), _numbers(second.column(keys[0])), _numbers(other), np.nan, np.nan)
             differences.append(_difference(one, a, b, places))
         else:
-            differences.append(_difference(one, a, b, columns[0]))
+            lost = (np.isnan(a) != np.isnan(b)) & (at[0] >= 0) & (at[1] >= 0)
+            differences.append(_difference(one, a, b, columns[0], lost))
+    alone = []
+    for label, side, table, there in zip("AB", labels, (first, second), at, strict=True):
+        for column in (one for one in table.columns if one.name not in names):
+            alone.append((column.name, label))
+            columns.append(Column(f"{column.name}_{side}", _cells(column, there), column.unit, column.meaning))
     found = Table(first.name, tuple(columns), first.title)
-    return Joined(found, tuple(differences), int(np.sum(at[1] < 0)), int(np.sum(at[0] < 0)))
+    return Joined(found, tuple(differences), int(np.sum(at[1] < 0)), int(np.sum(at[0] < 0)), tuple(alone))
 
 
 def _numbers(column: Column) -> Array:
@@ -125,7 +136,9 @@ def _row_keys(table: Table, names: list[str]) -> list[tuple[object, ...]]:
     """What each row is known by; rows alike are numbered."""
     seen: dict[tuple[object, ...], int] = {}
     found = []
-    for cells in zip(*(table.column(name).si.tolist() for name in names), strict=True):
+    columns = [table.column(name).si.tolist() for name in names]
+    for row in range(len(table)):
+        cells = [column[row] for column in columns]
         key = tuple(float(f"{cell:.{_DIGITS}g}") if isinstance(cell, float) else cell for cell in cells)
         seen[key] = seen.get(key, 0) + 1
         found.append((*key, seen[key]))
@@ -141,11 +154,20 @@ def _at(column: Column, rows: np.ndarray) -> Array:
     return np.where(rows >= 0, values[np.maximum(rows, 0)], np.nan) if len(values) else np.full(len(rows), np.nan)
 
 
-def _difference(column: Column, a: Array, b: Array, places: Column) -> Difference:
+def _cells(column: Column, rows: np.ndarray) -> np.ndarray:
+    """The entries of a column in other rows, not numbers or empty texts where there are none."""
+    if np.issubdtype(column.si.dtype, np.number):
+        return _at(column, rows)
+    return np.array([str(column.si[row]) if row >= 0 else "" for row in rows], dtype=str)
+
+
+def _difference(column: Column, a: Array, b: Array, places: Column, lost: Mask | None = None) -> Difference:
+    """The largest change of a column; `lost` are the rows in which only one of the two is a number, if that counts."""
     change, factor = b - a, from_si(column.unit) if column.unit else 1.0
-    lost = np.isnan(a) != np.isnan(b)
-    if not np.isfinite(change).any():
-        return Difference(column, np.nan, np.inf if lost.any() else 0.0, "")
+    gone = lost is not None and bool(lost.any())
+    if gone or not np.isfinite(change).any():
+        alone = gone or bool((np.isnan(a) != np.isnan(b)).any())
+        return Difference(column, np.nan, np.inf if alone else 0.0, "")
     worst = int(np.nanargmax(np.abs(change)))
     size = max(np.nanmax(np.abs(a)), np.nanmax(np.abs(b)))
     share = abs(change[worst]) / size if size > 0.0 else 0.0
