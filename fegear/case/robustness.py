@@ -28,7 +28,8 @@ class RobustReliefPart(Part):
     )
     shape: Literal["linear", "parabolic"] = Field(default="linear", description="Shape of the tip reliefs.")
     draws: Annotated[int, Field(ge=20, le=2_000)] = Field(
-        default=512, description="How many of the first draws candidates are compared over."
+        default=512,
+        description="How many draws candidates are compared over; results are those of others.",
     )
     percentile: Annotated[Number, Field(ge=50.0, le=99.9)] = Field(
         default=95.0, description="Percentile of the peak-to-peak transmission error that is to be least."

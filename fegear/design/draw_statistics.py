@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -96,11 +97,20 @@ class Influence:
         Spearman's, -1 to 1: zero for what acts alike to both sides.
     share : float
         Of the result's variance that is left between the means of classes of the deviation (correlation ratio eta^2,
-        less what chance leaves): the first-order effect of the deviation alone, to either side, 0 to 1.
+        less what chance leaves): the first-order effect of the deviation alone, to either side. Without bias, so that
+        chance takes it below zero as often as above for a deviation that changes nothing.
+    error : float
+        Standard error of the share; NaN where draws are too few for it.
     """
 
     rank_correlation: float
     share: float
+    error: float
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the share is twice its error at least."""
+        return self.share > 2.0 * self.error
 
 
 def influences(deviations: Sequence[Array], values: Array) -> tuple[Influence, ...]:
@@ -109,20 +119,36 @@ def influences(deviations: Sequence[Array], values: Array) -> tuple[Influence, .
     return tuple(_influence(deviation[known], values[known]) for deviation in deviations)
 
 
+def together(found: Sequence[Influence]) -> tuple[float, float]:
+    """Share of the variance that no deviation explains alone, which is that of their interactions, and its error."""
+    share, error = np.array([(one.share, one.error) for one in found]).T
+    return float(1.0 - share.sum()), float(np.sqrt((error**2).sum()))
+
+
 def _influence(deviation: Array, values: Array) -> Influence:
     if values.size < 3 or np.ptp(deviation) == 0.0 or np.ptp(values) == 0.0:
-        return Influence(0.0, 0.0)
+        return Influence(0.0, 0.0, 0.0)
     a, b = (_ranks(v) - 0.5 * (v.size - 1) for v in (deviation, values))
     rank = float((a * b).sum() / np.sqrt((a * a).sum() * (b * b).sum()))
     classes = min(_MOST_CLASSES, values.size // _LEAST_IN_CLASS)
     if classes < 2:
-        return Influence(rank, np.nan)
+        return Influence(rank, np.nan, np.nan)
     groups = np.array_split(values[np.argsort(deviation, kind="stable")], classes)
     between = sum(group.size * (group.mean() - values.mean()) ** 2 for group in groups)
     whole = float(((values - values.mean()) ** 2).sum())
     # Classes of independent numbers have means that differ by chance: epsilon^2 of Kelley takes that away.
     chance = (classes - 1) * (whole - between) / (values.size - classes)
-    return Influence(rank, float(np.clip((between - chance) / whole, 0.0, 1.0)))
+    share = float((between - chance) / whole)
+    return Influence(rank, share, _share_error(share, classes, values.size))
+
+
+def _share_error(share: float, classes: int, count: int) -> float:
+    """Standard error of epsilon^2: of class means that differ by chance, and of a squared correlation in large samples.
+
+    The former is 2 (k - 1) / n^2 for k classes of n numbers, the latter 4 s (1 - s)^2 / n for the share s.
+    """
+    some = float(np.clip(share, 0.0, 1.0))
+    return (1.0 - some) * math.sqrt(2.0 * (classes - 1) / count**2 + 4.0 * some / count)
 
 
 def _ranks(values: Array) -> Array:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Sequence = Literal["sobol", "halton", "random"]
 Distribution = Literal["normal", "uniform"]
+Seed = int | tuple[int, ...]
 Kind = Literal["centre-distance", "profile-slope", "profile-form", "helix-slope", "pitch"]
 KINDS: tuple[Kind, ...] = ("centre-distance", "profile-slope", "profile-form", "helix-slope", "pitch")
 #: Tolerance over the standard deviation of a normal distribution, which ends there.
@@ -164,12 +165,13 @@ class Deviations:
         return found
 
 
-def unit_points(count: int, dimensions: int, seed: int, sequence: Sequence = "sobol") -> Array:
+def unit_points(count: int, dimensions: int, seed: Seed, sequence: Sequence = "sobol") -> Array:
     """Points in the unit cube, shape (count, dimensions); the first ones stay what they are when more are asked for.
 
     Parameters
     ----------
-    count, dimensions, seed : int
+    count, dimensions : int
+    seed : int or tuple of int
     sequence : {"sobol", "halton", "random"}
         Scrambled with the seed; "random" is plain Monte Carlo.
     """
@@ -187,7 +189,7 @@ def unit_points(count: int, dimensions: int, seed: int, sequence: Sequence = "so
 def draw(
     limits: Limits,
     count: int,
-    seed: int,
+    seed: Seed,
     teeth: int,
     sequence: Sequence = "sobol",
     distribution: Distribution = "normal",
@@ -197,7 +199,9 @@ def draw(
     Parameters
     ----------
     limits : Limits
-    count, seed : int
+    count : int
+    seed : int or tuple of int
+        Several numbers are a seed of their own: draws that those of the first alone have nothing in common with.
     teeth : int
         T, teeth on either side of tooth 0 whose pitches count.
     sequence : {"sobol", "halton", "random"}

@@ -6,16 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.results.tolerance_tables import NOMINAL, ROBUST, influence_table, nominal, outcome, percentiles
+from fegear.results.tolerance_tables import (
+    NOMINAL,
+    ROBUST,
+    influence_table,
+    nominal,
+    outcome,
+    percentiles,
+    shared_together,
+)
 
 if TYPE_CHECKING:
     from fegear.design.draw_statistics import Influence
     from fegear.engine.outcome import Column
     from fegear.results.tolerance_robustness import ToleranceData
     from fegear.results.tolerance_tables import PairDrawn
-
-#: Shares of the variance below this are not told in words.
-_NOISE = 0.03
 
 
 def tolerance_remarks(data: ToleranceData, asked: PairDrawn) -> tuple[str, ...]:
@@ -51,15 +56,20 @@ def tolerance_remarks(data: ToleranceData, asked: PairDrawn) -> tuple[str, ...]:
 
 def leading_told(data: ToleranceData, gears: tuple[str, str]) -> str:
     """Which deviations alone explain most of the variance of the peak-to-peak transmission error."""
+    key = "te_peak_to_peak"
 
     def share(row: tuple[Column, dict[str, Influence]]) -> float:
-        return float(np.nan_to_num(row[1]["te_peak_to_peak"].share))
+        return float(np.nan_to_num(row[1][key].share))
 
-    leading = [row for row in sorted(influence_table(data, gears), key=share, reverse=True) if share(row) >= _NOISE][:3]
+    rows = influence_table(data, gears)
+    leading = [row for row in sorted(rows, key=share, reverse=True) if row[1][key].resolved][:3]
     if not leading:
-        return ""
-    shares = ", ".join(f"{row[0].name.replace('_', ' ')} {share(row):.0%}" for row in leading)
-    return f" Of the peak-to-peak transmission error: {shares}."
+        return " Of the peak-to-peak transmission error no share is resolved by so few draws."
+    shares = ", ".join(
+        f"{row[0].name.replace('_', ' ')} {share(row):.0%} +- {row[1][key].error:.0%}" for row in leading
+    )
+    rest, error = shared_together(data, gears, key)
+    return f" Of the peak-to-peak transmission error: {shares}; together (interactions) {rest:.0%} +- {error:.0%}."
 
 
 def search_told(data: ToleranceData, asked: PairDrawn) -> str:
@@ -72,20 +82,21 @@ def search_told(data: ToleranceData, asked: PairDrawn) -> str:
     return (
         f" Those were found with straight contact laws by trying all {r.candidates} combinations of a grid over "
         f"{min(SCREENING, r.draws)} draws, the best tenth over {r.draws}, and leading the best {LED} and the nominal "
-        f"optimum on; at their ends exact sharing differs by at most {r.quick_error * 1e6:.2g} um. Over these draws of "
-        f"{asked.part.draws} they leave {r.left * 1e6:.4g} um, the nominal optimum {r.nominal_left * 1e6:.4g} um."
+        f"optimum on; at their ends exact sharing differs by at most {r.quick_error * 1e6:.2g} um. Over these draws "
+        f"they leave {r.left * 1e6:.4g} um, the nominal optimum {r.nominal_left * 1e6:.4g} um; the curves are "
+        f"those of {asked.part.draws} others."
     )
 
 
 def _held_against_nominal(data: ToleranceData, name: str, percent: float) -> str:
-    """Whether the relief that was found over some draws is better over all of them, and how sure that is."""
+    """Whether the relief that was found over some draws is better over others, and how sure that is."""
     from fegear.design.draw_statistics import sure_of_less
 
     robust, other = (outcome(data, "te_peak_to_peak", state) for state in (ROBUST, NOMINAL))
     here, there, sure = sure_of_less(robust, other, percent)
     verdict = (
-        f"Pair {name}: percentile {percent:g} over all draws is {here * 1e6:.4g} um with the tip reliefs that are "
-        f"best in it, {there * 1e6:.4g} um with the nominal optimum"
+        f"Pair {name}: percentile {percent:g} over draws that the search has not seen is {here * 1e6:.4g} um with the "
+        f"tip reliefs that are best in it, {there * 1e6:.4g} um with the nominal optimum"
     )
     if here < there:
         return f"{verdict}; it is less in {sure:.0%} of resampled sets of draws."

@@ -49,6 +49,8 @@ if TYPE_CHECKING:
 
 #: Draws that a process is given at a time; each is computed alone, so that the number changes no bit.
 CHUNK = 25
+#: Beside the seed of the case, that of the draws over which reliefs are searched for.
+_SEARCHED = 1
 #: Processor seconds of a draw without and with corner contact, and of the search over its draws.
 _DRAW, _DRAW_CORNERS, _SEARCH = 0.005, 0.014, 0.035
 #: Kinds that are drawn of plane teeth unless the case names others.
@@ -218,7 +220,7 @@ def _compute(asked: DrawInputs, upstream: Upstream, work: Work) -> ToleranceData
     with one_thread():
         exact = transmission_error(own.engagement, own.load, 12).peak_to_peak
         if part.reliefs is not None:
-            numbers, relief, found = _reliefs(asked, own, deviations)
+            numbers, relief, found = _reliefs(asked, own)
             benches |= found
         none = draw(NO_LIMITS, 1, 0, own.teeth)
         nominal = {state: drawn_outcomes(one, none).values[0] for state, (_, one) in benches.items()}
@@ -263,11 +265,12 @@ def together(done: Sequence[Mapping[str, Any]], size: int) -> tuple[Array, dict[
 
 
 def _reliefs(
-    asked: DrawInputs, own: Bench, deviations: Deviations
+    asked: DrawInputs, own: Bench
 ) -> tuple[tuple[float, ...], RobustRelief, dict[str, tuple[tuple[float, ...], Bench]]]:
     """The nominal and the robust optimum, and the pair with each of them."""
     from fegear.design.optimise import grindable
     from fegear.design.robust_relief import robust_tip_relief
+    from fegear.design.tolerance_draws import draw
 
     wish = asked.part.reliefs
     if wish is None:
@@ -278,8 +281,11 @@ def _reliefs(
     for gear, tip in ((pair.driver, best.driver), (pair.driven, best.driven)):
         numbers += [tip.amount, (tip.end - tip.start) * gear.base_radius / pair.path_length]
     nominal = (numbers[0], numbers[1], numbers[2], numbers[3])
+    # Draws of their own: a percentile over draws that a search has seen is the search's, and not that of any pair.
+    part = asked.part
+    searched = draw(asked.limits, wish.draws, (part.seed, _SEARCHED), own.teeth, part.sequence, part.distribution)
     relief = robust_tip_relief(
-        own, deviations.rows(slice(0, wish.draws)), nominal, amounts=wish.amounts, lengths=wish.lengths,
+        own, searched, nominal, amounts=wish.amounts, lengths=wish.lengths,
         power=1.0 if wish.shape == "linear" else 2.0, percent=wish.percentile,
     )  # fmt: skip
 

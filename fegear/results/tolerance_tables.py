@@ -162,6 +162,13 @@ def influence_table(data: ToleranceData, gears: tuple[str, str]) -> list[tuple[C
     return [(column, {name: by_outcome[name][i] for name in told(data)}) for i, column in enumerate(columns)]
 
 
+def shared_together(data: ToleranceData, gears: tuple[str, str], name: str) -> tuple[float, float]:
+    """Share of an outcome's variance that deviations have together (interactions), and its standard error."""
+    from fegear.design.draw_statistics import together
+
+    return together([found[name] for _, found in influence_table(data, gears)])
+
+
 def tolerance_tables(data: ToleranceData, asked: PairDrawn) -> tuple[Table, ...]:
     """Draws, percentiles, influences, and the reliefs that were compared."""
     tables = [_draws(data, asked), _percentiles(data, asked), _influences(data, asked)]
@@ -212,7 +219,11 @@ def _influences(data: ToleranceData, asked: PairDrawn) -> Table:
             ),
             Column(
                 f"{name}_share", np.array([found[name].share for _, found in rows]), "",
-                f"share of the variance of {label} by this deviation alone",
+                f"share of the variance of {label} by this deviation alone; about zero to either side: none",
+            ),
+            Column(
+                f"{name}_share_error", np.array([found[name].error for _, found in rows]), "",
+                f"standard error of {name}_share",
             ),
         ]  # fmt: skip
     return Table(f"robustness_influences_{asked.name}", tuple(columns), f"Which deviations of {asked.name} matter most")
@@ -248,30 +259,44 @@ def _reliefs(data: ToleranceData, asked: PairDrawn) -> Table:
     return Table(f"robustness_reliefs_{asked.name}", tuple(columns), f"Tip reliefs of {asked.name} over the draws")
 
 
+def _position_error(data: ToleranceData, name: str) -> float | None:
+    """What the roll positions of a draw miss in the nominal pair; None where it is not known."""
+    known = name == "te_peak_to_peak" and np.isfinite(data.exact)
+    return abs(nominal(data, name) - data.exact) if known else None
+
+
 def tolerance_values(data: ToleranceData, asked: PairDrawn) -> tuple[Value, ...]:
-    """Nominal and percentiles of what is told, with half their 95 % intervals as errors; reliefs."""
+    """Nominal and percentiles of what is told, half their 95 % intervals and what positions miss as errors; reliefs."""
     name, values = asked.name, []
     for key in told(data):
-        one, error = SHOWN[key], None
-        if key == "te_peak_to_peak" and np.isfinite(data.exact):
-            error = abs(nominal(data, key) - data.exact)
+        one, error = SHOWN[key], _position_error(data, key)
         values.append(
             Value(f"{name}.{key}_nominal", nominal(data, key), one.unit, error, f"{one.label}, no deviations")
         )
         for p in percentiles(data, key)[1:]:
-            half = 0.5 * (p.high - p.low)
+            half = 0.5 * (p.high - p.low) + (error or 0.0)
             values.append(
                 Value(
                     f"{name}.{key}_{p.percent:g}", p.value, one.unit, half if np.isfinite(half) else None,
                     f"{one.label}, percentile {p.percent:g} of the draws",
                 )
             )  # fmt: skip
+    for key in told(data) if varied(data, asked.gears) else ():
+        share, error = shared_together(data, asked.gears, key)
+        if np.isfinite(share):
+            values.append(
+                Value(
+                    f"{name}.{key}_interactions", share, "", error,
+                    f"{SHOWN[key].label}: share of the variance that no deviation has alone but several have together",
+                )
+            )  # fmt: skip
     if data.relief is not None:
         for state in (NOMINAL, ROBUST):
             p = percentiles(data, "te_peak_to_peak", state)[-1]
+            error = 0.5 * (p.high - p.low) + (_position_error(data, "te_peak_to_peak") or 0.0)
             values.append(
                 Value(
-                    f"{name}.te_peak_to_peak_{p.percent:g}{_ENDING[state]}", p.value, "um", 0.5 * (p.high - p.low),
+                    f"{name}.te_peak_to_peak_{p.percent:g}{_ENDING[state]}", p.value, "um", error,
                     f"percentile {p.percent:g}, tip reliefs {state}",
                 )
             )  # fmt: skip

@@ -239,7 +239,7 @@ def test_sizes_of_root_tension_of_random_pairs(seed):
     def headline(results) -> float:
         return max(v.si for v in results.values if v.name.endswith("largest_root_tension"))
 
-    assert headline(after) == pytest.approx(stress, rel=1e-4)
+    assert (1.0 - 1e-6) * stress <= headline(after) <= (1.0 + 5e-4) * stress  # which misses kinks by its own step
     for effect in WHOLE:
         before = made("root-stress-history", **{name: value for name, value in WHOLE.items() if name != effect})
         inputs = LOADED_PAIR.inputs(before.scene, "I")

@@ -12,17 +12,19 @@ from fegear.case.reading import build_scene
 from fegear.contact import Engagement, PairCompliance, closed_form_compliance
 from fegear.contact.formula_root_stress import formula_root_stress
 from fegear.design.deviated_pair import OUTCOMES, bench, deviated, drawn_outcomes, loaded, quadrature
-from fegear.design.draw_statistics import influences, percentile, sure_of_less
+from fegear.design.draw_statistics import influences, percentile, sure_of_less, together
 from fegear.design.robust_relief import _trials, robust_tip_relief
 from fegear.design.tolerance_draws import NO_LIMITS, Limits, ProfileDeviation, draw, unit_points
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
+from fegear.engine.stage import Task
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.geometry.pair import MEMBERS
 from fegear.models.tolerances import limits_of, untold
 from fegear.results.catalogue import STAGES
+from fegear.results.tolerance_robustness import TOLERANCE_ROBUSTNESS, _bench
 from fegear.solution_cache import SolutionCache
 
 LIMITS = Limits(20e-6, (7e-6, 8e-6), (9e-6, 9e-6), (0.0, 0.0), (9e-6, 10e-6))
@@ -192,9 +194,30 @@ def test_influence_of_a_known_law():
     whole = 1.0 / 3.0 + 4.0 * 4.0 / 45.0
     assert found[0].share == pytest.approx(1.0 / 3.0 / whole, abs=0.02)
     assert found[1].share == pytest.approx(16.0 / 45.0 / whole, abs=0.02)
-    assert found[2].share < 0.005
+    assert abs(found[2].share) < 0.005
+    assert [one.resolved for one in found] == [True, True, False, False]
     assert abs(found[1].rank_correlation) < 0.03 < found[0].rank_correlation
     assert found[3].rank_correlation == found[3].share == 0.0
+
+
+@pytest.mark.parametrize("count", [200, 2000])
+def test_shares_are_within_their_errors_and_what_is_left_is_that_of_interactions(count):
+    """y = a b + c / 5: a and b change nothing alone, 1/9 of 1/9 + 1/75 is theirs together."""
+    generator, true = np.random.Generator(np.random.MT19937(5)), np.array([0.0, 0.0, 0.12 / 1.12, 1.0 / 1.12])
+    off = []
+    for _ in range(100):
+        a, b, c = generator.uniform(-1.0, 1.0, (3, count))
+        found = influences([a, b, c], a * b + c / 5.0)
+        share, error = np.transpose([*((one.share, one.error) for one in found), together(found)])
+        off.append((share - true) / error)
+    assert np.mean(np.abs(off) < 2.0) == pytest.approx(0.95, abs=0.03)
+    assert np.abs(np.mean(off, axis=0)).max() < 0.4
+    assert np.std(off, axis=0) == pytest.approx(1.0, abs=0.3)
+
+
+def test_a_seed_of_two_numbers_is_another_sequence():
+    one, other = unit_points(64, 5, 1), unit_points(64, 5, (1, 1))
+    assert not set(one.ravel().tolist()) & set(other.ravel().tolist())
 
 
 def test_paired_draws_tell_a_small_difference():
@@ -435,6 +458,26 @@ def test_what_is_not_drawn_over_the_face_is_refused(part):
     with pytest.raises(InputError) as refused:
         run({**WIDE, "robustness": part})
     assert refused.value.key == f"robustness.{next(iter(part))}"
+
+
+@pytest.mark.parametrize("draws", [60, pytest.param(400, marks=pytest.mark.long)])
+def test_a_stated_percentile_of_a_relief_is_that_of_draws_of_one_s_own(draws):
+    """Plain Monte Carlo of another seed; half the 95 % interval is 1.96 standard errors, and so has one's own."""
+    case = {**CASE, "robustness": {**CASE["robustness"], "draws": draws}}
+    case["robustness"]["reliefs"] = {"draws": 20, "amounts": ["6 um", "14 um"], "lengths": [0.3, 0.6]}
+    results = run(case)
+    asked = TOLERANCE_ROBUSTNESS.inputs(results.scene, "I")
+    own = _bench(asked, {task: outcome.data for task, outcome in results.outcomes.items()})
+    found = results.outcomes[Task("tolerance-robustness", "I")].data
+    tips = replace(own.engagement, driver_relief=found.relief.driver, driven_relief=found.relief.driven)
+    fresh = draw(asked.limits, draws, 12345, own.teeth, "random")
+    values = drawn_outcomes(replace(own, engagement=tips), fresh).values[:, 0]
+    for percent in (50.0, 95.0) if draws > 73 else (50.0,):
+        mine, stated = (percentile(v, percent) for v in (values, found.values["best in the percentile"][:, 0]))
+        errors = [0.5 * (p.high - p.low) / 1.96 for p in (mine, stated)]
+        assert abs(mine.value - stated.value) < 2.0 * np.hypot(*errors), percent
+    searched = draw(asked.limits, 20, (asked.part.seed, 1), own.teeth).centre_distance
+    assert not set(searched) & set(found.deviations.centre_distance)
 
 
 @pytest.mark.long
