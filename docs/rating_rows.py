@@ -97,6 +97,7 @@ def conditions(example: dict[str, Any]) -> tuple[Conditions, Replacement]:
     asked = Conditions(
         pair, (strengths[0], strengths[1]), (qualities[0], qualities[1]), duty,
         Alignment(face_load_factor=e["face_load_factor"]), e["edition"],
+        required=tuple(e.get("required_safety", (1.0, 1.0))),
     )  # fmt: skip
     return asked, Replacement(K_v=e.get("stress_dynamic_factor"))
 

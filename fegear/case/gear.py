@@ -149,8 +149,13 @@ class GearPart(Part):
     )
     rim_thickness: PositiveLength | None = Field(
         default=None,
-        description="Rim below the root circle, for Y_B of ISO 6336-3 in the crosscheck only; without it the gear is "
-        "solid.",
+        description="Rim s_R below the root circle, for Y_B and C_R of ISO 6336 and K_B of AGMA 2101; without it what "
+        "`bore_radius` leaves, and a gear without both is solid.",
+    )
+    web_thickness: PositiveLength | None = Field(
+        default=None,
+        description="Thickness b_s of the web that carries the rim, for C_R of ISO 6336-1, at most twice the face; "
+        "`bore_radius` is then the inside of the rim. Without it the body is a disc as wide as the face.",
     )
     face_width: PositiveLength | None = Field(
         default=None, description="Width of the gear; without it 1 mm, which no result per unit width depends on."
@@ -232,6 +237,12 @@ class GearPart(Part):
         description="Diametral pitch in the normal section of a helical gear; give this or `normal_module`.",
     )
 
+    def rim(self, root_radius: float) -> float | None:
+        """s_R [m]: as given, else what a given bore leaves below the root circle [m]; None of a solid gear."""
+        if self.rim_thickness is not None or self.bore_radius is None:
+            return self.rim_thickness
+        return root_radius - self.bore_radius
+
     @property
     def over_face(self) -> tuple[str, ...]:
         """Keys that say what is ground off over the face, of those that are given."""
@@ -254,6 +265,7 @@ class GearPart(Part):
                 "is missing, but helix tolerances of a tolerance_class depend on it", 'write face_width = "20 mm"',
                 key="face_width",
             )  # fmt: skip
+        self._check_web()
         if self.is_helical:
             self._check_helical()
             return self
@@ -269,6 +281,21 @@ class GearPart(Part):
                 'is missing, but plane = "auto" decides by it', 'write face_width = "6.35 mm"', key="face_width"
             )
         return self
+
+    def _check_web(self) -> None:
+        """Refuse webs of no rim, and wider than any."""
+        if self.web_thickness is None:
+            return
+        if self.rim_thickness is None and self.bore_radius is None:
+            raise refuse(
+                "is missing, but C_R of a gear with a web_thickness depends on it", 'write rim_thickness = "20 mm"',
+                key="rim_thickness",
+            )  # fmt: skip
+        if self.face_width is None or self.web_thickness > 2.0 * self.face_width:
+            raise refuse(
+                "must be at most twice the face_width", "check it, or leave it out for a solid disc",
+                key="web_thickness", value=f"{self.web_thickness * 1e3:.6g} mm",
+            )  # fmt: skip
 
     def _check_helical(self) -> None:
         """Refuse sizes of the section across the axis, and keys of what is computed in a plane."""

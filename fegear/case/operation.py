@@ -88,6 +88,16 @@ class OperationPart(Part):
     idler: Literal["driver", "driven", "both"] | None = Field(
         default=None, description="Gear whose teeth are bent to either side once per revolution, as those of an idler."
     )
+    reversed_load: Annotated[Number, Field(ge=0.0, le=1.0)] = Field(
+        default=0.0,
+        description="Load of the rear flanks of both gears as a part of that of the working flanks, of a drive that "
+        "reverses: R = -1.2 times it in Y_M of annex B of ISO 6336-3.",
+    )
+    mean_stress_factor: list[Annotated[Number, Field(ge=0.4, le=1.5)]] | None = Field(
+        default=None,
+        description="Own Y_M of the driver and of the driven gear in place of that of annex B of ISO 6336-3, such as "
+        "`[1.0, 0.7]` with an idler driven.",
+    )
     spectrum: Annotated[list[SpectrumPart], Field(min_length=1), at_most(1000, "bins")] | None = Field(
         default=None, description="Loads of the life in bins, which are added up by Miner's rule (ISO 6336-6)."
     )
@@ -110,6 +120,11 @@ class OperationPart(Part):
             raise refuse(
                 "must hold two numbers, of the driver and of the driven gear", "[1, 1] as a rule", key="contacts"
             )
+        if self.mean_stress_factor is not None and len(self.mean_stress_factor) != 2:
+            raise refuse(
+                "must hold two numbers, of the driver and of the driven gear", "[1.0, 0.7] with an idler driven",
+                key="mean_stress_factor",
+            )  # fmt: skip
         bins = self.spectrum or []
         timed = [one.time is not None for one in bins]
         if any(timed) and not all(timed):

@@ -12,6 +12,7 @@ from fegear.case.load_distribution import LineErrorPart
 from fegear.case.operation import OperationPart, ShaftsPart
 from fegear.case.part import (
     Length,
+    Number,
     Part,
     PositiveForce,
     PositiveLength,
@@ -91,7 +92,7 @@ class RootStressPart(Part):
 
 
 class IsoPart(Part):
-    """``iso_6336 = { edition = 2019, accuracy_grade = 4 }``: what ISO 6336-3 asks for beside the geometry."""
+    """``iso_6336 = { edition = 2019, accuracy_grade = 4, ... }``: choices that ISO 6336 leaves, and own factors."""
 
     edition: Literal[2006, 2019] | None = Field(
         default=None,
@@ -99,6 +100,20 @@ class IsoPart(Part):
     )
     accuracy_grade: Annotated[int, Field(ge=0, le=12)] = Field(
         default=6, description="Accuracy grade of the gears, 0 to 12; grade 4 or better lets Y_DT relieve deep teeth."
+    )
+    dynamic_method: Literal["B", "C"] = Field(
+        default="B",
+        description="Method of K_v: B from masses and stiffness, C a fit for pairs well below their resonance.",
+    )
+    tip_relief_factor: Annotated[Number, Field(ge=1.0, le=1.2)] | None = Field(
+        default=None,
+        description="Own f_ZCa of helical flanks of the edition of 2019, 1 to 1.2; without it 1.2 without tip relief, "
+        "1.07 with one, which are recalled.",
+    )
+    micropitting_material_factor: Annotated[Number, Field(ge=0.3, le=2.0)] | None = Field(
+        default=None,
+        description="Own material factor W_W of the permissible film of ISO/TS 6336-22; from the steels of both flanks "
+        "without.",
     )
 
 
@@ -156,7 +171,7 @@ class PairPart(Part):
         "bears.",
     )
     iso_6336: IsoPart = Field(
-        default_factory=IsoPart, description="What ISO 6336-3 asks for beside the geometry, for the crosscheck."
+        default_factory=IsoPart, description="Choices that ISO 6336 leaves: edition, methods, and own factors."
     )
     lubricant: LubricantPart | None = Field(
         default=None, description="the oil of the pair, for film thickness, scuffing, micropitting and friction"

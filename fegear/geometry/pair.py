@@ -22,6 +22,9 @@ Member = Literal["driver", "driven"]
 MEMBERS: tuple[Member, Member] = ("driver", "driven")
 #: Difference of two involute angles that is none [rad].
 _ROUND_OFF = 1e-14
+#: By how much a centre distance may fall short of the tight one [modules]: profile shifts are printed with three or
+#: four digits, and gears at such values jam by a fraction of a micrometre. The backlash is then reported as negative.
+ROUNDED_JAM = 5e-4
 
 
 @dataclass(frozen=True)
@@ -80,7 +83,7 @@ class GearPair:
         distance = self.centre_distance
         if not (math.isfinite(distance) and distance > 0.0):
             raise GeometryError("centre_distance", distance, "must be positive and finite")
-        if distance < tight * (1.0 - 1e-9):
+        if distance < tight * (1.0 - 1e-9) - ROUNDED_JAM * a.module:
             raise GeometryError(
                 "centre_distance",
                 f"{distance * 1e3:.6g} mm",

@@ -68,7 +68,7 @@ def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tup
                 "own stress numbers are those of ISO" if strength.material in _TREATMENTS else "it has no such material"
             )
             return None, (f"Pair {asked.name}: AGMA 2101 is not asked: {why} (gear {gear}, {strength.material}).",)
-        allowed.append(found.reversed_bending if asked.idler[i] else found)
+        allowed.append(found.reversed_bending if asked.stress_ratio[i] < 0.0 else found)
     shafts, grade = part.shafts, max(one.grade for one in asked.conditions.quality)
     level = min(max(grade, _LEVELS[0]), _LEVELS[1])
     offset = shafts.offset / shafts.bearing_span if shafts and shafts.bearing_span else 0.0

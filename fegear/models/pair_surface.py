@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from fegear.contact.surface import FrictionLaw
     from fegear.formulas.flank_speeds import FlankSpeeds
     from fegear.formulas.friction_mean import Surface
+    from fegear.formulas.iso6336.rated import Both
     from fegear.formulas.iso6336.rated_surface import LoadFactors, RatedSurface
     from fegear.formulas.lubricant import Oil
     from fegear.geometry import GearPair
@@ -46,6 +47,8 @@ class OilTests:
         [degC].
     permissible_film : float or None
         lambda_GFP, in place of the test.
+    material_factor : float
+        W_W of both flanks' steels.
     """
 
     scuffing_stage: int | None = None
@@ -53,6 +56,7 @@ class OilTests:
     micropitting_stage: int | None = None
     micropitting_temperature: float = 90.0
     permissible_film: float | None = None
+    material_factor: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -294,6 +298,7 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
     """
     from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
     from fegear.formulas.iso6336.rated_surface import STRUCTURE_FACTOR, SUPPLY_FACTOR, RatedSurface
+    from fegear.models.rated_body import blank_factor
 
     part, pair = scene.case.pair[name], scene.pairs[name]
     check_speed(scene, name, "flank-surface")
@@ -316,21 +321,80 @@ def pair_surface(scene: Scene, name: str, tip_relief: tuple[float, float] = (0.0
         told.append(f"Pair {name}: viscosity_100 of the oil is that of a mineral oil of viscosity index 95.")
     single, mesh = _USUAL_STIFFNESS
     try:
-        stiffness = pair_stiffness(pair, factors.application * load / pair.face_width)
+        stiffness = pair_stiffness(pair, factors.application * load / pair.face_width, blank_factor(scene, name))
         single, mesh = stiffness.single, stiffness.mesh_alpha
     except RangeError as error:
         told.append(f"Pair {name}: c' = 14 and c_gamma = 20 N/(mm um), as ISO 6336-1 has no value here: {error}")
+    relief = _with_running_in(scene, name, tip_relief, told)
     rated = RatedSurface(
         pair, pair_speed(scene, name), load, factors, surface, SUPPLY_FACTOR[oil.supply],
-        min(STRUCTURE_FACTOR[gear.flank_treatment or "through-hardened"] for gear in gears), tip_relief,
+        min(STRUCTURE_FACTOR[gear.flank_treatment or "through-hardened"] for gear in gears), relief,
         single, mesh, max(one or _CLASS for one in classes),
     )  # fmt: skip
     tests = OilTests(
         oil.scuffing_load_stage, oil.scuffing_temperature, oil.micropitting_load_stage, oil.micropitting_temperature,
-        oil.permissible_film,
+        oil.permissible_film, _material_factor(scene, name, told),
     )  # fmt: skip
     friction = None if part.friction is None else pair_friction(scene, name, "flank-surface")
     return PairSurface(rated, tests, friction, tuple(told))
+
+
+def _with_running_in(scene: Scene, name: str, relief: Both, told: list[str]) -> Both:
+    """C_a of driver and driven: by design, else what running in leaves, which depends on both materials."""
+    from fegear.formulas.iso6336.part1_dynamic import running_in_relief
+    from fegear.models.rated_strength import gear_strength
+
+    part = scene.case.pair[name]
+    gears = (part.driver, part.driven)
+    if all(relief):
+        return relief
+    if any(scene.case.gear[gear].strength is None for gear in gears):
+        told.append(f"Pair {name}: tips without relief count as not run in (C_a = 0), for strength is not given.")
+        return relief
+    one, other = (gear_strength(scene, gear, []).contact for gear in gears)
+    worn = running_in_relief((one, other))
+    return relief[0] or worn, relief[1] or worn
+
+
+def _material_factor(scene: Scene, name: str, told: list[str]) -> float:
+    """W_W of a pair, the mean of both steels; 1, on the safe side, of those that are not known."""
+    from fegear.formulas.iso6336.part22_micropitting import MATERIAL_FACTOR, RECALLED_MATERIALS
+
+    part = scene.case.pair[name]
+    given = part.iso_6336.micropitting_material_factor
+    if given is not None or part.lubricant is None or part.lubricant.micropitting_load_stage is None:
+        return given or 1.0
+    steels = {gear: _flank_steel(scene, gear) for gear in dict.fromkeys((part.driver, part.driven))}
+    for gear, steel in steels.items():
+        if steel not in MATERIAL_FACTOR:
+            told.append(
+                f"Gear {gear}: W_W = 1 of carburized flanks was taken for micropitting, on the safe side "
+                "(flank_treatment, strength, or micropitting_material_factor of iso_6336)."
+            )
+        elif steel in RECALLED_MATERIALS:
+            told.append(
+                f"Gear {gear}: W_W = {MATERIAL_FACTOR[steel]:g} of {steel} flanks is recalled from memory: no printed "
+                "source backs it (micropitting_material_factor of iso_6336)."
+            )
+    one, other = (MATERIAL_FACTOR.get(steels[gear], 1.0) for gear in (part.driver, part.driven))
+    return 0.5 * (one + other)
+
+
+def _flank_steel(scene: Scene, gear: str) -> str:
+    """What a flank is made of, in the words of W_W: as treated, else by its strength; empty where nothing says it."""
+    from fegear.formulas.iso6336.part22_micropitting import MATERIAL_FACTOR
+
+    part = scene.case.gear[gear]
+    if part.flank_treatment in MATERIAL_FACTOR:
+        return str(part.flank_treatment)
+    material = "" if part.strength is None else part.strength.material
+    for start, steel in (
+        ("case-hardened", "case-carburized"), ("induction", "induction-hardened"), ("nitr", "nitrided"),
+        ("through-hardened", "through-hardened"), ("normalized", "through-hardened"),
+    ):  # fmt: skip
+        if material.startswith(start):
+            return steel
+    return ""
 
 
 def tip_reliefs(scene: Scene, name: str) -> tuple[float, float]:

@@ -13,6 +13,8 @@ from fegear.formulas.iso6336.safety import Conditions
 from fegear.geometry.pair import MEMBERS
 from fegear.models.pair_inputs import gear_name
 from fegear.models.rated_alignment import pair_alignment
+from fegear.models.rated_assumed import assumed_of_pair
+from fegear.models.rated_body import gear_body
 from fegear.models.rated_duty import in_order, load_cycles, mates_of, refuse_fast, spectrum_levels
 from fegear.models.rated_quality import gear_quality
 from fegear.models.rated_strength import gear_strength
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
 
 #: nu_40 of ISO VG 220, which is taken where a case names no oil [m^2/s].
 USUAL_VISCOSITY = 220e-6
+#: R of a root whose tooth is bent alike to either side (ISO 6336-3, annex B).
+_BENT = -1.2
 
 
 @dataclass(frozen=True)
@@ -46,10 +50,10 @@ class PairToRate:
         K_v, K_Halpha that the case gives, by symbol.
     levels : tuple of Level
         Of the spectrum; empty without one.
-    idler : (bool, bool)
-        Whether pinion and wheel are bent to either side.
-    required : (float, float)
-        S_Hmin, S_Fmin.
+    stress_ratio : (float, float)
+        R of the roots of pinion and wheel: 0 of pulsating loads, -1.2 of teeth that are bent to either side alike.
+    mean_stress : (float, float) or None
+        Y_M that the case gives.
     life : float or None
         Of the spectrum [s].
     width : {"plane", "slices", "solid"}
@@ -69,8 +73,8 @@ class PairToRate:
     load: float
     given: Mapping[str, float]
     levels: tuple[Level, ...]
-    idler: tuple[bool, bool]
-    required: Both
+    stress_ratio: Both
+    mean_stress: Both | None
     life: float | None
     width: Width
     assumed: tuple[str, ...] = field(compare=False)
@@ -118,8 +122,8 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     part, pair = scene.case.pair[name], scene.pairs[name]
     said: list[str] = []
     gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
-    rims = scene.case.gear[gears[0]].rim_thickness, scene.case.gear[gears[1]].rim_thickness
-    geometry = of_pair(pair, rims)
+    geometry = of_pair(pair, (gear_body(scene, gears[0], said), gear_body(scene, gears[1], said)))
+    assumed_of_pair(scene, name, said)
     names = [gears[MEMBERS.index(member)] for member in geometry.members]
     strength = tuple(gear_strength(scene, gear, said) for gear in names)
     quality = tuple(gear_quality(scene, name, gear, said) for gear in names)
@@ -138,21 +142,24 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
     )  # fmt: skip
     conditions = Conditions(
         geometry, (strength[0], strength[1]), (quality[0], quality[1]), duty,
-        pair_alignment(scene, name, names, said), part.iso_6336.edition or 2019,
+        pair_alignment(scene, name, names, said), part.iso_6336.edition or 2019, part.iso_6336.dynamic_method,
+        tip_relief_factor=part.iso_6336.tip_relief_factor, required=(operation.safety_contact, operation.safety_root),
     )  # fmt: skip
     given = {"K_v": operation.dynamic_factor, "K_Halpha": operation.transverse_load_factor}
     levels, life = spectrum_levels(scene, name, tangential, speed, first=first)
     idler = [operation.idler in ("both", member) for member in geometry.members]
+    one, other = (_BENT * (1.0 if bent else operation.reversed_load) for bent in idler)
+    own = operation.mean_stress_factor
     if levels and operation.application_factor != 1.0:
         said.append(
             f"Pair {name}: application_factor multiplies every level of the spectrum; it is 1 where these are the real "
             "loads."
         )
-    if operation.idler is not None and levels:
-        said.append(f"Pair {name}: every level of the spectrum bends the idler's teeth to either side alike.")
+    if levels and (operation.idler is not None or operation.reversed_load):
+        said.append(f"Pair {name}: every level of the spectrum bends the teeth to either side in the same ratio.")
     return PairToRate(
         conditions, pair, load, {key: value for key, value in given.items() if value is not None}, levels,
-        (idler[0], idler[1]), (operation.safety_contact, operation.safety_root), life, part.width_in(pair),
+        (one, other), None if own is None else in_order((own[0], own[1]), first=first), life, part.width_in(pair),
         tuple(dict.fromkeys(said)), name, gears,
         scene.case.effects.misalignment and not (part.misalignment is None and part.line_error is None),
     )  # fmt: skip

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.engine.outcome import Column, Table, Value
+from fegear.errors import InputError
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
@@ -30,6 +31,7 @@ class IsoInputs:
     helical: HelicalCheck | None = None
     settings: MeshSettings | None = None
     chosen: bool = False
+    said: tuple[str, ...] = field(default=(), compare=False)
 
 
 def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
@@ -40,9 +42,11 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
     from fegear.formulas.iso6336.part3_pair import RatingChoice
 
     choice = RatingChoice(part.iso_6336.edition or 2006, part.iso_6336.accuracy_grade)
-    rims = (scene.case.gear[names[0]].rim_thickness, scene.case.gear[names[1]].rim_thickness)
+    said: list[str] = []
+    rims = (_rim(scene, names[0], said), _rim(scene, names[1], said))
+    told = tuple(dict.fromkeys(said))
     if name in scene.spur_pairs:
-        return IsoInputs(names, choice, rims)
+        return IsoInputs(names, choice, rims, said=told)
     pair = scene.helical_pairs[name]
     width = pair.overlap[1] - pair.overlap[0]
     driver = pair.pinion
@@ -51,7 +55,18 @@ def iso_inputs(scene: Scene, name: str, settings: MeshSettings) -> IsoInputs:
         force = part.torque / driver.pitch_radius
     load = USUAL_LINE_LOAD if force is None else force / width
     check = HelicalCheck(pair.design, pair.overlap_ratio, load)
-    return IsoInputs(names, choice, rims, check, settings, force is None)
+    return IsoInputs(names, choice, rims, check, settings, force is None, told)
+
+
+def _rim(scene: Scene, gear: str, said: list[str]) -> float | None:
+    """s_R of a gear; one whose bore leaves less than Y_B knows counts as solid, which is said."""
+    from fegear.models.rated_body import gear_body
+
+    try:
+        return gear_body(scene, gear, said).rim_thickness
+    except InputError as error:
+        said.append(f"{error.key} {error.rule}: the gear counts as solid, Y_B = 1.")
+        return None
 
 
 def iso_table(name: str, asked: IsoInputs, found: RatedPair) -> tuple[Table, tuple[Value, ...], tuple[str, ...]]:
@@ -91,7 +106,7 @@ def iso_table(name: str, asked: IsoInputs, found: RatedPair) -> tuple[Table, tup
         for role, one in zip(("driver", "driven"), ratings, strict=True)
         if one is not None
     ]
-    remarks = []
+    remarks = list(asked.said)
     if asked.chosen:
         remarks.append(f"Pair {name}: no load was given; ISO 6336 takes F_t/b = {USUAL_LINE_LOAD * 1e-3:.6g} N/mm.")
     if found.stiffness is not None:

@@ -147,17 +147,17 @@ def _films(name: str, data: FlankSurfaceData, asked: PairSurface, under: str) ->
 
     ratio = [
         *_computed(data, shown(c.ratio, top), least=True),
-        _iso(data, shown(data.film.ratio, top), "ISO/TS 6336-22"),
+        _iso(data, shown(data.film.film.ratio, top), "ISO/TS 6336-22"),
     ]
     thick = [
         *_computed(data, shown(c.film, top * rough) * 1e6, least=True),
-        _iso(data, shown(data.film.thickness, top * rough) * 1e6, "ISO/TS 6336-22"),
+        _iso(data, shown(data.film.film.thickness, top * rough) * 1e6, "ISO/TS 6336-22"),
     ]
     return Figure(
         f"surface_film_{name}",
         f"Lubricant film between the flanks of pair {name}",
         f"Pair {name}: thickness of the lubricant film and its ratio to the roughness Ra = {rough * 1e6:.3g} um, from "
-        f"A to E: by the computed load (teeth {c.film_bulk:.4g} degC) and by ISO/TS 6336-22 (teeth {data.film_bulk:.4g}"
+        f"A to E: by the computed load (teeth {c.film_bulk:.4g} degC) and by ISO/TS 6336-22 (teeth {data.film.bulk:.4g}"
         " degC). Below 1 the flanks touch through the film.",
         (
             _panel("film thickness", "um", data, thick, zero=True),

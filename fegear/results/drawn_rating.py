@@ -31,8 +31,8 @@ def rating_figures(data: RatingData, asked: PairToRate) -> tuple[Figure, ...]:
 def _safeties(data: RatingData, asked: PairToRate) -> Figure:
     names = tuple(f"{gear} ({member})" for gear, member in zip(asked.gears, MEMBERS, strict=True))
     order = [asked.of(member) for member in MEMBERS]
-    panels = []
-    for contact, label, least in ((True, "S_H, pitting", asked.required[0]), (False, "S_F, root", asked.required[1])):
+    required, panels = asked.conditions.required, []
+    for contact, label, least in ((True, "S_H, pitting", required[0]), (False, "S_F, root", required[1])):
         items = []
         for number, method in enumerate(methods(data, asked)):
             if np.isnan((method.s_h if contact else method.s_f)[0]):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Upstream, Work
     from fegear.formulas.iso6336.part20_flash import FlashTemperatures
     from fegear.formulas.iso6336.part21_integral import IntegralTemperature
-    from fegear.formulas.iso6336.part22_micropitting import Film
+    from fegear.formulas.iso6336.part22_micropitting import RatedFilm
     from fegear.geometry import GearPair
     from fegear.models.pair_surface import PairSurface
 
@@ -65,10 +65,8 @@ class FlankSurfaceData:
         Whether the load is that over the face.
     flash : FlashTemperatures
         ISO/TS 6336-20 with its own load sharing, at the same places.
-    film : Film
+    film : RatedFilm
         ISO/TS 6336-22, at the same places.
-    film_friction, film_bulk : float
-        mu_m and theta_M of it [degC].
     least_film : (float, str)
         Its lambda_GF,min, and at which point.
     integral : IntegralTemperature or None
@@ -87,9 +85,7 @@ class FlankSurfaceData:
     computed: FlankSurface
     wide: bool
     flash: FlashTemperatures
-    film: Film
-    film_friction: float
-    film_bulk: float
+    film: RatedFilm
     least_film: tuple[float, str]
     integral: IntegralTemperature | None
     scuffing: float
@@ -116,7 +112,6 @@ def _standards(asked: PairSurface, computed: FlankSurface, *, wide: bool, outsid
     from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_micropitting
 
     rated, tests = asked.rated, asked.tests
-    film, mu, bulk = part22_micropitting.rated_film(rated, computed.x)
     integral, why = None, ""
     try:
         integral = part21_integral.integral_temperature(rated)
@@ -132,11 +127,12 @@ def _standards(asked: PairSurface, computed: FlankSurface, *, wide: bool, outsid
         permissible = tests.permissible_film
     elif tests.micropitting_stage is not None:
         permissible = part22_micropitting.permissible_ratio(
-            rated.surface.oil, tests.micropitting_stage, tests.micropitting_temperature
+            rated.surface.oil, tests.micropitting_stage, tests.micropitting_temperature, tests.material_factor
         )
     return FlankSurfaceData(
-        rated.pair, computed, wide, part20_flash.flash_temperatures(rated, computed.x), film, mu, bulk,
-        part22_micropitting.least_ratio(rated), integral, scuffing, scuffing_integral, permissible, outside, why,
+        rated.pair, computed, wide, part20_flash.flash_temperatures(rated, computed.x),
+        part22_micropitting.rated_film(rated, computed.x), part22_micropitting.least_ratio(rated), integral, scuffing,
+        scuffing_integral, permissible, outside, why,
     )  # fmt: skip
 
 
@@ -240,6 +236,7 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
             f"Pair {name}: the load sharing factors of ISO/TS 6336-20 and -22 are for contact ratios below 2; theirs "
             "is 1 everywhere here, and the computed load sharing tells more."
         )
+    told += _recalled(name, asked)
     if data.share_outside > 0.0:
         told.append(
             f"Pair {name}: tip corners bear up to {data.share_outside:.1%} of the load off the path of contact, where "
@@ -258,6 +255,24 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
                 f"Pair {name}: contact comes close to the base circle of the {member} gear, where specific sliding "
                 "goes to minus infinity and film and curvature to zero."
             )
+    return told
+
+
+def _recalled(name: str, asked: PairSurface) -> list[str]:
+    """Say which factors are those of no printed source."""
+    from fegear.formulas.iso6336.part22_micropitting import narrow
+
+    told = []
+    if narrow(asked.rated.pair):
+        told.append(
+            f"Pair {name}: X_Y of ISO/TS 6336-22 is recalled from memory for helical teeth with an overlap ratio of "
+            f"{asked.rated.pair.overlap_ratio:.3g}; printed numbers back it from 1.2 on."
+        )
+    if asked.tests.micropitting_stage is not None:
+        told.append(
+            f"Pair {name}: lambda_GFP takes the line load at A of the FZG gears in proportion to their torque; it is "
+            "printed for load stage 10 alone (236.3 N/mm)."
+        )
     return told
 
 

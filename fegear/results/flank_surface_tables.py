@@ -64,8 +64,11 @@ def _path(name: str, data: FlankSurfaceData, asked: PairSurface) -> Table:
         Column("contact_temperature_iso", data.flash.contact, "degC", "ISO/TS 6336-20"),
         Column("film_thickness", over_face(c.film, least=True), "um", thinnest),
         Column("film_ratio", over_face(c.ratio, least=True), "", f"lambda_GF, {thinnest}"),
-        Column("film_thickness_iso", data.film.thickness, "um", "ISO/TS 6336-22"),
-        Column("film_ratio_iso", data.film.ratio, "", "lambda_GF,Y of ISO/TS 6336-22"),
+        Column("load_sharing_iso", data.film.sharing, "", "X_Y of ISO/TS 6336-22"),
+        Column("hertz_pressure_nominal_iso", data.film.nominal, "MPa", "p_H,Y of ISO/TS 6336-22, no load factors"),
+        Column("hertz_pressure_iso", data.film.dynamic, "MPa", "p_dyn,Y of ISO/TS 6336-22, all load factors"),
+        Column("film_thickness_iso", data.film.film.thickness, "um", "h_Y of ISO/TS 6336-22"),
+        Column("film_ratio_iso", data.film.film.ratio, "", "lambda_GF,Y of ISO/TS 6336-22"),
     ]
     if data.wide:
         columns += [
@@ -95,6 +98,9 @@ def _face(name: str, data: FlankSurfaceData) -> Table:
 
 def _factors(name: str, data: FlankSurfaceData, asked: PairSurface) -> Table:
     """Every factor with its clause; numbers in the units of the standards."""
+    from fegear.formulas.flash_temperature import STEEL_HEAT
+    from fegear.formulas.iso6336 import part22_micropitting
+
     r, f, i, oil = asked.rated, data.flash, data.integral, asked.rated.surface.oil
     warm = r.surface.temperature
     rows: list[tuple[str, float, str, str]] = [
@@ -109,11 +115,12 @@ def _factors(name: str, data: FlankSurfaceData, asked: PairSurface) -> Table:
         ("nu_oil", float(oil.kinematic(warm)) * 1e6, "mm^2/s", "ASTM D341, at the oil temperature"),
         ("eta_oil", float(oil.dynamic(warm)) * 1e3, "mPa s", "ISO/TR 15144-1, Formula 16"),
         ("X_L", oil.factor, "", "base oil"),
+        ("B_M", STEEL_HEAT / math.sqrt(1e6), "N/(mm s^.5 K)", "of steel, for scuffing and micropitting"),
         ("X_S", r.supply, "", "ISO/TR 13989-1, Eq. 22"),
         ("X_W", r.structure, "", "ISO/TR 13989-1, Table 2"),
         ("C_eff", f.optimal_relief * 1e6, "um", "ISO/TR 13989-1, Eq. B.1"),
-        ("C_a driver", r.tip_relief[0] * 1e6, "um", "of the case"),
-        ("C_a driven", r.tip_relief[1] * 1e6, "um", "of the case"),
+        ("C_a driver", r.tip_relief[0] * 1e6, "um", "of the case, or of running in"),
+        ("C_a driven", r.tip_relief[1] * 1e6, "um", "of the case, or of running in"),
         ("mu_m", f.friction, "", "ISO/TR 13989-1, Eq. 25"),
         ("X_J,max", float(f.approach.max()), "", "ISO/TR 13989-1, Eqs. 45 to 48"),
         ("Theta_flm", f.mean_flash, "K", "ISO/TR 13989-1, Eq. 24"),
@@ -138,10 +145,13 @@ def _factors(name: str, data: FlankSurfaceData, asked: PairSurface) -> Table:
             ("theta_intS", data.scuffing_integral, "degC", "ISO/TR 13989-2, Eq. 94"),
         ]
     rows += [
-        ("mu_m", data.film_friction, "", "ISO/TR 15144-1, Formula 86"),
-        ("theta_M", data.film_bulk, "degC", "ISO/TR 15144-1, Formula 84"),
-        ("alpha_thetaM", float(oil.pressure_viscosity(data.film_bulk)) * 1e9, "1/GPa", "ISO/TR 15144-1, Formula 8"),
-        ("eta_thetaM", float(oil.dynamic(data.film_bulk)) * 1e3, "mPa s", "ISO/TR 15144-1, Formula 16"),
+        ("mu_m", data.film.friction, "", "ISO/TR 15144-1, Formula 86"),
+        ("H_v", part22_micropitting.loss_factor(data.pair), "", "ISO/TR 15144-1, Formulae 91 and 92"),
+        ("X_Ca", part22_micropitting.relief_factor(r), "", "ISO/TR 15144-1, Formulae 100 and 101"),
+        ("theta_M", data.film.bulk, "degC", "ISO/TR 15144-1, Formula 84"),
+        ("alpha_thetaM", float(oil.pressure_viscosity(data.film.bulk)) * 1e9, "1/GPa", "ISO/TR 15144-1, Formula 8"),
+        ("eta_thetaM", float(oil.dynamic(data.film.bulk)) * 1e3, "mPa s", "ISO/TR 15144-1, Formula 16"),
+        ("W_W", asked.tests.material_factor, "", "ISO/TR 15144-1, clause 5, of both flanks' steels"),
         ("lambda_GF,min", data.least_film[0], "", f"ISO/TR 15144-1, 8.2, at {data.least_film[1]}"),
         ("lambda_GFP", data.permissible_film, "", "ISO/TR 15144-1, clause 5"),
     ]

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from fegear.models.agma_pair import AgmaInputs
     from fegear.models.rated_pair import PairToRate
 
-#: R of an idler's root stress whose meshes carry alike (ISO 6336-3, annex B).
-_IDLER = -1.2
 #: Transverse contact ratio from which a plane pair has no point of single pair contact.
 _SINGLE = 2.0
 _NO_SINGLE = (
@@ -117,18 +115,21 @@ def _wide(scene: Scene, name: str) -> bool:
 
 
 def rated(asked: PairToRate) -> Conditions:
-    """Conditions of a pair with the mean-stress factors Y_M of its idlers, which depend on Y_S."""
+    """Conditions of a pair with the mean-stress factors Y_M: as given, or of teeth bent to either side, of Y_S."""
     from fegear.formulas.iso6336.part3_strength import mean_stress_factor, mean_stress_ratio
     from fegear.formulas.iso6336.safety import rate_pair
 
-    if not any(asked.idler):
+    if asked.mean_stress is not None:
+        own = replace(asked.conditions.duty, mean_stress=asked.mean_stress, mean_stress_static=asked.mean_stress)
+        return replace(asked.conditions, duty=own)
+    if not any(asked.stress_ratio):
         return asked.conditions
     correction = rate_pair(asked.conditions, given(asked))["Y_S"].values
 
     def factors(*, static: bool) -> Both:
         one, two = (
-            mean_stress_factor(mean_stress_ratio(one.group, y_s, static=static), _IDLER) if bent else 1.0
-            for one, y_s, bent in zip(asked.conditions.strength, correction, asked.idler, strict=True)
+            mean_stress_factor(mean_stress_ratio(one.group, y_s, static=static), ratio) if ratio else 1.0
+            for one, y_s, ratio in zip(asked.conditions.strength, correction, asked.stress_ratio, strict=True)
         )
         return one, two
 

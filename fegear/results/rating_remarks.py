@@ -34,7 +34,7 @@ def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
     bending = data.formula.bending_safety if found is None else found.bending_safety
     under = "" if found is None else " under the spectrum"
     for member, gear in zip(MEMBERS, asked.gears, strict=True):
-        for symbol, safety, least in (("S_H", contact, asked.required[0]), ("S_F", bending, asked.required[1])):
+        for symbol, safety, least in zip(("S_H", "S_F"), (contact, bending), asked.conditions.required, strict=True):
             value = safety[asked.of(member)]
             if value < least:
                 told.append(

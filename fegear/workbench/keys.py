@@ -33,6 +33,7 @@ class GearKeys(TypedDict, total=False):
     tip_chamfer: Quantity
     bore_radius: Quantity
     rim_thickness: Quantity
+    web_thickness: Quantity
     face_width: Quantity
     ball_diameter: Quantity
     plane: Literal["strain", "stress", "auto"]

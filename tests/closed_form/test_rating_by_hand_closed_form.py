@@ -195,7 +195,9 @@ def rated(g: Drive):
 @pytest.mark.parametrize(("case", "drive"), [("rating_spur", SPUR), ("rating_helical", HELICAL)])
 def test_safeties_equal_those_typed_anew(case, drive):
     operation = f"pair.I.operation={{life='{drive.hours} h'}}"
-    scene = read_scene(CASES / f"{case}.toml", ["results=['rating']", "rating.beside=[]", operation])
+    steel = [f"gear.{gear}.material={{young_modulus='{YOUNG} MPa'}}" for gear in ("pinion", "wheel")]
+    settings = ["results=['rating']", "rating.beside=[]", "pair.I.iso_6336={edition=2019}", operation, *steel]
+    scene = read_scene(CASES / f"{case}.toml", settings)
     done = run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
     values = {value.name: value.value for value in done.values}
     expected = rated(drive)

@@ -162,9 +162,9 @@ def test_static_strength_rules_nitrocarburized_flanks_under_a_good_film_and_says
     rating = rate_pair(c)
     film = math.prod(rating[one].value for one in ("Z_L", "Z_v", "Z_R"))
     assert film > 1.1
-    assert rating["sigma_HP"].value == rating["sigma_HP_static"].value == pytest.approx(1.1 * 1400e6, rel=1e-12)
-    assert "static strength of nitrocarburized" in rating["sigma_HP"].remark
-    assert rate_pair(rated(group="NV (nitrocar.)"))["sigma_HP"].remark == ""
+    assert rating["sigma_HG"].value == rating["sigma_HG_static"].value == pytest.approx(1.1 * 1400e6, rel=1e-12)
+    assert "static strength of nitrocarburized" in rating["sigma_HG"].remark
+    assert rate_pair(rated(group="NV (nitrocar.)"))["sigma_HG"].remark == ""
 
 
 def test_reference_gear_has_factors_of_one():

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from fegear.formulas.iso6336.alignment import Alignment
 from fegear.formulas.iso6336.pair_rating import Factor
+from fegear.formulas.iso6336.part1_dynamic import running_in_relief
 
 if TYPE_CHECKING:
     from fegear.formulas.iso6336.pair_geometry import PairGeometry
@@ -32,7 +33,12 @@ class Conditions:
     dynamic_method : {"B", "C"}
         Of K_v.
     tip_relief : TipRelief, optional
-        For f_ZCa of helical gears; by default "experience" where both tips are relieved by design, else "none".
+        For f_ZCa of helical gears; by default "experience" where both tips are relieved by more than running in takes
+        off them, else "none".
+    tip_relief_factor : float, optional
+        f_ZCa itself, where it is given.
+    required : (float, float)
+        S_Hmin and S_Fmin, by which sigma_HP and sigma_FP lie below sigma_HG and sigma_FG.
     """
 
     geometry: PairGeometry
@@ -43,13 +49,16 @@ class Conditions:
     edition: Edition = 2019
     dynamic_method: Literal["B", "C"] = "B"
     tip_relief: TipRelief | None = None
+    tip_relief_factor: float | None = None
+    required: Both = (1.0, 1.0)
 
     @property
     def relieved(self) -> TipRelief:
         """How tips count as relieved."""
         if self.tip_relief is not None:
             return self.tip_relief
-        return "experience" if all(q.tip_relief > 0.0 for q in self.quality) else "none"
+        worn = running_in_relief((self.strength[0].contact, self.strength[1].contact))
+        return "experience" if all(q.tip_relief > worn for q in self.quality) else "none"
 
 
 class FactorTable:

@@ -211,7 +211,40 @@ class PairGeometry:
         return 0.5 * self.diameters[0] * speed
 
 
-def _shape(gear: Gear, rim_thickness: float | None) -> GearShape:
+@dataclass(frozen=True, slots=True)
+class Body:
+    """What of a gear's body ISO 6336 counts, beside its bore; lengths [m].
+
+    Parameters
+    ----------
+    rim_thickness : float, optional
+        s_R; None for a solid gear.
+    web_thickness : float, optional
+        b_s; None for a disc as wide as the face.
+    bored : bool
+        Whether the bore is that of the gear, and not one that finite elements assume.
+    """
+
+    rim_thickness: float | None = None
+    web_thickness: float | None = None
+    bored: bool = True
+
+    def web_ratio(self, face_width: float) -> float | None:
+        """b_s/b."""
+        return None if self.web_thickness is None else self.web_thickness / face_width
+
+    def bore_diameter(self, gear: Gear) -> float:
+        """d_i: inside of the rim where a web carries it and no bore is known."""
+        if self.bored or self.web_thickness is None or self.rim_thickness is None:
+            return 2.0 * gear.bore_radius
+        return 2.0 * max(gear.root_radius - self.rim_thickness, 0.0)
+
+
+#: A gear without web and rim.
+SOLID = Body()
+
+
+def _shape(gear: Gear, body: Body) -> GearShape:
     tooth = gear.tooth
     return GearShape(
         teeth=gear.teeth,
@@ -222,17 +255,18 @@ def _shape(gear: Gear, rim_thickness: float | None) -> GearShape:
         dedendum=tooth.rack.dedendum,
         tip_radius=tooth.rack.tip_radius,
         residual_undercut=tooth.rack.residual_undercut,
-        bore_diameter=2.0 * gear.bore_radius,
+        bore_diameter=body.bore_diameter(gear),
         generating_shift=tooth.generating_shift,
         active_tip_diameter=2.0 * gear.involute_tip_radius,
-        rim_thickness=rim_thickness,
+        rim_thickness=body.rim_thickness,
+        web_ratio=body.web_ratio(gear.face_width),
         young_modulus=gear.material.young_modulus,
         poisson_ratio=gear.material.poisson_ratio,
         density=gear.material.density,
     )
 
 
-def of_pair(pair: GearPair, rim_thickness: tuple[float | None, float | None] = (None, None)) -> PairGeometry:
+def of_pair(pair: GearPair, bodies: tuple[Body, Body] = (SOLID, SOLID)) -> PairGeometry:
     """Geometry of a gear pair; the pinion is the gear with fewer teeth, of equal ones that with more profile shift.
 
     ISO 6336-1, 9.3.1.1, wants x_1 >= x_2 for c'; of equal shifts it is the driver.
@@ -240,10 +274,10 @@ def of_pair(pair: GearPair, rim_thickness: tuple[float | None, float | None] = (
     Parameters
     ----------
     pair : GearPair
-    rim_thickness : (float or None, float or None)
-        s_R of driver and driven [m]; None for a solid gear.
+    bodies : (Body, Body)
+        Rim and web of driver and driven.
     """
-    driver, driven = (_shape(g, s) for g, s in zip((pair.driver, pair.driven), rim_thickness, strict=True))
+    driver, driven = (_shape(g, body) for g, body in zip((pair.driver, pair.driven), bodies, strict=True))
     first = pair.pinion == "driver"
     return PairGeometry(
         gears=(driver, driven) if first else (driven, driver),

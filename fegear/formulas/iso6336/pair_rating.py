@@ -71,9 +71,9 @@ class PairRating:
     members : (Member, Member)
         Which of driver and driven is the pinion, which the wheel.
     contact_stress, contact_permissible, contact_safety : (float, float)
-        sigma_H, sigma_HP at a safety of 1 (sigma_HG) [Pa], S_H.
+        sigma_H, sigma_HG (sigma_HP at a required safety of 1) [Pa], S_H.
     bending_stress, bending_permissible, bending_safety : (float, float)
-        sigma_F, sigma_FP at a safety of 1 (sigma_FG) [Pa], S_F.
+        sigma_F, sigma_FG (sigma_FP at a required safety of 1) [Pa], S_F.
     """
 
     factors: tuple[Factor, ...]

@@ -15,6 +15,8 @@ from fegear.errors import RangeError
 from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from fegear.geometry import GearPair
 
 #: Table 9 of the standard: q' in mm um/N.
@@ -102,6 +104,12 @@ def blank_factor(web_ratio: float | None, rim_ratio: float = math.inf) -> float:
     if not rim_ratio > 0.0:
         raise RangeError("rim ratio s_R/m_n", rim_ratio, "must be positive")
     return 1.0 + math.log(min(max(web_ratio, 0.2), 1.2)) / (5.0 * math.exp(max(rim_ratio, 1.0) / 5.0))
+
+
+def pair_blank_factor(bodies: Iterable[tuple[float | None, float]]) -> float:
+    """C_R of a pair, the mean of both gears; of each b_s/b and s_R/m_n, as `blank_factor` takes them."""
+    one, other = (blank_factor(web, rim) for web, rim in bodies)
+    return 0.5 * (one + other)
 
 
 def rack_factor(dedendum: float, pressure_angle: float = math.radians(20.0)) -> float:

@@ -83,7 +83,7 @@ def load_sharing_factor(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
     grade : int
     """
     place = np.asarray(x, dtype=float)
-    buttress = _buttressing(pair, place)
+    buttress = buttressing(pair, place)
     if pair.driver.helix_angle != 0.0 and pair.total_contact_ratio > 2.0:
         return buttress / pair.contact_ratio
     share = np.where((place < pair.x_start) | (place > pair.x_end), 0.0, spur_sharing(pair, place, grade))
@@ -110,7 +110,7 @@ def spur_sharing(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
     return np.asarray(np.where(place < first, rising, np.where(place > last, falling, 1.0)))
 
 
-def _buttressing(pair: GearPair, x: Array) -> Array:
+def buttressing(pair: GearPair, x: Array) -> Array:
     """X_but (Eqs. 49 to 56): the ends of helical teeth bear up to 1.3 times more; 1 for spur teeth."""
     if pair.driver.helix_angle == 0.0:
         return np.ones_like(x)

@@ -1,7 +1,8 @@
 """ISO/TS 6336-22: micropitting, by the thickness of the lubricant film beside the roughness.
 
 Source: ISO/TR 15144-1:2014, Calculation of micropitting load capacity of cylindrical spur and helical gears - Part 1,
-from which ISO/TS 6336-22:2018 was made; formulas are numbered as there, and known here from secondary sources.
+from which ISO/TS 6336-22:2018 was made; formulas are numbered as there, and known here from secondary sources, of which
+printed reports (docs/rating/kisssoft_stage_*.toml) hold X_Y, p_dyn,Y, lambda_GF,Y, lambda_GFT and W_W.
 lambda_GF,Y = h_Y / Ra with the film of Dowson and Higginson, thinned by the heat of the contact.
 """
 
@@ -16,8 +17,9 @@ import numpy as np
 
 from fegear.errors import RangeError
 from fegear.formulas.flank_speeds import FlankSpeeds, contact_ratios
+from fegear.formulas.flash_temperature import STEEL_HEAT
 from fegear.formulas.friction_mean import Surface, helical_load_factor, mean_friction
-from fegear.formulas.iso6336.part20_flash import spur_sharing
+from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -27,8 +29,10 @@ if TYPE_CHECKING:
     from fegear.formulas.lubricant import Oil
     from fegear.geometry import GearPair
 
-#: Steel of Table 2: density, specific heat, conductivity; B_M = sqrt of their product [N/(m s^0.5 K)] (Formula 82).
-STEEL_HEAT = math.sqrt(7800.0 * 440.0 * 45.0)
+#: B_M of the test gears: density, specific heat, conductivity of the steel of Table 2 (Formula 82) [N/(m s^0.5 K)].
+_TEST_HEAT = math.sqrt(7800.0 * 440.0 * 45.0)
+#: Overlap ratios up to which helical teeth share the load as spur teeth do, and from which evenly; in between linearly.
+_NARROW, _WIDE = 0.8, 1.2
 #: Bulk temperature: 7400 (P mu H_v / (a b))^0.72 X_S / (1.2 X_Ca) in kW and mm (Formula 84).
 _BULK, _POWER, _RELIEF = 7400.0, 0.72, 1.2
 #: Permissible film over that of the test gears (clause 5).
@@ -36,6 +40,15 @@ _OF_TEST = 1.4
 #: Torque on the pinion of the FZG gears type C at the load stages of FVA 54/7 [N m], its speed, and the flanks' Ra.
 _TEST_TORQUES = {5: 70.0, 6: 98.9, 7: 132.5, 8: 171.6, 9: 215.6, 10: 265.1}
 _TEST_SPEED, _TEST_ROUGHNESS = 2250.0 * math.pi / 30.0, 0.5e-6
+#: Line load at A over the torque on the test pinion [1/m^2]: 236.3 N/mm at 265.1 N m, printed for load stage 10.
+_TEST_LINE_LOAD = 236.3e3 / 265.1
+#: W_W: of carburized flanks 1, and .75 of such on through-hardened ones as printed, the mean of 1 and .5; the others
+#: are recalled. `RECALLED_MATERIALS` names these.
+MATERIAL_FACTOR = {
+    "case-carburized": 1.0, "case-carburized-low-austenite": 1.0, "case-carburized-high-austenite": 0.95,
+    "nitrided": 1.5, "induction-hardened": 0.65, "through-hardened": 0.5,
+}  # fmt: skip
+RECALLED_MATERIALS = frozenset({"case-carburized-high-austenite", "nitrided", "induction-hardened"})
 
 
 @dataclass(frozen=True)
@@ -56,6 +69,57 @@ class Film:
     contact: Array
     thickness: Array
     ratio: Array
+
+
+@dataclass(frozen=True)
+class RatedFilm:
+    """Method B at places on the path of contact.
+
+    Parameters
+    ----------
+    film : Film
+    sharing : ndarray
+        X_Y.
+    nominal, dynamic : ndarray
+        p_H,Y and p_dyn,Y, local Hertzian pressure without and with load factors [Pa].
+    friction, bulk : float
+        mu_m and theta_M [degC].
+    """
+
+    film: Film
+    sharing: Array
+    nominal: Array
+    dynamic: Array
+    friction: float
+    bulk: float
+
+
+def load_sharing(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
+    """X_Y of unmodified profiles (clause 11): of spur teeth as in part 20, of helical ones with buttressed ends.
+
+    Overlap ratios from 1.2 on spread the load evenly, X_but / epsilon_alpha, as a printed report has it (1.3 / 1.463 =
+    .889 at A); up to .8 the load is that of spur teeth times X_but, and in between X_Y is linear in the overlap ratio,
+    both recalled: `narrow`.
+
+    Parameters
+    ----------
+    pair : GearPair
+    x : array_like
+        [m].
+    grade : int
+        Tolerance class of the flanks.
+    """
+    place = np.asarray(x, dtype=float)
+    spur = spur_sharing(pair, place, grade)
+    if pair.driver.helix_angle == 0.0:
+        return spur
+    wide = min(max((pair.overlap_ratio - _NARROW) / (_WIDE - _NARROW), 0.0), 1.0)
+    return np.asarray(buttressing(pair, place) * ((1.0 - wide) * spur + wide / pair.contact_ratio))
+
+
+def narrow(pair: GearPair) -> bool:
+    """Whether a helical pair overlaps so little that its X_Y is one that no print holds."""
+    return pair.driver.helix_angle != 0.0 and pair.overlap_ratio < _WIDE
 
 
 def loss_factor(pair: GearPair) -> float:
@@ -153,7 +217,7 @@ def film_of_test(oil: Oil, load_stage: int, temperature: float = 90.0) -> float:
     """lambda_GFT: least film ratio of the FZG gears type C at the failure load stage of FVA 54/7 C/8.3/90.
 
     The same formulas on the test gears (16/24 teeth, module 4.5 mm, centre distance 91.5 mm, face 14 mm, no relief,
-    2250 1/min, Ra 0.5 um, spray) with the oil of the case.
+    2250 1/min, Ra 0.5 um, spray) at A under its line load, with the oil of the case.
 
     Raises
     ------
@@ -170,19 +234,22 @@ def film_of_test(oil: Oil, load_stage: int, temperature: float = 90.0) -> float:
     rated = RatedSurface(
         pair, _TEST_SPEED, load, LoadFactors(), Surface(oil, temperature, _TEST_ROUGHNESS), SUPPLY_FACTOR["spray"]
     )
-    return least_ratio(rated)[0]
+    mu, at = friction(rated), rated.at(pair.x_start)
+    bulk = bulk_temperature(rated, mu, loss_factor(pair))
+    pressed = pressure(at, _TEST_LINE_LOAD * _TEST_TORQUES[load_stage], rated.modulus)
+    return float(film(rated.surface, at, pressed, mu, bulk, rated.modulus, _TEST_HEAT).ratio)
 
 
-def rated_film(rated: RatedSurface, x: ArrayLike) -> tuple[Film, float, float]:
-    """The standard's film with its own load sharing, mu_m and theta_M [degC]."""
+def rated_film(rated: RatedSurface, x: ArrayLike) -> RatedFilm:
+    """The standard's film with its own load sharing."""
     mu = friction(rated)
     bulk, at = bulk_temperature(rated, mu, loss_factor(rated.pair)), rated.at(x)
-    share = spur_sharing(rated.pair, x, rated.grade)  # X_Y of unmodified profiles (Formulae 46 to 48)
-    return (
-        film(rated.surface, at, pressure(at, share * rated.line_load, rated.modulus), mu, bulk, rated.modulus),
-        mu,
-        bulk,
+    share = load_sharing(rated.pair, x, rated.grade)
+    nominal, dynamic = (
+        pressure(at, share * load / rated.pair.face_width, rated.modulus)
+        for load in (rated.load, rated.load * rated.factors.product)
     )
+    return RatedFilm(film(rated.surface, at, dynamic, mu, bulk, rated.modulus), share, nominal, dynamic, mu, bulk)
 
 
 def least_ratio(rated: RatedSurface) -> tuple[float, str]:
@@ -195,11 +262,11 @@ def least_ratio(rated: RatedSurface) -> tuple[float, str]:
         "DE": 0.5 * (last + pair.x_end), "E": pair.x_end,
     }  # fmt: skip
     inside = {name: x for name, x in points.items() if pair.x_start <= x <= pair.x_end}
-    ratios = rated_film(rated, np.array(list(inside.values())))[0].ratio
+    ratios = rated_film(rated, np.array(list(inside.values()))).film.ratio
     least = int(np.argmin(ratios))
     return float(ratios[least]), list(inside)[least]
 
 
 def permissible_ratio(oil: Oil, load_stage: int, temperature: float = 90.0, material: float = 1.0) -> float:
-    """lambda_GFP = 1.4 W_W lambda_GFT: from a test in another gear pair, W_W 1 for carburized steel."""
+    """lambda_GFP = 1.4 W_W lambda_GFT: from a test in another gear pair; `material` is W_W of both gears."""
     return _OF_TEST * material * film_of_test(oil, load_stage, temperature)

@@ -3,7 +3,7 @@
 Source: ISO 6336-2:2006, clauses 5 to 9, and IACS UR M56 (Rev. 4), M56.2, which repeats ISO 6336-2:2019 but for f_ZCa.
 Two things moved between editions: Z_beta, printed as sqrt(cos beta) in 2006 and corrected to 1/sqrt(cos beta) by
 technical corrigendum 1:2008; and Z_B, Z_D of helical gears, which 2019 raises by f_ZCa where tips are not relieved (its
-values are recalled: no public text that repeats them was at hand).
+values are recalled: no public text that repeats them was at hand, and a rating remarks on it).
 """
 
 from __future__ import annotations
@@ -31,6 +31,17 @@ def zone_factor(pair: PairGeometry) -> float:
         * math.cos(pair.base_helix_angle)
         / (math.cos(pair.transverse_pressure_angle) ** 2 * math.tan(pair.working_pressure_angle))
     )
+
+
+#: What is said of f_ZCa.
+RECALLED = (
+    "f_ZCa: {value:g} of helical flanks {tips} is recalled from memory, for no printed source was at hand; it "
+    "multiplies the contact stress by its square root where the overlap ratio is 1 and more (tip_relief_factor of "
+    "iso_6336)"
+)
+TIPS: dict[TipRelief, str] = {
+    "none": "without tip relief", "experience": "with tip relief by experience", "computed": "with a computed relief",
+}  # fmt: skip
 
 
 def tip_relief_factor(relief: TipRelief, edition: int) -> float:

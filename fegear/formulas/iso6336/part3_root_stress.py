@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 Edition = Literal[2006, 2019]
 
 
+#: Rim thickness over tooth depth that Y_B holds above, and from which a gear counts as solid.
+LEAST_RIM, SOLID_RIM = 0.5, 1.2
+
+
 @dataclass(frozen=True, slots=True)
 class RackTooth:
     """An external gear as ISO 6336-3 sees it: a spur gear of `teeth` (virtual, not necessarily whole) cut by a rack.
@@ -254,9 +258,9 @@ def rim_factor(rim_thickness: float, tooth_height: float) -> float:
     if not tooth_height > 0.0:
         raise RangeError("tooth height", tooth_height, "must be positive")
     backup = rim_thickness / tooth_height
-    if not backup > 0.5:
+    if not backup > LEAST_RIM:
         raise RangeError("rim thickness / tooth height", f"{backup:.4g}", "must exceed 0.5 (ISO 6336-3, 9.2)")
-    return 1.0 if backup >= 1.2 else 1.6 * math.log(2.242 / backup)
+    return 1.0 if backup >= SOLID_RIM else 1.6 * math.log(2.242 / backup)
 
 
 def deep_tooth_factor(contact_ratio: float) -> float:

@@ -22,14 +22,14 @@ def contact_stress(table: FactorTable, conditions: Conditions, loads: LoadFactor
     z_h, z_e = contact.zone_factor(pair), contact.elasticity_factor(pair)
     z_eps = contact.contact_ratio_factor(pair.contact_ratio, pair.overlap_ratio)
     z_beta = contact.helix_factor(pair.helix_angle)
-    relief = contact.tip_relief_factor(conditions.relieved, edition) if pair.helix_angle > 0.0 else 1.0
+    relief, recalled = _tip_relief(conditions)
     inner, single = contact.single_pair_factors(pair, relief)
     table.add("Z_H", z_h, f"{part}, clause 6")
     table.add("Z_E", z_e, f"{part}, clause 7", "Pa^0.5")
     table.add("Z_epsilon", z_eps, f"{part}, clause 8")
     table.add("Z_beta", z_beta, f"{part}{'/Cor.1:2008' if edition == 2006 else ''}, clause 9")
     if edition == 2019:
-        table.add("f_ZCa", relief, f"{part}, 6.3")
+        table.add("f_ZCa", relief, f"{part}, 6.3", remark=recalled)
     table.add("M", inner, f"{part}, 6.2")
     table.add("Z_BD", single, f"{part}, 6.2")
     nominal = contact.nominal_contact_stress(pair, duty.tangential, (z_h, z_e, z_eps, z_beta))
@@ -38,6 +38,16 @@ def contact_stress(table: FactorTable, conditions: Conditions, loads: LoadFactor
     table.add("sigma_H0", nominal, f"{part}, 5.2", "Pa")
     table.add("sigma_H", stress, f"{part}, 5.2", "Pa")
     return stress
+
+
+def _tip_relief(conditions: Conditions) -> tuple[float, str]:
+    """f_ZCa and what is to be said of it."""
+    if conditions.geometry.helix_angle == 0.0 or conditions.edition == 2006:
+        return 1.0, ""
+    if conditions.tip_relief_factor is not None:
+        return conditions.tip_relief_factor, "f_ZCa: as given"
+    value = contact.tip_relief_factor(conditions.relieved, conditions.edition)
+    return value, contact.RECALLED.format(value=value, tips=contact.TIPS[conditions.relieved])
 
 
 def permissible_contact(table: FactorTable, conditions: Conditions) -> tuple[FlankStrength, FlankStrength]:
@@ -52,13 +62,16 @@ def permissible_contact(table: FactorTable, conditions: Conditions) -> tuple[Fla
     table.add("Z_R", (one.Z_R, two.Z_R), f"{part}, clause 12")
     table.add("Z_W", (one.Z_W, two.Z_W), f"{part}, clause 13", remark=one.remark)
     table.add("Z_X", (one.Z_X, two.Z_X), f"{part}, clause 14")
-    table.add("sigma_HP_static", (one.static, two.static), f"{part}, 5.3", "Pa")
-    table.add("sigma_HP_reference", (one.reference, two.reference), f"{part}, 5.3", "Pa")
+    table.add("sigma_HG_static", (one.static, two.static), f"{part}, 5.3", "Pa")
+    table.add("sigma_HG_reference", (one.reference, two.reference), f"{part}, 5.3", "Pa")
     bound = ""
     if one.static_rules or two.static_rules:
         bound = (
-            "sigma_HP: Z_L Z_v Z_R Z_W would lift it above the static strength of nitrocarburized flanks (Z_NT = 1.1), "
+            "sigma_HG: Z_L Z_v Z_R Z_W would lift it above the static strength of nitrocarburized flanks (Z_NT = 1.1), "
             "which holds for all load cycles then"
         )
-    table.add("sigma_HP", (one.permissible, two.permissible), f"{part}, 5.3", "Pa", bound)
+    table.add("sigma_HG", (one.permissible, two.permissible), f"{part}, 5.3", "Pa", bound)
+    least = conditions.required[0]
+    table.add("S_Hmin", least, f"{part}, 5.1, as given")
+    table.add("sigma_HP", (one.permissible / least, two.permissible / least), f"{part}, 5.3", "Pa")
     return found

@@ -12,7 +12,7 @@ from fegear.formulas.iso6336 import part1_running_in as running_in
 from fegear.formulas.iso6336 import part1_transverse as transverse
 from fegear.formulas.iso6336.conditions import COMPUTED
 from fegear.formulas.iso6336.part1_face_load import root_exponent
-from fegear.formulas.iso6336.part1_stiffness import blank_factor, stiffness
+from fegear.formulas.iso6336.part1_stiffness import blank_factor, pair_blank_factor, stiffness
 from fegear.formulas.iso6336.part2_contact import contact_ratio_factor
 
 if TYPE_CHECKING:
@@ -41,10 +41,7 @@ class LoadFactors:
 def _stiffness(table: FactorTable, conditions: Conditions, line_load: float) -> Stiffness:
     pair = conditions.geometry
     one, two = pair.gears
-    blanks = [
-        blank_factor(g.web_ratio, math.inf if g.rim_thickness is None else g.rim_thickness / pair.module)
-        for g in pair.gears
-    ]
+    bodies = [(g.web_ratio, math.inf if g.rim_thickness is None else g.rim_thickness / pair.module) for g in pair.gears]
     found = stiffness(
         (one.teeth, two.teeth),
         pair.contact_ratio,
@@ -52,11 +49,11 @@ def _stiffness(table: FactorTable, conditions: Conditions, line_load: float) -> 
         profile_shift=(one.profile_shift, two.profile_shift),
         dedendum=(one.dedendum, two.dedendum),
         pressure_angle=pair.pressure_angle,
-        blank=0.5 * (blanks[0] + blanks[1]),
+        blank=pair_blank_factor(bodies),
         specific_load=line_load,
         young_modulus=(one.young_modulus, two.young_modulus),
     )
-    table.add("C_R", (blanks[0], blanks[1]), "ISO 6336-1:2006, 9.3.1.3, Eqs. 84 and 85")
+    table.add("C_R", (blank_factor(*bodies[0]), blank_factor(*bodies[1])), "ISO 6336-1:2006, 9.3.1.3, Eqs. 84 and 85")
     table.add("c'_th", found.theoretical, "ISO 6336-1:2006, 9.3.1.1, Eqs. 81 and 82", "Pa", found.remark)
     table.add("c'", found.single, "ISO 6336-1:2006, 9.3.1, Eq. 80", "Pa")
     short = ""

@@ -124,7 +124,10 @@ def permissible_bending(
     table.add("Y_X", (one.Y_X, two.Y_X), f"{part}, clause 15")
     table.add("Y_M", (one.Y_M, two.Y_M), f"{part}, annex B, endurance")
     table.add("Y_M_static", (one.Y_M_static, two.Y_M_static), f"{part}, annex B, static strength")
-    table.add("sigma_FP_static", (one.static, two.static), f"{part}, 5.3", "Pa")
-    table.add("sigma_FP_reference", (one.reference, two.reference), f"{part}, 5.3", "Pa")
-    table.add("sigma_FP", (one.permissible, two.permissible), f"{part}, 5.3", "Pa")
+    table.add("sigma_FG_static", (one.static, two.static), f"{part}, 5.3", "Pa")
+    table.add("sigma_FG_reference", (one.reference, two.reference), f"{part}, 5.3", "Pa")
+    table.add("sigma_FG", (one.permissible, two.permissible), f"{part}, 5.3", "Pa")
+    least = conditions.required[1]
+    table.add("S_Fmin", least, f"{part}, 5.1, as given")
+    table.add("sigma_FP", (one.permissible / least, two.permissible / least), f"{part}, 5.3", "Pa")
     return one, two
