@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -45,6 +45,8 @@ class SpeedChart:
         over the mean mesh force. Of a motion that repeats, the dynamic factor itself.
     measured : ndarray of int, shape (n,)
         Periods of excitation that the largest forces are taken over.
+    multiplier : ndarray, shape (n,)
+        Growth over one period of excitation of what lies beside the motion; above one, nothing holds it.
     """
 
     speeds: Array
@@ -57,6 +59,7 @@ class SpeedChart:
     median: Array
     upper: Array
     measured: NDArray[np.int64]
+    multiplier: Array
 
     @classmethod
     def of(cls, speeds: Array, states: Sequence[SteadyState], mesh: int, mean: float) -> SpeedChart:
@@ -72,6 +75,7 @@ class SpeedChart:
             np.array([s.quantile(0.5)[mesh] for s in states]) / mean,
             np.array([s.quantile(0.99)[mesh] for s in states]) / mean,
             np.array([s.measured for s in states], dtype=np.int64),
+            np.array([s.multiplier for s in states]),
         )
 
     @classmethod
@@ -81,12 +85,22 @@ class SpeedChart:
         kinds = ("periodic",) * speeds.size
         return cls(
             speeds, dynamic_factor, mesh_force_factor, none, none.copy(), one, kinds, dynamic_factor, dynamic_factor,
-            one.copy(),
+            one.copy(), np.full(speeds.size, np.nan),
         )  # fmt: skip
 
     @property
+    def growing(self) -> NDArray[np.bool_]:
+        """Speeds at which the motion grows without bound."""
+        return np.array([kind == "growing" for kind in self.kinds], dtype=bool)
+
+    def at(self, which: NDArray[np.bool_]) -> SpeedChart:
+        """Only some of the speeds."""
+        picked = {f.name: getattr(self, f.name)[which] for f in fields(self) if f.name != "kinds"}
+        return replace(self, **picked, kinds=tuple(np.array(self.kinds)[which].tolist()))
+
+    @property
     def worst(self) -> tuple[float, float]:
-        """Largest dynamic factor and the speed [rad/s] at which it occurs."""
+        """Largest dynamic factor, infinite where a motion grows, and the speed [rad/s] at which it occurs."""
         index = int(np.argmax(self.dynamic_factor))
         return float(self.dynamic_factor[index]), float(self.speeds[index])
 

@@ -26,6 +26,8 @@ RESOLVED = 2e-12
 BENT, NEAR = 0.1, 1.0
 #: Share of the way below which it counts as straight, and longest way looked at.
 STRAIGHT, FARTHEST = 1e-3, 1e3
+#: Bend that round-off and the steps of the integration leave of a straight way.
+LEAST_BENT = 1e-6
 #: Distances from an orbit at which the motion is on it, beside the static deflection.
 ON_IT = 1e-6
 
@@ -191,9 +193,18 @@ def leads_to(orbit: Orbit, x: Array, v: Array, step: float) -> bool:
     what they leave is what the monodromy matrix leaves, to a tenth of the distance.
     """
     way = way_beside(orbit, x, v, step)
-    if way.far <= ON_IT or way.bent <= STRAIGHT:
+    if way.far <= ON_IT or way.bent <= straight(orbit):
         return True
     return way.far <= NEAR and way.bent <= BENT and way.shrinks <= 0.5 * (1.0 + min(orbit.radius, 1.0))
+
+
+def straight(orbit: Orbit) -> float:
+    """Share of the way by which it may bend and still count as straight: little beside what the multipliers make of it.
+
+    Next to a bifurcation neighbours hardly grow or shrink in a period, and a bend as small as that decides where they
+    end: a motion of two periods round an unstable one of multiplier -1.0005 bends by five parts in 10,000.
+    """
+    return min(STRAIGHT, max(0.1 * abs(1.0 - orbit.radius), LEAST_BENT))
 
 
 def floquet_frame(monodromy: Array) -> Complex:
@@ -226,7 +237,7 @@ def leap(orbit: Orbit, x: Array, v: Array, step: float) -> tuple[Array, Array]:
         if not float(np.max(np.abs(distance))) < FARTHEST:
             return False
         way = way_beside(orbit, *at(distance), step)
-        return way.alike and way.bent <= STRAIGHT
+        return way.alike and way.bent <= straight(orbit)
 
     if not linear(away):
         return x, v

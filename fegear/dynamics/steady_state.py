@@ -1,9 +1,9 @@
 """Steady motion: Newton on the state after a period, Floquet multipliers, motion that does not repeat.
 
 A train whose teeth never part is linear and is closed in one Newton step, exactly; if its motion grows, it has no
-steady motion and is refused. With contact loss the motion runs from its start until it stands in the neighbourhood of
-a stable motion of up to 32 periods, which Newton closes. An unstable motion is never reported. What comes near none is
-followed until transients have died away, and measured over many periods.
+steady motion, and the answer says by how much it grows. With contact loss the motion runs from its start until it
+stands in the neighbourhood of a stable motion of up to 32 periods, which Newton closes. An unstable motion is never
+reported. What comes near none is followed until it spreads no further, and measured over many periods.
 """
 
 from __future__ import annotations
@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.dynamics.coexisting import stable_motions
 from fegear.dynamics.motion import Trajectory, propagate, starting_state
 from fegear.dynamics.packing import Packed, pack
 from fegear.dynamics.shooting import Orbit, close, leads_to, leap, moving
 from fegear.dynamics.wandering import (
     CHAOTIC_GROWTH,
+    CHAOTIC_PATIENCE,
     LONGEST_WINDOW,
     PATIENCE,
     WINDOW,
@@ -45,25 +47,27 @@ SETTLING, DOUBLINGS, MEASURED = 12, 5, 1000
 LATER = 80
 #: Longest transient without changes of contact that is followed to see whether contact changes on the way.
 TRANSIENT = 100
-#: Motion so many times the static deflection of a mesh grows for ever: no gear train holds that.
+#: Motion so many times that of a static deflection in the time of the fastest mode grows for ever: no train holds that.
 UNBOUNDED = 1e5
 
 
 @dataclass(frozen=True)
 class SteadyState:
-    """Steady motion of a train at one speed, stable.
+    """Steady motion of a train at one speed, stable; or that there is none, and by how much motions grow.
 
     Attributes
     ----------
     model : MotionModel
         What moves.
     kind : str
-        "periodic", "quasi-periodic", "chaotic", "long-period" (comes back, but after more than 32 periods), or
-        "unsettled" (a transient that had not died after 60,000 periods).
+        "periodic", "quasi-periodic", "chaotic", "long-period" (comes back, but after more than 32 periods),
+        "unsettled" (a transient that had not died after 60,000 periods, a chaotic motion that still spread after
+        12,000), or "growing" (without bound: forces are infinite).
     periods : int
         Periods of the excitation after which the motion repeats; 0 if it does not.
     multipliers : ndarray, complex
-        Floquet multipliers of the motion, largest first; empty if it does not repeat.
+        Floquet multipliers of the motion (of the motion that others grow away from), largest first; empty if it does
+        not repeat.
     growth : float
         Logarithm of the largest multiplier per period of excitation, or the largest Lyapunov exponent.
     largest, smallest : ndarray, shape (meshes,)
@@ -81,6 +85,10 @@ class SteadyState:
     per_period : ndarray, shape (N, meshes)
         Largest force on one tooth pair [N] in each of the N periods of excitation that were measured: a sample of a
         motion that does not repeat, one row of a motion that does.
+    drift : float
+        Change of the spread of a motion that does not repeat from its last window to the measured periods, as a share.
+    coexisting : tuple of SteadyState
+        Stable motions that repeat and exist at this speed beside one that does not (those that were found, not all).
     """
 
     model: MotionModel
@@ -98,6 +106,13 @@ class SteadyState:
     x: Array
     v: Array
     per_period: Array
+    drift: float = 0.0
+    coexisting: tuple[SteadyState, ...] = ()
+
+    @property
+    def multiplier(self) -> float:
+        """By how much what lies beside the motion grows over one period of excitation; above one, nothing holds it."""
+        return math.exp(min(self.growth, 700.0))
 
     @property
     def repeats(self) -> bool:
@@ -107,14 +122,14 @@ class SteadyState:
     @property
     def measured(self) -> int:
         """Periods of excitation that the largest forces are taken over: those after which it repeats, or N."""
-        return self.periods or int(self.per_period.shape[0])
+        return self.periods or (0 if self.kind == "growing" else int(self.per_period.shape[0]))
 
     def quantile(self, share: float) -> Array:
         """Force on one tooth pair [N] that so large a share of the periods does not exceed, shape (meshes,).
 
-        Of a motion that repeats, its largest.
+        Of a motion that repeats, its largest. Always a force that occurs, never one between two that do.
         """
-        return np.asarray(np.quantile(self.per_period, share, axis=0))
+        return np.asarray(np.quantile(self.per_period, share, axis=0, method="inverted_cdf"))
 
     @property
     def dynamic_factor(self) -> Array:
@@ -173,8 +188,7 @@ def steady_state(
     Raises
     ------
     RangeError
-        If the tolerance is out of range, a train without damping is at resonance, or the motion grows without bound
-        (parametric instability of teeth that never part, or that touch on either flank).
+        If the tolerance is out of range, or a train without damping is at resonance.
     """
     if not 1e-13 < tolerance <= 1e-2:
         raise RangeError("tolerance", tolerance, "must lie between 1e-13 and 1e-2")
@@ -197,7 +211,8 @@ def steady_state(
     for _ in range(DOUBLINGS + 1):
         window = follow(packed, x, v, periods, step, peaks=False)
         x, v = window.x, window.v
-        _bounded(packed, window)
+        if not _bounded(packed, window):
+            return _growing(packed, growth(packed, *starting_state(packed, "static"), step))
         states = np.concatenate([states, window.states])
         # one seen from the window before: one look shows whether the motion is near it now
         if ahead is not None and periods % ahead.periods == 0 and leads_to(ahead, x, v, step):
@@ -213,8 +228,10 @@ def steady_state(
 def _linear(packed: Packed, x: Array, v: Array, step: float) -> SteadyState:
     """Steady motion of teeth that never part: the one fixed point, if motions tend to it."""
     orbit = close(packed, x, v, 1, step)
-    if orbit is None or not orbit.stable:
-        raise _grows(packed, f" {orbit.radius:.4g} times a period" if orbit is not None else "")
+    if orbit is None:
+        return _growing(packed, growth(packed, x, v, step))
+    if not orbit.stable:
+        return _growing(packed, math.log(orbit.radius), orbit.multipliers)
     return _periodic(orbit)
 
 
@@ -232,18 +249,21 @@ def _keeps_contact(orbit: Orbit, x: Array, v: Array, step: float) -> bool:
     return way.changes == 0
 
 
-def _grows(packed: Packed, how: str) -> RangeError:
-    return RangeError(
-        "speed",
-        f"{packed.model.speed:.9g} rad/s",
-        f"lets the motion grow without bound{how}: the varying mesh stiffness feeds it more than damping takes",
-        "give the meshes damping, let teeth part (effects.contact_loss), or leave this speed out",
-    )
+def _growing(packed: Packed, rate: float, multipliers: Complex | None = None) -> SteadyState:
+    """No steady motion: the varying mesh stiffness feeds it more than damping takes, so much a period (logarithm)."""
+    meshes = packed.damping.size
+    x, v = starting_state(packed, "static")
+    endless, none = np.full(meshes, math.inf), np.zeros(meshes)
+    return SteadyState(
+        packed.model, "growing", 0, np.zeros(0, dtype=complex) if multipliers is None else multipliers, rate, endless,
+        -endless, endless, none, none, 0, math.nan, x, v, endless[None, :],
+    )  # fmt: skip
 
 
-def _bounded(packed: Packed, window: Window) -> None:
-    if not np.all(np.isfinite(window.states)) or np.max(np.abs(window.states)) > UNBOUNDED:
-        raise _grows(packed, "")
+def _bounded(packed: Packed, window: Window) -> bool:
+    """Whether velocities stay in bounds; distances may be large, while teeth that struck each other fly apart."""
+    velocities = window.states[:, int(packed.free.sum()) :]
+    return bool(np.all(np.isfinite(window.states)) and np.max(np.abs(velocities)) <= UNBOUNDED)
 
 
 def _settled(
@@ -253,9 +273,12 @@ def _settled(
 
     Last, from where to follow the motion further.
 
-    Beside an unstable orbit growth may take very long: as far as it is linear it is leapt over.
+    Beside an unstable orbit growth may take very long: as far as it is linear it is leapt over, once none of the
+    orbits is what the motion has come to. (A motion of two periods that has just grown out of one lies so near to it
+    that the unstable one, tried first, would take the motion away from where it stands.)
     """
     ahead: Orbit | None = None
+    unstable = []
     # a vibration that still dies away seems to come back after its own period: long ones are for later
     longest = LONGEST_MULTIPLE if states.shape[0] >= LATER else 2
     for multiple in recurrences(states, longest, 0.2):
@@ -263,11 +286,15 @@ def _settled(
         if orbit is None:
             continue
         if not orbit.stable:
-            x, v = leap(orbit, x, v, step)
+            unstable.append(orbit)
         elif leads_to(orbit, x, v, step):
             return _periodic(orbit), orbit, (x, v)
         else:
             ahead = orbit
+    for orbit in unstable:
+        after = leap(orbit, x, v, step)
+        if after[0] is not x:
+            return None, ahead, after
     return None, ahead, (x, v)
 
 
@@ -295,39 +322,63 @@ def _wander(packed: Packed, x: Array, v: Array, step: float, measured: int) -> S
     """Follow a motion that came to no orbit until it settles or stays as it is, and measure it."""
     rate = growth(packed, x, v, step)
     window = follow(packed, x, v, WINDOW, step, peaks=False)
-    run, kind = WINDOW, "unsettled"
-    while run < PATIENCE:
-        _bounded(packed, window)
+    run, sample = WINDOW, None
+    while sample is None and run < (CHAOTIC_PATIENCE if rate > CHAOTIC_GROWTH else PATIENCE):
+        if not _bounded(packed, window):
+            return _growing(packed, rate)
         found, _, (x, v) = _settled(packed, window.states, window.x, window.v, step)
         if found is not None:
             return found
-        length = WINDOW if rate > CHAOTIC_GROWTH else min(2 * window.states.shape[0], LONGEST_WINDOW)
+        length = min(2 * window.states.shape[0], LONGEST_WINDOW)
         before, window = window, follow(packed, x, v, length, step, peaks=False)
         run += length
         chaotic = rate > CHAOTIC_GROWTH
-        if chaotic or not drifting(before, window):
-            rate = growth(packed, window.x, window.v, step, WINDOW if chaotic else 4 * WINDOW)
-            # growth may be that of a transient: only what still grows is chaotic
-            if chaotic and rate <= CHAOTIC_GROWTH:
-                continue
-            # on a torus neighbours neither part nor close in; where they close in, the motion repeats after all
-            settled = "quasi-periodic" if rate > -CHAOTIC_GROWTH else "long-period"
-            kind = "chaotic" if rate > CHAOTIC_GROWTH else settled
-            break
-    start = window.x, window.v
-    sample = follow(packed, *start, measured, step, peaks=True)
-    _bounded(packed, sample)
+        if drifting(before, window, chaotic=chaotic):
+            continue
+        rate = growth(packed, window.x, window.v, step, WINDOW if chaotic else 4 * WINDOW)
+        # growth may be that of a transient: only what still grows is chaotic
+        if chaotic and rate <= CHAOTIC_GROWTH:
+            continue
+        sample = follow(packed, window.x, window.v, measured, step, peaks=True)
+        # chaos may spread on and on, in leaps that a window misses: what is measured must lie as the window before
+        if chaotic and drifting(window, sample, chaotic=True):
+            window, sample = sample, None
+            run += measured
+    kind = "unsettled" if sample is None else _kind(rate)
+    if sample is None:
+        sample = follow(packed, window.x, window.v, measured, step, peaks=True)
+    if not _bounded(packed, sample):
+        return _growing(packed, rate)
     if kind != "chaotic":
         found, _, _ = _settled(packed, sample.states, sample.x, sample.v, step)
         if found is not None:
             return found
+    return _measured(packed, kind, rate, window, sample, step)
+
+
+def _kind(rate: float) -> str:
+    """What a motion is that neither repeats nor drifts, by its growth: on a torus neighbours neither part nor close in.
+
+    Where they close in, the motion repeats after all, if after more periods than were looked at.
+    """
+    if rate > CHAOTIC_GROWTH:
+        return "chaotic"
+    return "quasi-periodic" if rate > -CHAOTIC_GROWTH else "long-period"
+
+
+def _measured(
+    packed: Packed, kind: str, rate: float, window: Window, sample: Window, step: float
+) -> SteadyState:  # fmt: skip
+    """A motion that does not repeat, from what a sample of its periods did."""
     parts = sample.passages
     per_period = np.array([p.tooth_force for p in parts])
+    beside = tuple(_periodic(orbit) for orbit in stable_motions(packed.model, step))
     return SteadyState(
         packed.model, kind, 0, np.zeros(0, dtype=complex), rate,
         np.max([p.largest for p in parts], axis=0), np.min([p.smallest for p in parts], axis=0),
         np.max(per_period, axis=0), np.mean([p.apart for p in parts], axis=0),
-        np.mean([p.behind for p in parts], axis=0), sum(p.changes for p in parts), math.nan, *start, per_period,
+        np.mean([p.behind for p in parts], axis=0), sum(p.changes for p in parts), math.nan, window.x, window.v,
+        per_period, sample.spread / max(window.spread, 1e-9) - 1.0, beside,
     )  # fmt: skip
 
 

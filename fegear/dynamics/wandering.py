@@ -22,10 +22,14 @@ if TYPE_CHECKING:
 #: Periods of the first and of the longest window, how many may be followed for a transient to die, and over how many
 #: growth is averaged.
 WINDOW, LONGEST_WINDOW, PATIENCE, LYAPUNOV = 250, 4000, 60_000, 250
+#: Periods after which a chaotic motion that still spreads is given up: teeth that strike in time with the varying
+#: stiffness throw each other ever further apart, in proportion to the time, and never settle.
+CHAOTIC_PATIENCE = 12_000
 #: Growth of tangents per period beyond which a motion counts as chaotic.
 CHAOTIC_GROWTH = 0.01
-#: Change of the spread of states from window to window below which a motion has settled.
-SETTLED = 0.03
+#: Change of the spread of states from window to window below which a motion has settled: one that is smooth, and one
+#: that is chaotic, whose windows are samples.
+SETTLED, SETTLED_CHAOS = 0.03, 0.25
 
 
 @dataclass(frozen=True)
@@ -79,11 +83,12 @@ def growth(packed: Packed, x: Array, v: Array, step: float, periods: int = LYAPU
     return total / periods
 
 
-def drifting(before: Window, after: Window) -> bool:
+def drifting(before: Window, after: Window, *, chaotic: bool = False) -> bool:
     """Whether the states of a window still spread and lie otherwise than those of the window before."""
     scale = max(after.spread, 1e-9)
+    allowed = (SETTLED_CHAOS if chaotic else SETTLED) * scale
     moved = float(np.max(np.abs(after.middle - before.middle)))
-    return abs(before.spread - after.spread) > SETTLED * scale or moved > SETTLED * scale
+    return abs(before.spread - after.spread) > allowed or moved > allowed
 
 
 def recurrences(states: Array, longest: int, near: float) -> list[int]:

@@ -84,6 +84,10 @@ def contact_loss_changes(asked: MotionInputs, data: GearTrain, states: Sequence[
     No change, and no work, where no mesh force falls below zero and all teeth of a mesh touch at one approach: none
     would part then.
     """
+    # a motion that grows has no size that an effect could change: its own remark names contact loss
+    states = [state for state in states if state.kind != "growing"]
+    if not states:
+        return []
     least = [min(float(s.smallest[m] / data.forces[m]) for m in _loaded(data)) for s in states]
     worst = int(np.argmin(least))
     if least[worst] >= 0.0 and not (asked.parametric and any(_held_apart(m.excitation) for m in data.meshes)):

@@ -124,24 +124,36 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
                 "motion",
                 np.array(chart.kinds, dtype=str),
                 "",
-                "periodic (and stable), quasi-periodic, chaotic, long-period or unsettled",
+                "periodic (and stable), quasi-periodic, chaotic, long-period, unsettled, or growing without bound",
             ),
             Column("median_factor", chart.median, "", "dynamic factor that half of the periods do not exceed"),
             Column("factor_99_percent", chart.upper, "", "dynamic factor that 99 % of the periods do not exceed"),
             Column("periods_measured", chart.measured, "", "periods of excitation that the largest forces come from"),
+            *(
+                (
+                    Column(
+                        "multiplier",
+                        chart.multiplier,
+                        "",
+                        "growth of a small disturbance over one period of excitation; above 1 in a motion that grows",
+                    ),
+                )
+                if found.in_time
+                else ()
+            ),
         ),
         f"Dynamic factor of mesh {name} over speed",
     )
-    worst, where = chart.worst
-    at = int(np.argmax(chart.dynamic_factor))
-    repeats = chart.kinds[at] == "periodic"
+    held = chart.at(~chart.growing) if not chart.growing.all() else chart
+    worst, where = held.worst
+    at = int(np.argmax(held.dynamic_factor))
+    repeats = held.kinds[at] == "periodic"
     # what a motion that never repeats did over some periods is a sample: no tolerance holds for it
     error = motion.tolerance * worst if found.in_time and repeats else None
-    sample = "" if repeats else f"; largest of {chart.measured[at]} periods of a motion that does not repeat"
+    sample = "" if repeats else f"; largest of {held.measured[at]} periods of a motion that does not repeat"
+    over = "over the speeds" if held is chart else "over the speeds at which the motion does not grow without bound"
     values = [
-        Value(
-            f"{name}.largest_dynamic_factor", worst, "", error, f"over the speeds, direction {motion.direction}{sample}"
-        ),
+        Value(f"{name}.largest_dynamic_factor", worst, "", error, f"{over}, direction {motion.direction}{sample}"),
         Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {found.speed_of}"),
     ]
     if parting:
@@ -153,7 +165,7 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
             f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
             "dynamic factor is that of the mesh force."
         )
-    figures = (_figure(name, chart, found.speed_of),) if chart.speeds.size > 1 else ()
+    figures = (_figure(name, held, found.speed_of),) if held.speeds.size > 1 else ()
     return Outcome(found, (table,), tuple(values), {}, tuple(remarks), figures)
 
 

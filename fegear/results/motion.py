@@ -98,16 +98,59 @@ def _present(found: SweepData, asked: SweepInputs) -> Outcome:
     remarks = [*motion_remarks(found.neglected, data, asked.effects, asked.tolerance)]
     if asked.idle_friction:
         remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
-    odd = [state for state in states if state.kind != "periodic"]
+    remarks += _unsteady(data, states)
+    settings: dict[str, object] = {"direction": motion.direction, "tolerance": motion.tolerance}
+    return Outcome(found, settings=settings, remarks=tuple(remarks))
+
+
+def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
+    """What is to be known of motions that do not repeat, of those that grow, and of stable ones beside them."""
+
+    def rpm(state: SteadyState) -> str:
+        return f"{state.model.speed * data.speed_ratio * _RPM:.6g} rpm"
+
+    said = []
+    growing = [state for state in states if state.kind == "growing"]
+    if growing:
+        where = ", ".join(f"{rpm(s)} ({s.multiplier:.4g} times a period)" for s in growing)
+        said.append(
+            f"The motion grows without bound at {len(growing)} of {len(states)} speeds: {where}. There the varying "
+            "mesh stiffness feeds it more than damping takes. Give the meshes damping, let teeth part "
+            "(effects.contact_loss), or avoid these speeds."
+        )
+    odd = [state for state in states if state.kind not in ("periodic", "growing")]
     if odd:
-        where = ", ".join(f"{s.model.speed * data.speed_ratio * _RPM:.6g} rpm {s.kind}" for s in odd)
-        remarks.append(
+        where = ", ".join(f"{rpm(s)} {s.kind}" for s in odd)
+        said.append(
             f"The motion does not repeat at {len(odd)} of {len(states)} speeds: {where}. Its factors are the largest "
             f"of {odd[0].measured} periods, a sample without a tolerance: more periods find larger ones. See the "
             "quantiles in the table."
         )
-    settings: dict[str, object] = {"direction": motion.direction, "tolerance": motion.tolerance}
-    return Outcome(found, settings=settings, remarks=tuple(remarks))
+    spreading = [f"{rpm(s)} ({s.drift:+.0%})" for s in odd if s.kind == "unsettled"]
+    if spreading:
+        said.append(
+            f"The motion still spread from one window of periods to the next when it was given up: "
+            f"{', '.join(spreading)}. Its largest force depends on how long one waits."
+        )
+    beside = [
+        f"{rpm(s)} of {other.periods} {'period' if other.periods == 1 else 'periods'}, dynamic factor "
+        + ", ".join(f"{f:.5g} of mesh {name}" for name, f in zip(data.names, _factors(data, other), strict=True) if f)
+        for s in odd
+        for other in s.coexisting
+    ]  # fmt: skip
+    if beside:
+        said.append(
+            f"Beside a motion that does not repeat a stable one exists, to which another start leads: "
+            f"{'; '.join(beside)}."
+        )
+    return said
+
+
+def _factors(data: GearTrain, state: SteadyState) -> list[float]:
+    """Largest tooth force of each mesh over its mean force; zero for meshes that carry nothing."""
+    return [
+        float(force / mean) if mean > 0.0 else 0.0 for force, mean in zip(state.tooth_force, data.forces, strict=True)
+    ]
 
 
 def _forecast(scene: Scene, _subject: str) -> Forecast:

@@ -275,6 +275,22 @@ def test_a_motion_that_never_repeats_is_a_sample_without_an_error():
     assert "1000 periods" in largest.meaning
 
 
+def test_a_speed_at_which_the_motion_grows_is_a_row_of_the_sweep():
+    """Teeth that never part, at twice the natural frequency: it refused the whole sweep."""
+    tables, values, results = run(
+        "lin_dynamic_factor", "dynamics.speeds=['8000 rpm', '22500 rpm', '23500 rpm']", "effects.contact_loss=false",
+        "train.mesh.I.damping_ratio=0.005", 'results=["dynamic-factor"]',
+    )  # fmt: skip
+    table = tables["dynamic_factor_I"]
+    assert table["motion"].tolist() == ["periodic", "periodic", "growing"]
+    assert table["periods_measured"].tolist() == [1, 1, 0]
+    assert np.isinf(table["dynamic_factor"]).tolist() == [False, False, True]
+    assert (table["multiplier"] > 1.0).tolist() == [False, False, True]
+    assert values["I.largest_dynamic_factor"] == table["dynamic_factor"][:2].max()
+    growing = f"23500 rpm ({table['multiplier'][2]:.4g} times a period)"
+    assert any("grows without bound at 1 of 3 speeds" in r and growing in r for r in results.remarks)
+
+
 @pytest.mark.parametrize(("override", "words"), [
     ("train.mesh.I={ driver = 'gear_1', driven = 'gear_2', damping_law = 'momentary' }", "only with damping"),
     ("train.mesh.I.damping_law=sometimes", "damping_law"),

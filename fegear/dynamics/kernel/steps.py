@@ -208,5 +208,5 @@ def travel(  # noqa: C901  (one loop over steps: what it shares is its local var
                             value += approach[m, i] * x[i, c]
                         # a tangent ahead of the motion changes force earlier
                         for i in range(n):
-                            v[i, c] -= approach[m, i] * jump * value / slope
+                            v[i, c] += approach[m, i] * jump * value / slope
     return Travelled(x, v, code, steps, events, high, low, tooth, apart, behind, record_t, record_x, record_status)

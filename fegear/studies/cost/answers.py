@@ -10,6 +10,7 @@ from fegear.contact import transmission_error
 from fegear.dynamics.single_tooth import force_history
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
+from fegear.errors import RangeError
 from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_pair import build_loaded_pair, engagement_at_rest
 from fegear.models.motion import motion_inputs, motion_model
@@ -73,6 +74,11 @@ def factor_at(asked: Asked, data: GearTrain, speed: float, tolerance: float) -> 
     state = steady_state(
         motion_model(motion_inputs(asked.scene), data, speed / data.speed_ratio), start="static", tolerance=tolerance
     )
+    if state.kind == "growing":
+        raise RangeError(
+            "dynamics.speed", f"{speed:.9g} rad/s", f"lets the motion grow {state.multiplier:.4g} times a period",
+            "give the meshes damping, let teeth part (effects.contact_loss), or take another speed",
+        )  # fmt: skip
     return float(state.tooth_force[i]) / float(data.forces[i])
 
 
