@@ -106,14 +106,43 @@ def test_front_and_cheapest_follow_from_the_table(short):
     for (name, tolerance), row in cheapest.items():
         if name == "all":
             continue
-        good = [r for r in found if r["quantity"] == name and float(r["error"]) <= tolerance]
+        errors = ("error", "compliance_error")
+        good = [r for r in found if r["quantity"] == name and all(float(r[key]) <= tolerance for key in errors)]
         if row["configuration"] == "not reached":
             assert good == []
             assert math.isnan(float(row["seconds [s]"]))
         else:
-            best = min(good, key=lambda r: float(r["seconds [s]"]))
-            assert (row["configuration"], row["seconds [s]"]) == (best["configuration"], best["seconds [s]"])
-            assert best["on_front"] == "1"
+            # eleven digits in a file: what is equally cheap there may differ by the last
+            compared = {id(r): float(r["seconds [s]"]) - float(r["seconds_fixed [s]"]) for r in good}
+            least = min(compared.values())
+            near = [r for r in good if compared[id(r)] <= least + 1e-9]
+            assert (row["configuration"], row["seconds [s]"]) in [(r["configuration"], r["seconds [s]"]) for r in near]
+
+
+def test_a_formula_that_is_right_with_a_wrong_compliance_is_not_the_cheapest(short):
+    """Statics alone decides the largest tooth force: every formula has it, with a c_0 that is 5 to 50 % off."""
+    found = [r for r in rows(short, "cost") if r["quantity"] == "tooth-force" and not r["reason"]]
+    formulas = [r for r in found if r["family"] == "compliance-formula"]
+    assert formulas
+    assert all(float(r["error"]) <= 1e-12 and 0.01 < float(r["compliance_error"]) < 1.0 for r in formulas)
+    best = {float(r["tolerance"]): r for r in rows(short, "cost_cheapest") if r["quantity"] == "tooth-force"}
+    within = [r for r in found if float(r["compliance_error"]) <= 1e-2 and r["family"] != "tolerance"]
+    assert best[1e-2]["configuration"] in [*(r["configuration"] for r in within), *["not reached"] * (not within)]
+
+
+def test_seconds_common_to_all_configurations_are_not_compared(short):
+    """One row is cheapest for all quantities by what its gears take, whatever the dynamics took that time."""
+    results = [r for r in rows(short, "cost") if r["quantity"] == "tooth-force" and not r["reason"]]
+    for row in results:
+        assert float(row["seconds_fixed [s]"]) == pytest.approx(
+            float(row["seconds [s]"]) - float(row["seconds_solving [s]"]), abs=1e-8
+        )
+    for row in (r for r in rows(short, "cost") if r["quantity"] == "c_0"):
+        assert float(row["seconds_fixed [s]"]) == 0.0
+
+
+def test_all_quantities_at_once_are_cheapest_for_a_configuration(short):
+    cheapest = {(row["quantity"], float(row["tolerance"])): row for row in rows(short, "cost_cheapest")}
     at_once = cheapest["all", 1e-1]
     assert at_once["configuration"].startswith("whole gear")
     assert float(at_once["seconds [s]"]) >= float(cheapest["c_1", 1e-1]["seconds [s]"])

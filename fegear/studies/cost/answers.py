@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from fegear.studies.cost.sources import Source
 
 
+#: Places over the base pitch at which compliances of pairs are compared.
+_PLACES = 12
 #: Harmonics of the transmission error and of the forces that a run sums.
 HARMONICS, FORCE_HARMONICS = 64, 256
 
@@ -46,6 +48,19 @@ def pair_error(asked: Asked, source: Source, order: int = 16) -> TransmissionErr
     """Transmission error of the pair that is studied; `order` is the number of Gauss points between jumps."""
     pair = loaded(asked, source, asked.pair)
     return transmission_error(pair.engagement, pair.nominal, HARMONICS, order=order)
+
+
+def pair_compliance(asked: Asked, source: Source) -> Array:
+    """c_0 of both gears of the pair together where its tooth pairs stand over the path of contact, shape (P,) [m/N].
+
+    Under the nominal load on one tooth pair; for every source at the same places.
+    """
+    pair = loaded(asked, source, asked.pair)
+    e = pair.engagement
+    grid = e.grid(e.pair.x_start + e.pair.base_pitch * (np.arange(_PLACES) + 0.5) / _PLACES)
+    on = grid.contacts.present & (grid.contacts.gap == 0.0)
+    alone = grid.matrices.at_load(np.full((*on.shape, 1), pair.nominal))[..., 0]
+    return np.einsum("jjp->jp", alone)[on]
 
 
 def train_of(asked: Asked, source: Source) -> GearTrain:

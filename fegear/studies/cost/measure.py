@@ -15,7 +15,7 @@ from fegear.fem.influence import solve_influence
 from fegear.fem.sector import mesh_sector
 from fegear.models.tooth_influence import gear_to_solve, needed_reach, solve_influence_functions
 from fegear.solution_cache import SolutionCache
-from fegear.studies.cost.answers import answer
+from fegear.studies.cost.answers import answer, pair_compliance
 from fegear.studies.cost.quantities import Miss, miss
 from fegear.studies.cost.result import Measured
 from fegear.studies.cost.sources import CaseTable, ComplianceFormula, FiniteElements, StressFormula, without_neighbours
@@ -56,6 +56,8 @@ class Found:
     reference : dict of quantity to ndarray
     floors, mesh_floors : dict of quantity to float
         What the reference does not know (largest), and how much of that is its mesh (root mean square); relative.
+    compliance : ndarray or None
+        Of the pair by the reference, see `pair_compliance`; None where no quantity stands on it.
     knobs : list of Knob
     remarks : list of str
     """
@@ -66,6 +68,7 @@ class Found:
     reference: dict[str, Array] = field(default_factory=dict)
     floors: dict[str, float] = field(default_factory=dict)
     mesh_floors: dict[str, float] = field(default_factory=dict)
+    compliance: Array | None = None
     knobs: list[Knob] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
 
@@ -129,6 +132,7 @@ def _record(found: Found, configuration: Configuration, source: Source, seconds:
     """Answer and compare every quantity that a source knows."""
     asked = found.asked
     here = without_neighbours(asked) if configuration.family == "compliance-formula" else asked
+    compliance = _compliance_error(found, here, source) if configuration.family != "stress-formula" else 0.0
     for quantity in answered(asked, configuration):
         solve = NOTHING
         for name in asked.gears_for(quantity):
@@ -141,7 +145,22 @@ def _record(found: Found, configuration: Configuration, source: Source, seconds:
             continue
         found.values[configuration, quantity.name] = values
         off = miss(quantity.name, values, found.reference[quantity.name])
-        found.rows.append(Measured(configuration, quantity.name, largest(values), off, solve, own))
+        # A pair's quantity may be right by luck, of what cancels here, with a compliance that is wrong.
+        stands_on = 0.0 if quantity.of_gear else compliance
+        fixed = NOTHING if quantity.of_gear else own
+        found.rows.append(
+            Measured(configuration, quantity.name, largest(values), off, solve, own, "", stands_on, fixed)
+        )
+
+
+def _compliance_error(found: Found, asked: Asked, source: Source) -> float:
+    """Largest relative error of the pair's c_0 by a source; infinite where it has none, zero where none is needed."""
+    if found.compliance is None:
+        return 0.0
+    try:
+        return miss("c_0", pair_compliance(asked, source), found.compliance).largest
+    except FegearError:
+        return math.inf
 
 
 def largest(values: Array) -> float:
@@ -161,6 +180,8 @@ def refer(found: Found, ladder: Ladder) -> FiniteElements:
     )  # fmt: skip
     coarse, _ = solve_gears(asked, ladder.check)
     second = finite_elements(asked, wider, coarse)
+    if asked.pair and not asked.tabled:
+        found.compliance = pair_compliance(asked, best)
     for quantity in asked.quantities:
         sources = (best, second) if asked.solves(quantity) else (CaseTable(), CaseTable())
         values = answer(asked, quantity, sources[0], _REFERENCE_ORDER)

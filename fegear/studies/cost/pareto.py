@@ -34,7 +34,7 @@ def pareto_front(seconds: ArrayLike, error: ArrayLike) -> NDArray[np.intp]:
 
 
 def cheapest(tolerance: float, seconds: ArrayLike, error: ArrayLike) -> int | None:
-    """Index of the cheapest configuration whose error is within a tolerance; None where none is.
+    """Index of the cheapest configuration whose error is within a tolerance, of equally cheap ones the best; or None.
 
     Parameters
     ----------
@@ -44,4 +44,4 @@ def cheapest(tolerance: float, seconds: ArrayLike, error: ArrayLike) -> int | No
     """
     t, e = np.asarray(seconds, dtype=float), np.asarray(error, dtype=float)
     good = np.flatnonzero(np.isfinite(t) & (e <= tolerance))
-    return int(good[np.argmin(t[good])]) if good.size else None
+    return int(good[np.lexsort((e[good], t[good]))[0]]) if good.size else None
