@@ -24,7 +24,7 @@ from fegear.commands.results import results
 from fegear.commands.run import run
 from fegear.commands.schema import schema
 from fegear.commands.sweep import sweep
-from fegear.errors import NO_ROOM, FegearError
+from fegear.errors import NO_ROOM, FegearError, lacks_memory
 from fegear.streams import give_up
 
 app = typer.Typer(
@@ -93,11 +93,13 @@ def main() -> None:
     except MemoryError:
         leave(_NO_MEMORY, 2)
     except ImportError as error:
-        if "failed to map" not in str(error) and "allocate memory" not in str(error):
+        if not lacks_memory(error):
             raise
         leave(_NO_MEMORY, 2)  # where memory ends while a library is loaded
     except OSError as error:
         give_up(sys.stdout)
+        if lacks_memory(error):
+            leave(_NO_MEMORY, 2)
         if error.errno not in NO_ROOM:
             if _nowhere():
                 leave("the folder that it was started in does not exist any more; change into another one.", 2)

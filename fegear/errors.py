@@ -16,11 +16,22 @@ PATH = 300
 
 def shown(value: object, most: int = _SHOWN) -> str:
     """Return an input as messages repeat it: on one line, texts in quotes, longer ones than `most` cut short."""
-    text = value if isinstance(value, str) else repr(value)
+    try:
+        text = value if isinstance(value, str) else repr(value)
+    except ValueError:  # a whole number of thousands of digits
+        text = f"(a {type(value).__name__} that cannot be written)"
     if len(text) > most:
         text = f"{text[:most]}..."
     text = "".join(sign if sign.isprintable() else " " for sign in text)
     return f'"{text}"' if isinstance(value, str) else text
+
+
+def lacks_memory(problem: BaseException) -> bool:
+    """Whether something failed since memory ended; while a library is loaded the system says so in words alone."""
+    if isinstance(problem, MemoryError) or getattr(problem, "errno", None) == errno.ENOMEM:
+        return True
+    text = str(problem).lower()
+    return "failed to map" in text or ("allocate memory" in text and "static tls" not in text)
 
 
 class FegearError(Exception):
@@ -65,6 +76,10 @@ class UnknownNameError(InputError, KeyError):
     def __str__(self) -> str:
         """Return the sentence, which `KeyError` would put in quotes."""
         return str(self.args[0])
+
+
+class UnknownPlaceError(InputError, IndexError):
+    """A number of a place where nothing is."""
 
 
 class MissingLibraryError(FegearError):

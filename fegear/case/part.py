@@ -104,7 +104,9 @@ def spelt_also(alternative: Callable[[dict[str, Any]], dict[str, Any]]) -> Confi
 def _number(value: object) -> object:
     """Let a whole number stand for a float, as TOML users write ``addendum = 1``, and refuse absurd sizes."""
     if isinstance(value, int) and not isinstance(value, bool):
-        value = float(value) if abs(value) <= LARGEST else math.copysign(math.inf, value)
+        if abs(value) > LARGEST:
+            raise refuse("is beyond any machine", "check the number", value=shown(value))
+        value = float(value)
     if isinstance(value, float) and math.isfinite(value) and not plausible(value):
         raise refuse("is beyond any machine", "check the number")
     return value

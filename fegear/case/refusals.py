@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fegear.case.keys import keys_at
 from fegear.case.names import nearest
-from fegear.errors import InputError
+from fegear.errors import PATH, InputError, shown
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -83,9 +83,10 @@ def _dotted(loc: list[str]) -> str:
 
 def _show(value: object) -> str:
     if isinstance(value, str):
-        return f'"{value}"'
+        return shown(value, PATH)
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, (dict, list)) and len(str(value)) > 60:
         return "(a table)" if isinstance(value, dict) else "(a list)"
-    return str(value)
+    text = str(value)
+    return text if len(text) <= PATH else f"{text[:PATH]}..."

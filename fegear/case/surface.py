@@ -23,6 +23,8 @@ RZ_PER_RA = 6.0
 #: Beyond these a unit is mistaken: Ra and Rz of rough castings [m], oils like pitch [m^2/s].
 _ROUGHEST = {"flank": 100e-6, "root": 100e-6, "flank_rz": 600e-6, "root_rz": 600e-6}
 _THICKEST = 0.1
+#: Densities of oils [kg/m^3], from light hydrocarbons to perfluorinated ones.
+_DENSITIES = (600.0, 2200.0)
 
 #: Oils thinner than this at 40 degC [m^2/s] are none whose viscosity at 100 degC could be guessed.
 _THIN = 7e-6
@@ -140,6 +142,11 @@ class LubricantPart(Part):
             raise refuse(
                 f"is thicker than any oil, {_THICKEST * 1e6:g} mm^2/s", "check the unit", key="viscosity_40",
                 value=f"{self.viscosity_40 * 1e6:g} mm^2/s",
+            )  # fmt: skip
+        if not _DENSITIES[0] <= self.density_15 <= _DENSITIES[1]:
+            raise refuse(
+                f"is the density of no oil, which have {_DENSITIES[0]:g} to {_DENSITIES[1]:g} kg/m^3",
+                'check the unit: write for example "895 kg/m^3"', key="density_15", value=f"{self.density_15:g} kg/m^3",
             )  # fmt: skip
         if self.viscosity_100 is not None and self.viscosity_100 >= self.viscosity_40:
             raise refuse("must be below viscosity_40: oil thins as it warms", "check both", key="viscosity_100")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol, SupportsIndex, TypeVar, overload
 
 from fegear.case.names import nearest
-from fegear.errors import UnknownNameError
+from fegear.errors import UnknownNameError, UnknownPlaceError, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,7 +36,11 @@ class Named(tuple[T, ...]):
     def __getitem__(self, key: SupportsIndex | slice | str) -> T | tuple[T, ...]:
         """Return one by its name or place; an unknown name is refused with the nearest."""
         if not isinstance(key, str):
-            return super().__getitem__(key)
+            try:
+                return super().__getitem__(key)
+            except (IndexError, TypeError):
+                rule, remedy = f"is no place among these {len(self)} results", nearest("", self.keys())
+                raise UnknownPlaceError("name", shown(key), rule, remedy) from None
         for one in self:
             if one.name == key:
                 return one

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from fegear.engine.table import Column, Table
+from fegear.frozen import Alike
 from fegear.units import from_si, quantity
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ __all__ = ["Column", "Outcome", "Table", "Value"]
 
 
 @dataclass(frozen=True, slots=True)
-class Value:
+class Value(Alike):
     """A single result with its own error estimate.
 
     Parameters
@@ -68,7 +69,7 @@ class Value:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(Alike):
     """Result of one stage.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -11,6 +11,7 @@ from fegear.engine.executor import Executor
 from fegear.engine.named import Named
 from fegear.engine.stage import Work
 from fegear.errors import InputError
+from fegear.frozen import Alike
 from fegear.plain import content_key
 from fegear.solution_cache import SolutionCache
 
@@ -83,8 +84,8 @@ class Timing(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Results:
-    """Everything that a run found.
+class Results(Alike):
+    """Everything that a run found; two are equal where they found the same of the same case, in whatever time.
 
     Attributes
     ----------
@@ -98,7 +99,7 @@ class Results:
     scene: Scene
     plan: Plan
     outcomes: Mapping[Task, Outcome]
-    timings: Mapping[Task, Timing]
+    timings: Mapping[Task, Timing] = field(compare=False)
 
     @property
     def seconds(self) -> Mapping[Task, float]:

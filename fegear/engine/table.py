@@ -10,6 +10,7 @@ import numpy as np
 from fegear.case.names import nearest
 from fegear.engine.shown import ROWS, html_table, short
 from fegear.errors import NOTEBOOK_EXTRA, MissingLibraryError, UnknownNameError
+from fegear.frozen import Alike
 from fegear.units import from_si, quantity
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ _HEADS = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class Column(Alike):
     """One column of a table.
 
     Parameters
@@ -78,7 +79,7 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class Table(Alike):
     """A named table; the first column is what the rows are ordered by.
 
     Parameters

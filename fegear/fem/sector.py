@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.errors import FegearError, InputError, MissingLibraryError
+from fegear.errors import FegearError, InputError, MissingLibraryError, lacks_memory
 from fegear.fem.boundary import Chain, sector_boundary
 from fegear.fem.elements import check_cubic_edges
 from fegear.fem.mesh import GENERATED, SectorMesh, with_middle_nodes
@@ -39,10 +39,14 @@ def load_gmsh() -> Any:
     ------
     MissingLibraryError
         If gmsh or one of its shared libraries is not there.
+    MemoryError
+        If there is too little memory to load it.
     """
     try:
         import gmsh
     except (ImportError, OSError) as problem:
+        if lacks_memory(problem):
+            raise MemoryError(f"gmsh cannot be loaded ({problem})") from problem
         raise MissingLibraryError(
             f"gmsh cannot be loaded ({problem}); on Debian or Ubuntu run: apt-get install {SYSTEM_PACKAGES}"
         ) from problem

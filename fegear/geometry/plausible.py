@@ -28,6 +28,8 @@ _NUMBERS = 1e3
 #: Deepest relief in modules. Deflections reach it only under line loads that no steel carries (some 1.5 GPa times the
 #: module), and the influence functions, which are those of the unrelieved tooth, no longer hold there.
 DEEPEST_RELIEF = 0.1
+#: Shortest relief over the active profile: some ten micrometres of a module of 3 mm.
+_SHORTEST_RELIEF = 2e-3
 #: Largest spread of the spacing errors of a gear in modules: a third of a tooth's thickness.
 _LARGEST_SPACING_ERROR = 0.5
 #: Line load over module and Young's modulus: above the first no metal carries it (root stresses, some three times as
@@ -111,7 +113,7 @@ def refuse_deep_relief(gear: Gear, relief: Relief, low: float, high: float) -> N
 
 
 def refuse_relief_elsewhere(relief: EndRelief | Crowning | TabulatedRelief, low: float, high: float) -> None:
-    """Refuse a modification whose ends lie farther off an active profile than that is long, or that misses it.
+    """Refuse a modification that lies off an active profile, or is a thousandth of it long.
 
     Parameters
     ----------
@@ -125,6 +127,12 @@ def refuse_relief_elsewhere(relief: EndRelief | Crowning | TabulatedRelief, low:
     """
     kinks = relief.kinks if hasattr(relief, "roll") else (relief.start, relief.end)
     first, last, room = min(kinks), max(kinks), high - low
+    if hasattr(relief, "amount") and 0.0 < last - first < _SHORTEST_RELIEF * room:
+        raise InputError(
+            "relief", f"from roll angle {math.degrees(first):.7g} to {math.degrees(last):.7g} deg",
+            f"is {(last - first) / room:.2g} of the active profile long, which nobody grinds",
+            "check the unit of its length or its start; write tip_chamfer for a broken edge",
+        )  # fmt: skip
     missed = hasattr(relief, "roll") and (first >= high or last <= low)
     if missed or (not hasattr(relief, "roll") and (first < low - room or last > high + room)):
         raise InputError(

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copyreg
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from fegear.engine.stage import Stage
 from fegear.results import (
     contact_lines,
     contact_pattern,
@@ -62,7 +64,6 @@ from fegear.results import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.engine.stage import Stage
 
 #: Every stage by the subject of its results, in the order in which plans list those that they skip.
 SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
@@ -137,6 +138,21 @@ SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
 
 #: Every stage.
 STAGES: tuple[Stage, ...] = tuple(stage for stages in SUBJECTS.values() for stage in stages)
+
+_BY_NAME = MappingProxyType({stage.name: stage for stage in STAGES})
+
+
+def stage_called(name: str) -> Stage:
+    """A stage by its name."""
+    return _BY_NAME[name]
+
+
+def _reduced(stage: Stage) -> str | tuple[Any, ...]:
+    """How a stage travels between processes: by its name, for its functions have none."""
+    return (stage_called, (stage.name,)) if _BY_NAME.get(stage.name) is stage else stage.__reduce_ex__(4)
+
+
+copyreg.pickle(Stage, _reduced)
 
 #: Every name by which a case may ask for a result.
 RESULTS: tuple[str, ...] = tuple(dict.fromkeys(name for stage in STAGES for name in stage.results))

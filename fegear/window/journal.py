@@ -146,8 +146,8 @@ def left_behind(path: Path | None) -> list[Left]:
                     continue
                 content = json.load(file)
                 base = str(content.get("base", ""))
-                kept = Kept(*(str(content[key]) for key in ("text", "origin", "name", "when")), base=base)
-                found.append((os.fstat(file.fileno()).st_mtime, Left(place, kept)))
+                text, origin, name, when = (str(content[key]) for key in ("text", "origin", "name", "when"))
+                found.append((os.fstat(file.fileno()).st_mtime, Left(place, Kept(text, origin, name, when, base))))
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             continue
     return [left for _, left in sorted(found, key=lambda one: one[0], reverse=True)]

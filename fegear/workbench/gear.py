@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import copy
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from fegear.case.reading import build_scene
+from fegear.errors import InputError
 from fegear.solution_cache import SolutionCache
+from fegear.workbench.given import name_of, table, taken, working_folder
 from fegear.workbench.keys import brief
 from fegear.workbench.run import run_scene
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
+    from pathlib import Path
 
     from fegear import geometry
     from fegear.case.reading import Scene
@@ -53,16 +56,32 @@ class Gear:
     """
 
     def __init__(self, teeth: int, module: Length | None = None, *, name: str = "a", **keys: Unpack[GearKeys]) -> None:
-        self.name = name
-        self.keys: Mapping[str, Any] = {"teeth": teeth, **({} if module is None else {"module": module}), **keys}
+        self.name = name_of(name)
+        given = {"teeth": teeth, **({} if module is None else {"module": module}), **keys}
+        self._keys: dict[str, Any] = taken(given, f"gear.{self.name}")
         self.known = SolutionCache()
         self._scene  # noqa: B018  (a gear that cannot be is refused where it is described)
 
     @classmethod
     def of(cls, name: str, keys: Mapping[str, Any]) -> Gear:
         """A gear from its name and its keys, ``teeth`` among them."""
-        given: dict[str, Any] = {**keys, "name": name}
+        given: dict[str, Any] = {**table(keys, "keys"), "name": name}
+        if "teeth" not in given:
+            raise InputError("teeth", "(not given)", "is required", "write for example teeth=20")
         return cls(**given)
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What it was described by; a copy, for the gear never changes."""
+        return copy.deepcopy(self._keys)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What travels to another process: all but what has been solved."""
+        return {name: value for name, value in self.__dict__.items() if name != "known"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Come from another process, with nothing solved."""
+        self.__dict__.update(state, known=SolutionCache())
 
     def changed(self, **keys: Any) -> Gear:
         """A gear with other keys; None takes one away."""
@@ -71,8 +90,8 @@ class Gear:
 
     @cached_property
     def _scene(self) -> Scene:
-        document = {"results": ["geometry"], "gear": {self.name: self.keys}}
-        return build_scene(document, self.name, Path.cwd(), bare_si=True)
+        document = {"results": ["geometry"], "gear": {self.name: self._keys}}
+        return build_scene(document, self.name, working_folder(), bare_si=True)
 
     @property
     def is_spur(self) -> bool:
@@ -98,7 +117,7 @@ class Gear:
 
     def __eq__(self, other: object) -> bool:
         """Whether two gears are described alike."""
-        return isinstance(other, Gear) and (self.name, self.keys) == (other.name, other.keys)
+        return isinstance(other, Gear) and (self.name, self._keys) == (other.name, other._keys)
 
     __hash__ = None  # type: ignore[assignment]  # its keys may hold lists
 

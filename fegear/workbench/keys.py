@@ -6,9 +6,10 @@ import reprlib
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 from fegear.units import as_text, to_si
+from fegear.workbench.given import taken
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     import pint
 
@@ -94,12 +95,7 @@ def in_si(value: Quantity, dimension: str, key: str) -> float:
     return to_si(as_text(value, dimension, bare_si=True), dimension, key)
 
 
-def listed(value: Any) -> list[Any] | None:
+def listed(value: Any, key: str) -> list[Any] | None:
     """The members of a list, tuple, range or array of quantities; None for a single one."""
-    if isinstance(value, str) or not hasattr(value, "__iter__"):
-        return None
-    try:
-        several: Iterable[Any] = iter(value)
-    except TypeError:  # a quantity of pint that holds one number
-        return None
-    return list(several)
+    found = taken(value, key)
+    return found if isinstance(found, list) else None

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import copy
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from fegear.case.reading import build_scene
@@ -11,12 +11,14 @@ from fegear.errors import InputError
 from fegear.results.root_stress_history import table_names
 from fegear.solution_cache import SolutionCache
 from fegear.workbench.gear import Gear
+from fegear.workbench.given import name_of, table, taken, working_folder
 from fegear.workbench.keys import brief
 from fegear.workbench.run import run_scene
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
+    from pathlib import Path
 
     from fegear.case.reading import Scene
     from fegear.geometry import GearPair
@@ -70,12 +72,26 @@ class Pair:
         for role, gear in (("driver", driver), ("driven", driven)):
             if not isinstance(gear, Gear):
                 raise InputError(role, repr(gear), "is no fegear.Gear", f'write {role} = fegear.Gear(20, "3 mm")')
-        self.driver, self.driven, self.name = driver, driven, name
-        source = {"source": compliance} if isinstance(compliance, str) else dict(compliance)
+        self.driver, self.driven = driver, driven
+        self.name = name_of(name)
+        source = {"source": compliance} if isinstance(compliance, str) else table(compliance, "compliance")
         given = {} if centre_distance is None else {"centre_distance": centre_distance}
-        self.keys: Mapping[str, Any] = {**given, "compliance": source, **keys}
+        self._keys: dict[str, Any] = taken({**given, "compliance": source, **keys}, f"pair.{self.name}")
         self.known = SolutionCache()
         self._scene  # noqa: B018  (a pair that cannot be is refused where it is described)
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What it was described by; a copy, for the pair never changes."""
+        return copy.deepcopy(self._keys)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What travels to another process: all but what has been solved."""
+        return {name: value for name, value in self.__dict__.items() if name != "known"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Come from another process, with nothing solved."""
+        self.__dict__.update(state, known=SolutionCache())
 
     @property
     def names(self) -> tuple[str, str]:
@@ -87,15 +103,15 @@ class Pair:
     def document(self, **load: Any) -> dict[str, Any]:
         """Its gears and itself as the tables of a case file, with the keys of its load."""
         driver, driven = self.names
-        gears = {driver: dict(self.driver.keys), driven: dict(self.driven.keys)}
-        pair = {"driver": driver, "driven": driven, **self.keys, **load}
+        gears = {driver: self.driver.keys, driven: self.driven.keys}
+        pair = {"driver": driver, "driven": driven, **self.keys, **taken(load, f"pair.{self.name}")}
         if not self.driver.is_spur and pair["compliance"] == {"source": "fe"}:
             del pair["compliance"]  # the default of spur pairs; the flanks of helical ones are rigid
         return {"gear": gears, "pair": {self.name: pair}}
 
     @cached_property
     def _scene(self) -> Scene:
-        return build_scene({"results": ["geometry"], **self.document()}, self.name, Path.cwd(), bare_si=True)
+        return build_scene({"results": ["geometry"], **self.document()}, self.name, working_folder(), bare_si=True)
 
     @property
     def is_spur(self) -> bool:
@@ -162,6 +178,17 @@ class Pair:
         made = Pair(driver, driven, compliance=self.keys["compliance"], name=self.name, **keys)
         made.known = self.known  # relief changes no tooth shape: they are solved already
         return made
+
+    def __eq__(self, other: object) -> bool:
+        """Whether two pairs are described alike."""
+        if not isinstance(other, Pair):
+            return False
+        described, others = ((one.name, one.driver, one.driven, one._keys) for one in (self, other))  # noqa: SLF001
+        return described == others
+
+    def __hash__(self) -> int:
+        """By its names: pairs that are alike have one place in a set."""
+        return hash((self.name, self.driver.name, self.driven.name))
 
     def __repr__(self) -> str:
         """As it was described."""

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fegear.errors import PATH, InputError, shown
 from fegear.output.draw_plotly import page_html
 from fegear.output.draw_plotly.notebook import still_html
+from fegear.workbench.given import folder_of
 
 if TYPE_CHECKING:
     import os
@@ -75,11 +77,13 @@ class Plots:
         InputError
             If the kind is another.
         """
-        from fegear.errors import InputError
         from fegear.output.draw_png import draw_pictures
 
         if kind not in ("png", "svg"):
             raise InputError("kind", f'"{kind}"', "is no kind of picture that fegear draws", 'choose "png" or "svg"')
-        target = Path(folder)
-        target.mkdir(parents=True, exist_ok=True)
+        target = folder_of(folder)
+        try:
+            target.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError("folder", shown(str(target), PATH), f"cannot be made ({error.strerror})") from None
         return [picture.path for figure in self.figures for picture in draw_pictures(figure.made(), target, kind)]

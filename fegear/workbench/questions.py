@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
-from fegear.errors import InputError
+from fegear.errors import InputError, shown
 from fegear.results.catalogue import STAGES
 from fegear.workbench.gear import Gear
+from fegear.workbench.given import cache_of, table, taken, working_folder
 from fegear.workbench.keys import brief, in_si, listed
 from fegear.workbench.pair import Pair
 from fegear.workbench.run import run_scene
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
     from fegear.case.reading import Scene
     from fegear.solution_cache import SolutionCache
     from fegear.workbench.keys import Force, Length, Speed, Torque
@@ -44,7 +43,7 @@ def _scene(wanted: str, document: Mapping[str, Any], tolerance: float | None) ->
     of = " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
     more = {} if tolerance is None else {"accuracy": {"tolerance": tolerance}}
     whole = {"title": f"{_TITLES[wanted]} of {of}", "results": [wanted], **more, **document}
-    return build_scene(whole, wanted, Path.cwd(), bare_si=True)
+    return build_scene(taken(whole, "case"), wanted, working_folder(), bare_si=True)
 
 
 def ask_of_pair(
@@ -67,12 +66,13 @@ def ask_of_pair(
         "parametric": True,
         "contact_loss": True,
     }
-    given = dict(effects or {})
+    given = table(effects, "effects")
+    known = cache_of(cache, pair.known)
     scene = _scene(wanted, {**document, "effects": {**called, **given}}, tolerance)
     idle = set(make_plan(scene, STAGES).idle_effects) - set(given)
     on = {effect: state for effect, state in called.items() if effect not in idle}
     scene = _scene(wanted, {**document, "effects": {**on, **given}}, tolerance)
-    return run_scene(scene, progress=progress, cache=pair.known if cache is None else cache)
+    return run_scene(scene, progress=progress, cache=known)
 
 
 def _loaded(
@@ -93,7 +93,7 @@ def _loaded(
         )  # fmt: skip
     given, dimension = (load, "force") if torque is None else (torque, "torque")
     key = "load" if torque is None else "torque"
-    several = listed(given)
+    several = listed(given, key)
     if several is None:
         return pair.document(**{key: given})
     radius = 1.0 if torque is None else pair.geometry.driver.base_radius
@@ -137,13 +137,14 @@ def stiffness_table(
     Results
         Table ``stiffness_<gear>``; with face positions ``stiffness_over_face_<gear>``.
     """
+    if not isinstance(gear, Gear):
+        raise InputError("gear", shown(gear), "is no fegear.Gear", 'write fegear.Gear(20, "3 mm")')
     part: dict[str, Any] = {"gear": gear.name}
-    given = {"radii": None if radii is None else listed(radii) or [radii], "positions": positions,
-             "contact_half_width": contact_half_width,
-             "face_positions": listed(face_positions) or face_positions, "source": source}  # fmt: skip
+    given = {"radii": None if radii is None else listed(radii, "radii") or [radii], "positions": positions,
+             "contact_half_width": contact_half_width, "face_positions": face_positions, "source": source}  # fmt: skip
     part |= {key: value for key, value in given.items() if value is not None}
     scene = _scene("stiffness", {"gear": {gear.name: gear.keys}, "stiffness": part}, tolerance)
-    return run_scene(scene, progress=progress, cache=gear.known if cache is None else cache)
+    return run_scene(scene, progress=progress, cache=cache_of(cache, gear.known))
 
 
 def root_stress(
@@ -172,7 +173,7 @@ def root_stress(
     Results
         Tables ``crosscheck_root_stress_<gear>``, values ``<gear>.root_stress.<formula>.highest_ratio``.
     """
-    found = [gears] if isinstance(gears, Gear) else list(gears)
+    found = [gears] if isinstance(gears, Gear) else list(gears) if isinstance(gears, Iterable) else []
     if not found or not all(isinstance(gear, Gear) for gear in found):
         raise InputError("gears", brief(gears), "must be gears", 'write fegear.Gear(20, "3 mm", name="z20")')
     names = [gear.name for gear in found]
@@ -180,7 +181,7 @@ def root_stress(
         if names.count(name) > 1:
             raise InputError("gears", f'"{name}"', "is the name of several gears", 'give each its own: name="z20"')
     document = {"gear": {gear.name: gear.keys for gear in found}, "stiffness": {"positions": positions}}
-    return run_scene(_scene("crosscheck", document, tolerance), progress=progress, cache=cache)
+    return run_scene(_scene("crosscheck", document, tolerance), progress=progress, cache=cache_of(cache))
 
 
 def transmission_error(
@@ -248,7 +249,7 @@ def relief(
         Tables ``relief_<pair>_<gear>`` and ``grindable_<pair>``; `Pair.relieved` applies them.
     """
     document = _loaded(pair, torque, load)
-    document["design"] = {"pair": pair.name, **(design or {})}
+    document["design"] = {"pair": pair.name, **table(design, "design")}
     return ask_of_pair("relief", pair, document, effects, tolerance, progress, cache)
 
 
@@ -292,13 +293,13 @@ def dynamic_factor(
     driver, driven = pair.names
     ratio = DAMPING_RATIO if damping_ratio is None else damping_ratio
     document = _loaded(pair, torque, None)
-    document["train"] = dict(train) if train is not None else {
+    document["train"] = table(train, "train") if train is not None else {
         "body": {"driver": {"gears": [driver]}, "driven": {"gears": [driven]}},
         "mesh": {pair.name: {"driver": "driver", "driven": "driven", "damping_ratio": ratio}},
         "torque": {"driver": torque}, "balance": "driven",
     }  # fmt: skip
-    several = speeds if hasattr(speeds, "keys") else listed(speeds) or [speeds]
-    document["dynamics"] = {"speeds": several, **(dynamics or {})}
+    several = speeds if isinstance(speeds, Mapping) else listed(speeds, "speeds") or [speeds]
+    document["dynamics"] = {"speeds": several, **table(dynamics, "dynamics")}
     found = ask_of_pair("dynamic-factor", pair, document, effects, tolerance, progress, cache)
     if train is not None:
         return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from fegear.errors import InputError
+from fegear.workbench.given import texts
 from fegear.workbench.pair import Pair
 from fegear.workbench.questions import ask_of_pair
 
@@ -61,5 +62,5 @@ def rating(
         )  # fmt: skip
     given: dict[str, Any] = {"torque": torque, "load": load, "speed": speed, "operation": operation}
     document = pair.document(**{key: value for key, value in given.items() if value is not None})
-    document["rating"] = {"beside": [beside] if isinstance(beside, str) else list(beside)}
+    document["rating"] = {"beside": texts(beside, "beside")}
     return ask_of_pair("rating", pair, document, effects, tolerance, progress, cache)

@@ -19,6 +19,7 @@ from fegear.engine.shown import html_table
 from fegear.errors import NOTEBOOK_EXTRA, MissingLibraryError
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import value_cells
+from fegear.workbench.given import folder_of
 from fegear.workbench.plots import Plots
 
 if TYPE_CHECKING:
@@ -196,7 +197,7 @@ class Results(Found):
         from fegear.output.folder import whole_or_nothing
         from fegear.output.write import write_results
 
-        target = Path(folder)
+        target = folder_of(folder)
         with whole_or_nothing(target, "folder") as scratch:
             write_results(self, scratch, Silence(), plots=plots)
         return target
@@ -225,7 +226,7 @@ class Results(Found):
         from fegear.output.export import export_gears
         from fegear.output.folder import whole_or_nothing
 
-        target = Path(folder)
+        target = folder_of(folder)
         with whole_or_nothing(target, "folder") as scratch:
             written = export_gears(self.scene, scratch, gears, formats)
         for remark in written.remarks:

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 import contextlib
-import copy
 import os
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fegear.case.reading import build_scene, case_text, parse_document, read_document, set_key
+from fegear.case.text_file import named_path
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
+from fegear.errors import InputError, shown
 from fegear.one_thread import one_thread
 from fegear.results.catalogue import STAGES
 from fegear.solution_cache import SolutionCache
 from fegear.terminal import watcher
+from fegear.workbench.given import cache_of, table, taken, texts, working_folder
 from fegear.workbench.results import Results
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from fegear.case.reading import Scene
     from fegear.engine.run import Watcher
@@ -70,9 +72,10 @@ def run(
     >>> found.values["I.te_peak_to_peak"]
     >>> found.tables["transmission_error_I"].to_pandas()
     """
-    asked = [results] if isinstance(results, str) else results
-    wanted = dict(changes or {}) | ({} if asked is None else {"results": list(asked)})
-    return run_scene(_scene(case, wanted), progress=progress, scheduler=scheduler, cache=cache)
+    wanted = table(changes, "changes") | ({} if results is None else {"results": texts(results, "results")})
+    if scheduler is not None and not isinstance(scheduler, str):
+        raise InputError("scheduler", shown(scheduler), "is no address", 'write for example "tcp://10.0.0.5:8786"')
+    return run_scene(_scene(case, wanted), progress=progress, scheduler=scheduler, cache=cache_of(cache))
 
 
 def run_scene(
@@ -86,14 +89,18 @@ def run_scene(
 
 
 def _scene(case: str | os.PathLike[str] | Mapping[str, Any], changes: Mapping[str, Any]) -> Scene:
-    name, folder, text = "case", Path.cwd(), ""
+    name, folder, text = "case", working_folder(), ""
     if isinstance(case, str) and "\n" in case:
         document, text = parse_document(case, "(a text)"), case
     elif isinstance(case, (str, os.PathLike)):
-        path = Path(case)
+        path = named_path(os.fspath(case), "case")
         document, name, folder, text = read_document(path), path.stem, path.parent, case_text(path)
+    elif isinstance(case, Mapping):
+        document = taken(case, "case")
     else:
-        document = copy.deepcopy(dict(case))
+        raise InputError(
+            "case", shown(case), "is no case", "give the path of a case file, its text, or its tables as a mapping"
+        )
     for key, value in changes.items():
         set_key(document, key, value, "changes")
     changed = "".join(f"# changed: {key} = {value}\n" for key, value in changes.items())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -11,6 +12,9 @@ import time
 
 import in_process
 import pytest
+
+from fegear.cli import _NO_MEMORY
+from fegear.errors import lacks_memory
 
 CASE = """
 title = "One gear"
@@ -234,3 +238,24 @@ def test_a_working_folder_that_was_deleted_is_one_sentence(case, tmp_path, argum
     done = fegear(*arguments, *([case] if arguments == ("run",) else []), cwd=tmp_path, program=program)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert not gone.exists()
+
+
+def test_a_lack_of_memory_is_not_said_to_be_a_missing_library(case, tmp_path, monkeypatch):
+    """`apt-get install ...` was the advice where gmsh could not be mapped into what memory there was."""
+    said = "libgmsh.so: failed to map segment from shared object"
+    real = __import__
+
+    def without_room(name, *rest, **more):
+        if name == "gmsh":
+            raise OSError(said)
+        return real(name, *rest, **more)
+
+    monkeypatch.setattr("builtins.__import__", without_room)
+    done = fegear("run", case, "--results", "stiffness", "-q", "--no-plots", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (2, f"fegear: {_NO_MEMORY}\n")
+    assert [one.name for one in tmp_path.iterdir()] == ["one.toml"]
+    monkeypatch.undo()
+    assert lacks_memory(MemoryError())
+    assert lacks_memory(OSError(errno.ENOMEM, ""))
+    assert not lacks_memory(OSError("libGLU.so.1: cannot open shared object file"))
+    assert not lacks_memory(ImportError("libgomp.so: cannot allocate memory in static TLS block"))

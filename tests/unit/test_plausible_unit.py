@@ -84,6 +84,16 @@ def test_the_case_itself_is_plausible():
             r"gear\.a\.relief = from roll angle .* lies elsewhere than the active profile",
         ),
         ('gear.a.relief={tip={amount="9 um", normalised_length=100}}', "lies elsewhere"),
+        ('gear.a.relief={tip={amount="9 um", normalised_length=0.0009}}', "of the active profile long, which nobody"),
+        ('gear.a.relief={tip={amount="9 um", length="1 um"}}', "of the active profile long, which nobody grinds"),
+        (
+            "pair.I.lubricant={viscosity_40='220 mm^2/s', temperature='60 degC', density_15='895000 kg/m^3'}",
+            r"pair\.I\.lubricant\.density_15 = 895000 kg/m\^3: is the density of no oil",
+        ),
+        (
+            "pair.I.lubricant={viscosity_40='220 mm^2/s', temperature='60 degC', density_15='0.895 kg/m^3'}",
+            "is the density of no oil",
+        ),
         ('gear.a.relief={tip={amount="9 um", start_radius="44 mm", at_radius="45 m"}}', "lies elsewhere"),
         ('gear.a.relief={root={amount="9 um", start_radius="42 m"}}', "lies elsewhere"),
         ('gear.a.relief={crowning={amount="9 um", end_radius="45 m"}}', "lies elsewhere"),

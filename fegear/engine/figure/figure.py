@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from fegear.engine.figure.items import Skin, Surface, TriangleField
+from fegear.frozen import Alike
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class View(Alike):
     """One choice of a figure: the page shows one at a time behind a menu, paper shows them side by side.
 
     Parameters
@@ -36,7 +37,7 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
-class MeshField:
+class MeshField(Alike):
     """Values at the nodes of six-node triangles, for other programs: written to ``fields/<name>.vtu``.
 
     Parameters
@@ -55,7 +56,7 @@ class MeshField:
 
 
 @dataclass(frozen=True, slots=True)
-class SolidMeshField:
+class SolidMeshField(Alike):
     """Values at the nodes of fifteen-node wedges, for other programs: written to ``fields/<name>.vtu``.
 
     Parameters
@@ -74,7 +75,7 @@ class SolidMeshField:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Figure:
+class Figure(Alike):
     """What one figure shows.
 
     Parameters
@@ -153,7 +154,7 @@ NOTEBOOK: list[Callable[[Figure], dict[str, Any]]] = []
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class DeferredFigure:
+class DeferredFigure(Alike):
     """A figure that costs something to describe: made only where pictures are drawn.
 
     Parameters

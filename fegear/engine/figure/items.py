@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 import numpy as np
 
+from fegear.frozen import Alike
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
@@ -23,7 +25,7 @@ def fixed(values: ArrayLike) -> Array:
     return made
 
 
-class _Item:
+class _Item(Alike):
     """Makes the arrays of a frozen item read-only floats."""
 
     __slots__ = ()
@@ -269,7 +271,7 @@ class Spot(_Item):
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class Mark(Alike):
     """A dotted line across the panel at a value of an axis, with a word beside it."""
 
     axis: Which
@@ -278,7 +280,7 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class Zone:
+class Zone(Alike):
     """A grey band across the panel between two values of an axis."""
 
     axis: Which

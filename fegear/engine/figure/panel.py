@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.figure.items import Bars, Curve, Item, Mark, Points, Stems, Which, Zone, fixed
+from fegear.frozen import Alike
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,7 +30,7 @@ _BAR_ROOM = 0.8
 
 
 @dataclass(frozen=True, slots=True)
-class Panel:
+class Panel(Alike):
     """One pair of axes and what is drawn over them.
 
     Parameters
