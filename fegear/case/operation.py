@@ -101,6 +101,12 @@ class OperationPart(Part):
     spectrum: Annotated[list[SpectrumPart], Field(min_length=1), at_most(1000, "bins")] | None = Field(
         default=None, description="Loads of the life in bins, which are added up by Miner's rule (ISO 6336-6)."
     )
+    spectrum_line: Literal["part-2", "annex-c"] = Field(
+        default="part-2",
+        description="S-N line of the flanks under the spectrum: that of ISO 6336-2, whose film factors come in between "
+        "static strength and reference, or that of the example in annex C of ISO 6336-6, which has them at every "
+        "number of load cycles.",
+    )
     safety_contact: PositiveNumber = Field(default=1.0, description="Required safety against pitting S_Hmin.")
     safety_root: PositiveNumber = Field(
         default=1.4, description="Required safety against breakage of the tooth root S_Fmin."
@@ -135,6 +141,8 @@ class OperationPart(Part):
                 f"has shares that add up to {shares:.6g}", "shares of the time add up to 1", key="spectrum",
                 value="(a list)",
             )  # fmt: skip
+        if not bins and "spectrum_line" in self.model_fields_set:
+            raise refuse("has a meaning only with a spectrum", "give a spectrum, or remove it", key="spectrum_line")
         if bins and self.load_cycles is not None:
             raise refuse("has no meaning with a spectrum", "give life", key="load_cycles")
         return self

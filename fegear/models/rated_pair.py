@@ -144,6 +144,7 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
         geometry, (strength[0], strength[1]), (quality[0], quality[1]), duty,
         pair_alignment(scene, name, names, said), part.iso_6336.edition or 2019, part.iso_6336.dynamic_method,
         tip_relief_factor=part.iso_6336.tip_relief_factor, required=(operation.safety_contact, operation.safety_root),
+        spectrum_line=operation.spectrum_line,
     )  # fmt: skip
     given = {"K_v": operation.dynamic_factor, "K_Halpha": operation.transverse_load_factor}
     levels, life = spectrum_levels(scene, name, tangential, speed, first=first)

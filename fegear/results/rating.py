@@ -16,7 +16,7 @@ from fegear.results.drawn_rating import rating_figures
 from fegear.results.gear_solution import needs_solution, solution_of
 from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.rating_remarks import rating_remarks, shortfalls
-from fegear.results.rating_tables import factor_table, rating_values, safety_table, spectrum_table
+from fegear.results.rating_tables import agma_table, factor_table, rating_values, safety_table, spectrum_table
 from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
 from fegear.results.sources import RING
 
@@ -251,6 +251,8 @@ def _with_misses(found: Computed, asked: PairToRate) -> Computed:
 
 def _present(data: RatingData, inputs: RatingInputs) -> Outcome:
     tables = [factor_table(data, inputs.asked), safety_table(data, inputs.asked)]
+    if data.agma is not None:
+        tables.append(agma_table(data.agma, inputs.asked))
     if data.spectrum is not None:
         tables.append(spectrum_table(data.spectrum, inputs.asked, data.spectrum_computed))
     return Outcome(

@@ -113,6 +113,42 @@ MEANINGS: Mapping[str, str] = MappingProxyType(
         **{f"C_v{i}": "coefficient of K_v" for i in range(1, 8)},
     }
 )
+#: What the symbols of ANSI/AGMA 2101-D04 mean, with those of the inch edition (2001) where they differ.
+AGMA_MEANINGS: Mapping[str, str] = MappingProxyType(
+    {
+        "F_t": "tangential load at the operating pitch circle",
+        "v_t": "pitch line velocity",
+        "K_o": "overload factor",
+        "K_v": "dynamic factor",
+        "K_Hmc": "lead correction factor, C_mc",
+        "K_Hpf": "pinion proportion factor, C_pf",
+        "K_Hpm": "pinion proportion modifier, C_pm",
+        "K_Hma": "mesh alignment factor, C_ma",
+        "K_He": "mesh alignment correction factor, C_e",
+        "K_H": "load distribution factor, K_m",
+        "Z_E": "elastic coefficient, C_p",
+        "Z_R": "surface condition factor, C_f",
+        "Z_I": "geometry factor for pitting, I",
+        "Y_Z": "reliability factor, K_R",
+        "Y_theta": "temperature factor, K_T",
+        "K_s": "size factor",
+        "K_B": "rim thickness factor",
+        "Y_J": "geometry factor for bending, J",
+        "sigma_H": "contact stress, s_c",
+        "sigma_F": "bending stress, s_t",
+        "sigma_HP": "allowable contact stress number, s_ac",
+        "sigma_FP": "allowable bending stress number, s_at",
+        "Z_N": "stress cycle factor for pitting",
+        "Y_N": "stress cycle factor for bending",
+        "Z_W": "hardness ratio factor, C_H",
+        "S_H": "safety factor for pitting",
+        "S_F": "safety factor for bending",
+    }
+)
+#: Units of its factors as engineers read them, and by how much a number in SI is multiplied.
+AGMA_UNITS: Mapping[str, tuple[str, float]] = MappingProxyType(
+    {"": ("", 1.0), "N": ("N", 1.0), "m/s": ("m/s", 1.0), "Pa": ("MPa", 1e-6), "sqrt(Pa)": ("MPa^0.5", 1e-3)}
+)
 #: Stiffnesses, which are pressures in SI.
 _STIFFNESSES = ("c'_th", "c'", "c_gamma_alpha", "c_gamma_beta")
 #: Lengths that are dimensions, not deviations.

@@ -18,6 +18,15 @@ if TYPE_CHECKING:
 _SHAKEN = 10.0
 #: How near to an axial contact ratio of 1 the jump of AGMA's J is told, and from which size.
 _NEAR_ONE, _WORTH_SAYING = 0.1, 0.05
+#: Which S-N line the flanks have under a spectrum.
+_SPECTRUM_LINE = {
+    "part-2": (
+        "Pair {name}: under the spectrum the flanks have the S-N line of ISO 6336-2, whose film factors come in "
+        "between static strength and reference; that of annex C of ISO 6336-6 has them at all load "
+        "cycles and is the lower one where they are below 1 (operation.spectrum_line)."
+    ),
+    "annex-c": "Pair {name}: under the spectrum the flanks have the S-N line of the example in annex C of ISO 6336-6.",
+}
 
 
 def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
@@ -56,6 +65,9 @@ def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
     """What lies outside a range, and what the computed safeties count."""
     told = [f"Pair {asked.name}: {remark_of(one, asked)}." for one in data.formula.factors if _shown(one, asked)]
     told += [f"Pair {asked.name}: {reason}" for reason in data.why_not]
+    told += _recalled(data, asked)
+    if data.spectrum is not None:
+        told.append(_SPECTRUM_LINE[asked.conditions.spectrum_line].format(name=asked.name))
     if data.agma is not None:
         told += _beside_the_jump(asked)
     if data.computed is None:
@@ -76,6 +88,18 @@ def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
         )
         told += _aligned(data, asked)
     return tuple(dict.fromkeys(told))
+
+
+def _recalled(data: RatingData, asked: PairToRate) -> list[str]:
+    """Say which numbers of a rating are those of no printed source, beside those that a factor remarks on itself."""
+    if asked.mean_stress is not None or not any(asked.stress_ratio):
+        return []
+    values = ", ".join(f"{value:.3g}" for value in data.formula["Y_M"].values)
+    told = (
+        f"Pair {asked.name}: Y_M = {values} (pinion, wheel) takes mean stress ratios M of annex B of ISO 6336-3 which "
+        "are recalled: no printed source was at hand (operation.mean_stress_factor; .7 of idlers is printed)."
+    )
+    return [told]
 
 
 def _beside_the_jump(asked: PairToRate) -> list[str]:

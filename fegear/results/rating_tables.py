@@ -9,12 +9,14 @@ import numpy as np
 
 from fegear.engine.outcome import Column, Table, Value
 from fegear.geometry.pair import MEMBERS
-from fegear.results.rating_meanings import MEANINGS, read_as
+from fegear.results.rating_life import life_values
+from fegear.results.rating_meanings import AGMA_MEANINGS, AGMA_UNITS, MEANINGS, read_as
 from fegear.results.rating_methods import methods
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from fegear.formulas.agma2101 import AgmaRating
     from fegear.formulas.iso6336.pair_rating import Factor
     from fegear.formulas.iso6336.spectrum_rating import SpectrumRating
     from fegear.geometry.pair import Member
@@ -193,7 +195,30 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
             Value(f"{name}.largest_pressure_computed", data.computed.pressure, "MPa", None,
                   "over the computed flanks at the load with K_A, K_gamma and K_v, tips and form circles left out")
         )  # fmt: skip
-    return tuple(found)
+    return (*found, *life_values(data, asked))
+
+
+def agma_table(found: AgmaRating, asked: PairToRate) -> Table:
+    """Every factor of ANSI/AGMA 2101-D04 with its clause."""
+    rows, places = found.factors, [found.members.index(member) for member in MEMBERS]
+    units = [AGMA_UNITS[one.unit] for one in rows]
+    columns = (
+        Column("symbol", np.array([one.symbol for one in rows]), "", "as the standard writes it"),
+        *(
+            Column(
+                member,
+                np.array([one.values[i] * scale for one, (_, scale) in zip(rows, units, strict=True)]),
+                "",
+                f"of the {member} gear",
+            )
+            for member, i in zip(MEMBERS, places, strict=True)
+        ),
+        Column("unit", np.array([unit for unit, _ in units]), "", "of the numbers in this row"),
+        Column("clause", np.array([one.clause for one in rows]), "", "where the standard gives it"),
+        Column("meaning", np.array([AGMA_MEANINGS[one.symbol] for one in rows]), "", "what it is"),
+    )
+    title = f"Rating of pair {asked.name} by ANSI/AGMA 2101-D04, factor by factor"
+    return Table(f"rating_agma_{asked.name}", columns, title)
 
 
 def _of_spectrum(data: RatingData, spectrum: SpectrumRating, asked: PairToRate, member: Member) -> list[Value]:

@@ -186,4 +186,9 @@ def test_a_case_reaches_the_printed_rating():
     assert falls_on(rows["S_H"][1], "1.88")
     assert rows["sigma_H"][0] == pytest.approx(739.61, rel=1e-4)  # the torque is printed with six digits
     assert rows["m_red"][0] == pytest.approx(0.36503, rel=1e-3)  # the inside of the rim, as the report has it
+    values = {value.name: value.value for value in found.values}
+    # printed for pinion and wheel: flanks 10477.39 and 11258.73 kW, roots 10438.07 and 9905.30 kW
+    assert values["I.transmittable_power_H"] == pytest.approx(10477.39, rel=1e-4)
+    assert values["I.transmittable_power_F"] == pytest.approx(9905.30, rel=1e-3)  # as S_F, .08 % by h_Fe
+    assert values["I.transmittable_power"] == values["I.transmittable_power_F"]
     assert any("jam by 0.11 um" in text for text in found.remarks)

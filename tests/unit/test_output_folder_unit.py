@@ -198,7 +198,7 @@ def test_units_are_those_that_the_conventions_read():
     from fegear.units import PER_SI
 
     known = {"mm", "um", "degree", "rad", "N", "N^2", "N.m", "s", "MPa", "GPa", "N/mm", "N/um", "um/N", "um.mm/N",
-             "MPa.mm/N", "MPa/N", "Hz", "rpm", "arcsec", "N/(mm.um)", "mm-1", "m/s", "W",
+             "MPa.mm/N", "MPa/N", "Hz", "rpm", "arcsec", "N/(mm.um)", "mm-1", "m/s", "W", "kW", "h",
              "degC", "mPa.s", "K"}  # fmt: skip
     assert {UDUNITS.get(unit, unit) for unit in PER_SI} == known
 

@@ -170,3 +170,65 @@ def test_k_v_by_method_c_on_request():
     assert found["K_v"] != plain["K_v"]
     assert "m_red" not in found
     assert "m_red" in plain
+
+
+def outcome_of(*settings):
+    scene = read_scene(CASES / "rating_spur.toml", ["results=['rating']", *settings])
+    done = run_plan(scene, make_plan(scene, STAGES), cache=SolutionCache())
+    (found,) = (one for task, one in done.outcomes.items() if task.stage == "rating")
+    return found, {value.name: value.value for value in found.values}
+
+
+def test_every_factor_of_agma_stands_in_its_table():
+    found, values = outcome_of("rating.beside='agma-2101'")
+    table = next(one for one in found.tables if one.name == "rating_agma_I")
+    for member in ("driver", "driven"):
+        f = dict(zip(table["symbol"].tolist(), table[member].tolist(), strict=True))
+        assert {"K_v", "K_H", "Z_I", "Y_J", "Y_N", "Z_N", "K_B", "Y_Z", "Z_W"} <= f.keys()
+        assert f["S_H"] == pytest.approx(f["sigma_HP"] * f["Z_N"] * f["Z_W"] / (f["Y_theta"] * f["Y_Z"] * f["sigma_H"]))
+        assert f["S_F"] == pytest.approx(f["sigma_FP"] * f["Y_N"] / (f["Y_theta"] * f["Y_Z"] * f["sigma_F"]))
+        assert values[f"I.{member}.S_H_agma"] == f["S_H"]
+    assert all(str(text) for text in table["meaning"])
+
+
+def test_the_service_life_is_that_at_which_the_required_safety_is_met():
+    at = "safety_contact=1.3, safety_root=4.5"
+    _, values = outcome_of("rating.beside=[]", f"pair.I.operation={{life='20000 h', {at}}}")
+    for key, safety, least in (("H", "S_H", 1.3), ("F", "S_F", 4.5)):
+        hours = values[f"I.driver.life_{key}"]
+        assert hours > 0.0
+        _, then = outcome_of("rating.beside=[]", f"pair.I.operation={{life='{hours!r} h', {at}}}")
+        assert then[f"I.driver.{safety}"] == pytest.approx(least, rel=1e-9)
+    # damage at a safety of 1 is 1 where the safety is: n/N of the required life over the life to failure
+    _, plain = outcome_of("rating.beside=[]", "pair.I.operation={life='20000 h', safety_contact=1, safety_root=1}",
+                          "pair.I.torque='800 N*m'")  # fmt: skip
+    assert plain["I.driver.damage_H"] == pytest.approx(20000.0 / plain["I.driver.life_H"], rel=1e-9)
+    power = 520.0 * 1480.0 * math.pi / 30.0 / 1e3
+    assert values["I.transmittable_power_H"] == pytest.approx(
+        power * (min(values["I.driver.S_H"], values["I.driven.S_H"]) / 1.3) ** 2, rel=1e-9
+    )
+
+
+def test_a_spectrum_has_the_line_that_is_asked_for_and_says_which():
+    bins = "life='200 h', spectrum=[{load_factor=1.6, share=0.3}, {load_factor=1, share=0.7}]"
+    part, usual = outcome_of("rating.beside=[]", f"pair.I.operation={{{bins}}}")
+    annex, lower = outcome_of("rating.beside=[]", f"pair.I.operation={{{bins}, spectrum_line='annex-c'}}")
+    assert lower["I.driver.S_H_spectrum"] < 0.995 * usual["I.driver.S_H_spectrum"]
+    assert lower["I.driver.S_F_spectrum"] == usual["I.driver.S_F_spectrum"]
+    assert any("S-N line of ISO 6336-2" in text for text in part.remarks)
+    assert any("S-N line of the example in annex C" in text for text in annex.remarks)
+    with pytest.raises(InputError, match="only with a spectrum"):
+        rated("rating_spur", "pair.I.operation={life='200 h', spectrum_line='annex-c'}")
+
+
+def test_recalled_factors_of_the_root_are_said():
+    _, idler = rated("rating_spur", "pair.I.operation={life='20000 h', idler='driven'}")
+    assert any("mean stress ratios M of annex B of ISO 6336-3 which are recalled" in text for text in idler)
+    _, own = rated("rating_spur", "pair.I.operation={life='20000 h', mean_stress_factor=[1.0, 0.7]}")
+    assert not any("recalled" in text for text in own)
+    soft = [f"gear.{one}.strength={{material='through-hardened-alloy-steel', hardness='300 HV'}}" for one in
+            ("pinion", "wheel")]  # fmt: skip
+    _, few = rated("rating_spur", "pair.I.operation={load_cycles=1e5}", "pair.I.torque='100 N*m'", *soft)
+    assert any("Y_deltarelT: that of static strength of V" in text for text in few)
+    _, many = rated("rating_spur", "pair.I.operation={load_cycles=1e8}", "pair.I.torque='100 N*m'", *soft)
+    assert not any("static strength of V" in text for text in many)

@@ -39,6 +39,8 @@ class Conditions:
         f_ZCa itself, where it is given.
     required : (float, float)
         S_Hmin and S_Fmin, by which sigma_HP and sigma_FP lie below sigma_HG and sigma_FG.
+    spectrum_line : {"part-2", "annex-c"}
+        S-N line of the flanks under a load spectrum.
     """
 
     geometry: PairGeometry
@@ -51,6 +53,7 @@ class Conditions:
     tip_relief: TipRelief | None = None
     tip_relief_factor: float | None = None
     required: Both = (1.0, 1.0)
+    spectrum_line: Literal["part-2", "annex-c"] = "part-2"
 
     @property
     def relieved(self) -> TipRelief:

@@ -211,7 +211,13 @@ def root_strength(
     base, endured = strength.bending * STANDARD_GEAR, whole * mean_stress[1]
     stress = Knots(knots.cycles, tuple(base * v for v in knots.values))
     stress = stress.scaled((static * mean_stress[0], endured, endured)).falling
-    remark = "; ".join(r for r in (unsure, rough) if r)
+    recalled = ""
+    if cycles < REFERENCE and strength.group not in groups.CASE_HARDENED:
+        recalled = (
+            f"Y_deltarelT: that of static strength of {strength.group}, which counts below 3e6 load cycles, is "
+            "recalled from memory: no printed source was at hand"
+        )
+    remark = "; ".join(r for r in (unsure, rough, recalled) if r)
     return RootStrength(
         knots.at(cycles), delta, surface, size, mean_stress[1], static, mean_stress[0],
         stress.values[0], stress.values[1], stress.at(cycles), remark,

@@ -13,15 +13,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.errors import RangeError
+from fegear.formulas.iso6336.life import Knots
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.arrays import Array
-    from fegear.formulas.iso6336.life import Knots
 
 #: Halvings of the interval of the safety: to round-off.
 _HALVINGS = 200
+#: By how much the line of annex C goes on below the load cycles of static strength.
+_ABOVE = 10.0
 
 
 def cycles_to_failure(curve: Knots, stress: float) -> float:
@@ -102,6 +104,26 @@ def service_life(bins: Sequence[Bin], life: float) -> float:
     """Life until the Miner sum is 1, in the unit of `life`, which the bins' cycles are for; inf without damage."""
     total = damage(bins)
     return math.inf if total == 0.0 else life / total
+
+
+def annex_c_line(life: Knots, endurance: float) -> Knots:
+    """S-N line of the flanks of the example in annex C: sigma_Hlim Z_NT with the film factors of reference throughout.
+
+    ISO 6336-2 lets the film factors come in between static strength and reference, so that Z_NT = 1.6 is borne without
+    them. The line goes on above Z_NT = 1.6, down to a tenth of its load cycles: the printed example has stresses there.
+
+    Parameters
+    ----------
+    life : Knots
+        Z_NT over load cycles.
+    endurance : float
+        Stress borne at the reference number of load cycles, all factors counted [Pa].
+    """
+    (n_0, n_1), (z_0, z_1) = life.cycles[:2], life.values[:2]
+    first = z_0 * (z_0 / z_1) ** (math.log(_ABOVE) / math.log(n_1 / n_0))
+    reference = life.values[-2]
+    values = tuple(endurance / reference * z for z in (first, *life.values))
+    return Knots((n_0 / _ABOVE, *life.cycles), values)
 
 
 def wohler_exponent(curve: Knots) -> float:

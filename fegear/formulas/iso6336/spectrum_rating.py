@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from fegear.formulas.iso6336 import part2_permissible, part3_strength
 from fegear.formulas.iso6336.life import Knots
 from fegear.formulas.iso6336.pair_rating import Replacement
-from fegear.formulas.iso6336.part6_spectrum import Bin, damage, service_life, spectrum_safety
+from fegear.formulas.iso6336.part6_spectrum import Bin, annex_c_line, damage, service_life, spectrum_safety
 from fegear.formulas.iso6336.safety import rate_pair
 
 if TYPE_CHECKING:
@@ -74,6 +74,11 @@ def sn_curves(conditions: Conditions, computed: Replacement | None = None) -> Cu
         return known[cycles]
 
     contact = [Knots(n, tuple(at(one).contact_permissible[i] for one in n)) for i, n in enumerate(of_flank)]
+    if conditions.spectrum_line == "annex-c":
+        contact = [
+            annex_c_line(part2_permissible.life_knots(one), line.values[-2])
+            for one, line in zip(conditions.strength, contact, strict=True)
+        ]
     bending = [Knots(n, tuple(at(one).bending_permissible[i] for one in n)) for i, n in enumerate(of_root)]
     return Curves((contact[0], contact[1]), (bending[0], bending[1]))
 
