@@ -7,8 +7,8 @@ Formed as Mark writes them, R (H_11 + H_21) - 1, they lose all digits at low fre
 rigid body: Q_II falls like w or w^2 while its two terms stay at one. Here the train is an electrical network
 (`network`) whose nodes are eliminated one by one towards gear pair j, with the leaks (inertia, dampers to ground) kept
 apart from the links (`star_mesh`; the idea of Grassmann, Taksar and Heyman for Markov chains). What is left is
-Q_jj = -D(mesh j removed)/D, and on the way back the forces of the other pairs follow as products. Long trains and
-single loops cost and store as much as they have bodies.
+Q_jj = -D(mesh j removed)/D, and on the way back the forces of the other pairs follow as products. A train without loops
+is swept once for all of its gear pairs (`branches`); of one with loops each pair has its own elimination.
 
 Every number carries a bound of its round-off (`rounded`). Frequencies in doubt are solved again in longer floats, those
 of trains with loops or slipping dampers, if need be, in other orders, from gear pair i to j (forces are reciprocal) and
@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.dynamics.branches import Branches, Ways
 from fegear.dynamics.direct import lags_by_pivots
 from fegear.dynamics.network import Network
 from fegear.dynamics.star_mesh import RESONANCE, respond
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.arrays import Complex
+    from fegear.dynamics.star_mesh import Response
     from fegear.dynamics.train import Train
 
     Reals = NDArray[np.floating]
@@ -79,10 +81,10 @@ def dynamic_increments(train: Train, omega: ArrayLike, sources: Sequence[int] | 
     chosen = range(count) if sources is None else sources
     found = np.empty((count, len(chosen), flat.size), dtype=complex)
     solver = _Solver.of(train)
-    for column, mesh in enumerate(chosen):
-        for places in (np.flatnonzero(flat > 0.0), np.flatnonzero(flat == 0.0)):
-            for part in solver.blocks(places):
-                found[:, column, part] = solver.column(flat[part], mesh)
+    for places in (np.flatnonzero(flat > 0.0), np.flatnonzero(flat == 0.0)):
+        for part in solver.blocks(places):
+            for column, q in enumerate(solver.columns(flat[part], chosen)):
+                found[:, column, part] = q
     negative = (w < 0.0).ravel()
     found[:, :, negative] = np.conj(found[:, :, negative])
     return found.reshape((count, len(chosen), *w.shape))
@@ -118,15 +120,21 @@ class _Solver:
     plain: Network
     long: Network
     orders: dict[tuple[int, int], list[tuple[int, tuple[int, ...]]]]
+    branches: Branches | None
 
     @classmethod
     def of(cls, train: Train) -> _Solver:
-        return cls(train, Network.of(train), Network.of(train, np.longdouble), {})
+        plain = Network.of(train)
+        branches = Branches.of(plain) if plain.branches_only and plain.size > 1 else None
+        return cls(train, plain, Network.of(train, np.longdouble), {}, branches)
 
     def blocks(self, places: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
         """Frequencies in blocks that keep within `MEMORY`."""
-        links = sum(len(others) for _, others in self._order(0)) if self.train.meshes else 0
-        each = 24 * (3 * self.plain.size + 3 * links + 2 * len(self.plain.slips) * self.plain.size)
+        if self.branches is not None:
+            each = 24 * self.branches.kept
+        else:
+            links = sum(len(others) for _, others in self._order(0)) if self.train.meshes else 0
+            each = 24 * (3 * self.plain.size + 3 * links + 2 * len(self.plain.slips) * self.plain.size)
         size = min(max(MEMORY // each, BLOCK[0]), BLOCK[1])
         for start in range(0, places.size, size):
             yield places[start : start + size]
@@ -136,12 +144,26 @@ class _Solver:
             self.orders[mesh, variant] = self.plain.order(mesh, variant)
         return self.orders[mesh, variant]
 
-    def column(self, w: Reals, mesh: int) -> Complex:
-        """Q[i, mesh] at frequencies that are all positive or all zero, shape (meshes, frequencies)."""
-        found = self._solve(self.plain, w, mesh)
-        weak = found.weak()
+    def columns(self, w: Reals, meshes: Sequence[int]) -> Iterator[Complex]:
+        """Q[i, mesh] at frequencies that are all positive or all zero, shape (meshes, frequencies), mesh by mesh."""
+        if self.branches is None:
+            for mesh in meshes:
+                found = self._solve(self.plain, w, mesh)
+                weak = found.weak()
+                if np.any(weak):
+                    found = found.improved(weak, self._careful(w[weak].astype(np.longdouble), mesh))
+                yield self._bounded(w, found)
+            return
+        ways = Ways(self.plain, self.branches, w)
+        columns = [self._by_ways(ways, mesh) for mesh in meshes]
+        weak = np.any([column.weak() for column in columns], axis=0) if columns else np.zeros(w.size, dtype=bool)
         if np.any(weak):
-            found = found.improved(weak, self._careful(w[weak].astype(np.longdouble), mesh))
+            ways = Ways(self.long, self.branches, w[weak].astype(np.longdouble))
+            columns = [c.improved(weak, self._by_ways(ways, mesh)) for c, mesh in zip(columns, meshes, strict=True)]
+        for column in columns:
+            yield self._bounded(w, column)
+
+    def _bounded(self, w: Reals, found: _Column) -> Complex:
         if np.any(found.resonance):
             where = float(w[found.resonance][0]) / (2.0 * math.pi)
             raise RangeError(
@@ -155,7 +177,7 @@ class _Solver:
     def _careful(self, w: Reals, mesh: int) -> _Column:
         """Longer floats, then other orders of elimination, the way from i to j, and pivots; the best of each."""
         best = self._solve(self.long, w, mesh)
-        if self.plain.branches_only or not np.all(w > 0.0):
+        if not np.all(w > 0.0):
             return best
         tries: list[Callable[[Reals], _Column]] = [
             partial(self._solve, self.long, mesh=mesh, variant=order) for order in range(1, ORDERS + 1)
@@ -183,15 +205,24 @@ class _Solver:
         return np.asarray(other.stiffness * (1.0 + 1j * w * (one.damping / one.stiffness)))
 
     def _solve(self, network: Network, w: Reals, mesh: int, variant: int = 0) -> _Column:
+        if network.links[mesh].a == network.links[mesh].b:
+            return self._rigid(w, mesh)
+        return self._column(w, mesh, respond(network, w, mesh, self._order(mesh, variant)))
+
+    def _by_ways(self, ways: Ways, mesh: int) -> _Column:
+        w, link = ways.solved.w, self.plain.links[mesh]
+        return self._rigid(w, mesh) if link.a == link.b else self._column(w, mesh, ways.respond(mesh))
+
+    def _rigid(self, w: Reals, mesh: int) -> _Column:
+        """Rigid shafts join the two gears: the teeth take all of the error."""
+        q = np.zeros((len(self.train.meshes), w.size), dtype=complex)
+        q[mesh] = -1.0
+        return _Column(q, np.zeros(q.shape), np.zeros(w.size, dtype=bool))
+
+    def _column(self, w: Reals, mesh: int, response: Response) -> _Column:
         count, eps = len(self.train.meshes), float(np.finfo(w.dtype).eps)
         q = np.zeros((count, w.size), dtype=complex)
         doubt = np.zeros((count, w.size))
-        link = network.links[mesh]
-        if link.a == link.b:
-            # rigid shafts join the two gears: the teeth take all of the error
-            q[mesh] = -1.0
-            return _Column(q, doubt, np.zeros(w.size, dtype=bool))
-        response = respond(network, w, mesh, self._order(mesh, variant))
         q[mesh], doubt[mesh] = response.own.value, eps * response.own.error
         for i, lag in response.lags.items():
             scale = self._scale(w, i, mesh)

@@ -62,7 +62,7 @@ class Rounded:
         value = self.value / other.value
         return Rounded(value, (self.error + np.abs(value) * other.error) / by + 3.0 * np.abs(value))
 
-    def times(self, factor: float) -> Rounded:
+    def times(self, factor: float | np.floating) -> Rounded:
         """The number times one that is exact."""
         return Rounded(self.value * factor, self.error * abs(factor) + np.abs(self.value * factor))
 
@@ -75,9 +75,12 @@ def beside_zero(one: Rounded, other: Rounded) -> Values:
     return np.asarray(np.where(total == 0.0, np.where(last == 0.0, 1.0, last), total))
 
 
-def share(part: Rounded, rest: Rounded) -> Rounded:
-    """part / (part + rest), each error by its true derivative: a small rest matters little, however uncertain."""
-    whole = beside_zero(part, rest)
+def share(part: Rounded, rest: Rounded, whole: Values | None = None) -> Rounded:
+    """part / (part + rest), each error by its true derivative: a small rest matters little, however uncertain.
+
+    `whole`: their sum, where it is known and kept from zero already.
+    """
+    whole = beside_zero(part, rest) if whole is None else whole
     size, left, by = np.abs(part.value), np.abs(rest.value), np.abs(whole)
     value = part.value / whole
     return Rounded(value, (left * part.error + size * rest.error) / by**2 + 3.0 * np.abs(value))

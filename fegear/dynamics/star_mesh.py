@@ -131,7 +131,7 @@ class _Elimination:
 
 
 @dataclass(frozen=True, slots=True)
-class _Root:
+class Root:
     """The state of the pair's two nodes under a unit force on the approach: turns, their difference, slip forces."""
 
     own: Rounded
@@ -141,19 +141,33 @@ class _Root:
     resonance: NDArray[np.bool_]
 
 
-def _root(state: _Elimination) -> _Root:
-    network, w = state.network, state.w
-    link = network.links[state.mesh]
-    turn = network.turns[state.mesh]
-    none = Rounded.zero(state.leak[link.a].value)
-    own_link = state.admittance(link.stiffness, link.damping)
-    around = state.links.get((min(link.a, link.b), max(link.a, link.b)), none)
-    A, B = state.leak[link.a], state.leak[link.b]
+def close_pair(
+    w: Reals,
+    A: Rounded,
+    B: Rounded,
+    around: Rounded,
+    own_link: Rounded,
+    turn: np.floating,
+    chain: _Slips | None = None,
+) -> Root:
+    """Put the gear pair between what is left of the train on both of its sides.
+
+    Parameters
+    ----------
+    w : ndarray, shape (frequencies,)
+    A, B : Rounded
+        What leaks out at its nodes a and b.
+    around, own_link : Rounded
+        Admittance from a to b around the pair, and its own.
+    turn : float
+        Approach [m] for a unit difference of the nodes.
+    chain : optional
+        Slipping dampers.
+    """
     still = w == 0.0
     if np.any(still):
         # no speed: nothing leaks; any split of the difference will do
         A, B = (Rounded(np.where(still, 0.5, x.value), np.where(still, 0.0, x.error)) for x in (A, B))
-    chain = _reduce_slips(state, link.a, link.b, around, none)
     if chain is None:
         # divided by A + B, so that a side at a resonance of its own passes on no more than the other one's leak
         M = Rounded(np.ones_like(A.value), np.zeros_like(A.error))
@@ -179,9 +193,19 @@ def _root(state: _Elimination) -> _Root:
     forces: tuple[Rounded, ...] = ()
     if chain is not None and slip is not None:
         forces = tuple(f.times(turn) for f in chain.forces(slip / D, lag))
-    return _Root(
-        own, ((a / D).times(turn), (b / D).times(turn)), lag.times(turn), forces, resonance
-    )  # fmt: skip
+    return Root(own, ((a / D).times(turn), (b / D).times(turn)), lag.times(turn), forces, resonance)
+
+
+def _root(state: _Elimination) -> Root:
+    network = state.network
+    link = network.links[state.mesh]
+    none = Rounded.zero(state.leak[link.a].value)
+    around = state.links.get((min(link.a, link.b), max(link.a, link.b)), none)
+    chain = _reduce_slips(state, link.a, link.b, around, none)
+    own_link = state.admittance(link.stiffness, link.damping)
+    return close_pair(
+        state.w, state.leak[link.a], state.leak[link.b], around, own_link, network.turns[state.mesh], chain
+    )
 
 
 def _picked(parts: Sequence[Rounded], which: NDArray[np.intp]) -> Rounded:

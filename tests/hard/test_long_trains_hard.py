@@ -11,7 +11,7 @@ from exact_increments import exact_increments
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.dynamics import increments, packing
+from fegear.dynamics import branches, increments, packing
 from fegear.dynamics.excitation import MeshExcitation
 from fegear.dynamics.increments import dynamic_increments
 from fegear.dynamics.matrices import damping_matrix, elements, projected, stiffness_matrix
@@ -20,6 +20,7 @@ from fegear.dynamics.motion_model import MotionModel
 from fegear.dynamics.network import Network
 from fegear.dynamics.packing import pack
 from fegear.dynamics.periodic import Periodic
+from fegear.dynamics.rounded import in_series
 from fegear.dynamics.segments import segment_shapes
 from fegear.dynamics.shooting import has_fixed_direction
 from fegear.dynamics.steady_state import steady_state
@@ -98,6 +99,53 @@ def test_increments_of_long_trains_keep_all_digits(count, meshes, zeta, powers):
         # far beyond a train's modes what reaches from end to end underflows
         error = np.abs(found[:, :, n] - exact) / np.maximum(np.abs(exact), 1e-250)
         assert error.max() < 1e-12, (w, error.max())
+
+
+@pytest.mark.parametrize(
+    ("count", "meshes"), [(120, 30), pytest.param(500, 30, marks=pytest.mark.long)], ids=["120", "500"]
+)
+def test_thirty_gear_pairs_in_one_train_keep_all_digits(count, meshes):
+    """500 bodies with 30 gear pairs at 1,000 frequencies took over 200 s, an elimination for each; now 4."""
+    train = row_of_bodies(count, meshes)
+    omega = 2.0 * math.pi * np.array([0.1, 137.0, 2718.0])
+    found = dynamic_increments(train, omega)
+    for n, w in enumerate(omega):
+        exact = exact_in_a_row(train, w)
+        assert (np.abs(found[:, :, n] - exact) / np.maximum(np.abs(exact), 1e-250)).max() < 1e-12
+
+
+def test_forks_and_links_side_by_side_are_swept_like_rows():
+    """A node with four branches, two gear pairs and a shaft between the same two bodies, one pair on a rigid shaft."""
+    bodies = tuple(Body(name, 1e-3 * (n + 1)) for n, name in enumerate("abcdefgh"))
+    train = Train(
+        bodies,
+        (Shaft("s1", "a", "b", 3e4, 0.02), Shaft("s2", "c", "e", 5e4, 0.1), Shaft("s3", "b", "f", 1e3, 0.0),
+         Shaft("s4", "g", "h", 2e4, 0.1)),
+        (Mesh("m1", "b", "c", 0.04, -0.04, 40, 40, 3e8, 900.0), Mesh("m2", "b", "c", 0.05, -0.05, 50, 50, 1e8, 0.0),
+         Mesh("m3", "d", "b", 0.02, 0.06, 20, 60, 2e8, 300.0), Mesh("m4", "b", "g", 0.03, 0.04, 30, 40, 2e8, 300.0)),
+        (Damper("d", None, 0.3), Damper("h", None, 0.1)),
+    )  # fmt: skip
+    for hertz in (1e-3, 40.0, 700.0, 2e3, 3e4):
+        omega = 2.0 * math.pi * hertz
+        assert dynamic_increments(train, omega) == pytest.approx(exact_increments(train, omega), rel=1e-12)
+
+
+def test_work_grows_with_the_bodies_and_not_with_the_gear_pairs(monkeypatch):
+    """Steps of the elimination of a train without loops, whatever its number of gear pairs: less than two a body."""
+    steps = []
+
+    def counted(*arguments):
+        steps.append(arguments[0].value.size)
+        return in_series(*arguments)
+
+    monkeypatch.setattr(branches, "in_series", counted)
+    taken = {}
+    for count, meshes in ((200, 1), (400, 1), (400, 30)):
+        steps.clear()
+        dynamic_increments(row_of_bodies(count, meshes), 2.0 * math.pi * np.array([100.0, 1000.0]))
+        taken[count, meshes] = sum(steps)
+    # two frequencies, each at most twice: in plain and in long floats
+    assert all(found <= 2 * 2 * 2 * count for (count, _), found in taken.items())
 
 
 def ring(count, closed, k=1.0):
