@@ -39,7 +39,7 @@ _NUMBER = re.compile(
 
 def found(results: Any) -> dict[str, tuple[list[float], list[float] | None, float]]:
     """Every number of a run by its name, its stated errors where it has some, and what its size is compared with."""
-    from fegear.output.dataset import error_columns
+    from fegear.engine.stated_errors import error_columns
 
     numbers = {v.name: ([v.si], None if v.si_error is None else [v.si_error], abs(v.si)) for v in results.values}
     for table in results.tables:

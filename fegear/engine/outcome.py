@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from fegear.engine.stated_errors import with_least_error_columns, with_least_errors
 from fegear.engine.table import Column, Table
 from fegear.frozen import Alike
 from fegear.units import from_si, quantity
@@ -70,7 +71,7 @@ class Value(Alike):
 
 @dataclass(frozen=True, slots=True)
 class Outcome(Alike):
-    """Result of one stage.
+    """Result of one stage; no estimated error in it is below what another processor gives (`stated_errors`).
 
     Parameters
     ----------
@@ -92,3 +93,8 @@ class Outcome(Alike):
     settings: Mapping[str, object] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     figures: tuple[Figure | DeferredFigure, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Raise errors that are below what the digits of their numbers are worth."""
+        object.__setattr__(self, "values", with_least_errors(self.values))
+        object.__setattr__(self, "tables", tuple(with_least_error_columns(table) for table in self.tables))

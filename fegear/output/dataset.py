@@ -10,12 +10,12 @@ scalars. Estimated errors are ancillary variables of what they belong to.
 from __future__ import annotations
 
 import json
-import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.engine.citation import bibliography
+from fegear.engine.stated_errors import error_columns
 from fegear.output.netcdf import head, plain, plain_of, put, say_names
 
 if TYPE_CHECKING:
@@ -25,17 +25,6 @@ if TYPE_CHECKING:
 
     from fegear.engine.outcome import Column, Table, Value
     from fegear.engine.run import Results
-
-
-def error_columns(table: Table) -> dict[str, str]:
-    """Which column holds the estimated error of which: ``c_self_error``, whose meaning may name several columns."""
-    found: dict[str, str] = {}
-    for column in table.columns:
-        base = column.name.removesuffix("_error")
-        if base != column.name:
-            words = {base, *re.findall(r"\w+", column.meaning)}
-            found |= {one.name: column.name for one in table.columns if one.name in words and one is not column}
-    return found
 
 
 def _is_index(column: Column) -> bool:

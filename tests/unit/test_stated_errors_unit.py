@@ -1,0 +1,57 @@
+"""No stated error is below what another processor gives."""
+
+import numpy as np
+import pytest
+
+from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.stated_errors import ROUND_OFF
+
+
+def value(name, si, error, unit="um"):
+    return Value(name, si, unit, error)
+
+
+def test_an_error_below_the_digits_of_a_value_is_raised():
+    (found,) = Outcome(values=(value("efficiency", 0.99, 2.1e-18, ""),)).values
+    assert found.si_error == pytest.approx(ROUND_OFF * 0.99)
+
+
+def test_a_difference_of_larger_numbers_has_their_digits():
+    """Peak to peak of a mean fifty times as large: what is subtracted counts, not what is left."""
+    mean, swing = Outcome(values=(value("te_mean", 20e-6, 1e-9), value("te_peak_to_peak", 0.4e-6, 1e-20))).values
+    assert swing.si_error == pytest.approx(ROUND_OFF * 20e-6)
+    assert mean.si_error == 1e-9
+
+
+def test_what_is_exact_unknown_or_larger_stays():
+    given = (value("a", 1.0, 0.0), value("b", 1.0, None), value("c", 1.0, 1e-3), value("d", np.nan, 1e-30))
+    assert Outcome(values=given).values[:3] == given[:3]
+    assert Outcome(values=given).values[3].si_error == pytest.approx(ROUND_OFF)
+
+
+def test_units_are_not_mixed_and_pure_numbers_stand_alone():
+    found = Outcome(
+        values=(value("n", 1e6, None, ""), value("share", 0.5, 1e-12, ""), value("x", 1e3, 1e-20, "N"))
+    ).values
+    assert found[1].si_error == pytest.approx(0.5 * ROUND_OFF)
+    assert found[2].si_error == pytest.approx(1e3 * ROUND_OFF)
+
+
+def test_columns_of_errors_count_the_largest_of_their_unit():
+    x, stress = np.linspace(0.0, 1.0, 4), np.array([0.0, 1e8, 2.4e8, 0.0])
+    columns = (
+        Column("x", x, "mm"),
+        Column("stress", stress, "MPa"),
+        Column("stress_error", np.array([0.0, 1e5, 1e-2, np.nan]), "MPa", "estimated error of stress"),
+    )
+    (table,) = Outcome(tables=(Table("root", columns),)).tables
+    least = ROUND_OFF * 2.4e8
+    np.testing.assert_allclose(table.column("stress_error").si, [least, 1e5, least, np.nan])
+    assert table.column("stress") is columns[1]
+
+
+@pytest.mark.parametrize("errors", [[0.0, 0.0], [np.nan, np.nan], [1.0, 2.0]])
+def test_exact_unknown_and_large_columns_stay(errors):
+    columns = (Column("a", np.array([1.0, 3.0]), "N"), Column("a_error", np.array(errors), "N"))
+    table = Table("t", columns)
+    assert Outcome(tables=(table,)).tables[0] is table
