@@ -104,6 +104,21 @@ def drawn_gears(base: Gear, bounds: Mapping[str, tuple[float, float]], samples: 
     return Population(tuple(found), tried)
 
 
+def share_error(hits: Array) -> float:
+    """Standard error of a share over drawn gears, from its spread between them: loads of one gear are not independent.
+
+    Where all gears say the same the next may be the first that does not: that is one of two more (Laplace).
+
+    Parameters
+    ----------
+    hits : ndarray, shape (gears, loads)
+        0 or 1.
+    """
+    each = np.asarray(hits, dtype=float).mean(axis=1)
+    spread = each.std(ddof=1) / math.sqrt(each.size) if each.size > 1 else 0.5
+    return math.hypot(float(spread), 1.0 / (each.size + 2.0))
+
+
 def _between(bounds: tuple[float, float], share: float, *, log: bool) -> float:
     low, high = bounds
     return low * (high / low) ** share if log else low + share * (high - low)

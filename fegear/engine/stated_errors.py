@@ -73,8 +73,10 @@ def _raised(column: Column, table: Table, serves: Iterable[str]) -> Column:
         for one in table.columns
         if one.si.dtype.kind == "f" and (one.unit == column.unit if column.unit else one.name in serves)
     ]
-    errors = column.si
-    if not serves or not alike or errors.dtype.kind != "f" or not np.any(errors > 0.0):
+    if not serves or not alike or column.si.dtype.kind != "f":
+        return column
+    errors = np.asarray(column.si, dtype=float)
+    if not (errors > 0.0).any():
         return column
     size = np.concatenate(alike)
     least = ROUND_OFF * float(size[np.isfinite(size)].max(initial=0.0))

@@ -124,7 +124,10 @@ def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: flo
     return Table("root_stress_study", tuple(made), "Where each root-stress formula is high, low or breaks down")
 
 
-def _values(table: Table, names: tuple[str, ...]) -> tuple[Value, ...]:
+def _values(table: Table, names: tuple[str, ...], *, drawn: bool) -> tuple[Value, ...]:
+    """Ratios and shares of all points; shares of drawn gears are those of their box within a standard error."""
+    from fegear.contact.gear_population import LOADS, share_error
+
     values = []
     for name in names:
         ratio = np.asarray(table["ratio_to_fe"], dtype=float)[table["formula"] == name]
@@ -138,9 +141,10 @@ def _values(table: Table, names: tuple[str, ...]) -> tuple[Value, ...]:
             ):
                 values.append(Value(f"{name}.{key}", float(number), "", None, f"{words} in the study"))
         for key in ("high", "low", "within 5 %", "breaks down"):
-            share = float(np.mean(verdicts == key))
+            hits = verdicts == key
+            error = share_error(hits.reshape(-1, LOADS)) if drawn else 0.0
             head = key.replace(" %", "_percent").replace(" ", "_")
-            values.append(Value(f"{name}.share_{head}", share, "", 0.0, f"share of all points: {key}"))
+            values.append(Value(f"{name}.share_{head}", float(np.mean(hits)), "", error, f"share of all points: {key}"))
     return tuple(values)
 
 
@@ -198,8 +202,10 @@ def _present(found: tuple[VariantStress, ...], asked: StudyInputs) -> Outcome:
     settings = {**asdict(asked.settings), "gears": len(found)}
     if drawn:
         remarks = (about, *sentences(_columns(table)), *remarks[1:])
-        return Outcome(found, (table,), _values(table, names), settings, remarks, (spread_figure(_columns(table)),))
-    return Outcome(found, (table,), _values(table, names), settings, remarks, _figures(table, names))
+        return Outcome(
+            found, (table,), _values(table, names, drawn=drawn), settings, remarks, (spread_figure(_columns(table)),)
+        )
+    return Outcome(found, (table,), _values(table, names, drawn=drawn), settings, remarks, _figures(table, names))
 
 
 def _columns(table: Table) -> dict[str, Array]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fegear.contact.formula_reach import NEAR, reach, sentence
-from fegear.contact.gear_population import LOADS, drawn_gears, unevenness
+from fegear.contact.gear_population import LOADS, drawn_gears, share_error, unevenness
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, Tooth
 from fegear.results.drawn_formula_spread import WORDS, spread_curve
@@ -52,6 +52,24 @@ def test_what_gives_no_tooth_is_drawn_anew_and_an_empty_box_is_refused():
     assert numbers(found)[:, 2].max() < 0.5
     with pytest.raises(InputError, match="choose narrower ranges"):
         drawn_gears(BASE, {**BOX, "rack_tip_radius": (2.0, 3.0)}, 4)
+
+
+@pytest.mark.parametrize("gears", [24, 192])
+def test_shares_of_drawn_gears_are_within_their_errors(gears):
+    """Loads of a gear agree more than chance: counted as independent their error would be up to 2.8 times too small."""
+    rng, off, small = np.random.default_rng(7), [], []
+    for _ in range(300):
+        own = rng.beta(0.3, 0.7, gears)
+        hits = rng.uniform(size=(gears, LOADS)) < own[:, None]
+        off.append(abs(hits.mean() - 0.3) / share_error(hits))
+        small.append(share_error(hits) / hits.mean(axis=1).std() * math.sqrt(gears))
+    assert 0.93 < np.mean(np.array(off) < 2.0) < 0.99
+    assert np.median(small) < 1.3
+
+
+def test_a_share_of_none_or_all_of_some_gears_has_an_error():
+    assert share_error(np.zeros((24, LOADS))) == share_error(np.ones((24, LOADS))) == pytest.approx(1.0 / 26.0)
+    assert share_error(np.zeros((192, LOADS))) < 0.006
 
 
 def planted(rng, right):
