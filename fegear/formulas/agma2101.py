@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 _STANDARD = "ANSI/AGMA 2101-D04"
 #: Treatments that leave a flank of 48 HRC and more (clause 14.2).
-_HARD_CASES = {"carburized", "induction-hardened", "nitrided-4140", "nitrided-nitralloy", "nitrided-chrome"}
+HARD_CASES = {"carburized", "induction-hardened", "nitrided-4140", "nitrided-nitralloy", "nitrided-chrome"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,7 +254,7 @@ def _hardness(pair: GearPair, service: Service, allowed: tuple[AllowableStress, 
     """Z_W of the wheel."""
     if allowed[1].treatment != "through-hardened":
         return 1.0
-    if allowed[0].treatment in _HARD_CASES:
+    if allowed[0].treatment in HARD_CASES:
         return work_hardening_factor(service.pinion_roughness, allowed[1].brinell)
     if allowed[0].treatment != "through-hardened":
         return 1.0

@@ -1,8 +1,9 @@
 """Allowable stress numbers of steel gears (ANSI/AGMA 2101-D04, clause 16), by treatment, grade and hardness.
 
 Source: ANSI/AGMA 2101-D04, tables 3 (contact), 4 and 6 (bending), figures 8 to 11; the metric numbers of the tables.
-Public texts that repeat them were at hand for the lines of through-hardened steel and the cores of 4140 and nitralloy;
-the numbers of carburized, induction-hardened and nitrided flanks and the lines of 2.5 % chrome steel are recalled.
+Public texts that repeat them were at hand for the lines of through-hardened steel, the cores of 4140 and nitralloy and
+the flanks of all cases (table 3 of 2001-D04, engineersedge.com, AGMA Allowable Contact Stress); the roots of carburized
+and induction-hardened teeth and the lines of 2.5 % chrome steel are recalled: `RECALLED_ROOTS`.
 They are for ten million cycles, one direction of load and a reliability of 99 %. For gears that are loaded both ways
 (idlers, planets) the standard takes 70 % of the bending number: `reversed_bending`.
 """
@@ -21,6 +22,10 @@ Grade = Literal[1, 2, 3]
 Treatment = Literal[
     "through-hardened", "carburized", "induction-hardened", "nitrided-4140", "nitrided-nitralloy", "nitrided-chrome"
 ]
+
+
+#: Treatments whose sigma_FP no public text at hand repeats.
+RECALLED_ROOTS = frozenset({"carburized", "induction-hardened", "nitrided-chrome"})
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.errors import InputError
-from fegear.formulas.agma2101 import Service
+from fegear.formulas.agma2101 import HARD_CASES, Service
 from fegear.formulas.agma2101_factors import Mounting
-from fegear.formulas.agma2101_materials import AllowableStress, Treatment, allowable_stress
+from fegear.formulas.agma2101_materials import RECALLED_ROOTS, AllowableStress, Treatment, allowable_stress
 from fegear.formulas.iso6336.part5_materials import BRINELL, HRC_30
 
 if TYPE_CHECKING:
@@ -39,6 +39,8 @@ _HIGHEST = {
 _LEVELS, _LONGEST = (6, 12), 1e10
 #: R_z of a flank over its R_a.
 _RZ_PER_RA = 6.0
+#: Reliabilities between which no printed Y_Z was at hand.
+_ABOVE_MEDIAN, _USUAL_TABLE = 0.5, 0.9
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,10 @@ def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tup
             )
             return None, (f"Pair {asked.name}: AGMA 2101 is not asked: {why} (gear {gear}, {strength.material}).",)
         allowed.append(found.reversed_bending if asked.stress_ratio[i] < 0.0 else found)
+    if allowed[1].treatment == "through-hardened" and allowed[0].treatment in HARD_CASES:
+        said.append(f"Pair {asked.name}: Z_W of AGMA 2101 of a through-hardened wheel on a hard pinion is recalled.")
+    if _ABOVE_MEDIAN < scene.case.rating.reliability < _USUAL_TABLE:
+        said.append(f"Pair {asked.name}: Y_Z of AGMA 2101 between reliabilities of .5 and .9 is recalled.")
     shafts, grade = part.shafts, max(one.grade for one in asked.conditions.quality)
     level = min(max(grade, _LEVELS[0]), _LEVELS[1])
     offset = shafts.offset / shafts.bearing_span if shafts and shafts.bearing_span else 0.0
@@ -113,4 +119,10 @@ def _allowed(strength: StrengthPart, gear: str, said: list[str]) -> AllowableStr
         hardness = strength.core_hardness or HRC_30
         if strength.core_hardness is None:
             said.append(f"Gear {gear}: AGMA 2101 takes a core of {HRC_30 * BRINELL:.0f} HBW (core_hardness).")
-    return allowable_stress(treatment, 1 if grade == 1 else 2 if grade == 2 else 3, hardness * BRINELL)
+    found = allowable_stress(treatment, 1 if grade == 1 else 2 if grade == 2 else 3, hardness * BRINELL)
+    if treatment in RECALLED_ROOTS:
+        said.append(
+            f"Gear {gear}: sigma_FP = {found.bending * 1e-6:.4g} MPa of {treatment} roots by AGMA 2101 is recalled "
+            "from memory: no printed source was at hand."
+        )
+    return found

@@ -84,7 +84,7 @@ def test_lines_are_whole_and_go_on_where_they_meet(key):
     for hardness in np.linspace(some[0].lowest, some[-1].highest, 7):
         found = allowable(*key, float(hardness))
         assert found.row in {law.row for law in some}
-        assert not found.remark or "core" in found.remark
+        assert not found.remark or "core" in found.remark or "not found in print" in found.remark
 
 
 @pytest.mark.parametrize("key", EVERY)

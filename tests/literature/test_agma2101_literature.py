@@ -248,3 +248,22 @@ def test_laws_of_the_factors():
 def test_outside_says_why(call, words):
     with pytest.raises(RangeError, match=words):
         call()
+
+
+#: Table 3 of ANSI/AGMA 2001-D04 as engineersedge.com repeats it (AGMA Allowable Contact Stress): s_ac [ksi] by grade.
+ALLOWABLE_CONTACT = {
+    "carburized": (180, 225, 275),
+    "induction-hardened": (175, 195),
+    "nitrided-4140": (155, 168),
+    "nitrided-nitralloy": (170, 183),
+    "nitrided-chrome": (155, 172, 189),
+}
+
+
+@pytest.mark.parametrize("treatment", ALLOWABLE_CONTACT)
+def test_allowable_contact_stresses_of_cases_are_those_of_the_table(treatment):
+    for grade, printed_ksi in enumerate(ALLOWABLE_CONTACT[treatment], 1):
+        found = allowable_stress(treatment, grade, 300.0).contact
+        assert found / 1e6 == pytest.approx(
+            printed_ksi * 1e3 * PSI / 1e6, abs=2.6
+        )  # the metric edition rounds to 5 MPa

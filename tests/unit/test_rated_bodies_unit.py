@@ -232,3 +232,16 @@ def test_recalled_factors_of_the_root_are_said():
     assert any("Y_deltarelT: that of static strength of V" in text for text in few)
     _, many = rated("rating_spur", "pair.I.operation={load_cycles=1e8}", "pair.I.torque='100 N*m'", *soft)
     assert not any("static strength of V" in text for text in many)
+
+
+def test_recalled_numbers_of_materials_are_said():
+    found, _ = outcome_of("rating.beside='agma-2101'")
+    assert any("sigma_FP = 450 MPa of carburized roots by AGMA 2101 is recalled" in text for text in found.remarks)
+    soft = "gear.pinion.strength={material='nitrocarburized-steel', hardness='600 HV'}"
+    _, said = rated("rating_spur", PLAIN, soft)
+    assert any("the level of 950 MPa above 450 HV was not found in print" in text for text in said)
+    wheel = "gear.wheel.strength={material='through-hardened-alloy-steel', hardness='300 HV'}"
+    mixed, _ = outcome_of("rating.beside='agma-2101'", wheel, "rating.reliability=0.7")
+    assert any("Z_W of AGMA 2101 of a through-hardened wheel on a hard pinion is recalled" in t for t in mixed.remarks)
+    assert any("Y_Z of AGMA 2101 between reliabilities of .5 and .9 is recalled" in t for t in mixed.remarks)
+    assert not any("Z_W of AGMA" in t or "Y_Z of AGMA" in t for t in found.remarks)

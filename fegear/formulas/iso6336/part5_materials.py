@@ -55,6 +55,10 @@ MATERIALS: Mapping[str, Group] = MappingProxyType(
 _LAWS_OF = {"ferritic-nodular-iron": "nodular-iron"}
 
 
+#: Rows of the table that are levels at which another row ends, and stand in no text at hand.
+_NOT_IN_PRINT = frozenset({70, 73})
+
+
 @dataclass(frozen=True, slots=True)
 class Law:
     """One row of table 1: sigma = slope x + level.
@@ -183,6 +187,9 @@ def allowable(
     if known > law.highest * (1.0 + _CONVERSION):
         end = f"{known:.4g} HV is above the range of ISO 6336-5, whose end at {law.highest:.4g} HV was taken"
         remark = "; ".join(one for one in (remark, end) if one)
+    if law.row in _NOT_IN_PRINT:
+        level = f"the level of {law.level * 1e-6:.4g} MPa above {law.lowest:.4g} HV was not found in print"
+        remark = "; ".join(one for one in (remark, level) if one)
     return Allowable(law.at(min(known, law.highest)), law.row, remark)
 
 
