@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from fegear.results.loaded_flanks import LoadedFlanksData
 
 
+#: K_Hbeta above this part of the largest that its averaging allows is remarked on.
+_OF_MOST = 0.5
 #: Values that other results have too, and then they alone.
 _ALSO_OF = {
     "transmission-error": ("te_mean", "te_peak_to_peak"),
@@ -127,7 +129,7 @@ def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
     pressure = found.pressure[:, :, i]
     inner = np.where(lines.at_edge, 0.0, pressure)
     p, s = np.unravel_index(int(inner.argmax()), inner.shape)
-    k_error = float(data.error.face_load_factor[i])
+    k_error, cells = float(data.error.face_load_factor[i]), found.cells.size - 1
     where = f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
     values: tuple[Value, ...] = (
         Value(f"{name}.te_mean", float(found.mean_transmission_error[i]), "um", float(data.error.mean[i]),
@@ -135,7 +137,8 @@ def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
         Value(f"{name}.te_peak_to_peak", float(np.ptp(te)), "um", float(data.error.peak_to_peak[i]),
               "of the transmission error over the roll positions"),
         Value(f"{name}.K_Hbeta", float(found.face_load_factor[i]), "", k_error,
-              "largest load per face width over the mean one, averaged over a base pitch"),
+              f"largest load per face width over the mean one, averaged over a base pitch and over 1/{cells} of the "
+              f"face: at most {cells}"),
         Value(f"{name}.largest_line_load", float(found.largest_line_load[i]), "N/mm",
               float(data.error.largest_line_load[i]),
               "on one contact line, tips and form circles left out"),
@@ -184,7 +187,21 @@ def _remarks(name: str, data: LoadedFlanksData) -> list[str]:
     active = (found.contact.force[:, :, i] > 0.0).sum() / lines.present.sum()
     if active < 1.0:
         remarks.append(f"Pair {name}: {1.0 - active:.1%} of the stations on the contact lines do not touch.")
-    return remarks
+    return [*remarks, *limit_remarks(name, found, i)]
+
+
+def limit_remarks(name: str, found: LoadedFlanks, i: int) -> tuple[str, ...]:
+    """Where a load stands on so little of the face that the averaging of K_Hbeta bounds it."""
+    largest, most = float(found.face_load_factor[i]), found.cells.size - 1
+    if largest < _OF_MOST * most:
+        return ()
+    width = float(found.cells[1] - found.cells[0])
+    said = (
+        f"Pair {name}: K_Hbeta is {largest:.4g}, and cannot exceed {most}: loads per face width are averaged over "
+        f"{width * 1e3:.4g} mm of it, half a module or less, and all of the load may stand on so little. A larger "
+        "misalignment or crown shows in largest_line_load and largest_hertz_pressure, not in K_Hbeta."
+    )
+    return (said,)
 
 
 def distributed_pairs(scene: Scene) -> tuple[str, ...]:

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 #: Widest and narrowest face that is solved [modules]: wider ones take polynomials of a degree and matrices of a size
 #: beyond reason, on narrower ones no contact has room.
 _WIDEST, _NARROWEST = 60.0, 0.2
+#: Of a width that is a length over a module: .6 mm of 3 mm is .2 modules.
+_ROUND_OFF = 1e-9
 #: Steepest helix at the tip [rad]: the flank runs along the tooth no longer.
 _STEEPEST = math.radians(60.0)
 #: Highest degree along the face.
@@ -37,9 +39,9 @@ def check_solid(
     ------
     RangeError
     """
-    if not _NARROWEST <= width <= _WIDEST:
+    if not (1.0 - _ROUND_OFF) * _NARROWEST <= width <= (1.0 + _ROUND_OFF) * _WIDEST:
         raise RangeError(
-            "face_width", f"{width:.6g} modules", f"must lie between {_NARROWEST:g} and {_WIDEST:g} modules",
+            "face_width", f"{width:.12g} modules", f"must lie between {_NARROWEST:g} and {_WIDEST:g} modules",
             "treat a narrower gear as plane, and shorten a wider one to the part that carries the load",
         )  # fmt: skip
     steepest = math.tan(_STEEPEST) / section.tip_radius
