@@ -12,6 +12,8 @@ NOTEBOOK_EXTRA = "install it with: pip install 'fegear[notebook]'"
 _SHOWN = 60
 #: Most characters of a path that a message repeats: its end counts as much as its beginning.
 PATH = 300
+#: Most characters of a value, or of a rule that repeats one.
+_LONGEST = 1000
 
 
 def shown(value: object, most: int = _SHOWN) -> str:
@@ -20,10 +22,13 @@ def shown(value: object, most: int = _SHOWN) -> str:
         text = value if isinstance(value, str) else repr(value)
     except ValueError:  # a whole number of thousands of digits
         text = f"(a {type(value).__name__} that cannot be written)"
-    if len(text) > most:
-        text = f"{text[:most]}..."
-    text = "".join(sign if sign.isprintable() else " " for sign in text)
+    text = _one_line(text, most)
     return f'"{text}"' if isinstance(value, str) else text
+
+
+def _one_line(text: str, most: int) -> str:
+    cut = text if len(text) <= most else f"{text[:most]}..."
+    return "".join(sign if sign.isprintable() else " " for sign in cut)
 
 
 def lacks_memory(problem: BaseException) -> bool:
@@ -55,7 +60,9 @@ class InputError(FegearError):
 
     def __init__(self, key: str, value: object, rule: str, remedy: str = "") -> None:
         self.key, self.value, self.rule, self.remedy = key, value, rule, remedy
-        super().__init__(f"{key} = {value}: {rule}" + (f"; {remedy}" if remedy else "") + ".")
+        # Names and values are the user's: whatever they are, the sentence stays one, on one line.
+        said = f"{_one_line(key, PATH)} = {_one_line(str(value), _LONGEST)}: {_one_line(rule, _LONGEST)}"
+        super().__init__(said + (f"; {remedy}" if remedy else "") + ".")
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str, str]]:
         """Rebuild from the four parts, so that the error crosses process boundaries."""

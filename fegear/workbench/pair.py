@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from fegear.case.reading import build_scene
-from fegear.errors import InputError
+from fegear.errors import InputError, shown
 from fegear.results.root_stress_history import table_names
 from fegear.solution_cache import SolutionCache
 from fegear.workbench.gear import Gear
@@ -71,7 +71,7 @@ class Pair:
     ) -> None:
         for role, gear in (("driver", driver), ("driven", driven)):
             if not isinstance(gear, Gear):
-                raise InputError(role, repr(gear), "is no fegear.Gear", f'write {role} = fegear.Gear(20, "3 mm")')
+                raise InputError(role, shown(gear), "is no fegear.Gear", f'write {role} = fegear.Gear(20, "3 mm")')
         self.driver, self.driven = driver, driven
         self.name = name_of(name)
         source = {"source": compliance} if isinstance(compliance, str) else table(compliance, "compliance")

@@ -79,8 +79,8 @@ class Plots:
         """
         from fegear.output.draw_png import draw_pictures
 
-        if kind not in ("png", "svg"):
-            raise InputError("kind", f'"{kind}"', "is no kind of picture that fegear draws", 'choose "png" or "svg"')
+        if not isinstance(kind, str) or kind not in ("png", "svg"):
+            raise InputError("kind", shown(kind), "is no kind of picture that fegear draws", 'choose "png" or "svg"')
         target = folder_of(folder)
         try:
             target.mkdir(parents=True, exist_ok=True)

@@ -80,7 +80,7 @@ def _loaded(
 ) -> dict[str, Any]:
     """The pair's document under its load or loads, along the line of action."""
     if not isinstance(pair, Pair):
-        raise InputError("pair", repr(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
+        raise InputError("pair", shown(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
     if not pair.is_spur:
         raise InputError(
             "pair", f'"{pair.name}"', "is helical, and loaded teeth are computed for spur pairs",
@@ -290,9 +290,9 @@ def dynamic_factor(
     Results
         Table ``dynamic_factor_<pair>``, values ``<pair>.largest_dynamic_factor``, ``<pair>.speed_of_largest``.
     """
+    document = _loaded(pair, torque, None)
     driver, driven = pair.names
     ratio = DAMPING_RATIO if damping_ratio is None else damping_ratio
-    document = _loaded(pair, torque, None)
     document["train"] = table(train, "train") if train is not None else {
         "body": {"driver": {"gears": [driver]}, "driven": {"gears": [driven]}},
         "mesh": {pair.name: {"driver": "driver", "driven": "driven", "damping_ratio": ratio}},

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fegear.errors import InputError
+from fegear.errors import InputError, shown
 from fegear.workbench.given import texts
 from fegear.workbench.pair import Pair
 from fegear.workbench.questions import ask_of_pair
@@ -54,7 +54,7 @@ def rating(
         Tables ``rating_<pair>``, ``rating_safety_<pair>``, values ``<pair>.driver.S_H``, ``<pair>.driver.S_F``, ...
     """
     if not isinstance(pair, Pair):
-        raise InputError("pair", repr(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
+        raise InputError("pair", shown(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
     if (torque is None) == (load is None):
         raise InputError(
             "torque", "(not given)" if torque is None else "(given)", "must be given, or load instead",
