@@ -77,10 +77,8 @@ def _present_modes(known: ModesData, asked: SpeedsInputs) -> Outcome:
         Column(f"energy_{mesh.name}", found.mesh_energy[:, m], "", "share of the mode's strain energy in this mesh")
         for m, mesh in enumerate(train.meshes)
     ]
-    columns += [
-        Column(f"shape_{body.name}", found.shapes[train.dof[body.name]], "", "rotation angle for unit modal mass")
-        for body in train.bodies
-    ]
+    turned = "rotation angle for unit modal mass [rad/(kg^0.5 m)]"
+    columns += [Column(f"shape_{body.name}", found.shapes[train.dof[body.name]], "", turned) for body in train.bodies]
     tables = [Table("natural_modes", tuple(columns), "Natural frequencies and mode shapes")]
     if diagram is not None:
         rows = [

@@ -1,0 +1,219 @@
+"""Laws that tie two runs of a case to each other: other units of measurement, names, orders and spellings of one thing.
+
+Mechanics knows no units: scaling the units of length, mass and time (a gear twice as large, of another steel under
+another load, in slow motion) scales every number of a run by what its own unit says. What a gear is called, in which
+order a case file lists its keys, and whether a default is written out, changes nothing.
+"""
+
+import copy
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from solved_once import CACHE
+
+import fegear
+from fegear.case.part import _number
+from fegear.case.reading import build_scene
+from fegear.units import quantity, registry
+
+CASES = Path(__file__).parents[2] / "cases"
+EVERY = sorted(path.stem for path in CASES.glob("*.toml"))
+#: A second or two each: a table of one gear, a plane pair, unloaded helical contact, modes and transmissibility.
+ORDINARY = ("thin_rim", "pinion_and_wheel", "litvin_lead", "blankenship_singh")
+SAME = 1e-9
+#: Why numbers of a case keep a scale of their own.
+OWN_SCALE = {
+    "four_square_dynamics": "its compliance stands in a file", "four_square_minimum_excitation": "so do its reliefs",
+    "mark_minimum_excitation": "its compliance stands in a file", "mark_tip_relief": "its compliance stands in a file",
+    "rating_spur": "ISO 6336 has formulas in N and mm", "rating_helical": "ISO 6336 has formulas in N and mm",
+    "surface_and_loss": "formulas of oil and friction in m/s and mPa.s", "robust_pair": "ISO 1328 has formulas in mm",
+}  # fmt: skip
+_QUANTITY = re.compile(r"[+-]?\d+(\.\d+)?([eE][+-]?\d+)?\s*[A-Za-z/*(]")
+
+
+def case(name):
+    return tomllib.loads((CASES / f"{name}.toml").read_text("utf-8"))
+
+
+def changed(node, text=lambda one: one, key=lambda _path, one: one, path=()):
+    """A copy of a document with other texts and keys."""
+    if isinstance(node, dict):
+        return {key(path, k): changed(v, text, key, (*path, k)) for k, v in node.items()}
+    if isinstance(node, list):
+        return [changed(v, text, key, path) for v in node]
+    return text(node) if isinstance(node, str) else copy.copy(node)
+
+
+def dimensions(q):
+    """Exponents of length, mass and time."""
+    return tuple(float(q.dimensionality.get(f"[{one}]", 0.0)) for one in ("length", "mass", "time"))
+
+
+def with_steel(document):
+    """The same document with the steel that it assumes written out, so that it can be scaled."""
+    steel = {"young_modulus": "206.8 GPa", "density": "7850 kg/m^3"}
+    for gear in document.get("gear", {}).values():
+        gear["material"] = steel | gear.get("material", {})
+    for shaft in document.get("train", {}).get("shaft", {}).values():
+        if "diameter" in shaft:
+            shaft.setdefault("shear_modulus", "79.5 GPa")
+    return document
+
+
+def rescaled(text, scales):
+    """A quantity with other units of length, mass and time; another text as it is."""
+    if not _QUANTITY.match(text) or "deg" in text:
+        return text
+    try:
+        q = registry().Quantity(text).to_base_units()
+    except Exception:  # noqa: BLE001  (a text that only looks like a quantity)
+        return text
+    powers = dimensions(q)
+    if not any(powers):
+        return text
+    factor = np.prod([scale**power for scale, power in zip(scales, powers, strict=True)])
+    return f"{float(q.magnitude * factor)!r} {q.units:~}"
+
+
+def ran(document, monkeypatch):
+    monkeypatch.chdir(CASES)
+    return fegear.run(document, progress=False, cache=CACHE)
+
+
+def columns(results, names=lambda one: one):
+    """All numbers by name: values in SI, unit, and the largest magnitude in that unit nearby."""
+    found = {}
+    for table in results.tables:
+        numeric = [
+            c for c in table.columns if c.si.dtype.kind in "fiu" and "seconds" not in c.name and c.unit != "s_cpu"
+        ]
+        for c in numeric:
+            alike = [np.abs(d.si[np.isfinite(d.si)]).max(initial=0.0) for d in numeric if d.unit == c.unit]
+            values = np.asarray(c.si, dtype=float)
+            if c.name.startswith("shape_"):  # of a mode, which may as well be turned by half a period
+                values = np.abs(values)
+            found[names(f"{table.name}.{c.name}")] = values, c.unit, max(alike)
+    sizes = {}
+    for v in results.values:
+        sizes[v.unit] = max(sizes.get(v.unit, 0.0), abs(v.si))
+    for v in results.values:
+        found[names(v.name)] = np.array([v.si]), v.unit, max(abs(v.si), 1e-3 * sizes[v.unit])
+    return found
+
+
+def assert_same(one, other, scales=(1.0, 1.0, 1.0), names=lambda name: name):
+    a, b = columns(one), columns(other, names)
+    assert a.keys() == b.keys()
+    differing = {}
+    for name, (x, unit, size) in a.items():
+        powers = dimensions(quantity(1.0, unit)) if unit else (0.0,) * 3
+        if ".shape_" in name:  # rotation angle for unit modal mass
+            powers = -1.0, -0.5, 0.0
+        factor = float(np.prod([scale**power for scale, power in zip(scales, powers, strict=True)]))
+        y = b[name][0] / factor
+        assert y.shape == x.shape, name
+        same = (x == y) | (np.isnan(x) & np.isnan(y))
+        off = np.where(same, 0.0, np.abs(x - y)) / (size or 1.0)
+        if not off.max(initial=0.0) <= SAME:
+            differing[name] = float(off.max())
+    assert not differing
+
+
+def cases(*without):
+    return [
+        pytest.param(name, marks=[] if name in ORDINARY else pytest.mark.long) for name in EVERY if name not in without
+    ]
+
+
+@pytest.mark.parametrize("name", cases(*OWN_SCALE))
+def test_mechanics_knows_no_units_of_length_mass_and_time(name, monkeypatch):
+    scales = 1.3, 1.9, 0.8
+    document = with_steel(case(name))
+    scaled = changed(document, lambda text: rescaled(text, scales))
+    assert_same(ran(document, monkeypatch), ran(scaled, monkeypatch), scales)
+
+
+@pytest.mark.parametrize("name", cases())
+def test_names_of_gears_change_nothing(name, monkeypatch):
+    document = case(name)
+    new = {old: f"Rädchen{'αβγδ'[i]}轮" for i, old in enumerate(document.get("gear", {}))}
+    back = {v: k for k, v in new.items()}
+
+    def key(path, one):
+        named = path in {("gear",), ("train", "body"), ("train", "torque")}
+        return new.get(one, one) if named else one
+
+    other = changed(document, lambda text: new.get(text, text), key)
+    other |= {k: document[k] for k in ("title", "results") if k in document}
+
+    def names(one):
+        for k, v in back.items():
+            one = one.replace(k, v)
+        return one
+
+    assert_same(ran(document, monkeypatch), ran(other, monkeypatch), names=names)
+
+
+def reversed_keys(node):
+    if isinstance(node, dict):
+        return {k: reversed_keys(v) for k, v in reversed(node.items())}
+    return [reversed_keys(v) for v in node] if isinstance(node, list) else node
+
+
+@pytest.mark.parametrize("name", cases())
+def test_the_order_of_keys_changes_nothing(name, monkeypatch):
+    document = case(name)
+    assert_same(ran(document, monkeypatch), ran(reversed_keys(document), monkeypatch))
+
+
+def with_defaults(part, table):
+    """A table of a case with the plain defaults of its model written out."""
+    written = dict(table)
+    for key, field in type(part).model_fields.items():
+        value = getattr(part, key)
+        if key in written:
+            if isinstance(written[key], dict) and hasattr(type(value), "model_fields"):
+                written[key] = with_defaults(value, written[key])
+            elif isinstance(value, dict) and isinstance(written[key], dict):
+                written[key] = {
+                    k: with_defaults(value[k], v) if k in value and hasattr(type(value[k]), "model_fields") else v
+                    for k, v in written[key].items()
+                }
+            continue
+        readers = [getattr(one, "func", None) for one in field.metadata if type(one).__name__ == "BeforeValidator"]
+        plain = isinstance(field.default, (bool, int, float, str)) and all(one is _number for one in readers)
+        solid = "helix_angle" in table and key in {"plane", "tooth_mesh_fillet"}  # which solid gears do without
+        if plain and not solid:
+            written[key] = field.default
+    return written
+
+
+@pytest.mark.parametrize("name", cases())
+def test_defaults_that_are_written_out_change_nothing(name, monkeypatch):
+    document = case(name)
+    written = with_defaults(build_scene(document, name, CASES).case, document)
+    assert json.dumps(written) != json.dumps(document)
+    assert_same(ran(document, monkeypatch), ran(written, monkeypatch))
+
+
+@pytest.mark.parametrize("name", ["pinion_and_wheel", "calculix_pair", "high_contact_ratio"])
+def test_driver_and_driven_that_change_places_leave_error_and_stiffness(name, monkeypatch):
+    document = case(name)
+    document["results"] = ["transmission-error"]
+    (pair,) = document["pair"].values()
+    if "torque" in pair:  # on the driver: another load where the driver is another gear
+        del pair["torque"]
+        pair["load"] = "3000 N"
+    swapped = copy.deepcopy(document)
+    (turned,) = swapped["pair"].values()
+    turned["driver"], turned["driven"] = pair["driven"], pair["driver"]
+    one, other = ran(document, monkeypatch), ran(swapped, monkeypatch)
+    for quantity_ in ("te_mean", "te_peak_to_peak", "mean_mesh_stiffness"):
+        alike = [v.name for v in one.values if v.name.endswith(quantity_)]
+        for value in alike:
+            assert other.values[value].si == pytest.approx(one.values[value].si, rel=1e-9)
+    assert any(v.name.endswith("te_mean") for v in one.values)
