@@ -23,7 +23,7 @@ from fegear.units import quantity, registry
 CASES = Path(__file__).parents[2] / "cases"
 EVERY = sorted(path.stem for path in CASES.glob("*.toml"))
 #: A second or two each: a table of one gear, a plane pair, unloaded helical contact, modes and transmissibility.
-ORDINARY = ("thin_rim", "pinion_and_wheel", "litvin_lead", "blankenship_singh")
+ORDINARY = ("pinion_and_wheel", "litvin_lead", "blankenship_singh")
 SAME = 1e-9
 #: Why numbers of a case keep a scale of their own.
 OWN_SCALE = {
