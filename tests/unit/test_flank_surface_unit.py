@@ -227,3 +227,21 @@ def test_losses_under_every_load_are_those_of_each_load_alone():
     assert (np.diff(table["mean_friction"]) > 0.0).all()  # as load to the fifth root
     assert table["mean_friction"][2] / table["mean_friction"][0] == pytest.approx((8000.0 / 500.0) ** 0.2, rel=1e-9)
     assert table["tooth_loss"][1] == pytest.approx(alone["tooth_loss"], rel=1e-9)
+
+
+def test_a_helical_pair_shares_the_load_as_its_overlap_says():
+    """X_Y of ISO/TS 6336-22 over the path: spur teeth's trapezium without buttressed ends was taken for any helix."""
+    gear = {"module": None, "normal_module": "3 mm", "helix_angle": "15 deg", "face_width": "24 mm"}
+    asked = case("flank-surface", gear=gear, width="slices", compliance=None)
+    asked["gear"]["a"]["hand"], asked["gear"]["b"]["hand"] = "left", "right"
+    asked["accuracy"] = {"tolerance": 1e-2}
+    found = run(asked, progress=False)
+    pair, path = found.scene.pairs["I"], columns(found, "flank_surface_I")
+    peak = 1.0 + 0.3 * pair.overlap_ratio
+    assert pair.overlap_ratio < 0.8
+    near = (path["x"][0] - pair.x_start) / (pair.x_end - pair.base_pitch - pair.x_start)
+    assert path["load_sharing_iso"][0] == pytest.approx(peak * (1.0 + near) / 3.0, rel=0.01)
+    assert path["load_sharing_iso"].max() == pytest.approx(1.0)
+    ratio = path["hertz_pressure_iso"] / path["hertz_pressure_nominal_iso"]
+    assert ratio == pytest.approx(1.0)  # no load factors in this case
+    assert any("overlap ratio of 0.659" in text for text in found.remarks)
