@@ -24,7 +24,7 @@ def assumed_of_pair(scene: Scene, name: str, said: list[str]) -> None:
         if made.tooth.undercut and not made.tooth.rack.residual_undercut:
             said.append(
                 f"Gear {gear}: its root is undercut up to {2e3 * made.form_radius:.5g} mm of diameter; ISO 6336 is for "
-                "gears without undercut, and its factors count the involute as whole (profile_shift)."
+                "gears without undercut, and of its factors the contact ratio alone counts it (profile_shift)."
             )
     if pair.normal_backlash < 0.0:
         said.append(
