@@ -16,6 +16,7 @@ import numpy as np
 from fegear.case.reading import read_scene
 from fegear.contact.flank import FlankPair
 from fegear.contact.flank.error import flank_error
+from fegear.contact.flank.over_pitch import over_pitch
 from fegear.models.loaded_flanks import flanks_to_load
 from fegear.models.solid_influence import solid_settings_of
 from fegear.one_thread import one_thread
@@ -64,7 +65,7 @@ def main() -> None:
         clock.lap()
         known = flanks.compliance(load)
         found = flanks.solve(np.array(asked.loads) * load / asked.nominal, gaps, known)
-        flank_error(flanks, found, coarse, gaps)
+        flank_error(flanks, found, coarse, gaps, over_pitch(flanks, found, gaps, load), load)
         print(f"compliances, contact and error, {title}: {clock.lap():.3f} s")
     nominal = asked.loads.index(asked.nominal)
     print("body                         gears  lines  contact  te mean  peak to peak  K_Hbeta   [s, um]")

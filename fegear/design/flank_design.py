@@ -10,8 +10,9 @@ import numpy as np
 from fegear.contact.flank import flank_compliance
 from fegear.design.flank_forms import GroundRelief
 from fegear.design.flank_grid import FAMILIES, held_by, usual_grid
-from fegear.design.flank_scatter import NOMINAL, Scatter
-from fegear.design.flank_search import best_of_family, led_on
+from fegear.design.flank_judge import SEARCHED, flank_judge
+from fegear.design.flank_scatter import Scatter
+from fegear.design.flank_search import best_of_family, led_on, settled
 from fegear.design.flank_topography import (
     design_force,
     design_lines,
@@ -21,7 +22,7 @@ from fegear.design.flank_topography import (
     tabulated,
     topography,
 )
-from fegear.design.flank_trials import FlankTrials, Tried
+from fegear.design.flank_trials import FlankTrials
 from fegear.frozen import ReadOnlyArrays
 from fegear.one_thread import one_thread
 
@@ -32,10 +33,14 @@ if TYPE_CHECKING:
     from fegear.contact.flank import FlankCompliance, FlankGaps, FlankPair
     from fegear.contact.flank.lines import ContactLines
     from fegear.design.flank_grid import Family, ReliefGrid
+    from fegear.design.flank_judge import FlankJudge, Judged
     from fegear.design.flank_loading import FlankLoading
     from fegear.design.flank_search import FamilyBest
     from fegear.design.flank_topography import StationRelief
+    from fegear.design.flank_trials import Tried
+    from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.flank_modification import Topography
+    from fegear.geometry.pair import Member
 
 UNRELIEVED, EXACT, ROBUST = "no relief", "exact topography", "robust"
 
@@ -58,6 +63,8 @@ class FlankDesignTask:
         Largest K_Hbeta that ground reliefs may have at those loads.
     scatter : Scatter
         Of the misalignment, over which the robust relief is chosen.
+    deviation : float
+        Its standard deviation, as gap over the face [m].
     positions : int
         Roll positions over a base pitch.
     map_over_face, map_loads : tuple of float
@@ -71,6 +78,7 @@ class FlankDesignTask:
     grid: ReliefGrid | None
     most_factor: float
     scatter: Scatter
+    deviation: float
     positions: int
     map_over_face: tuple[float, ...]
     map_loads: tuple[float, ...]
@@ -86,13 +94,9 @@ class FlankState(ReadOnlyArrays):
     relief : GroundRelief or None
         None for the exact topography.
     te : ndarray, shape (P,)
-        Transmission error at the roll positions of the pair's other results, which the topography has not seen [m].
-    peak_to_peak, peak_to_peak_error : float
-        The larger of that over these positions and over those of the design, and by how much they differ [m].
-    face_load_factor, pressure : float
-        K_Hbeta, and the largest Hertzian pressure away from tips and form circles [Pa].
-    scattered : Tried
-        Over the misalignments of the scatter, at the design load.
+        Transmission error at the roll positions of the pair's other results [m].
+    judged : Judged
+        What it leaves, with errors.
     mapped : Tried
         Over the misalignments and loads of the maps.
     """
@@ -100,11 +104,7 @@ class FlankState(ReadOnlyArrays):
     label: str
     relief: GroundRelief | None
     te: Array
-    peak_to_peak: float
-    peak_to_peak_error: float
-    face_load_factor: float
-    pressure: float
-    scattered: Tried
+    judged: Judged
     mapped: Tried
 
 
@@ -158,11 +158,12 @@ class FlankDesign(ReadOnlyArrays):
     def best(self) -> FlankState:
         """What can be ground and leaves the least at the design load, aligned as given."""
         return min((s for s in self.states if s.label in self.found and s.label != ROBUST),
-                   key=lambda s: self.found[s.label].value)  # fmt: skip
+                   key=lambda s: s.judged.peak_to_peak.value)  # fmt: skip
 
 
 def design_flanks(
     flanks: FlankPair,
+    coarse: Mapping[Member, FlankBody],
     known: FlankCompliance,
     apart: FlankGaps,
     task: FlankDesignTask,
@@ -173,8 +174,10 @@ def design_flanks(
     Parameters
     ----------
     flanks : FlankPair
+    coarse : mapping of {"driver", "driven"} to FlankBody
+        The gears' coarser solutions, for errors.
     known : FlankCompliance
-        Of the roll positions at which reliefs to grind are tried and the exact topography is checked.
+        Of the roll positions of the pair's other results, at which all combinations of a grid are tried.
     apart : FlankGaps
         What keeps the flanks apart besides the relief: misalignment that is known.
     task : FlankDesignTask
@@ -187,7 +190,8 @@ def design_flanks(
     """
     report = progress or (lambda _fraction: None)
     pair = flanks.pair
-    lines = design_lines(pair, task.loading, task.positions, flanks.panel * pair.driver.module)
+    panel = flanks.panel * pair.driver.module
+    lines = design_lines(pair, task.loading, task.positions, panel)
 
     def compliance_at(lines: ContactLines) -> FlankCompliance:
         with one_thread():
@@ -204,60 +208,61 @@ def design_flanks(
     table = topography(pair, "driver", x, z, removal)
     grid = task.grid or usual_grid(float(np.ptp(removal)), pair.path_length, pair.face_width, pair.base_pitch)
     # What is ground leaves most where contact lines begin and end, where the positions of the other results stand, and
-    # may leave as much between few of them: it is chosen by both.
+    # may leave as much between few of them: it is chosen by both, and led on at more of them.
     scan = FlankTrials(pair, known, apart.at(pair, known.lines), np.array(task.loads))
     force = design_force(known.lines, task.loading, task.load)
-    roll = np.mod(np.concatenate([known.lines.roll, lines.roll]) - pair.x_start, pair.base_pitch) + pair.x_start
-    dense = lines_at(pair, np.unique(roll), flanks.panel * pair.driver.module)
-    trials = FlankTrials(pair, compliance_at(dense), apart.at(pair, dense), scan.loads)
+
+    def trials_at(roll: Array) -> FlankTrials:
+        lines = lines_at(pair, np.unique(np.mod(roll - pair.x_start, pair.base_pitch) + pair.x_start), panel)
+        return FlankTrials(pair, compliance_at(lines), apart.at(pair, lines), scan.loads)
+
+    trials = trials_at(np.concatenate([known.lines.roll, lines.roll]))
+    even = pair.x_start + pair.base_pitch * (np.arange(SEARCHED) + 0.5) / SEARCHED
+    closer = trials_at(np.concatenate([known.lines.roll, even]))
     found: dict[str, FamilyBest] = {}
     wanted = [family for family in FAMILIES if family in task.families]
     for number, family in enumerate(wanted):
         starts = [found[held].relief for held in held_by(family) if held in found]
-        found[family] = best_of_family(trials, family, grid, force, task.most_factor, starts, scan)
+        best = best_of_family(trials, family, grid, force, task.most_factor, starts, scan)
+        found[family] = settled(closer, best, grid, starts, task.most_factor)
         report(0.3 + 0.4 * (number + 1) / len(wanted))
     if wanted and task.scatter.over_face.size > 1:
-        scattered = replace(trials, scatter=task.scatter)
         starts = [one.relief for one in found.values() if one.family in (*held_by(wanted[-1]), wanted[-1])]
-        found[ROBUST] = best_of_family(
-            scattered, wanted[-1], grid, force, task.most_factor, starts, replace(scan, scatter=task.scatter)
-        )
+        few, more, scattered = (replace(one, scatter=task.scatter) for one in (scan, closer, trials))
+        best = best_of_family(scattered, wanted[-1], grid, force, task.most_factor, starts, few)
+        found[ROBUST] = settled(more, best, grid, (), task.most_factor)
         # One start more: where scattered misalignment leads may be the better valley without it, too.
-        found[wanted[-1]] = led_on(trials, found[wanted[-1]], grid, found[ROBUST].relief, task.most_factor)
-    report(0.9)
-    trials = replace(scan, loads=np.array([task.load]))
-    designed = FlankTrials(pair, own, gap, trials.loads)
+        found[wanted[-1]] = led_on(closer, found[wanted[-1]], grid, found[ROBUST].relief, task.most_factor)
+    report(0.8)
     reliefs: dict[str, GroundRelief | Topography] = {
         UNRELIEVED: GroundRelief(),
         EXACT: table,
         **{label: one.relief for label, one in found.items()},
     }
-    states = tuple(_state(label, relief, trials, designed, task)
+    here = replace(scan, loads=np.array([task.load]))
+    judge = flank_judge(flanks, coarse, apart, task.load, task.deviation)
+    states = tuple(_state(label, relief, here, judge, task)
                    for label, relief in reliefs.items())  # fmt: skip
     return FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
 
 
 def _state(
-    label: str, relief: GroundRelief | Topography, trials: FlankTrials, designed: FlankTrials, task: FlankDesignTask
+    label: str, relief: GroundRelief | Topography, here: FlankTrials, judge: FlankJudge, task: FlankDesignTask
 ) -> FlankState:
-    """Evaluate a relief on both sets of roll positions, over the scatter and over the maps."""
+    """Judge a relief, and map what it leaves."""
 
     def gap(lines: ContactLines) -> Array:
         if isinstance(relief, GroundRelief):
-            removed = relief.removal(trials.pair, lines.x, lines.z)
+            removed = relief.removal(here.pair, lines.x, lines.z)
         else:
-            height = lines.z + trials.pair.face_height("driver")
-            removed = relief.removal(trials.pair.roll_angle(lines.x, "driver"), height)
+            height = lines.z + here.pair.face_height("driver")
+            removed = relief.removal(here.pair.roll_angle(lines.x, "driver"), height)
         return np.where(lines.present, removed, 0.0)
 
-    here = gap(trials.known.lines)
-    found, other = trials.of_gap(here), designed.of_gap(gap(designed.known.lines))
-    ripple = [float(one.peak_to_peak[0, 0]) for one in (found, other)]
     count = len(task.map_over_face)
     over = Scatter(np.array(task.map_over_face), np.full(count, 1.0 / count))
+    mapped = replace(judge.plain, scatter=over, loads=np.array(task.map_loads))
     return FlankState(
-        label, relief if isinstance(relief, GroundRelief) else None, found.te[0, :, 0], max(ripple),
-        abs(ripple[0] - ripple[1]), float(found.face_load_factor[0, 0]), float(found.pressure[0, 0]),
-        replace(trials, scatter=task.scatter).of_gap(here) if task.scatter is not NOMINAL else found,
-        replace(trials, scatter=over, loads=np.array(task.map_loads)).of_gap(here),
+        label, relief if isinstance(relief, GroundRelief) else None, here.of_gap(gap(here.known.lines)).te[0, :, 0],
+        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)),
     )  # fmt: skip

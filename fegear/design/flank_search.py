@@ -185,6 +185,28 @@ def led_on(
     return replace(best, relief=GroundRelief.of(at), value=value) if value < best.value else best
 
 
+def settled(
+    trials: FlankTrials, best: FamilyBest, grid: ReliefGrid, starts: Sequence[GroundRelief], most_factor: float = np.inf
+) -> FamilyBest:
+    """Lead what a search on few roll positions found on to a minimum of more of them; the best of all starts.
+
+    Parameters
+    ----------
+    trials : FlankTrials
+        At more roll positions.
+    best : FamilyBest
+    grid : ReliefGrid
+    starts : sequence of GroundRelief
+        Further starts, see `best_of_family`.
+    most_factor : float
+        Where the relief found keeps to it no more, it stays as it is.
+    """
+    found = replace(best, value=trials.value(trials.of_numbers(best.relief.numbers).peak_to_peak))
+    for start in (best.relief, *starts):
+        found = led_on(trials, found, grid, start, most_factor)
+    return found
+
+
 def _keeps(tried: Tried, most_factor: float) -> bool:
     return most_factor == np.inf or float(tried.face_load_factor.max()) <= most_factor
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.contact.flank.complementarity import approach_by_gap, hat_averages, solve_contact
 from fegear.contact.flank.loaded import LoadedFlanks
+from fegear.contact.flank.swept import swept_mean
 from fegear.design.flank_forms import FormsAt
 from fegear.design.flank_scatter import NOMINAL, Scatter
 from fegear.frozen import ReadOnlyArrays
@@ -47,8 +48,12 @@ class Tried(ReadOnlyArrays):
 
     @cached_property
     def face_load_factor(self) -> Array:
-        """K_Hbeta, shape (S, L)."""
-        return np.stack([one.face_load_factor for one in self.found])
+        """K_Hbeta, shape (S, L); all misalignments are swept over the face in one go."""
+        first = self.found[0]
+        loads = np.concatenate([one.line_load for one in self.found], axis=2)
+        over_face = swept_mean(first.lines, loads, first.cells, first.pair.base_pitch) / np.diff(first.cells)[:, None]
+        largest = over_face.max(axis=0).reshape(len(self.found), -1)
+        return np.asarray(largest / (first.load / (first.lines.high - first.lines.low)))
 
     @cached_property
     def pressure(self) -> Array:

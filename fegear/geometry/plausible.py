@@ -37,6 +37,8 @@ _LARGEST_SPACING_ERROR = 0.5
 _HEAVY_LOAD, _ABSURD_LOAD = 5e-3, 5e-2
 #: Young's modulus [Pa] that metals exceed; plastics carry larger shares of theirs.
 _METAL = 40e9
+#: Largest Hertzian pressure over Young's modulus that hardened flanks bear once: 4.2 GPa of steel (ISO 76).
+_HEAVY_PRESSURE = 0.02
 
 
 def is_of_pure_numbers(material: Material) -> bool:
@@ -181,13 +183,29 @@ def refuse_load(pair: GearPair, load: float) -> None:
         )  # fmt: skip
 
 
-def heavy_load(pair: GearPair, load: float) -> str:
-    """Sentence about a load along the line of action [N] that no metal carries; empty for others."""
-    metal = min(gear.material.young_modulus for gear in (pair.driver, pair.driven)) > _METAL
-    if not metal or _load_share(pair, load) <= _HEAVY_LOAD:
-        return ""
+def heavy_load(pair: GearPair, load: float, pressure: float = 0.0) -> str:
+    """Sentence about a load along the line of action [N], or a Hertzian pressure [Pa], that no metal carries; or empty.
+
+    Parameters
+    ----------
+    pair : GearPair
+    load : float
+        [N].
+    pressure : float
+        Largest on the flanks under it, where it is known [Pa].
+    """
+    stiff = min(gear.material.young_modulus for gear in (pair.driver, pair.driven))
     line_load = load / pair.face_width
-    return (
-        f"{line_load * 1e-3:.4g} N/mm are {line_load / pair.driver.module * 1e-6:.4g} MPa of load over face width and "
-        "module, some three times that at the root: no metal carries it. Check load and face_width."
-    )
+    if stiff <= _METAL:
+        return ""
+    if _load_share(pair, load) > _HEAVY_LOAD:
+        return (
+            f"{line_load * 1e-3:.4g} N/mm are {line_load / pair.driver.module * 1e-6:.4g} MPa of load over face width "
+            "and module, some three times that at the root: no metal carries it. Check load and face_width."
+        )
+    if pressure > _HEAVY_PRESSURE * stiff:
+        return (
+            f"under {load:.4g} N the largest Hertzian pressure is {pressure * 1e-6:.4g} MPa, under which the hardest "
+            "flanks of metal yield. Check the load, and crowning and misalignment."
+        )
+    return ""

@@ -124,18 +124,18 @@ def _left(name: str, data: FlankDesignData) -> Figure:
     states = design.states[::-1]
     place = np.arange(len(states), dtype=float)
     names = Axis(categories=tuple(s.label.replace("-", " ") for s in states))
-    ripple = np.array([s.peak_to_peak for s in states]) * 1e6
-    factor = np.array([s.face_load_factor for s in states])
+    ripple = np.array([s.judged.peak_to_peak.value for s in states]) * 1e6
+    factor = np.array([s.judged.face_load_factor.value for s in states])
     left = [Points(ripple, place, "aligned as given", "series:0", size=9)]
     shares = [Points(factor, place, "aligned as given", "series:0", size=9)]
     caption = f"Pair {name} at the design load: what each relief leaves of the transmission error, and K_Hβ."
     scatter = design.task.scatter
     if scatter.over_face.size > 1:
-        mean = np.array([float(scatter.weights @ s.scattered.peak_to_peak[:, 0]) for s in states]) * 1e6
+        mean = np.array([s.judged.mean_over_scatter.value for s in states]) * 1e6
         left.append(Points(mean, place, "mean over the scatter", "series:1", size=9))
-        worst = np.array([float(s.scattered.face_load_factor.max()) for s in states])
-        shares.append(Points(worst, place, "worst of the scatter", "series:3", size=9))
-        deviation = float(np.sqrt(scatter.weights @ scatter.over_face**2))
+        worst = np.array([s.judged.factor_over_scatter.value for s in states])
+        shares.append(Points(worst, place, "95 % of the scatter", "series:3", size=9))
+        deviation = design.task.deviation
         caption += f" Scatter: misalignments of {deviation * 1e6:.3g} µm over the face (standard deviation)."
     return Figure(
         f"flank_designs_{name}",
@@ -153,14 +153,15 @@ def _left(name: str, data: FlankDesignData) -> Figure:
 def _roll(name: str, data: FlankDesignData) -> Figure:
     design = data.design
     y, x = Axis("transmission error less its mean", "um"), Axis("roll position", "mm")
-    small = _SMALL * design.unrelieved.peak_to_peak
+    small = _SMALL * design.unrelieved.judged.peak_to_peak.value
     panels = []
     for title, chosen in (
-        ("reliefs that leave most of it", [s for s in design.states if s.peak_to_peak >= small]),
-        ("reliefs that leave little", [s for s in design.states if s.peak_to_peak < small]),
+        ("reliefs that leave most of it", [s for s in design.states if s.judged.peak_to_peak.value >= small]),
+        ("reliefs that leave little", [s for s in design.states if s.judged.peak_to_peak.value < small]),
     ):
         curves = tuple(
-            Curve(design.roll * 1e3, (s.te - s.te.mean()) * 1e6, f"{s.label}: {s.peak_to_peak * 1e6:.3g} µm",
+            Curve(design.roll * 1e3, (s.te - s.te.mean()) * 1e6,
+                  f"{s.label}: {s.judged.peak_to_peak.value * 1e6:.3g} µm",
                   "no relief" if s is design.unrelieved else f"series:{k}", markers=False)
             for k, s in enumerate(chosen)
         )  # fmt: skip

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from fegear.case.flank_design import FlankDesignPart
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage
+from fegear.engine.stage import Forecast, Stage, Task
 from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
 from fegear.models.loaded_flanks import flanks_to_load
@@ -24,6 +24,7 @@ from fegear.results.flank_design_tables import (
     values_of,
 )
 from fegear.results.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.solid_solution import needs_solid_solution, solid_solution_of
 from fegear.results.sources import HERTZ, INVOLUTE, RING
 
 if TYPE_CHECKING:
@@ -142,7 +143,8 @@ def _task(part: FlankDesignPart, pair: GearPair, nominal: float) -> FlankDesignT
         over_face = [k * part.scatter.over_face for k in _MAPPED] if part.scatter else list(_MAPPED_ALONE)
     return FlankDesignTask(
         loading, load, loads, tuple(part.families), _grid(part), part.largest_face_load_factor or math.inf, scatter,
-        part.positions, tuple(sorted(set(over_face))), tuple(sorted({load * f for f in part.map.load_factors})),
+        part.scatter.over_face if part.scatter else 0.0, part.positions, tuple(sorted(set(over_face))),
+        tuple(sorted({load * f for f in part.map.load_factors})),
     )  # fmt: skip
 
 
@@ -153,7 +155,9 @@ def _compute(inputs: FlankDesignInputs, upstream: Upstream, work: Work) -> Flank
     asked, flanks = found.asked, found.flanks
     apart = asked.gaps(relief=False, misalignment=bool(asked.effects.misalignment))
     task = _task(inputs.part, flanks.pair, asked.nominal)
-    return FlankDesignData(flanks.pair, design_flanks(flanks, found.known, apart, task, work.progress))
+    solved = {member: solid_solution_of(upstream, inputs.gears[member]) for member in MEMBERS}
+    coarse = {member: one.coarse or one.fine for member, one in solved.items()}
+    return FlankDesignData(flanks.pair, design_flanks(flanks, coarse, found.known, apart, task, work.progress))
 
 
 def _present(data: FlankDesignData, inputs: FlankDesignInputs) -> Outcome:
@@ -192,6 +196,11 @@ def _remarks(data: FlankDesignData, inputs: FlankDesignInputs) -> tuple[str, ...
     return tuple(remarks)
 
 
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    gears = tuple(gear_name(scene, name, member) for member in MEMBERS)
+    return (*needs_flanks(scene, name), *needs_solid_solution(*gears))
+
+
 def _forecast(scene: Scene, name: str) -> Forecast:
     from fegear.design.flank_grid import usual_grid
 
@@ -217,7 +226,7 @@ FLANK_DESIGN = Stage(
     inputs=_inputs,
     compute=_compute,
     present=_present,
-    needs=needs_flanks,
+    needs=_needs,
     check=_check,
     effects=FLANK_DESIGN_EFFECTS,
     cites=citing(

@@ -19,6 +19,17 @@ if TYPE_CHECKING:
     from fegear.results.flank_design import FlankDesignData
 
 
+#: What is stated of every relief: head, which of `Judged`, unit, text.
+_JUDGED = (
+    ("te_peak_to_peak", "peak_to_peak", "um", "left at the design load"),
+    ("K_Hbeta", "face_load_factor", "", "at the design load"),
+    ("hertz_pressure", "pressure", "MPa", "largest, tips and form circles left out"),
+    ("te_mean_over_scatter", "mean_over_scatter", "um", "peak to peak, mean over the misalignments of the scatter"),
+    ("te_p95_over_scatter", "most_over_scatter", "um", "peak to peak that 95 % of the misalignments do not exceed"),
+    ("K_Hbeta_p95_over_scatter", "factor_over_scatter", "", "K_Hbeta that 95 % of the misalignments do not exceed"),
+)
+
+
 def topography_table(name: str, gear: str, member: Member, share: float, data: FlankDesignData) -> Table:
     """Exact topography of one gear, which a case reads back as its ``topography``."""
     design, pair = data.design, data.pair
@@ -43,23 +54,13 @@ def designs_table(name: str, data: FlankDesignData) -> Table:
     zero = np.zeros(9)
     numbers = np.array([zero if s.relief is None else s.relief.numbers for s in states]).T
     counted = [found.get(s.label) for s in states]
-    scattered = [s.scattered.peak_to_peak[:, 0] for s in states]
-    weights = design.task.scatter.weights
-    columns = [
-        Column("relief", np.array([s.label for s in states]), "", "what is ground"),
-        Column("te_peak_to_peak", np.array([s.peak_to_peak for s in states]), "um", "left at the design load"),
-        Column("te_peak_to_peak_error", np.array([s.peak_to_peak_error for s in states]), "um",
-               "difference between two sets of roll positions"),
-        Column("K_Hbeta", np.array([s.face_load_factor for s in states]), "", "at the design load"),
-        Column("hertz_pressure", np.array([s.pressure for s in states]), "MPa",
-               "largest, tips and form circles left out"),
-        Column("te_mean_over_scatter", np.array([float(weights @ p) for p in scattered]), "um",
-               "peak to peak, mean over the misalignments of the scatter"),
-        Column("te_worst_over_scatter", np.array([float(p.max()) for p in scattered]), "um",
-               "peak to peak, worst of the levels of the scatter"),
-        Column("K_Hbeta_worst_over_scatter",
-               np.array([float(s.scattered.face_load_factor.max()) for s in states]), "", "worst of the levels"),
-    ]  # fmt: skip
+    columns = [Column("relief", np.array([s.label for s in states]), "", "what is ground")]
+    for key, attribute, unit, text in _JUDGED:
+        numbers_of = [getattr(s.judged, attribute) for s in states]
+        columns += [
+            Column(key, np.array([one.value for one in numbers_of]), unit, text),
+            Column(f"{key}_error", np.array([one.error for one in numbers_of]), unit, "estimated error"),
+        ]
     told = (
         ("driver_tip", "um", "tip relief of the driver"), ("driver_tip_length", "mm", "along the line of action"),
         ("driven_tip", "um", "tip relief of the driven gear"), ("driven_tip_length", "mm", "along the line of action"),
@@ -118,9 +119,9 @@ def values_of(name: str, design: FlankDesign) -> tuple[Value, ...]:
     for state in design.states:
         key = state.label.replace("-", "_").replace(" ", "_")
         values += [
-            Value(f"{name}.{key}.te_peak_to_peak", state.peak_to_peak, "um", state.peak_to_peak_error,
-                  f"at the design load: {state.label}"),
-            Value(f"{name}.{key}.K_Hbeta", state.face_load_factor, "", None, f"at the design load: {state.label}"),
+            Value(f"{name}.{key}.{head}", getattr(state.judged, attribute).value, unit,
+                  getattr(state.judged, attribute).error, f"{text}: {state.label}")
+            for head, attribute, unit, text in (_JUDGED if design.task.deviation else _JUDGED[:3])
         ]  # fmt: skip
     return tuple(values)
 

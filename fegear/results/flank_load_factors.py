@@ -100,14 +100,14 @@ def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankLoadFacto
 
 
 def _table(name: str, data: FlankLoadFactorsData) -> Table:
-    found, error = data.loaded.found, data.loaded.error
+    found, error, k = data.loaded.found, data.loaded.error, data.loaded.stated.face_load_factor
     columns = [
         Column("load", found.load, "N", "along the line of action"),
-        Column("K_Hbeta", found.face_load_factor, "", "largest over mean load per face width"),
+        Column("K_Hbeta", k, "", "largest over mean load per face width"),
         Column("K_Hbeta_error", error.face_load_factor, "", "estimated error"),
         Column("K_Halpha", data.transverse, "", "largest load on a tooth pair over that of perfect flanks"),
         Column("K_Halpha_error", data.transverse_error, "", "estimated error"),
-        Column("K_Fbeta_iso", found.face_load_factor**data.exponent, "", "K_Hbeta to the power N_F of ISO 6336-1"),
+        Column("K_Fbeta_iso", k**data.exponent, "", "K_Hbeta to the power N_F of ISO 6336-1"),
     ]
     if data.by_iso.size:
         columns.append(Column("K_Hbeta_iso", data.by_iso, "", "closed formula of ISO 6336-1, not run in"))
@@ -116,7 +116,7 @@ def _table(name: str, data: FlankLoadFactorsData) -> Table:
 
 def _present(data: FlankLoadFactorsData, inputs: Subject) -> Outcome:
     name, i = inputs.name, data.loaded.nominal
-    k = float(data.loaded.found.face_load_factor[i])
+    k = float(data.loaded.stated.face_load_factor[i])
     values = [
         Value(f"{name}.K_Halpha", float(data.transverse[i]), "", float(data.transverse_error[i]),
               "largest load on a tooth pair over that of perfect flanks"),

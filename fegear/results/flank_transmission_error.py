@@ -29,9 +29,6 @@ if TYPE_CHECKING:
     from fegear.engine.stage import Upstream, Work
     from fegear.results.loaded_flanks import LoadedFlanksData
 
-#: Harmonics that the effective error counts.
-_IN_EFFECTIVE_ERROR = 12
-
 
 @dataclass(frozen=True)
 class FlankTransmissionErrorData:
@@ -41,7 +38,9 @@ class FlankTransmissionErrorData:
     ----------
     loaded : LoadedFlanksData
     each : tuple of FlankTransmissionError
-        For every load.
+        For every load, at as many roll positions as what is stated of the base pitch needs.
+    shown : tuple of FlankTransmissionError
+        The same at the roll positions of the tables.
     shift : TransmissionErrorShift
         Estimated errors at the nominal load.
     mesh_compliance : float
@@ -50,6 +49,7 @@ class FlankTransmissionErrorData:
 
     loaded: LoadedFlanksData
     each: tuple[FlankTransmissionError, ...]
+    shown: tuple[FlankTransmissionError, ...]
     shift: TransmissionErrorShift
     mesh_compliance: float
 
@@ -58,13 +58,20 @@ def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankTransmiss
     from fegear.contact.flank.transmission_error import flank_transmission_error_shift, flank_transmission_errors
 
     loaded = loaded_flanks(upstream, inputs.name)
-    points, i = loaded.flanks.points, loaded.nominal
-    each = flank_transmission_errors(loaded.found, points)
-    again = flank_transmission_errors(loaded.error.coarse, points)
-    perfect = loaded.flanks.solve([loaded.asked.nominal], None, loaded.known)
+    over, i = loaded.over, loaded.nominal
+    each = tuple(
+        replace(te, peak_to_peak=float(swing))
+        for te, swing in zip(flank_transmission_errors(over.found, over.points), over.stated.peak_to_peak, strict=True)
+    )
+    shown, again = (flank_transmission_errors(one, loaded.flanks.points) for one in (loaded.found, loaded.error.coarse))
+    perfect = replace(loaded.flanks, positions=over.found.lines.roll.size).solve(
+        [loaded.asked.nominal], None, over.found.known
+    )
     compliance = float(perfect.mean_transmission_error[0]) / loaded.asked.nominal
-    shift = _missed_too(flank_transmission_error_shift(each[i], again[i]), each[i], loaded.missed)
-    return FlankTransmissionErrorData(loaded, each, shift, compliance)
+    shift = _missed_too(flank_transmission_error_shift(each[i], shown[i], again[i]), each[i], loaded.missed)
+    # What is stated of the whole base pitch is stated once.
+    shift = replace(shift, mean=float(loaded.error.mean[i]), peak_to_peak=float(loaded.error.peak_to_peak[i]))
+    return FlankTransmissionErrorData(loaded, each, shown, shift, compliance)
 
 
 def _missed_too(shift: TransmissionErrorShift, te: FlankTransmissionError, missed: float) -> TransmissionErrorShift:
@@ -81,21 +88,15 @@ def _missed_too(shift: TransmissionErrorShift, te: FlankTransmissionError, misse
 
 def _present(data: FlankTransmissionErrorData, inputs: Subject) -> Outcome:
     loaded, found, i = data.loaded, data.loaded.found, data.loaded.nominal
-    secant, local = (np.stack([getattr(te, key) for te in data.each], axis=1) for key in ("secant", "local"))
+    secant, local = (np.stack([getattr(te, key) for te in data.shown], axis=1) for key in ("secant", "local"))
     harmonics = data.each[i].series.amplitude.size
     shown = ErrorOverPitch(
         inputs.name, found.pair, loaded.asked.loads, i, data.each, found.lines.roll, found.transmission_error,
         secant, local, (found.pair_load > 0.0).sum(axis=0), data.each[i].mean_secant, data.shift,
-        f"from {found.lines.roll.size} roll positions over the base pitch",
+        f"from {data.each[i].values.size} roll positions over the base pitch",
     )  # fmt: skip
     error = Column("te_error", loaded.error.transmission_error[:, i], "um", "estimated error of te")
     remarks = []
-    if harmonics < _IN_EFFECTIVE_ERROR:
-        remarks.append(
-            f"Pair {inputs.name}: {found.lines.roll.size} roll positions show {harmonics} harmonics, and te_effective "
-            f"counts these instead of {_IN_EFFECTIVE_ERROR}; load_distribution.positions = "
-            f"{2 * _IN_EFFECTIVE_ERROR} or more shows them all."
-        )
     if loaded.asked.effects.spacing_errors:
         remarks.append(
             f"Pair {inputs.name}: with spacing errors every base pitch has a transmission error of its own; this is "
@@ -106,7 +107,7 @@ def _present(data: FlankTransmissionErrorData, inputs: Subject) -> Outcome:
         data,
         tuple(error_tables(shown, (error,))),
         (*error_values(shown), mesh_compliance_value(shown, data.mesh_compliance)),
-        {"harmonics": harmonics, "positions": found.lines.roll.size},
+        {"harmonics": harmonics, "positions": data.each[i].values.size},
         tuple(remarks),
         error_figures(shown),
     )

@@ -109,15 +109,14 @@ def _positions(name: str, data: LoadedFlanksData) -> Table:
 
 
 def _loads(name: str, data: LoadedFlanksData) -> Table:
-    found, error = data.found, data.error
-    te = found.transmission_error
+    stated, error = data.stated, data.error
     columns = (
-        Column("load", found.load, "N", "along the line of action"),
-        Column("te_mean", found.mean_transmission_error, "um", "mean transmission error over a base pitch"),
+        Column("load", data.found.load, "N", "along the line of action"),
+        Column("te_mean", stated.mean, "um", "mean transmission error over a base pitch"),
         Column("te_mean_error", error.mean, "um", "estimated error"),
-        Column("te_peak_to_peak", np.ptp(te, axis=0), "um", "over the roll positions"),
+        Column("te_peak_to_peak", stated.peak_to_peak, "um", "over the whole base pitch"),
         Column("te_peak_to_peak_error", error.peak_to_peak, "um", "estimated error"),
-        Column("K_Hbeta", found.face_load_factor, "", "largest over mean load per face width"),
+        Column("K_Hbeta", stated.face_load_factor, "", "largest over mean load per face width"),
         Column("K_Hbeta_error", error.face_load_factor, "", "estimated error"),
     )
     return Table(f"load_distribution_loads_{name}", columns, f"Pair {name} under every load")
@@ -125,21 +124,20 @@ def _loads(name: str, data: LoadedFlanksData) -> Table:
 
 def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
     name, found, i = inputs.name, data.found, data.nominal
-    te, lines = found.transmission_error[:, i], found.lines
-    pressure = found.pressure[:, :, i]
-    inner = np.where(lines.at_edge, 0.0, pressure)
+    stated, lines = data.stated, data.over.found.lines
+    inner = np.where(lines.at_edge, 0.0, data.over.found.pressure[:, :, i])
     p, s = np.unravel_index(int(inner.argmax()), inner.shape)
     k_error, cells = float(data.error.face_load_factor[i]), found.cells.size - 1
     where = f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
     values: tuple[Value, ...] = (
-        Value(f"{name}.te_mean", float(found.mean_transmission_error[i]), "um", float(data.error.mean[i]),
+        Value(f"{name}.te_mean", float(stated.mean[i]), "um", float(data.error.mean[i]),
               "mean transmission error"),
-        Value(f"{name}.te_peak_to_peak", float(np.ptp(te)), "um", float(data.error.peak_to_peak[i]),
-              "of the transmission error over the roll positions"),
-        Value(f"{name}.K_Hbeta", float(found.face_load_factor[i]), "", k_error,
+        Value(f"{name}.te_peak_to_peak", float(stated.peak_to_peak[i]), "um", float(data.error.peak_to_peak[i]),
+              "of the transmission error over the whole base pitch"),
+        Value(f"{name}.K_Hbeta", float(stated.face_load_factor[i]), "", k_error,
               f"largest load per face width over the mean one, averaged over a base pitch and over 1/{cells} of the "
               f"face: at most {cells}"),
-        Value(f"{name}.largest_line_load", float(found.largest_line_load[i]), "N/mm",
+        Value(f"{name}.largest_line_load", float(stated.largest_line_load[i]), "N/mm",
               float(data.error.largest_line_load[i]),
               "on one contact line, tips and form circles left out"),
         Value(f"{name}.largest_hertz_pressure", float(inner.max()), "MPa", float(data.error.largest_pressure[i]),
@@ -148,8 +146,9 @@ def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
               float(data.error.share[:, :, i].max()), "of one tooth pair"),
     )  # fmt: skip
     values = tuple(value for value in values if value.name.removeprefix(f"{name}.") not in inputs.elsewhere)
-    tables = (_stations(name, found, i), _over_face(name, found, i), _positions(name, data), _loads(name, data))
-    figures = load_distribution_figures(name, found, i)
+    whole = data.over.found
+    tables = (_stations(name, found, i), _over_face(name, whole, i), _positions(name, data), _loads(name, data))
+    figures = load_distribution_figures(name, whole, i)
     settings = {"equilibrium": float(found.equilibrium.max())}
     return Outcome(data, tables, values, settings, tuple(_remarks(name, data)), figures)
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible import heavy_load
 from fegear.models.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
 from fegear.models.pair_inputs import gear_name
 from fegear.models.solid_influence import flank_pairs
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.flank import FlankCompliance, FlankGaps, FlankPair, LoadedFlanks
     from fegear.contact.flank.error import FlankError
+    from fegear.contact.flank.over_pitch import OverPitch, Stated
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member
@@ -35,7 +38,7 @@ _UNREMARKED = 0.02
 #: How often contact lines may be continued farther along tip edges that turn out to be loaded.
 _LONGER_EDGES = 3
 #: Roll positions that show what tip edges change.
-_FEW = 12
+_FEW = 24
 #: So many loaded places at a roll position tell too little of the load along a contact line.
 _FEWEST = 3
 #: Seconds of one contact line on one gear, and of the contact at one roll position.
@@ -58,12 +61,15 @@ class LoadedFlanksData:
         What keeps the flanks apart, of the effects that are on.
     found : LoadedFlanks
         Under every load of the case, ascending.
+    over : OverPitch
+        What is stated of the whole base pitch under every load, at as many roll positions as that needs.
     error : FlankError
-        Estimated errors of `found`.
+        Estimated errors of `found`, and of what is stated.
     nominal : int
         Number of the nominal load among them.
     neglected : mapping of str to (float, float)
-        By the effects that are off: mean transmission error [m] and K_Hbeta at the nominal load with each of them on.
+        By the effects that are off: what each of them would change, if it were on, of mean transmission error [m] and
+        K_Hbeta at the nominal load.
     unloaded : ndarray, shape (P,)
         Transmission error of the rigid flanks at the roll positions of `found` [m].
     beside : float
@@ -77,12 +83,18 @@ class LoadedFlanksData:
     known: FlankCompliance
     gaps: FlankGaps
     found: LoadedFlanks
+    over: OverPitch
     error: FlankError
     nominal: int
     neglected: Mapping[str, tuple[float, float]]
     unloaded: Array
     beside: float
     missed: float
+
+    @cached_property
+    def stated(self) -> Stated:
+        """Numbers of the whole base pitch under every load."""
+        return self.over.stated
 
 
 def wide_pairs(scene: Scene) -> tuple[str, ...]:
@@ -140,6 +152,7 @@ def load_flanks(
 
 def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlanksData:
     from fegear.contact.flank.error import flank_error, with_misses
+    from fegear.contact.flank.over_pitch import over_pitch
     from fegear.contact.flank.touching import beside_the_lines, unloaded_error
     from fegear.fem.solid.slice_laws import missed_by_slices
 
@@ -150,33 +163,38 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlank
     flanks, gaps, found = load_flanks(asked, fine, work.cache)
     known = found.known
     missed = missed_by_slices(asked.pair.driver.twist)["contact"] if asked.width == "slices" else 0.0
-    error = with_misses(flank_error(flanks, found, coarse, gaps), found, missed)
+    over = over_pitch(flanks, found, gaps, asked.nominal)
+    error = with_misses(flank_error(flanks, found, coarse, gaps, over, asked.nominal), found, missed)
     neglected = {
-        effect: _with_edges(asked, flanks, gaps)
+        effect: _with_edges(asked, flanks, gaps, over.stated)
         if effect == "corner_contact"
-        else _with(effect, asked, flanks, known, gaps)
+        else _with(effect, asked, replace(flanks, positions=over.found.lines.roll.size), over.found, gaps)
         for effect in FLANK_EFFECTS
         if not effects.is_on(effect) and asked.has_data(effect)
     }
     unloaded = unloaded_error(asked.pair, gaps, found.lines.roll)
     beside = beside_the_lines(asked.pair, gaps, found.lines)
     nominal = asked.loads.index(asked.nominal)
-    return LoadedFlanksData(asked, flanks, known, gaps, found, error, nominal, neglected, unloaded, beside, missed)
+    return LoadedFlanksData(
+        asked, flanks, known, gaps, found, over, error, nominal, neglected, unloaded, beside, missed
+    )  # fmt: skip
 
 
-def _with_edges(asked: FlanksToLoad, flanks: FlankPair, gaps: FlankGaps) -> tuple[float, float]:
-    """The same with contact along tip edges, at no more roll positions than means over a base pitch need."""
+def _with_edges(asked: FlanksToLoad, flanks: FlankPair, gaps: FlankGaps, stated: Stated) -> tuple[float, float]:
+    """What contact along tip edges changes, at no more roll positions than means over a base pitch need."""
     from fegear.contact.flank.tip_edges import usual_gap
 
-    edged = replace(flanks, positions=min(flanks.positions, _FEW), most_gap=usual_gap(asked.pair, asked.nominal))
-    found = edged.solve([asked.nominal], gaps)
-    return float(found.mean_transmission_error[0]), float(found.face_load_factor[0])
+    edged = replace(flanks, positions=_FEW, most_gap=usual_gap(asked.pair, asked.nominal))
+    found, i = edged.solve([asked.nominal], gaps), asked.loads.index(asked.nominal)
+    changes = found.mean_transmission_error[0] - stated.mean[i], found.face_load_factor[0] - stated.face_load_factor[i]
+    return float(changes[0]), float(changes[1])
 
 
 def _with(
-    effect: str, asked: FlanksToLoad, flanks: FlankPair, known: FlankCompliance, gaps: FlankGaps
+    effect: str, asked: FlanksToLoad, flanks: FlankPair, without: LoadedFlanks, gaps: FlankGaps
 ) -> tuple[float, float]:
-    """Mean transmission error and K_Hbeta under the nominal load with an effect that is off."""
+    """What an effect that is off changes of mean transmission error and K_Hbeta, at the roll positions of both."""
+    known, i = without.known, asked.loads.index(asked.nominal)
     if effect == "neighbour_coupling":
         flanks = replace(flanks, coupling=True)
         known = flanks.compliance(asked.nominal)
@@ -188,7 +206,10 @@ def _with(
             flanks = replace(flanks, pair=asked.misaligned)
             known = flanks.compliance(asked.nominal)
     found = flanks.solve([asked.nominal], gaps, known)
-    return float(found.mean_transmission_error[0]), float(found.face_load_factor[0])
+    return (
+        float(found.mean_transmission_error[0] - without.mean_transmission_error[i]),
+        float(found.face_load_factor[0] - without.face_load_factor[i]),
+    )
 
 
 def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
@@ -198,9 +219,18 @@ def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
         "stations": int(found.lines.present.sum()), "newton_steps": found.contact.steps,
         "hertz": asked.effects.hertz, "neighbour_coupling": asked.effects.neighbour_coupling,
         "base_pitch": asked.base_pitch, "nominal_load": asked.nominal, "loads": list(asked.loads),
+        "positions_of_stated": data.over.found.lines.roll.size,
         "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
     }  # fmt: skip
-    return Outcome(data, settings=settings, remarks=(*_sliced(data), *_neglected(data), *_beside(data), *_short(data)))
+    remarks = (*_heavy(data), *_sliced(data), *_neglected(data), *_beside(data), *_short(data))
+    return Outcome(data, settings=settings, remarks=remarks)
+
+
+def _heavy(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say where no metal carries the load, spread over the face or where it stands."""
+    found = data.over.found
+    sentence = heavy_load(data.flanks.pair, float(found.load.max()), float(found.largest_pressure.max()))
+    return (f"Pair {data.asked.name}: {sentence}",) if sentence else ()
 
 
 def _sliced(data: LoadedFlanksData) -> tuple[str, ...]:
@@ -216,7 +246,7 @@ def _sliced(data: LoadedFlanksData) -> tuple[str, ...]:
 
 def _beside(data: LoadedFlanksData) -> tuple[str, ...]:
     """Say where modifications or errors are too steep for the contact lines of unmodified flanks."""
-    mean = float(data.found.mean_transmission_error[data.nominal])
+    mean = float(data.stated.mean[data.nominal])
     if data.beside <= _UNREMARKED * mean:
         return ()
     remark = (
@@ -251,11 +281,11 @@ def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
         "corner_contact": "contact lines end at the tips instead of going on along their edges",
         "misalignment": "the pair has a misalignment or line_error that is left out",
     }
-    found, i = data.found, data.nominal
-    mean, factor = float(found.mean_transmission_error[i]), float(found.face_load_factor[i])
+    i = data.nominal
+    mean, factor = float(data.stated.mean[i]), float(data.stated.face_load_factor[i])
     return tuple(
         f"Pair {data.asked.name}: {told[effect]} (effects.{effect}). With it the mean transmission error would be "
-        f"{te * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {k:.4g} for {factor:.4g}."
+        f"{(mean + te) * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {factor + k:.4g} for {factor:.4g}."
         for effect, (te, k) in data.neglected.items()
     )
 

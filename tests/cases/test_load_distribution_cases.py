@@ -199,7 +199,7 @@ def test_the_pictures_are_drawn(outcome, tmp_path):
 
 
 def test_pressure_stands_on_the_loaded_flanks_of_both_teeth(outcome):
-    found = outcome.data.found
+    found = outcome.data.over.found
     (deferred,) = (figure for figure in outcome.figures if not isinstance(figure, Figure))
     (skin,) = deferred.made().panels[0].items
     values, points = np.asarray(skin.values), np.asarray(skin.points)

@@ -14,6 +14,7 @@ from fegear.contact.flank.complementarity import hat_averages, solve_contact
 from fegear.contact.flank.compliance import FlankCompliance
 from fegear.contact.flank.error import flank_error
 from fegear.contact.flank.lines import ContactLines
+from fegear.contact.flank.over_pitch import over_pitch
 from fegear.contact.flank.root_stress import rooted_lines
 from fegear.contact.flank.touching import unloaded_error
 from fegear.contact.tooth_stress import loaded_states, tooth_stress
@@ -198,7 +199,7 @@ def test_without_coupling_pairs_are_stiffer_and_the_error_is_told(solved, known)
     assert several.any()
     assert (alone.transmission_error < 0.95 * found.transmission_error)[several].all()
     np.testing.assert_allclose(alone.transmission_error[~several], found.transmission_error[~several], rtol=1e-9)
-    same = flank_error(flanks, found, flanks.gears, MISALIGNED)
+    same = flank_error(flanks, found, flanks.gears, MISALIGNED, over_pitch(flanks, found, MISALIGNED, LOAD), LOAD)
     # the same gears: what is left is that of the panels
     assert 0.0 < same.mean[0] < 5e-3 * found.transmission_error.mean()
     assert 0.0 < same.face_load_factor[0] < 0.02 * found.face_load_factor[0]

@@ -73,7 +73,7 @@ def hat_averages(lines: ContactLines, values: Array) -> Array:
 
 
 @tallied("load sharing")
-def solve_contact(known: FlankCompliance, gap: Array, load: Array) -> Contact:
+def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: int = _MOST_STEPS) -> Contact:
     """Find forces and approach at all roll positions under all loads.
 
     Parameters
@@ -83,6 +83,8 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array) -> Contact:
         Distance of the unloaded flanks at the stations along the line of action [m], removal positive.
     load : ndarray, shape (L,)
         Total loads along the transverse line of action [N], positive.
+    most_steps : int
+        After which it gives up.
 
     Returns
     -------
@@ -109,11 +111,11 @@ def solve_contact(known: FlankCompliance, gap: Array, load: Array) -> Contact:
     steps = 0
     while index.size:
         steps += 1
-        if steps > _MOST_STEPS:
+        if steps > most_steps:
             raise ConvergenceError(
                 f"Contact over the flank found no consistent set of loaded stations for {index.size} of {place.size} "
-                "problems. Check the loads: contacts must be narrow beside the height of a tooth. Of a table of "
-                "compliances the matrix must be positive definite."
+                "problems: their panels are too short for how wide the contacts are. Lower load_distribution.panels, "
+                "and check load and face_width."
             )
         here, w = place[index], total[index]
         matrix, constant = _tangent(known, here, v)

@@ -72,6 +72,9 @@ class FlankCompliance(ReadOnlyArrays):
     line_half_width : ndarray, shape (P, M), or None
         The half-width that stands for each contact line in `matrix` [m]; None for one metre, and for contacts whose
         width follows the load of a single place (see `averages`).
+    spot : ndarray, shape (P, 1), or None
+        Half-width of contacts that are much wider than their line's mean load makes them, as on crowned flanks that
+        touch at a spot [m]; None where there are none.
     """
 
     lines: ContactLines
@@ -80,13 +83,15 @@ class FlankCompliance(ReadOnlyArrays):
     width_factor: Array
     fixed_half_width: Array | None
     line_half_width: Array | None = None
+    spot: Array | None = None
 
     @cached_property
     def averages(self) -> Averages:
         """How the load that a contact's width follows is averaged along its line."""
         if self.line_half_width is None or self.fixed_half_width is not None:
             return averages(self.lines, None)
-        return averages(self.lines, _WINDOW * self.line_half_width)
+        width = self.line_half_width if self.spot is None else np.maximum(self.line_half_width, self.spot)
+        return averages(self.lines, _WINDOW * width)
 
     def half_width(self, line_load: Array) -> Array:
         """Hertzian half-width b under line loads of shape (P, M, L) [m]."""

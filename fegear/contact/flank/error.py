@@ -1,33 +1,31 @@
-"""Estimated errors of loaded flanks: solved again with the gears' coarser solutions and longer panels."""
+"""Estimated errors of loaded flanks: solved again with longer panels, then with the gears' coarser solutions, too."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.flank.swept import swept_mean
-from fegear.contact.flank.transmission_error import from_half
+from fegear.contact.flank.over_pitch import Stated
+from fegear.contact.flank.spots import missed_of_spots
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.arrays import Array, Mask
+    from fegear.arrays import Array
     from fegear.contact.flank.gaps import FlankGaps
     from fegear.contact.flank.loaded import FlankPair, LoadedFlanks
-    from fegear.contact.fourier import Panels
+    from fegear.contact.flank.over_pitch import OverPitch
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member
 
 #: By how much panels are longer.
 _LONGER = 1.5
-#: What is taken for an error of the change of shares, of that of the largest load at any roll position, and of that by
-#: half of the roll positions: held against solutions with a fourth of the panel's length on finer meshes.
-_SHARES, _LOCAL, _OF_HALF = 1.2, 2.5, 0.5
-#: The same for the peak-to-peak transmission error: of a change of its shape, and of what half of the roll positions
-#: miss of the curve, whose peaks beside tip edges may stand between all of them.
-_SHAPE, _OF_CURVE = 0.8, 3.0
+#: What is taken for an error of the change of shares, of that of the largest load at any roll position, and of that of
+#: the shape of the transmission error: compared with solutions of a fourth of the panel's length on finer meshes.
+_SHARES, _LOCAL, _SHAPE = 1.2, 2.5, 0.5
 
 
 @dataclass(frozen=True)
@@ -59,9 +57,17 @@ class FlankError:
 
 
 def flank_error(
-    flanks: FlankPair, found: LoadedFlanks, coarse: Mapping[Member, FlankBody], gaps: FlankGaps
+    flanks: FlankPair,
+    found: LoadedFlanks,
+    coarse: Mapping[Member, FlankBody],
+    gaps: FlankGaps,
+    over: OverPitch,
+    about: float,
 ) -> FlankError:
     """Solve again with less of everything that leaves an error; the pressed width of the bands stays.
+
+    Longer panels and coarser gears may change a number in opposite directions: they are changed one after the other,
+    and what each of them changes adds up, with what roll positions leave open.
 
     Parameters
     ----------
@@ -70,24 +76,55 @@ def flank_error(
         What it gave.
     coarse : mapping of {"driver", "driven"} to FlankBody
     gaps : FlankGaps
+    over : OverPitch
+        What is stated of the whole base pitch.
+    about : float
+        Load about which compliances are made, see `FlankPair.compliance` [N].
     """
-    other = replace(flanks, gears=coarse, panel=_LONGER * flanks.panel).solve(found.load, gaps)
+    longer = replace(flanks, panel=_LONGER * flanks.panel)
+    fewer = longer.solve(found.load, gaps, longer.compliance(about))
+    softer = replace(longer, gears=coarse)
+    other = softer.solve(found.load, gaps, softer.compliance(about))
+    steps = (found, fewer, other)
+    changes = [_changes(one, two) for one, two in pairwise(steps)]
+    left = over.left_by_positions
+    # Largest loads that these roll positions miss change elsewhere: by no more than they are larger.
+    above = over.found.largest_line_load - found.largest_line_load
+    higher = over.found.largest_pressure - found.largest_pressure
+    missed = missed_of_spots(found.known, found.contact)
+    left = left._replace(
+        largest_line_load=left.largest_line_load + np.maximum(above, 0.0) + missed * found.largest_line_load,
+        largest_pressure=left.largest_pressure + np.maximum(higher, 0.0) + missed * found.largest_pressure,
+    )
+    sums = Stated(*(sum(parts) + more for *parts, more in zip(*changes, left, strict=True)))
+    te = sum(np.abs(two.transmission_error - one.transmission_error) for one, two in pairwise(steps))
+    share = sum(_share_changes(found, one, two) for one, two in pairwise(steps))
+    return FlankError(np.asarray(te), _SHARES * np.asarray(share), *sums, coarse=other)
+
+
+def _changes(found: LoadedFlanks, other: LoadedFlanks) -> Stated:
+    """Changes from one solution to another of it at the same roll positions."""
     te, again = found.transmission_error, other.transmission_error
-    at = np.searchsorted(other.pair_numbers, found.pair_numbers)
-    same = [k < other.pair_numbers.size and other.pair_numbers[k] == j
-            for k, j in zip(at.tolist(), found.pair_numbers.tolist(), strict=True)]  # fmt: skip
-    share = np.stack([np.abs(found.share[i] - (other.share[k] if on else 0.0))
-                      for i, (k, on) in enumerate(zip(at.tolist(), same, strict=True))])  # fmt: skip
     shift = np.abs(other.mean_transmission_error - found.mean_transmission_error)
-    return FlankError(
-        np.abs(again - te), _SHARES * share, shift,
+    mean = found.load / (found.lines.high - found.lines.low)
+    over_face = np.abs(other.mean_between(found.cells) - found.mean_over_face).max(axis=0) / mean
+    return Stated(
+        shift,
         # Most of how far the curve changes its shape: its largest and smallest values may do so together.
-        np.maximum(np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), _SHAPE * np.ptp(again - te, axis=0))
-        + _between_positions(flanks.points, te),
-        _over_face(flanks.points, found, other, shift / found.mean_transmission_error),
+        np.maximum(np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), _SHAPE * np.ptp(again - te, axis=0)),
+        # The largest change anywhere on the face, for that of the largest value may be small by chance; no less than
+        # the compliances change together.
+        np.maximum(over_face, shift / found.mean_transmission_error * found.face_load_factor),
         _largest(found, found.line_load, found.largest_line_loads, other.largest_line_loads),
-        _largest(found, found.pressure, found.largest_pressures, other.largest_pressures), other,
-    )  # fmt: skip
+        _largest(found, found.pressure, found.largest_pressures, other.largest_pressures),
+    )
+
+
+def _share_changes(found: LoadedFlanks, one: LoadedFlanks, two: LoadedFlanks) -> Array:
+    """Changes of the shares of the pairs of `found`, shape (pairs, P, L)."""
+    first, second = (dict(zip(f.pair_numbers.tolist(), f.share, strict=True)) for f in (one, two))
+    none = np.zeros(found.share.shape[1:])
+    return np.stack([np.abs(second.get(j, none) - first.get(j, none)) for j in found.pair_numbers.tolist()])
 
 
 def with_misses(error: FlankError, found: LoadedFlanks, missed: float) -> FlankError:
@@ -109,39 +146,9 @@ def with_misses(error: FlankError, found: LoadedFlanks, missed: float) -> FlankE
     )
 
 
-def _over_face(points: Panels, found: LoadedFlanks, other: LoadedFlanks, softer: Array) -> Array:
-    """Of K_Hbeta: the largest change anywhere on the face, for that of the largest value may be small by chance.
-
-    No less than the compliances change together, `softer`, and with what half of the roll positions miss.
-    """
-    lines, kept = found.lines, _half(points)
-    fewer = replace(
-        lines, roll=lines.roll[kept], pair=lines.pair[kept], present=lines.present[kept], x=lines.x[kept],
-        z=lines.z[kept], at_edge=lines.at_edge[kept], weight=np.empty(0), edges=None,
-    )  # fmt: skip
-    mean = found.load / (lines.high - lines.low)
-    again = swept_mean(fewer, found.line_load[kept], found.cells, points.period) / np.diff(found.cells)[:, None]
-    changes = [np.abs(one - found.mean_over_face).max(axis=0) / mean
-               for one in (other.mean_between(found.cells), again)]  # fmt: skip
-    return np.asarray(np.maximum(changes[0], softer * found.face_load_factor) + _OF_HALF * changes[1])
-
-
 def _largest(found: LoadedFlanks, values: Array, first: Array, second: Array) -> Array:
     """Of a largest value: its change at any roll position, and by how much tips bear more that were left out of it."""
     lines = found.lines
     ends = lines.at_edge if lines.edges is None else lines.at_edge & (lines.edges.gap == 0.0)
     above = np.where(ends[:, :, None], values, 0.0).max(axis=(0, 1)) - first.max(axis=0)
     return np.asarray(_LOCAL * np.abs(second - first).max(axis=0) + np.maximum(above, 0.0))
-
-
-def _half(points: Panels) -> Mask:
-    """Every second roll position on each piece of the base pitch, and its last one."""
-    piece = np.searchsorted(points.breaks, points.x)
-    within = np.arange(points.x.size) - np.searchsorted(piece, piece)  # from the start of its piece on
-    return np.asarray((within % 2 == 0) | np.append(piece[1:] != piece[:-1], True))
-
-
-def _between_positions(points: Panels, te: Array) -> Array:
-    """What half of the roll positions on each piece of the base pitch miss of the curve and its peak-to-peak [m]."""
-    missed = np.array([np.abs(from_half(points, one) - one).max() for one in te.T])
-    return np.maximum(_OF_CURVE * missed, np.ptp(te, axis=0) - np.ptp(te[_half(points)], axis=0))

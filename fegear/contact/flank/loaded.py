@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.flank.complementarity import solve_contact
 from fegear.contact.flank.compliance import flank_compliance
 from fegear.contact.flank.gaps import FlankGaps
 from fegear.contact.flank.lines import base_twist, contact_lines
 from fegear.contact.flank.positions import roll_points
+from fegear.contact.flank.spots import solve_spots
 from fegear.contact.flank.swept import load_below, swept_mean
 from fegear.contact.flank.tip_edges import edge_reach
 from fegear.errors import InputError
@@ -272,15 +272,17 @@ class FlankPair:
         """Roll positions [m]."""
         return self.points.x
 
-    def compliance(self, load: float) -> FlankCompliance:
-        """Lines and compliances at all roll positions; see `flank_compliance` for `load`."""
+    def compliance(self, load: float, roll: Array | None = None) -> FlankCompliance:
+        """Lines and compliances at all roll positions, or at those given; see `flank_compliance` for `load`."""
         for member in MEMBERS:
             if self.gears[member].reach == 0 and self.coupling:
                 raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
-        points = self.points
-        lines = contact_lines(
-            self.pair, points.x, self.panel * self.pair.driver.module, points.weights / points.period, self.most_gap
-        )  # fmt: skip
+        if roll is None:
+            points = self.points
+            roll, weight = points.x, points.weights / points.period
+        else:
+            weight = np.empty(0)
+        lines = contact_lines(self.pair, roll, self.panel * self.pair.driver.module, weight, self.most_gap)
         with one_thread(with_scipy=False):
             return flank_compliance(
                 self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz, cache=self.cache
@@ -315,6 +317,6 @@ class FlankPair:
         known = self.compliance(float(loads.max())) if known is None else known
         assembled = time.perf_counter()
         with one_thread(with_scipy=False):
-            contact = solve_contact(known, (gaps or FlankGaps()).at(self.pair, known.lines), loads)
+            known, contact = solve_spots(known, (gaps or FlankGaps()).at(self.pair, known.lines), loads)
         seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
         return LoadedFlanks(self.pair, known, contact, loads, seconds)

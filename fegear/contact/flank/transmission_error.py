@@ -11,6 +11,7 @@ from scipy.interpolate import BarycentricInterpolator
 from fegear.contact.error_by_shift import TransmissionErrorShift
 from fegear.contact.flank.complementarity import secant_compliance
 from fegear.contact.flank.mesh_matrix import stiffness_of
+from fegear.contact.flank.over_pitch import every_second
 from fegear.contact.fourier import effective_error, fourier_series, panels
 from fegear.frozen import ReadOnlyArrays
 
@@ -46,6 +47,8 @@ class FlankTransmissionError(ReadOnlyArrays):
         W / zeta of the stations that touch, without modifications and errors (Mark, A.11) [N/m].
     series : FourierSeries
         Of the transmission error, as far as the roll positions show it.
+    peak_to_peak : float
+        Largest less smallest value [m]; it may stand between the roll positions.
     """
 
     load: float
@@ -54,16 +57,12 @@ class FlankTransmissionError(ReadOnlyArrays):
     local: Array
     secant: Array
     series: FourierSeries
+    peak_to_peak: float
 
     @property
     def mean(self) -> float:
         """[m]."""
         return float(self.values @ self.points.weights / self.points.period)
-
-    @property
-    def peak_to_peak(self) -> float:
-        """Largest less smallest value [m]."""
-        return float(np.ptp(self.values))
 
     @property
     def effective_error(self) -> float:
@@ -99,7 +98,8 @@ def flank_transmission_errors(found: LoadedFlanks, points: Panels) -> tuple[Flan
 
 
 def _error(load: float, points: Panels, values: Array, local: Array, secant: Array) -> FlankTransmissionError:
-    return FlankTransmissionError(load, points, values, local, secant, series_over_pitch(points, values))
+    series = series_over_pitch(points, values)
+    return FlankTransmissionError(load, points, values, local, secant, series, float(np.ptp(values)))
 
 
 def series_over_pitch(points: Panels, values: Array) -> FourierSeries:
@@ -128,26 +128,35 @@ def _secant(known: FlankCompliance, place: Index, force: Array) -> Array:
     return np.asarray(stiffness_of(matrix, active, on)[:, :, 0].sum(axis=1))
 
 
-def flank_transmission_error_shift(te: FlankTransmissionError, again: FlankTransmissionError) -> TransmissionErrorShift:
-    """Estimated errors: the change by the coarser solution and that by half as many roll positions.
+def flank_transmission_error_shift(
+    te: FlankTransmissionError, fine: FlankTransmissionError, again: FlankTransmissionError
+) -> TransmissionErrorShift:
+    """Estimated errors: the change by the coarser solution, and that by half as many roll positions.
 
     Parameters
     ----------
     te : FlankTransmissionError
-    again : FlankTransmissionError
-        The same with the gears' coarser solutions and longer panels.
+        What is stated.
+    fine, again : FlankTransmissionError
+        At the same roll positions, these or others: as solved, and with coarser gears and longer panels.
     """
-    fewer = _error(te.load, te.points, *(from_half(te.points, one) for one in (te.values, te.local, te.secant)))
+    kept = every_second(te.points)
+
+    def straight(values: Array) -> Array:
+        return np.interp(te.points.x, te.points.x[kept], values[kept], period=te.points.period)
+
+    fewer = _error(te.load, te.points, *(straight(one) for one in (te.values, te.local, te.secant)))
+    pairs = ((te, fewer), (fine, again))
 
     def changed(key: str) -> float:
-        numbers = [float(getattr(one, key)) for one in (te, fewer, again)]
-        return abs(numbers[1] - numbers[0]) + abs(numbers[2] - numbers[0])
+        return sum(abs(float(getattr(one, key)) - float(getattr(two, key))) for one, two in pairs)
 
-    amplitudes = [one.series.amplitude for one in (te, fewer, again)]
-    off = sum(np.abs(other - amplitudes[0]) for other in amplitudes[1:])
+    known = te.series.amplitude.size
+    amplitudes = [np.pad(np.abs(one.series.amplitude - two.series.amplitude), (0, known))[:known] for one, two in pairs]
     return TransmissionErrorShift(
-        changed("mean"), changed("peak_to_peak"), changed("effective_error"), np.asarray(off), changed("mean_secant")
-    )
+        changed("mean"), changed("peak_to_peak"), changed("effective_error"), np.asarray(sum(amplitudes)),
+        changed("mean_secant"),
+    )  # fmt: skip
 
 
 def curve_through(points: Panels, values: Array, x: Array) -> Array:
