@@ -24,7 +24,12 @@ _ROUND_OFF = 1e-10
 
 
 def least_in_box(
-    tangent: Callable[[Floats], tuple[Floats, Floats]], low: Floats, high: Floats, tolerance: float, most: int = 60
+    tangent: Callable[[Floats], tuple[Floats, Floats]],
+    low: Floats,
+    high: Floats,
+    tolerance: float,
+    most: int = 60,
+    share: float = 0.0,
 ) -> tuple[Floats, Floats, Floats]:
     """Find the least of B convex functions of d numbers within boxes about zero.
 
@@ -38,6 +43,8 @@ def least_in_box(
         What the value found may lie above the tangents, over the value at zero.
     most : int
         Tangents to a problem at most.
+    share : float
+        Or over how far the tangents are below the value at zero, where that is more.
 
     Returns
     -------
@@ -71,7 +78,7 @@ def least_in_box(
         value, slope = tangent(x)
         better = ~beyond & (value < found)
         best[better], found[better] = x[better], value[better]
-        open_ = found - bound > allowed
+        open_ = found - bound > np.maximum(allowed, share * (start - bound))
         if not open_.any():
             break
         plane = np.concatenate([-slope, np.ones((count, 1))], axis=1)

@@ -38,12 +38,17 @@ class TipReliefPair:
         The metric of the unmodified pair [m].
     objective : float
         Worst metric over the loads, each in proportion to its load, at the largest load [m].
+    least : float
+        What the best of all reliefs of this shape leave [m], by the search's own roll positions. These, and all up to
+        1 % above, count as equally good: of them the one with the least removal is taken, and of two such the longer.
+    driver_band, driven_band : tuple of EndRelief
+        From where to where equally good reliefs go: least amount and length, and largest.
     candidates : int
         Combinations of amounts and lengths scanned.
     evaluations : int
         Load sharings over a base pitch solved exactly on the way.
     starts, agreeing : int
-        Searches from different minima of the scan, and those of them that end within 5 % of the best: several vouch
+        Searches from different places of the scan, and those of them that end within 5 % of the best: several vouch
         for the global minimum, a single one leaves a doubt.
     runner_up : float
         The least that the other searches leave [m]; the most that any leaves where all agree.
@@ -58,6 +63,9 @@ class TipReliefPair:
     peak_to_peak: Array
     before: Array
     objective: float
+    least: float
+    driver_band: tuple[EndRelief, EndRelief]
+    driven_band: tuple[EndRelief, EndRelief]
     candidates: int
     evaluations: int
     starts: int
@@ -102,17 +110,20 @@ def optimise_tip_relief(
     found = search(engagement, w, power, metric)
     seconds = time.process_time() - begun
     pair = engagement.pair
-    tips = [
-        relief_over_path(gear, pair.path_length, found.best[2 * i], found.best[2 * i + 1], power)
-        for i, gear in enumerate((pair.driver, pair.driven))
-    ]
+    gears = pair.driver, pair.driven
+    tips, *ends = (
+        [relief_over_path(gear, pair.path_length, p[2 * i], p[2 * i + 1], power) for i, gear in enumerate(gears)]
+        for p in (found.best, *found.band)
+    )
+    driver_band, driven_band = ((ends[0][i], ends[1][i]) for i in (0, 1))
     plain = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
     before = _left(replace(plain, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED), w)
     after = _left(replace(plain, driver_relief=tips[0], driven_relief=tips[1]), w)
+    objective = float((after[metric] * w.max() / w).max())
     return TipReliefPair(
-        tips[0], tips[1], w, after["effective_error"], after["peak_to_peak"], before[metric],
-        float((after[metric] * w.max() / w).max()), found.candidates, found.evaluations, found.starts, found.agreeing,
-        found.runner_up, seconds,
+        tips[0], tips[1], w, after["effective_error"], after["peak_to_peak"], before[metric], objective, found.least,
+        driver_band, driven_band, found.candidates, found.evaluations, found.starts, found.agreeing, found.runner_up,
+        seconds,
     )  # fmt: skip
 
 

@@ -31,6 +31,12 @@ if TYPE_CHECKING:
     from fegear.geometry.relief import Shape
 
 
+#: No error of a relief is stated below this part of the largest deflection: the last digits of a mesh's coordinates,
+#: which another processor rounds otherwise, move finite-element compliances, and the reliefs made of them, by up to
+#: 3e-10 of it.
+_DIGITS = 1e-9
+
+
 @dataclass(frozen=True)
 class DesignTask:
     """What a relief is designed for.
@@ -161,6 +167,7 @@ def design_relief(
     if shifted:
         off = [replace(designed, compliance=s.compliance) for s in shifted]
         left = sum(transmission_error(state, load, task.harmonics).peak_to_peak for state in off)
+        left = max(left, _DIGITS * te["designed"].mean)
     driver, driven = (reliefs[member].table.relieved() for member in MEMBERS)
     read = replace(designed, driver_relief=driver, driven_relief=driven)
     tables_leave = transmission_error(read, load, task.harmonics).peak_to_peak
@@ -187,5 +194,6 @@ def _reliefs(
         table = relief_table(_own(designed, member), nodes)
         plain = None if diagonal is None else _own(diagonal, member).at(table.x)
         changes = [np.abs(_own(other, member).at(table.x) - table.relief) for other in others]
-        found[member] = MemberRelief(table, plain, np.sum(changes, axis=0) if changes else None)
+        least = _DIGITS * float(table.deflection.max())
+        found[member] = MemberRelief(table, plain, np.maximum(np.sum(changes, axis=0), least) if changes else None)
     return found

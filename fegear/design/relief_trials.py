@@ -11,11 +11,11 @@ import numpy as np
 
 from fegear.contact.load_sharing import SharedLoad, share_load
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
-from fegear.design.relief_kinks import handed_over, relief_starts
+from fegear.design.relief_kinks import Positions
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:
-    from fegear.arrays import Floats, Mask
+    from fegear.arrays import Floats, Index, Mask
     from fegear.design.evaluation import Bench
 
 _HARMONICS = 12
@@ -86,10 +86,29 @@ class Trials:
     power: float
     metric: str
 
+    @property
+    def harmonics(self) -> int:
+        """That the effective error is made of."""
+        return _HARMONICS
+
     @cached_property
     def quick(self) -> QuickSharing:
         """For searching."""
         return quick_sharing(self.bench.grid, self.loads)
+
+    @cached_property
+    def _set_of(self) -> Index:
+        """Number of the set from one pair to another, shape (n, n)."""
+        n = self.bench.grid.contacts.x.shape[0]
+        found = np.zeros((n, n), dtype=np.int64)
+        for number, s in enumerate(self.quick.sets):
+            found[s.pairs.start, s.pairs.stop - 1] = number
+        return found
+
+    @cached_property
+    def _positions(self) -> Positions:
+        points = self.bench.points
+        return Positions(points.x, points.period, self.bench.grid.contacts.present.sum(axis=0))
 
     @cached_property
     def _depths(self) -> Floats:
@@ -179,10 +198,12 @@ class Trials:
         zeta = np.take_along_axis(by_set, least[:, None], axis=1)[:, 0]
         states = np.arange(zeta[0].size).reshape(zeta.shape[1:])
         weight = np.moveaxis(self.quick.every_set[1][least, :, states], -1, 1)
-        return self._tried(p, zeta, weight, by_number, by_set)
+        return self._tried(p, zeta, weight, by_number, by_set, least)
 
-    def _tried(self, p: Floats, zeta: Floats, weight: Floats, by_number: Floats, by_set: Floats) -> Tried:
-        """Of approaches (C, P, L), derivatives by removals (C, n, P, L), those by the numbers, and all sets'."""
+    def _tried(
+        self, p: Floats, zeta: Floats, weight: Floats, by_number: Floats, by_set: Floats, loaded: Index
+    ) -> Tried:
+        """Of approaches (C, P, L), slopes by removals (C, n, P, L) and by the numbers, all sets' and the loaded."""
         slope = np.einsum("cjpl,ckjp->ckpl", weight, by_number)
         if self.metric == "effective_error":
             parts, by_number = self.seen(zeta), self.seen(slope)
@@ -190,20 +211,52 @@ class Trials:
         count, positions, loads = zeta.shape
         v = self.quick.every_set[1].reshape(by_set.shape[1], -1, positions, loads)
         slopes = np.einsum("sjpl,ckjp->ckspl", v, by_number)
-        # The set that decides is made the one that was found: exactly so where the sharing is exact.
-        least = by_set.argmin(axis=1)[:, None]
-        by_set = by_set + zeta[:, None] - np.take_along_axis(by_set, least, axis=1)
+        # The loaded set is made what was found. Another that would approach less by the straight laws is about to take
+        # over: it counts from there on.
+        least = loaded[:, None]
+        by_set = zeta[:, None] + np.maximum(by_set - np.take_along_axis(by_set, least, axis=1), 0.0)
         np.put_along_axis(slopes, least[:, None], slope[:, :, None], axis=2)
-        between, by_between = handed_over(by_set, slopes)
-        high, by_high = [zeta, between], [slope, by_between]
-        low: list[Floats] = [by_set.reshape(count, -1, loads)]
-        by_low: list[Floats] = [slopes.reshape(count, 4, -1, loads)]
+        peaks, troughs = self._positions.kinks(zeta, slope)
+        high, by_high = zeta.copy(), slope.copy()
+        high[self._positions.flanks(zeta, peaks, with_changes=True)] = -np.inf
+        beside = self._positions.flanks(zeta, troughs, with_changes=False)
+        by_set[np.broadcast_to(beside[:, None], by_set.shape)] = np.inf
+        for found in (self._positions.entering(zeta, slope), peaks):
+            c, i, load = found.where
+            high[c, i, load], by_high[c, :, i, load] = found.values, found.slopes
+        c, i, load = troughs.where
+        s = least[c, 0, i, load]
+        by_set[c, s, i, load], slopes[c, :, s, i, load] = troughs.values, troughs.slopes
         if self.power == 1.0:
+            other, by_other = self._starting(p, zeta, slope, weight)
+            high, by_high = np.concatenate([high, other], axis=1), np.concatenate([by_high, by_other], axis=2)
+        low, by_low = by_set.reshape(count, -1, loads), slopes.reshape(count, 4, -1, loads)
+        return Tried(*(self.seen(part) for part in (high, by_high, low, by_low)))
+
+    def _starting(self, p: Floats, zeta: Floats, slope: Floats, weight: Floats) -> tuple[Floats, Floats]:
+        """Errors outside changes of pairs, shape (C, K, L), were a straight relief that starts there longer or shorter.
+
+        Classic reliefs start where single contact begins, where the error is largest. On one side of that the relief
+        does not count and on the other it does: both count, and a descent follows the ridge between them.
+        """
+        values, slopes = [zeta[:, :0]], [slope[:, :, :0]]
+        present = self.bench.grid.contacts.present
+        for at in {outside for outside, _, _ in self._positions.changes}:
             for gear in (0, 1):
-                values, by_values = relief_starts(gear, self._depths[gear], p, (zeta, slope, weight))
-                low.append(values)
-                by_low.append(by_values)
-        return Tried(*(self.seen(np.concatenate(parts, axis=-2)) for parts in (high, by_high, low, by_low)))
+                amount, length = p[:, 2 * gear], p[:, 2 * gear + 1]
+                part = 1.0 - self._depths[gear, :, at] / length[:, None]
+                j = np.where(present[:, at], np.abs(part), np.inf).argmin(axis=1)
+                rows = np.arange(p.shape[0])
+                part, share = part[rows, j], weight[rows, j, at]
+                by = slope[:, :, at].copy()
+                for number, change in (
+                    (2 * gear, np.abs(part)),
+                    (2 * gear + 1, np.sign(part) * amount * (1.0 - part) / length),
+                ):
+                    by[:, number] -= share * change[:, None]
+                values.append((zeta[:, at] - share * (amount * np.abs(part))[:, None])[:, None])
+                slopes.append(by[:, :, None])
+        return np.concatenate(values, axis=1), np.concatenate(slopes, axis=2)
 
     def _shared(self, removal: Floats) -> SharedLoad:
         """Exact load sharing of removals (C, n, P), cases C times L."""
@@ -235,4 +288,6 @@ class Trials:
         y = np.moveaxis(np.linalg.solve(np.moveaxis(tangent, (0, 1), (-2, -1)), right)[..., 0], -1, 0)
         weight = np.moveaxis((y / y.sum(axis=0)).reshape(n, positions, p.shape[0], -1), 2, 0)
         zeta = np.moveaxis(shared.transmission_error.reshape(positions, p.shape[0], -1), 1, 0)
-        return self._tried(p, zeta, weight, by_number, self._by_set(removal))
+        first, last = active.argmax(axis=0), n - 1 - active[::-1].argmax(axis=0)
+        loaded = self._set_of[first, last].reshape(positions, p.shape[0], -1)
+        return self._tried(p, zeta, weight, by_number, self._by_set(removal), np.moveaxis(loaded, 1, 0))

@@ -1,10 +1,13 @@
-"""Global search for the tip reliefs of both gears that leave the least: a scan of all, then many starts made exact.
+"""Global search for the tip reliefs of both gears that leave the least, and among the equally good ones for one.
 
 Four numbers: amount and length of each gear's relief. What a candidate leaves is a landscape of many valleys, for the
 largest and the smallest transmission error change places and pairs part and touch; a search from one start ends in the
-valley where it began. So all combinations on a grid are scanned with `QuickSharing`, the best local minima of the grid
-descend with it, and the best of those with the exact load sharing. Starts that end at the same value vouch for it:
-those of the scan, and others put around the best.
+valley where it began. So all combinations on a grid are scanned with `QuickSharing`; the best of them that lie apart
+descend with it, and the best ends with the exact load sharing. The deepest valleys are followed to their ground.
+
+The ground is flat: reliefs of half and of twice the depth may leave the same within a hundredth, and which of them is
+lowest hangs on the last digits of the load. So all that leave at most a hundredth more than the least count as equally
+good. Of them the one with the least removal is taken, and of two such the longer; the others are stated as a band.
 """
 
 from __future__ import annotations
@@ -17,76 +20,74 @@ import numpy as np
 
 from fegear.contact.fourier import Panels
 from fegear.design.evaluation import Bench, bench
-from fegear.design.relief_descent import Limits, descend
+from fegear.design.relief_descent import Aim, Limits, descend
+from fegear.design.relief_refinement import refine
 from fegear.design.relief_trials import Trials
 from fegear.geometry.plausible import deepest_relief
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:
-    from fegear.arrays import Floats
+    from fegear.arrays import Floats, Index
     from fegear.contact.engagement import Engagement
 
+#: Reliefs that leave at most this much more than the least, over it, are equally good.
+SHARE = 0.01
 #: Lengths of relief over the path of contact.
 SHORTEST, LONGEST = 0.02, 1.0
 #: Deepest relief tried, in mean transmission errors of the unmodified pair.
 _DEEPEST = 6.0
-#: Minima of the scan that are followed, and those that are led to the exact load sharing's.
-_STARTS = {"peak_to_peak": (60, 32), "effective_error": (40, 16)}
-#: Rounds from minima of the scan, and then by exact load sharing; extent of the first region of trust of the former.
-_ROUNDS, _EXACT_ROUNDS, _TRUST = 12, 8, 0.15
-#: How the best are led on: even roll positions, whether more crowd at kinks, how many of the best, starts about each,
-#: and how far about them. The largest and smallest transmission errors sit on kinks, which only many positions catch;
-#: its harmonics do not mind. With fewer of the best it hangs on the last digits in which valley a search ends: loads
-#: that differ by 1e-10 then left from 0.707 to 0.778 um, and so many leave 0.706 to 0.724.
-_CLOSER = {
-    "peak_to_peak": (
-        (240, False, 16, 2, 0.15),
-        (400, False, 8, 3, 0.06),
-        (200, True, 4, 2, 0.02),
-        (200, True, 1, 4, 0.006),
-    ),
-    "effective_error": ((0, False, 6, 1, 0.04), (0, False, 2, 3, 0.04)),
-}  # fmt: skip
-#: Starts that agree leave at most so much times the least; how far about the best further starts are put, over it.
-_AGREED, _FAR = 1.05, 0.15
-#: What a scan may cost and how fine it may be, see `scan`: harmonics need less time afterwards.
+#: What a scan may cost, and how fine it may be: amounts, and lengths, of one gear.
 _BUDGET = {"peak_to_peak": (1.2e7, 15), "effective_error": (2.4e7, 17)}
+#: Best of the scan among which starts are looked for, starts, and steps of the grid that they are apart at least.
+_BEST, _STARTS, _APART = 4000, 64, 2
+#: Even roll positions, or Gauss points (0), candidates followed from the stage before, regions of trust and rounds of
+#: the three descents. The largest and smallest transmission errors sit on kinks, found between even positions; its
+#: harmonics need good quadrature.
+_STAGES = {
+    "peak_to_peak": ((56, 64, 0.15, 10), (56, 16, 0.15, 8), (160, 6, 0.1, 8)),
+    "effective_error": ((0, 48, 0.15, 12), (0, 16, 0.15, 8), (0, 4, 0.1, 6)),
+}
+#: Ends of the last descent that are led to the ground, and of the equally good those that are led to the end.
+_GROUNDS, _CHOSEN = 3, 3
+#: Of the equally good, those with the least removal that are led on; a penalty below this is none.
+_LED, _WITHIN = 4, 1e-3
+#: Candidates closer than this in all numbers, in their units, are the same.
+_SAME = 0.01
+#: Starts that agree leave at most so much times the least.
+_AGREED = 1.05
+#: A whole path of contact more of relief is worth this much more removal, in mean transmission errors.
+_LONGER = 0.01
+#: Removals that differ by less, in mean transmission errors, are equal: then the driver's counts.
+_EQUAL = 1e-6
+#: Positions beside changes of pairs, over the distance of the even ones.
+_BESIDE = (0.04, 0.14, 0.35)
 #: States of all sets of pairs to a roll position up to which nothing is saved: three pairs under one load.
 _WORK = 4.0
-#: Corners and middle of a first population about its start, in units of its spread.
-_CLOUD = np.concatenate([np.zeros((1, 4)), np.random.default_rng(2).uniform(-1.0, 1.0, (11, 4))])
 
 
-def scan(trials: Trials, scale: float, limits: Limits, budget: float, finest: int) -> tuple[Floats, int]:
-    """Try every combination of amounts and lengths on a grid.
+def scan(trials: Trials, limits: Limits) -> tuple[Floats, int]:
+    """Try every combination of amounts and lengths on a grid; amounts go to four mean transmission errors.
 
     Parameters
     ----------
     trials : Trials
-    scale : float
-        Mean transmission error of the unmodified pair [m]; amounts go to four times that.
     limits : Limits
-    budget : float
-        States times sets of pairs times candidates that the grid may cost.
-    finest : int
-        Most amounts, and lengths, of one gear.
 
     Returns
     -------
     starts : ndarray, shape (B, 4)
-        Local minima of the grid, best first.
+        The best of the grid that lie apart, best first.
     count : int
         Candidates tried.
     """
-    from scipy.ndimage import minimum_filter
-
     quick = trials.quick
     work = sum(s.base.size for s in quick.sets)
+    budget, finest = _BUDGET[trials.metric]
     side = int(np.clip((budget / work) ** 0.25, 7, finest))
     t = np.linspace(0.0, 1.0, side)
     axes = []
     for gear in (0, 1):
-        top = min(4.0 * scale, limits.high[2 * gear])
+        top = min(4.0 * limits.unit[0], limits.high[2 * gear])
         axes += [top * (0.55 * t + 0.45 * t**3), np.maximum(0.6 * t + 0.4 * t**3, 0.03)]
     single = [np.stack(np.meshgrid(*axes[2 * g : 2 * g + 2], indexing="ij"), axis=-1).reshape(-1, 2) for g in (0, 1)]
     count = trials.loads.size
@@ -107,11 +108,16 @@ def scan(trials: Trials, scale: float, limits: Limits, budget: float, finest: in
             there = least[..., s.states]
             np.minimum(there, (one[part] + s.base)[:, None] + two, out=there)
         values[part] = trials.left(trials.seen(least.reshape(*least.shape[:2], -1, count)))
-    grid = values.reshape(side, side, side, side)
-    lowest = np.argwhere(grid == minimum_filter(grid, size=3, mode="nearest"))
-    order = np.argsort(grid[tuple(lowest.T)], kind="stable")
-    lowest = lowest[order]
-    return np.stack([axis[lowest[:, i]] for i, axis in enumerate(axes)], axis=1), grid.size
+    flat = values.ravel()
+    best = np.argpartition(flat, min(_BEST, flat.size - 1))[:_BEST]
+    best = best[np.argsort(flat[best], kind="stable")]
+    places = np.stack(np.unravel_index(best, (side,) * 4), axis=1)
+    open_ = np.ones(best.size, dtype=bool)
+    starts: list[Index] = []
+    while open_.any() and len(starts) < _STARTS:
+        starts.append(places[open_.argmax()])
+        open_ &= np.abs(places - starts[-1]).max(axis=1) >= _APART
+    return np.stack([axis[np.array(starts)[:, i]] for i, axis in enumerate(axes)], axis=1), flat.size
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,22 +127,26 @@ class Found:
     Parameters
     ----------
     best : ndarray, shape (4,)
-        Amount [m] and length over the path of the driver's relief, then of the driven gear's.
-    left : float
-        What it leaves [m], by the search's own quadrature points.
+        Amount [m] and length over the path of the driver's relief, then of the driven gear's: chosen among the equally
+        good.
+    left, least : float
+        What it leaves, and what the best of all leave [m], by the search's own roll positions.
+    band : ndarray, shape (2, 4)
+        From where to where the numbers of equally good reliefs go.
     candidates : int
         Combinations scanned.
     evaluations : int
         Load sharings over a base pitch solved exactly.
     starts, agreeing : int
-        Searches from different minima of the scan and from places up to 15 % about the best, and those of them that
-        come within 5 % of the lowest.
+        Searches from places of the scan that lie apart, and those of them that come within 5 % of the lowest.
     runner_up : float
         The least that the others leave [m]; the most that any leaves where all agree.
     """
 
     best: Floats
     left: float
+    least: float
+    band: Floats
     candidates: int
     evaluations: int
     starts: int
@@ -160,66 +170,125 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
     """
     pair = engagement.pair
     coarse = Trials(bench(engagement, 5, 6), loads, power, metric)
-    fine = Trials(bench(engagement) if loads.size == 1 else bench(engagement, 8, 10), loads, power, metric)
-    # Several loads and many sets of pairs cost as much as many positions: fewer of these, and of starts, keep the time.
-    work = sum(s.base.size for s in fine.quick.sets) / fine.bench.points.x.size
+    # Several loads and many sets of pairs cost as much as many candidates: fewer of these keep the time.
+    work = sum(s.base.size for s in coarse.quick.sets) / coarse.bench.points.x.size
     thrift = 1.0 if work < _WORK else max(math.sqrt(2.6 / work), 0.4)
-    scale = fine.mean()
+    scale = coarse.mean()
     deepest = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (pair.driver, pair.driven)]
     top = [min(_DEEPEST * scale, d) for d in deepest]
-    limits = Limits(np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], LONGEST, top[1], LONGEST]))
-    starts, candidates = scan(coarse, scale, limits, *_BUDGET[metric])
-    scanned, led = _STARTS[metric]
-    followed = starts[: math.ceil(scanned * thrift)]
-    settled, values, _ = descend(fine.rough, fine, followed, limits, scale, _TRUST, _ROUNDS)
-    ahead = np.argsort(values)[: math.ceil(led * thrift)]
-    ends, values, solved = descend(fine.exact, fine, settled[ahead], limits, scale, 0.2, _EXACT_ROUNDS)
-    final, of_starts = fine, values
-    for step, (positions, crowded, leading, each, spread) in enumerate(_CLOSER[metric]):
-        ahead = np.argsort(values)[: math.ceil(leading * thrift)]
-        if positions:
-            kinks = _kinks(final, ends[ahead]) if crowded else np.empty(0)
-            final = Trials(_even(engagement, math.ceil(positions * thrift), kinks), loads, power, metric)
-        around = (ends[ahead][:, None] * (1.0 + spread * _CLOUD[:each])).reshape(-1, 4)
-        if step == 0:
-            around = np.concatenate([around, ends[ahead[0]] * (1.0 + _FAR * _CLOUD[1:9])])
-        ends, values, count = descend(final.exact, final, around, limits, scale, spread, _EXACT_ROUNDS)
+    limits = Limits(
+        np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], LONGEST, top[1], LONGEST]),
+        np.array([scale, 1.0, scale, 1.0]),
+    )  # fmt: skip
+    p: Floats
+    values: Floats
+    of_starts: Floats
+    p, candidates = scan(coarse, limits)
+    values, solved, of_starts, trials, now = np.arange(float(p.shape[0])), 0, np.empty(0), coarse, -1
+    for step, (positions, followed, trust, rounds) in enumerate(_STAGES[metric]):
+        if positions != now:
+            now, trials = positions, Trials(_set_up(engagement, positions, loads.size), loads, power, metric)
+        p = p[_apart(p, values, limits, math.ceil(followed * thrift))]
+        p, values, count = descend(trials.exact if step else trials.rough, trials, p, limits, trust, rounds)
+        solved += count if step else 0
+        of_starts = values if step == 1 else of_starts
+    grounds = []
+    for i in _apart(p, values, limits, _GROUNDS):
+        end, left, count = refine(trials, p[i], limits)
+        grounds.append((left, end))
         solved += count
-        if step == 0:
-            of_starts = np.concatenate([values, np.delete(of_starts, ahead)])
-    best = int(values.argmin())
+    least = min(left for left, _ in grounds)
+    p, values = np.concatenate([[end for _, end in grounds], p]), np.append([left for left, _ in grounds], values)
+    chosen, left, band, count = _among_equals(trials, p[values <= (1.0 + SHARE) * least], (1.0 + SHARE) * least, limits)
     agree = of_starts < _AGREED * of_starts.min() + 1e-6 * scale
     return Found(
-        ends[best], float(values[best]), candidates, solved, of_starts.size, int(agree.sum()),
+        chosen, left, least, band, candidates, solved + count, of_starts.size, int(agree.sum()),
         float(of_starts.max() if agree.all() else of_starts[~agree].min()),
     )  # fmt: skip
 
 
-def _even(engagement: Engagement, positions: int, kinks: Floats) -> Bench:
-    """Set up at even roll positions, at both sides of every change of pairs, and crowded about given places."""
+def _apart(p: Floats, values: Floats, limits: Limits, most: int) -> list[int]:
+    """Which of some candidates are the best that differ, best first."""
+    found: list[int] = []
+    for i in np.argsort(values, kind="stable"):
+        if all((np.abs(p[i] - p[j]) > _SAME * limits.unit).any() for j in found):
+            found.append(int(i))
+        if len(found) == most:
+            break
+    return found
+
+
+def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits) -> tuple[Floats, float, Floats, int]:
+    """Choose one of the reliefs that leave no more than allowed, and find from where to where they go.
+
+    Parameters
+    ----------
+    trials : Trials
+    equals : ndarray, shape (B, 4)
+        Some of them.
+    allowed : float
+        [m].
+    limits : Limits
+
+    Returns
+    -------
+    chosen : ndarray, shape (4,)
+    left : float
+        What it leaves [m].
+    band : ndarray, shape (2, 4)
+    evaluations : int
+    """
+    unit = limits.unit
+    rule = np.array([1.0, -_LONGER, 1.0, -_LONGER])
+    removals = (rule * equals / unit).sum(axis=1)
+    starts = equals[_apart(equals, removals, limits, _CHOSEN)]
+    outward = np.concatenate([-np.eye(4), np.eye(4)])
+    # The band is looked for from what lies farthest out already.
+    ends = equals[(equals / unit @ outward.T).argmax(axis=0)]
+    along = np.concatenate([np.tile(rule, (starts.shape[0], 1)), -outward])
+    p, values, solved = descend(
+        trials.exact, trials, np.concatenate([starts, ends]), limits, 0.1, 10, Aim(along, allowed)
+    )
+    # Whatever came within what is allowed may lead on to less removal.
+    within = p[values - (along * p / unit).sum(axis=1) < _WITHIN]
+    removals = (within / unit) @ rule
+    starts = within[_apart(within, removals, limits, _LED)]
+    of_rule = Aim(np.tile(rule, (starts.shape[0], 1)), allowed)
+    closer, removals, count = descend(trials.exact, trials, starts, limits, 0.05, 8, of_rule)
+    solved += count
+    led = []
+    for i in _apart(closer, removals, limits, _CHOSEN):
+        end, left, count = refine(trials, closer[i], limits, Aim(rule[None], allowed))
+        solved += count
+        led.append((float(rule @ (end / unit)), end, left))
+    fewest = min(removal for removal, _, _ in led)
+    _, chosen, left = max((one for one in led if one[0] < fewest + _EQUAL), key=lambda one: float(one[1][0]))
+    known = np.concatenate([within, chosen[None]])
+    return chosen, left, np.array([known.min(axis=0), known.max(axis=0)]), solved
+
+
+def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:
+    """Set up at even positions, or at Gauss points, fewer of these for several loads."""
+    if positions:
+        return _even(engagement, positions)
+    return bench(engagement) if loads == 1 else bench(engagement, 8, 10)
+
+
+def _even(engagement: Engagement, positions: int) -> Bench:
+    """Set up at even roll positions, at both sides of every change of pairs, and closer by these.
+
+    Where a relief starts beside such a change, one side of its kink is short.
+    """
     pair = engagement.pair
     pitch, start = pair.base_pitch, pair.x_start
     breaks = engagement.meshing.reduced([pair.x_start, pair.x_end])
-    near = pitch * 10.0 ** -np.linspace(2.4, 4.4, 5)
+    beside = np.concatenate([[1e-9], np.array(_BESIDE) / positions])
     x = np.concatenate([
         start + pitch * (np.arange(positions) + 0.5) / positions,
-        np.add.outer(breaks, [-1e-9 * pitch, 1e-9 * pitch]).ravel(),
-        np.add.outer(kinks, np.concatenate([-near, [0.0], near])).ravel(),
+        np.add.outer(breaks, pitch * np.concatenate([-beside, beside])).ravel(),
     ])  # fmt: skip
     x = np.unique(engagement.meshing.reduced(x))
     weights = 0.5 * (np.roll(x, -1) - np.roll(x, 1))
     weights[[0, -1]] += 0.5 * pitch
     points = Panels(x, weights, pitch, np.append(np.sort(breaks), start + pitch))
     return Bench(engagement, points, engagement.grid(x))
-
-
-def _kinks(trials: Trials, p: Floats) -> Floats:
-    """Roll positions [m] where the reliefs of candidates (C, 4) start and, under a single load, where pairs part."""
-    pair, points = trials.bench.engagement.pair, trials.bench.points
-    places = [pair.x_end - p[:, 1] * pair.path_length, pair.x_start + p[:, 3] * pair.path_length]
-    if trials.loads.size == 1:
-        touching = trials.touching(p)
-        changed = (touching[:, 1:] != touching[:, :-1]).any(axis=(0, 2))
-        places.append(0.5 * (points.x[1:] + points.x[:-1])[changed])
-    found = np.sort(trials.bench.engagement.meshing.reduced(np.concatenate(places)))
-    return np.asarray(found[np.diff(found, append=np.inf) > 1e-3 * points.period])

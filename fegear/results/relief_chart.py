@@ -11,9 +11,11 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.figure import Axis, Curve, Figure, HeatMap, Mark, Panel, View
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage, Task
+from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.loaded_pair import needs_pair
 from fegear.results.relief import DESIGN_EFFECTS, ReliefData, design_pairs, design_part
+from fegear.results.relief_tables import tip_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -115,11 +117,8 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
         Value(f"{name}.best_amount", amount, "um", None, "equal tip reliefs, worst load, by A_e"),
         Value(f"{name}.best_length", length, "", None, "equal tip reliefs, worst load, by A_e"),
     ]
-    for member, relief in (("driver", best.driver), ("driven", best.driven)):
-        values += [
-            Value(f"{name}.{member}.optimum_amount", relief.amount, "um", None, f"by the optimiser, {metric}"),
-            Value(f"{name}.{member}.optimum_start", relief.start, "deg", None, "roll angle where that relief starts"),
-        ]
+    for member in MEMBERS:
+        values += tip_values(f"{name}.{member}.optimum_", best, member)
     left = float(getattr(best, metric)[-1])
     values.append(Value(f"{name}.optimum_{metric}", left, "um", None, "left at the largest load"))
     settings = {

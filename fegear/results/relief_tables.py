@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from fegear.design.relief_design import ReliefDesign
     from fegear.design.root_stress_loading import StressOptimum
     from fegear.geometry import GearPair
+    from fegear.geometry.pair import Member
     from fegear.geometry.relief import Shape
     from fegear.results.relief import ReliefInputs
 
@@ -84,6 +86,7 @@ def grindable_table(
     """Tip reliefs that come nearest, and what they leave."""
     # What is left comes from the same evaluation as the single values, not from the search's coarser one.
     rows = [(shape, m, te[f"{shape} tip relief"], getattr(g, m)) for shape, g in ground.items() for m in MEMBERS]
+    bands = [getattr(g, f"{m}_band") for g in ground.values() for m in MEMBERS]
     start = np.array([r.start for *_, r in rows])
     runner_up = np.array([ground[shape].runner_up for shape, *_ in rows])
     base = np.array([p.gear(m).base_radius for _, m, *_ in rows])
@@ -97,6 +100,13 @@ def grindable_table(
             Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius"),
             Column("te_peak_to_peak", np.array([t.peak_to_peak for _, _, t, _ in rows]), "um", "left at design load"),
             Column("te_effective", np.array([t.effective_error for _, _, t, _ in rows]), "um", "A_e left"),
+            Column("least", np.array([ground[shape].least for shape, *_ in rows]), "um", "left by the best of all"),
+            Column(
+                "amount_from", np.array([a.amount for a, _ in bands]), "um", "equally good: up to 1 % above the least"
+            ),
+            Column("amount_to", np.array([b.amount for _, b in bands]), "um", "equally good"),
+            Column("start_from", np.array([b.start for _, b in bands]), "deg", "equally good, roll angle"),
+            Column("start_to", np.array([a.start for a, _ in bands]), "deg", "equally good, roll angle"),
             Column("candidates", np.array([ground[shape].candidates for shape, *_ in rows]), "", "reliefs scanned"),
             Column("starts", np.array([ground[shape].starts for shape, *_ in rows]), "", "valleys searched to the end"),
             Column("agreeing", np.array([ground[shape].agreeing for shape, *_ in rows]), "", "of them, within 5 %"),
@@ -104,6 +114,25 @@ def grindable_table(
         ),
         f"Tip reliefs of {name} that a shop can grind",
     )
+
+
+def tip_values(key: str, ground: TipReliefPair, member: Member) -> list[Value]:
+    """Amount and start of a tip relief to grind; what is equally good is named with each.
+
+    Parameters
+    ----------
+    key : str
+        Start of the values' names.
+    ground : TipReliefPair
+    member : Member
+    """
+    relief, (first, last) = getattr(ground, member), getattr(ground, f"{member}_band")
+    low, high = (math.degrees(one.start) for one in (last, first))
+    amounts = f"{first.amount * 1e6:.4g} to {last.amount * 1e6:.4g} um"
+    return [
+        Value(f"{key}amount", relief.amount, "um", None, f"to grind; equally good with the rest: {amounts}"),
+        Value(f"{key}start", relief.start, "deg", None, f"roll angle; equally good: {low:.5g} to {high:.5g} deg"),
+    ]
 
 
 def harris_table(name: str, curves: Mapping[str, Loaded]) -> Table:
@@ -131,6 +160,9 @@ def relief_values(name: str, design: ReliefDesign) -> list[Value]:
     about = "designed, its relief tables read back linearly, design load"
     values.append(Value(f"{name}.te_peak_to_peak.relief_tables", design.tables_leave, "um", None, about))
     values.append(Value(f"{name}.te_mean.designed", design.te["designed"].mean, "um", None, "design load"))
+    for shape, ground in design.ground.items():
+        for member in MEMBERS:
+            values += tip_values(f"{name}.{member}.{shape}_tip_", ground, member)
     for member, found in design.reliefs.items():
         largest = float(found.table.relief.max())
         values.append(Value(f"{name}.{member}.largest_relief", largest, "um", None, "over the path"))

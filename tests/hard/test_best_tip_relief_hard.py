@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import minimize
+from scipy.optimize import differential_evolution, minimize
 
 from fegear.contact.closed_form_compliance import closed_form_compliance
 from fegear.contact.engagement import Engagement
@@ -19,6 +19,8 @@ from fegear.contact.pair_compliance import PairCompliance
 from fegear.design.optimise import grindable, optimise_tip_relief
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.plausible import deepest_relief
+from fegear.geometry.relief import roll_of_radius
 
 
 def engaged(z1, z2, module=3e-3, addendum=1.0, shift=0.0, hertz="linear", line_load=3e5):
@@ -136,14 +138,16 @@ def test_no_brute_force_finds_less(z1, z2, addendum, shift, shape, metric):
     power = 1.0 if shape == "linear" else 2.0
     reference = Reference(e, load)
     found = grindable(e, load, shape, metric)
-    assert found.objective < 1.02 * reference.brute_force(power, metric)
+    assert found.least < 1.02 * reference.brute_force(power, metric)
+    # Of all that leave up to 1 % more the one with the least removal is taken.
+    assert found.objective == pytest.approx(1.01 * found.least, rel=0.005)
     stated = Reference(e, load, 1500).left(numbers(found, e.pair), power, metric)
     assert stated == pytest.approx(found.objective, rel=0.01)
     assert found.candidates > 10_000
     assert 1 <= found.agreeing <= found.starts
-    # What the search costs, told by its count of exact load sharings: .15 to .25 s of one core. With fewer than 300 for
-    # the peak to peak it hung on the last digits of the load in which valley the search ended.
-    assert found.evaluations < (600 if metric == "peak_to_peak" else 300)
+    # What the search costs, by its count of exact load sharings at .2 to .4 ms each: half of them for the descents, the
+    # others for the ground of the deepest valleys and the relief with the least removal.
+    assert found.evaluations < 700
     assert found.objective <= 1.0001 * found.before[0]
 
 
@@ -153,7 +157,85 @@ def test_the_two_gears_of_a_like_pair_may_change_places():
     c = e.compliance
     mirrored = PairCompliance(e.pair.reversed(), c.driven, c.driver, hertz="linear", nominal_load=load)
     other = grindable(Engagement(mirrored), load, "parabolic")
-    assert one.objective == pytest.approx(other.objective, rel=0.02)
+    assert one.least == pytest.approx(other.least, rel=1e-6)
+    assert one.driver.amount + one.driven.amount == pytest.approx(other.driver.amount + other.driven.amount, rel=1e-3)
+
+
+def scaled(e, load, by):
+    """The same pair, all lengths scaled: loads and amounts go with the lengths, where a face width does."""
+    gears = [
+        Gear(g.tooth, g.module * by, g.bore_radius * by, g.face_width * by) for g in (e.pair.driver, e.pair.driven)
+    ]
+    sources = [closed_form_compliance(g, "cornell") for g in gears]
+    pair = PairCompliance(GearPair(*gears), *sources, hertz=e.compliance.hertz, nominal_load=load * by**2)
+    return Engagement(pair), load * by**2
+
+
+PAIRS = [
+    ((17, 60), {"shift": 0.3}, "linear"),
+    pytest.param((28, 28), {"hertz": "load-dependent"}, "linear", marks=pytest.mark.long),
+    pytest.param((44, 61), {"shift": 0.246, "hertz": "load-dependent"}, "linear", marks=pytest.mark.long),
+    pytest.param((39, 95), {"addendum": 0.8, "hertz": "load-dependent"}, "parabolic", marks=pytest.mark.long),
+    pytest.param((50, 50), {"addendum": 1.3}, "parabolic", marks=pytest.mark.long),
+    pytest.param((52, 50), {"addendum": 1.3, "shift": 0.1}, "linear", marks=pytest.mark.long),
+]
+
+
+@pytest.mark.parametrize(("teeth", "options", "shape"), PAIRS)
+def test_the_last_digits_of_the_load_and_the_unit_of_length_change_nothing(teeth, options, shape):
+    """Loads 1e-10 apart left .895 to .920 um of a pair, with 26.7 to 61.1 um on the driver."""
+    e, load = engaged(*teeth, **options)
+    found = grindable(e, load, shape)
+    first = np.array(numbers(found, e.pair))
+    for k in range(1, 8):
+        other = grindable(e, load * (1.0 + k * 1e-10), shape)
+        np.testing.assert_allclose(numbers(other, e.pair), first, rtol=1e-6)
+        assert other.least == pytest.approx(found.least, rel=1e-8)
+    large, its_load = scaled(e, load, 2.7)
+    other = grindable(large, its_load, shape)
+    np.testing.assert_allclose(numbers(other, large.pair), first * [2.7, 1.0, 2.7, 1.0], rtol=1e-6)
+    assert other.peak_to_peak[0] == pytest.approx(2.7 * found.peak_to_peak[0], rel=1e-6)
+
+
+def test_the_band_holds_what_is_equally_good():
+    """Ends of the band are reliefs that leave no more than 1 % above the least; the one taken removes the least."""
+    e, load = engaged(52, 50, addendum=1.3, shift=0.1)
+    found = grindable(e, load)
+    bands = found.driver_band, found.driven_band
+    for relief, (first, last) in zip((found.driver, found.driven), bands, strict=True):
+        assert first.amount <= relief.amount <= last.amount
+        assert last.start <= relief.start <= first.start
+    # Reliefs a third deeper and longer leave the same on this pair: one number would hide that.
+    assert found.driver_band[1].amount > 1.3 * found.driver.amount
+    assert found.driver.amount < 1.01 * found.driver_band[0].amount
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(30))
+def test_no_differential_evolution_finds_less_on_random_pairs(seed):
+    """It found 1.88389 for 1.9341 um and .269379 for .27935 um."""
+    rng = np.random.default_rng(seed)
+    addendum, hertz = float(rng.choice([0.8, 1.0, 1.3])), str(rng.choice(["linear", "none"]))
+    z1, z2 = int(rng.integers(12, 61)), int(rng.integers(17, 101))
+    shift = max(rng.uniform(0.0, 0.4), (18 - z1) / 18 * addendum)
+    e, load = engaged(z1, z2, addendum=addendum, shift=shift, hertz=hertz, line_load=10 ** rng.uniform(4.5, 6.0))
+    power = float(rng.choice([1.0, 2.0]))
+    found = grindable(e, load, "linear" if power == 1.0 else "parabolic")
+    reference, dense = Reference(e, load, 120), Reference(e, load, 1500)
+    scale = reference.approach(reference.removal([0.0, 0.5, 0.0, 0.5], power)).mean()
+    tooth = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (e.pair.driver, e.pair.driven)]
+    bounds = [
+        (0.0, min(6.0 * scale, tooth[0]) / scale),
+        (0.02, 1.0),
+        (0.0, min(6.0 * scale, tooth[1]) / scale),
+        (0.02, 1.0),
+    ]
+    unit = np.array([scale, 1.0, scale, 1.0])
+    best = differential_evolution(
+        lambda p: reference.left(p.T * unit, power, "peak_to_peak"), bounds, popsize=15, maxiter=250, seed=seed,
+        tol=1e-6, vectorized=True, updating="deferred", polish=False,
+    )  # fmt: skip
+    assert found.least < dense.left(best.x * unit, power, "peak_to_peak") / 0.99
 
 
 def test_reliefs_for_several_loads_are_at_least_as_good_as_those_for_one():
@@ -186,4 +268,4 @@ def test_no_brute_force_finds_less_on_random_pairs(z1, z2, shift, addendum, line
     power = 1.0 if shape == "linear" else 2.0
     found = grindable(e, load, shape, metric)
     least = Reference(e, load).brute_force(power, metric)
-    assert found.objective < 1.05 * least + 1e-3 * found.before[0]
+    assert found.least < 1.05 * least + 1e-3 * found.before[0]
