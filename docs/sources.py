@@ -8,22 +8,24 @@ from gallery import MADE, case_name
 from gallery import cases as run_cases
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
-from source_rows import JUDGEMENTS, Row, Run, Source, cases, faults_of_runs, sources
+from source_rows import NUMBERS, ROWS, Row, Source, cases, faults_of_runs, kept, sources
+from source_runs import Run
 
 from fegear.engine.citation import bibliography
 
 if TYPE_CHECKING:
     from source_rows import Number
 
-_HEAD = "| printed as | what it is | made by | in print | fegear | difference | |\n|---|---|---|---|---|---|---|"
+_HEAD = "| printed as | what it is | made by | number | in print | fegear | difference | kind |\n" + "|---" * 8 + "|"
 
 #: Numbers of a row that the first page shows.
 _SHOWN = 3
 _WORDS = """\
-What the papers that fegear implements print, figure by figure, and what fegear gives. Each number is made by the case
-beside it when these pages are built, and a test holds it. A paper's own page shows the pictures, drawn with the paper's
-axes, and what is to be said of each. Where the text of a paper is damaged, the equation was derived anew and checked
-against another method; nothing is tuned to hit a print."""
+What the papers that fegear implements print, figure by figure, and what fegear gives. Numbers are of five kinds, which
+are counted separately: reproduced is only what is printed and comes out within the print, from an input that does not
+hold it. Each number is made by the case named with it when these pages are built, and tests hold it. A paper's own page
+shows the pictures, drawn with the paper's axes, and what is to be said of each. Where the text of a paper is damaged,
+the equation was derived anew and checked against another method; nothing is tuned to hit a print."""
 
 
 def _made(case: str) -> bool:
@@ -31,16 +33,26 @@ def _made(case: str) -> bool:
     return case in map(case_name, run_cases())
 
 
-def _number(number: Number, case: str) -> tuple[str, str, str]:
-    """In print, fegear's and the difference: a cell each."""
-    if not _made(case):
-        return number.printed or number.statement or "", "not run", ""
-    got = number.read(Run.in_folder(MADE / case))
+def _number(number: Number, case: str) -> tuple[str, str, str, str, str]:
+    """What it is, in print, fegear's, the difference and the kind: a cell each."""
     printed = number.in_print()
+    shown = number.printed or (f'"{number.statement}"' if number.statement else "")
+    if not (number.kept or _made(case)):
+        return number.what, shown, "not run", "", number.kind
+    got = number.read(kept(number.kept) if number.kept else Run.in_folder(MADE / case))
     if printed is None:
-        return f"{number.what}: {number.statement}", f"{got.value:.5g} {got.unit}", ""
-    apart = f"{got.value - printed.value:+.2g}" if printed.value == 0.0 else f"{got.value / printed.value - 1.0:+.2%}"
-    return f"{number.what}: {number.printed}", f"{got.value:.5g} {got.unit}", apart
+        apart = ""
+    elif printed.value == 0.0:
+        apart = f"{got.value - printed.value:+.2g}"
+    else:
+        apart = f"{got.value / printed.value - 1.0:+.2%}"
+    return number.what, shown, f"{got.value:.5g} {got.unit}", apart, number.kind
+
+
+def _why(number: Number) -> str:
+    """The kind, and why it differs or how accurately it is read."""
+    within = f" within {number.reading:g}" if number.reading is not None else ""
+    return f"{number.kind}{within}: {number.because}" if number.because else number.kind
 
 
 def _maker(row: Row, top: str) -> str:
@@ -51,15 +63,15 @@ def _maker(row: Row, top: str) -> str:
 
 def _lines(row: Row, paper: str) -> list[str]:
     """A line of the table for each number; the first says what it is all about."""
-    numbers = [_number(n, case) for n, case in zip(row.number, row.cases_of_numbers(), strict=True)] or [("", "", "")]
-    if len(numbers) > _SHOWN:
-        numbers = [
-            *numbers[: _SHOWN - 1],
-            (f"and {len(numbers) - _SHOWN + 1} more numbers on the paper's page", "", ""),
-        ]
+    cells = [_number(n, case) for n, case in zip(row.numbers, row.cases_of_numbers(), strict=True)]
+    if len(cells) > _SHOWN:
+        more = f"and {len(cells) - _SHOWN + 1} more numbers on the paper's page"
+        cells = [*cells[: _SHOWN - 1], (more, "", "", "", "")]
     name = f"[{', '.join(row.covers)}]({paper}.md#{_anchor(row)})"
-    first = [(name, row.shows, _maker(row, "../"), *numbers[0], row.judgement)]
-    return [_cells(line) for line in first + [("", "", "", *number, "") for number in numbers[1:]]]
+    first, *rest = cells or [("", "", "", "", row.kind)]
+    return [
+        _cells((name, row.shows, _maker(row, "../"), *first)), *(_cells(("", "", "", *one)) for one in rest)
+    ]  # fmt: skip
 
 
 def _cells(parts: tuple[str, ...]) -> str:
@@ -71,40 +83,58 @@ def _anchor(row: Row) -> str:
 
 
 def _count(rows: list[Row]) -> str:
-    found = {word: sum(row.judgement == word for row in rows) for word in JUDGEMENTS}
-    return ", ".join(f"{count} {word}" for word, count in found.items() if count)
+    """How many numbers of each kind, and how many rows without one in print."""
+    numbers = ", ".join(f"{n} {kind}" for kind in NUMBERS if (n := sum(row.count(kind) for row in rows)))
+    words = ", ".join(f"{n} {kind}" for kind in ROWS if (n := sum(row.kind == kind for row in rows)))
+    return f"Numbers: {numbers or 'none'}. Rows: {words}."
+
+
+def _counts() -> str:
+    """Numbers of each kind by paper."""
+    papers = {name: list(source.row) for name, source in sources().items()}
+    head = f"| numbers | {' | '.join(f'[{name}]({name}.md)' for name in papers)} | all | meaning |"
+    lines = [head, "|---" * (len(papers) + 3) + "|"]
+    for kind, means in NUMBERS.items():
+        found = [sum(row.count(kind) for row in rows) for rows in papers.values()]
+        lines.append(_cells((kind, *map(str, found), str(sum(found)), means)))
+    return "\n".join(lines)
 
 
 def overview() -> str:
-    """Text of the first page: what the words mean, how many rows have which, and a table for each paper."""
+    """Text of the first page: numbers of each kind by paper, what kinds of rows mean, and a table for each paper."""
     rows = [row for source in sources().values() for row in source.row]
     meanings = "\n".join(
-        f"| {word} | {sum(row.judgement == word for row in rows)} | {means} |" for word, means in JUDGEMENTS.items()
+        _cells((kind, str(sum(row.kind == kind for row in rows)), means)) for kind, means in ROWS.items()
     )
+    repaired = sum(row.repaired for row in rows)
     parts = [
         "# Sources",
         _WORDS,
-        f"| judgement | rows | meaning |\n|---|---|---|\n{meanings}",
+        _counts(),
+        f"| row | rows | meaning |\n|---|---|---|\n{meanings}",
+        f"In {repaired} rows an equation is damaged in the text and was repaired.",
     ]
     for name, source in sources().items():
         table = "\n".join([_HEAD, *(line for row in source.row for line in _lines(row, name))])
-        parts.append(f"## [{source.title}]({name}.md)\n\n{_count(list(source.row))}.\n\n{table}")
+        parts.append(f"## [{source.title}]({name}.md)\n\n{_count(list(source.row))}\n\n{table}")
     return "\n\n".join(parts) + "\n"
 
 
 def page(source: Source) -> str:
     """Text of a paper's page: its rows with their pictures and remarks."""
-    parts = [f"# {source.title}", f"{bibliography()[source.citation].full}", f"{_count(list(source.row))}."]
+    parts = [f"# {source.title}", f"{bibliography()[source.citation].full}", _count(list(source.row))]
     for row in source.row:
+        repaired = ", an equation of the text repaired" if row.repaired else ""
         lines = [
             f'<a id="{_anchor(row)}"></a>\n\n## {", ".join(row.covers)}',
-            f"{row.shows}. **{row.judgement.capitalize()}.** {row.remark}",
+            f"{row.shows}. **{row.kind.capitalize()}{repaired}.** {row.remark}",
         ]
-        cells = [_number(n, case) for n, case in zip(row.number, row.cases_of_numbers(), strict=True)]
+        cells = [(*_number(n, case)[:-1], _why(n)) for n, case in zip(row.numbers, row.cases_of_numbers(), strict=True)]
         if cells:
             table = "\n".join(_cells(cell) for cell in cells)
-            lines.append(f"| in print | fegear | difference |\n|---|---|---|\n{table}")
-        lines.append(f"Made by {_maker(row, '../')}.")
+            lines.append(f"| number | in print | fegear | difference | kind |\n|---|---|---|---|---|\n{table}")
+        held = f" Tests: {', '.join(f'`{name}`' for name in row.tests)}." if row.tests else ""
+        lines.append(f"Made by {_maker(row, '../')}.{held}")
         if row.picture and _made(row.case or ""):
             if row.picture not in Run.in_folder(MADE / (row.case or "")).pictures:
                 raise PluginError(f"{source.title}, {row.covers}: cases/{row.case}.toml draws no {row.picture}")

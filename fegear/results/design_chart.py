@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 HARMONICS = 4
 #: Motions that are found here sooner than other processes start.
 _FEW = 300
+#: Largest factor over the least of an amount at which a length is as good as the best: its optimum is flat.
+_NEARLY = 1.01
 
 
 @dataclass(frozen=True)
@@ -165,6 +167,23 @@ class DesignChartData:
         worst = np.max([np.interp(lengths, self.lengths, row) for row in self.dynamic_factor], axis=0)
         k = int(np.argmin(worst))
         return float(lengths[k]), float(worst[k])
+
+    def flat_range(self, amount: int) -> tuple[float, float]:
+        """Lengths around the best of one amount between which no factor of the chart is 1 % above the least.
+
+        Parameters
+        ----------
+        amount : int
+            Index of an amount with at least one result.
+        """
+        row = self.dynamic_factor[amount]
+        k = int(np.nanargmin(row))
+        off = np.flatnonzero(~(row <= _NEARLY * row[k]))
+        first, last = off[off < k], off[off > k]
+        return (
+            float(self.lengths[first[-1] + 1 if first.size else 0]),
+            float(self.lengths[last[0] - 1 if last.size else -1]),
+        )
 
 
 def chart_trial(trial: Trial) -> dict[str, float]:

@@ -82,12 +82,16 @@ def chart_values(chart: DesignChartData) -> tuple[Value, ...]:
         Value("design_chart.unmodified", chart.unmodified, "", None, "largest dynamic factor of perfect involutes"),
         Value("design_chart.unmodified_error", chart.unmodified_error, "um", None, "A_e of perfect involutes"),
     ]
-    for a, row in zip(chart.amounts, chart.dynamic_factor, strict=True):
+    for number, (a, row) in enumerate(zip(chart.amounts, chart.dynamic_factor, strict=True)):
         if np.isfinite(row).any():
-            k = int(np.nanargmin(row))
+            k, (start, end) = int(np.nanargmin(row)), chart.flat_range(number)
             values += [
                 Value(f"design_chart.best_length_{a:g}", float(chart.lengths[k]), "", None, f"L_n at {a:g} Delta"),
                 Value(f"design_chart.least_factor_{a:g}", float(row[k]), "", None, f"at {a:g} Delta"),
+                Value(
+                    f"design_chart.flat_from_{a:g}", start, "", None, f"L_n, factor within 1 % of least, {a:g} Delta"
+                ),
+                Value(f"design_chart.flat_to_{a:g}", end, "", None, f"L_n, factor within 1 % of least, {a:g} Delta"),
             ]
     if chart.amounts.size > 1 and chart.lengths.size > 1 and np.isfinite(chart.dynamic_factor).all():
         length, factor = chart.best_for_all()

@@ -37,6 +37,8 @@ class MarkData:
         Whether a pair on the path carries nothing somewhere, which the series does not know.
     corners : bool
         Whether tips touch off the path, which it does not know either.
+    contact_ratio : float
+        On which the closed form of spacing errors rests.
     """
 
     series: StaticErrorSeries
@@ -45,6 +47,7 @@ class MarkData:
     cycles: int
     parted: bool
     corners: bool
+    contact_ratio: float
 
 
 def mark_data(engagement: Engagement, exact: TransmissionError, terms: int) -> MarkData:
@@ -64,11 +67,13 @@ def mark_data(engagement: Engagement, exact: TransmissionError, terms: int) -> M
     corners = bool(np.any((same.loaded.loads[:, :, 0] > 0.0) & (contacts.gap > 0.0)))
     spacing = spacing_series(engagement, 3 * engagement.cycles) if uneven else None
     series = static_error_series(engagement, exact.load, harmonics, terms)
-    return MarkData(series, same.series, spacing, engagement.cycles, parted, corners)
+    return MarkData(series, same.series, spacing, engagement.cycles, parted, corners, engagement.pair.contact_ratio)
 
 
 def present_mark(name: str, data: MarkData, rotational: FourierSeries | None) -> Outcome:
     """Tables, values, remarks and figures that the series adds to those of the transmission error."""
+    from fegear.contact.mark_spacing import SPACING_RANGE
+
     s, reciprocal = data.series, data.series.reciprocal
     n = np.arange(1, s.linear.amplitude.size + 1)
     tables = [
@@ -126,6 +131,11 @@ def present_mark(name: str, data: MarkData, rotational: FourierSeries | None) ->
         remarks.append(
             f"Pair {name}: tips touch before or after the path of contact (corner_contact). Mark's series knows the "
             "path alone, so it keeps a difference from the exact method whatever its terms."
+        )
+    if data.spacing is not None and not SPACING_RANGE[0] <= data.contact_ratio <= SPACING_RANGE[1]:
+        remarks.append(
+            f"Pair {name}: Mark's closed form of spacing errors holds for contact ratios from {SPACING_RANGE[0]:g} to "
+            f"{SPACING_RANGE[1]:g}; here it is {data.contact_ratio:.4g}. The exact method holds."
         )
     settings = {"method": "mark-series", "terms": s.terms}
     return Outcome(data, tuple(tables), tuple(values), settings, tuple(remarks), _figures(name, data, rotational))

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fegear
 from fegear.contact.engagement import Engagement
 from fegear.contact.fourier import effective_error, fourier_series, panels
 from fegear.contact.mark_series import reciprocal_series, static_error_series
@@ -20,10 +21,12 @@ from fegear.contact.transmission_error import pair_stiffness, revolution, transm
 from fegear.design.loading import LoadingFunction
 from fegear.design.minimum_excitation import minimum_excitation
 from fegear.errors import InputError
+from fegear.formulas.pair_compliance import pair_compliance
+from fegear.formulas.sources import source
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.geometry.relief import normalised_tip_relief
 
-DATA = Path(__file__).parents[1] / "data"
+DATA, CASES = Path(__file__).parents[1] / "data", Path(__file__).parents[2] / "cases"
 ALPHA = math.radians(20.0)
 PITCH_RADIUS, BASE_RADIUS = 4.445e-2, 4.445e-2 * math.cos(ALPHA)
 BASE_PITCH = 2 * math.pi * BASE_RADIUS / 28
@@ -171,6 +174,33 @@ def test_spacing_errors_by_the_closed_form(gears):
     spectrum = sum(np.fft.fft(one) / 28 for one in errors.values())[1:]
     assert np.all(np.abs(found - exact) < 0.065 * np.abs(spectrum))
     np.testing.assert_allclose(found[:3], exact[:3], rtol=0.01)
+
+
+@pytest.mark.parametrize("ratio", [1.2, 1.5, 1.8])
+def test_range_of_contact_ratios_of_the_closed_form(ratio):
+    """Teeth of Cornell's compliance whose tips give the contact ratio: within .09 of the spectrum, slow errors .2 %."""
+    z, m, width = 60, 3.175e-3, 6.35e-3
+    base = z * m / 2 * math.cos(ALPHA)
+    tip = math.hypot(base, base * math.tan(ALPHA) + ratio * math.pi * base / z)
+    gear = Gear(Tooth(z, BasicRack(1.35, 1.6, 0.2), tip_radius=tip / m), m, 0.02, width)
+    pair = GearPair(gear, gear)
+    assert pair.contact_ratio == pytest.approx(ratio, rel=1e-9)
+    x = np.linspace(pair.x_start, pair.x_end, 101) * (1 - 1e-9)
+    compliance = pair_compliance(source("cornell"), pair, x, LOAD / width).total / width
+    errors = 0.3e-6 * np.random.default_rng(3).standard_normal(z)
+    e = Engagement(PairCompliance(pair, *table_sources(pair, x, compliance, "pair", "cubic")), driver_spacing=errors)
+    exact = revolution(e, LOAD, z, z).coefficients[1:z]
+    found = spacing_series(e, z).coefficients[1:z]
+    off = np.abs(found - exact) / np.abs(np.fft.fft(errors)[1:] / z)
+    assert off.max() < 0.09
+    assert off[:3].max() < 2e-3
+
+
+def test_beyond_its_contact_ratios_the_closed_form_is_remarked():
+    case = CASES / "sources" / "mark_series.toml"
+    thin = {"gear.test.tip_diameter": "92.96 mm", "gear.eccentric.tip_diameter": "92.96 mm", "effects.relief": False}
+    assert "holds for contact ratios from 1.2 to 1.8; here it is 1.1" in " ".join(fegear.run(case, thin).remarks)
+    assert "contact ratios from" not in " ".join(fegear.run(case).remarks)
 
 
 def test_transmission_error_is_load_times_reciprocal_stiffness():

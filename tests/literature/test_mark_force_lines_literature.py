@@ -91,19 +91,19 @@ def test_largest_lines_are_those_of_the_papers_series():
 
 @pytest.mark.parametrize(
     ("terms", "typical"),
-    # the paper says about 1e3 and leaves M open; integrated piece by piece it is 5.8e3
-    [(5, 4.5e2), (10, 7.2e3), (20, 6.1e3), (40, 6.1e3), (None, 5.85e3)],
+    # the paper says about 1e3 and leaves M open; integrated piece by piece it is 4.9e3
+    [(5, 3.78e2), (6, 1.35e3), (10, 6.07e3), (20, 5.13e3), (40, 5.13e3), (None, 4.92e3)],
 )
 def test_how_much_lower_the_lines_of_least_excitation_are(terms, typical):
     names = "four_square_dynamics", "four_square_minimum_excitation"
     straight, least = (exactly(name) if terms is None else by_the_paper(name, terms) for name in names)
     assert np.median(straight / least) == pytest.approx(typical, rel=0.02)
-    # over all lines, which the first governs, 4 to 5 % of the force is left: nearer to the paper's 3 to 4 %
-    assert 0.035 < math.sqrt(least.sum() / straight.sum()) < 0.052
+    # over all lines, which the first governs, 4 to 7 % of the force is left; the paper has 3 to 4 %
+    assert 0.04 < math.sqrt(least.sum() / straight.sum()) < 0.075
 
 
 @pytest.mark.parametrize(
-    ("name", "largest"), [("four_square_dynamics", 40.31), ("four_square_minimum_excitation", 26.36)]
+    ("name", "largest"), [("four_square_dynamics", 40.31), ("four_square_minimum_excitation", 32.90)]
 )
 def test_lines_that_the_slave_gears_excite(name, largest):
     """Figs. 20 and 21: their error is a sixth of the test gears' elastic one, without any modification."""

@@ -47,6 +47,16 @@ def test_the_length_for_all_amounts_is_where_their_worst_is_least():
     assert np.asarray(star.x).tolist() == [length]
 
 
+def test_a_flat_optimum_is_reported_with_its_range():
+    """Lengths within 1 % of the least on either side of it; one beyond ends it, or one without result."""
+    rows = np.array([[1.5, 1.009, 1.0, 1.01], [1.0, 1.2, 1.001, 1.3], [1.004, np.nan, 1.0, 1.02]])
+    made = chart(rows)
+    assert [made.flat_range(k) for k in range(3)] == [(0.75, 1.25), (0.5, 0.5), (1.0, 1.0)]
+    values = {value.name: value.value for value in chart_values(made)}
+    assert (values["design_chart.flat_from_0.5"], values["design_chart.flat_to_0.5"]) == (0.75, 1.25)
+    assert (values["design_chart.flat_from_1.5"], values["design_chart.flat_to_1.5"]) == (1.0, 1.0)
+
+
 def test_points_without_a_result_are_named_and_left_out():
     factor = FACTOR.copy()
     factor[1, 2] = np.nan
