@@ -25,15 +25,15 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.arrays import Array
-    from fegear.contact.engagement import Engagement
+    from fegear.contact.engagement import Engagement, Loaded
 
 Answer = Literal["transmission error", "load on a tooth pair", "root tension"]
 
 #: Roll positions spread over the base pitch.
 _SPREAD = 32
 #: Changes are large where contacts begin a little sooner or later, over less than the distance of two positions: how
-#: far a sample may be below the largest whose neighbourhood is looked at, and how many are.
-_NARROW = (1.0, 8)
+#: far a sample may be below the largest whose neighbourhood is looked at, how many are, and how closely.
+_NARROW = (1.0, 6, 2)
 #: Distances from a jump at which both sides of it are looked at [base pitches]: corners take over within hundredths.
 _BESIDE = (1e-7, *(float(d) for d in np.geomspace(1e-3, 6e-2, 13)))
 
@@ -127,7 +127,7 @@ def changes(
                 grown = _largest_tensions(other, x, w, cycle) - scales[answer]
                 parts[answer] = _worst(answer, grown, scales[answer], w, np.full(w.size, np.nan))
             else:
-                difference = partial(_DIFFERENCES[answer], engagement, other, w, cycle)
+                difference = partial(_DIFFERENCES[answer], partial(_states, (other, engagement), w, cycle, x))
                 at, _ = refined_peaks(partial(_sizes, difference), x, *_NARROW)
                 parts[answer] = _worst(answer, np.diagonal(difference(at)), scales[answer], w, at)
         found[name] = tuple(parts[answer] for answer in answers)
@@ -156,15 +156,20 @@ def _sizes(difference: Callable[[Array], Array], x: Array) -> Array:
     return np.abs(difference(x)).T
 
 
-def _error_change(engagement: Engagement, other: Engagement, loads: Array, cycle: int, x: Array) -> Array:
+def _states(engagements: tuple[Engagement, ...], loads: Array, cycle: int, samples: Array, x: Array) -> list[Loaded]:
+    """Of each engagement at positions; those at the samples serve every answer and effect."""
+    return [one.solve(one.grid(x, again=x is samples), loads, cycle) for one in engagements]
+
+
+def _error_change(states: Callable[[Array], list[Loaded]], x: Array) -> Array:
     """Change of the transmission error, shape (P, L) [m]."""
-    after, before = (one.solve(one.grid(x), loads, cycle) for one in (other, engagement))
+    after, before = states(x)
     return np.asarray(after.transmission_error - before.transmission_error)
 
 
-def _load_change(engagement: Engagement, other: Engagement, loads: Array, cycle: int, x: Array) -> Array:
+def _load_change(states: Callable[[Array], list[Loaded]], x: Array) -> Array:
     """Change of that pair's load which changes most, shape (P, L) [N]; pairs are matched by their place."""
-    after, before = (one.solve(one.grid(x), loads, cycle) for one in (other, engagement))
+    after, before = states(x)
     numbers = before.grid.contacts.number, after.grid.contacts.number
     first = min(n[0] for n in numbers)
     difference = np.zeros((int(max(n[-1] for n in numbers) - first) + 1, *before.loads.shape[1:]))

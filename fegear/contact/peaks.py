@@ -23,7 +23,11 @@ _PASSES = 5
 
 
 def refined_peaks(
-    curves: Callable[[Array], Array], x: Array, lacks: float = LACKS, followed: int = _FOLLOWED
+    curves: Callable[[Array], Array],
+    x: Array,
+    lacks: float = LACKS,
+    followed: int = _FOLLOWED,
+    passes: int = _PASSES,
 ) -> tuple[Array, Array]:
     """Follow the largest value of each curve between the samples, through smooth maxima, kinks and up to jumps.
 
@@ -41,6 +45,8 @@ def refined_peaks(
         Part of the largest sample by which others may be lower whose neighbourhood is looked at.
     followed : int
         Local maxima of one curve that are followed at most, the highest samples first.
+    passes : int
+        Each leaves a fifth of the distance between two samples.
 
     Returns
     -------
@@ -61,7 +67,7 @@ def refined_peaks(
     low, at, high = x[np.maximum(middle - 1, 0)], x[middle], x[np.minimum(middle + 1, x.size - 1)]
     value, every = sampled[curve, middle], np.arange(curve.size)
     inside = np.arange(1, _POINTS + 1)[:, None] / (_POINTS + 1)
-    for _ in range(_PASSES):
+    for _ in range(passes):
         places = np.concatenate([low[None], low + inside * (at - low), at[None], at + inside * (high - at), high[None]])
         new = np.concatenate([places[1 : _POINTS + 1], places[_POINTS + 2 : -1]])
         found = curves(new.ravel())[np.tile(curve, new.shape[0]), np.arange(new.size)].reshape(new.shape)
