@@ -23,8 +23,8 @@ POSITIONS = (8, 12, 16, 24)
 #: Crowning of the pair [um], tip edges and reliefs, loads besides the nominal one, panels over the face.
 SCENES = (
     (0, True, False, (7200,), 16), (0, False, True, (1200,), 32), (20, False, False, (1200,), 16),
-    (200, True, False, (), 16), (200, False, True, (1200, 7200), 100), (1000, False, False, (1200,), 24),
-    (1000, True, False, (), 200),
+    (100, False, False, (900,), 16), (200, False, True, (1200, 7200), 64), (1000, False, False, (1200,), 24),
+    (1000, True, False, (7200,), 16),
 )  # fmt: skip
 QUANTITIES = ("mean", "peak_to_peak", "face_load_factor")
 
@@ -35,7 +35,7 @@ def loaded(case, tolerance, scene, panels, positions):
     part = read_scene(CASES / f"{case}.toml", [
         f"accuracy.tolerance={tolerance}", f'pair.I.line_error.crowning="{crown} um"', "effects.misalignment=true",
         f"effects.corner_contact={str(edges).lower()}", f"effects.relief={str(relief).lower()}",
-        f"pair.I.loads={[f'{load} N' for load in loads]}",
+        f"pair.I.loads={[f'{load} N' for load in (*loads, 3600)]}",
     ])  # fmt: skip
     asked = replace(flanks_to_load(part, "I"), panels=panels, positions=positions)
     solved = [solve_solid_influence(solid_gear_to_solve(part, gear), CACHE) for gear in asked.gears]
@@ -51,14 +51,14 @@ def loaded(case, tolerance, scene, panels, positions):
 @pytest.mark.long
 @pytest.mark.parametrize(("case", "tolerance"), [("helical_load", 2e-2), ("spur_misaligned", 5e-2)])
 def test_errors_cover_what_finer_everything_changes(case, tolerance):
-    """Compared with gears of a fourth of the tolerance, 96 panels and 96 roll positions, peaks looked for as well."""
+    """Compared with gears of a fourth of the tolerance, 64 panels and 96 roll positions, peaks looked for as well."""
     ratios = []
     for scene in SCENES:
-        _, true, _ = loaded(case, 5e-3, scene, 96, 96)
+        _, true, _ = loaded(case, 5e-3, scene, 64, 96)
         for positions in POSITIONS if scene is SCENES[0] else POSITIONS[1:2]:
             _, over, error = loaded(case, tolerance, scene, scene[4], positions)
             stated, left = over.stated, error()
-            for key, i in itertools.product(QUANTITIES, range(len(scene[3]) + 1)):
+            for key, i in itertools.product(QUANTITIES, range(len(true.stated.mean))):
                 off = abs(getattr(stated, key)[i] - getattr(true.stated, key)[i])
                 ratios.append((off / getattr(left, key)[i], scene, positions, key, i))
     off = np.array([ratio for ratio, *_ in ratios])

@@ -26,6 +26,8 @@ _LONGER = 1.5
 #: What is taken for an error of the change of shares, of that of the largest load at any roll position, and of that of
 #: the shape of the transmission error: compared with solutions of a fourth of the panel's length on finer meshes.
 _SHARES, _LOCAL, _SHAPE = 1.2, 2.5, 0.5
+#: What longer panels change of the mean transmission error of spots, as an error of its peak to peak.
+_OF_SPOT = 0.6
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,9 @@ def flank_error(
     other = softer.solve(found.load, gaps, softer.compliance(about))
     steps = (found, fewer, other)
     changes = [_changes(one, two) for one, two in pairwise(steps)]
+    # Where panels are long beside a spot it comes and goes with them: at other roll positions by other amounts.
+    by_panels = changes[0]
+    changes[0] = by_panels._replace(peak_to_peak=np.maximum(by_panels.peak_to_peak, _OF_SPOT * by_panels.mean))
     left = over.left_by_positions
     # Largest loads that these roll positions miss change elsewhere: by no more than they are larger.
     above = over.found.largest_line_load - found.largest_line_load
