@@ -173,6 +173,8 @@ def tooth_stress(
             for again in shifted:
                 off = off + np.abs(root_stress_history(e, again, member, "tension", 1, source).stress - pulled.stress)
             off[1:-1] += _own_error(e, member, state, source) if estimates else np.nan
+            # where a tooth carries next to nothing its stress comes from its neighbours, and is as exact as theirs
+            off = np.maximum(off, _share_left(e, member, source) * np.abs(pulled.stress)) if estimates else off
             known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
         for found, values in zip((xs, tension, compression, error), known[id(state)], strict=True):
             found.append(values[row])
@@ -182,6 +184,15 @@ def tooth_stress(
     order = order[(x[order] > e.pair.x_start - pitch) & (x[order] < e.pair.x_end + pitch)]
     t, c, off = (np.concatenate(parts)[order] for parts in (tension, compression, error))
     return ToothStress(x[order], t, c if knows_both else None, off)
+
+
+def _share_left(e: Engagement, member: Member, source: RootStressInfluence | None) -> float:
+    """What the source leaves in the largest root tension under a tooth's own load, as a share; zero if not known."""
+    stress = source or e.compliance.source(member)
+    few = np.linspace(e.pair.radius(e.pair.x_start, member), e.pair.radius(e.pair.x_end, member), 9)
+    own = stress.root_stress(0, few, "tension")
+    share = 0.0 if own is None else float(np.max(stress.root_stress_error(few)) / np.max(own))
+    return share if np.isfinite(share) else 0.0
 
 
 def _own_error(e: Engagement, member: Member, state: Loaded, source: RootStressInfluence | None) -> Array:

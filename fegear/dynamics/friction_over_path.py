@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.dynamics.friction import sliding_contact
+from fegear.dynamics.mesh_excitation import FIT
 from fegear.errors import InputError
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class FrictionOverPath:
     total_driver, total_driven : ndarray
         Of all pairs in contact then [N m].
     loss, loss_error : float
-        Mean power that friction takes [W], and its error of integration.
+        Mean power that friction takes [W], and its error: of the integration and of the fitted teeth.
     mean_coefficient : float
         That would take as much, were it the same everywhere.
     power : float
@@ -114,10 +115,11 @@ def friction_over_path(
         return power / pitches
 
     exact = loss(_GAUSS, coefficient)
+    # two rules integrate the same fitted teeth: they cannot see what the fit leaves
+    error = abs(exact - loss(_GAUSS // 2, coefficient)) + FIT * abs(exact)
     return FrictionOverPath(
         place * pitch, load, sliding, rolling, mu, own_torques[0], own_torques[1], total[0], total[1], exact,
-        abs(exact - loss(_GAUSS // 2, coefficient)), exact / loss(_GAUSS, lambda v, _r, _w: np.ones_like(v)),
-        mesh.force * speed,
+        error, exact / loss(_GAUSS, lambda v, _r, _w: np.ones_like(v)), mesh.force * speed,
     )  # fmt: skip
 
 

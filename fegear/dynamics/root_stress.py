@@ -28,7 +28,9 @@ class ToothRootStress:
     Parameters
     ----------
     total : ndarray
-        With all meshes' shares.
+        With all meshes' shares, at the phases given.
+    any_phase : ndarray
+        What it does not exceed, whatever the phases of the other meshes.
     own : ndarray
         Without the other meshes' share.
     static : ndarray
@@ -38,6 +40,7 @@ class ToothRootStress:
     """
 
     total: Array
+    any_phase: Array
     own: Array
     static: Array
     error: Array
@@ -61,7 +64,8 @@ def tooth_root_stress(
     """
     kernels = _kernels(source, pair, member, around)
     return ToothRootStress(
-        root_stress({k: f.total + f.cross.sum(axis=0) for k, f in around.items()}, kernels),
+        root_stress({k: f.with_others for k, f in around.items()}, kernels),
+        _at_worst_phases(around, kernels),
         root_stress({k: f.total for k, f in around.items()}, kernels),
         root_stress({k: f.static for k, f in around.items()}, kernels),
         _own_error(source, pair, member, around[0]),
@@ -91,7 +95,7 @@ def forces_around(
         if k:
             # k base pitches ahead at the same moment: it was at the pitch point that much earlier
             ahead = force.x + k * train.meshes[mesh].pair.base_pitch
-            around[k] = force_at(train, mesh, speed, ahead, harmonics, number - k, other_phases=1)
+            around[k] = force_at(train, mesh, speed, ahead, harmonics, number - k)
     return around
 
 
@@ -106,6 +110,15 @@ def _kernels(
         on_path = np.clip(force.x, pair.x_start, pair.x_end)
         found[k] = np.asarray(source.root_stress(-ahead * k, pair.radius(on_path, member), "tension")) / width
     return found
+
+
+def _at_worst_phases(around: dict[int, ToothForce], kernels: dict[int, Array]) -> Array:
+    """Bound of the root tension: each other mesh does its worst to each force, in the sense that each point feels."""
+    fillet = 0.0
+    for k, force in around.items():
+        push, pull = force.cross_reach.sum(axis=0), force.cross_least.sum(axis=0)
+        fillet = fillet + kernels[k] * force.total + np.maximum(kernels[k] * push, kernels[k] * pull)
+    return np.asarray(np.max(fillet, axis=0))
 
 
 def _own_error(source: RootStressInfluence, pair: GearPair, member: Member, force: ToothForce) -> Array:

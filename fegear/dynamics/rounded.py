@@ -64,7 +64,8 @@ class Rounded:
 
     def times(self, factor: float | np.floating) -> Rounded:
         """The number times one that is exact."""
-        return Rounded(self.value * factor, self.error * abs(factor) + np.abs(self.value * factor))
+        value = np.multiply(self.value, factor)
+        return Rounded(value, np.multiply(self.error, np.abs(factor)) + np.abs(value))
 
 
 def beside_zero(one: Rounded, other: Rounded) -> Values:

@@ -44,8 +44,10 @@ class ToothForce:
         Increment from the static transmission error of this mesh [N] (5.14).
     cross : ndarray, shape (meshes, n)
         Increments from the other meshes at the phases given [N] (5.15); zero for this mesh itself.
-    cross_peak : ndarray, shape (meshes,)
-        Largest modulus of the increment from each other mesh over the engagement and over all relative phases [N].
+    cross_reach : ndarray, shape (meshes, n)
+        Largest and
+    cross_least : ndarray, shape (meshes, n)
+        least increment from each other mesh over all relative phases [N].
     """
 
     x: Array
@@ -53,12 +55,28 @@ class ToothForce:
     static: Array
     own: Array
     cross: Array
-    cross_peak: Array
+    cross_reach: Array
+    cross_least: Array
 
     @property
     def total(self) -> Array:
         """Static force and own increment [N]: what Figs. 22 and 23 of the paper show."""
         return self.static + self.own
+
+    @property
+    def with_others(self) -> Array:
+        """Static force and the increments from all meshes at the phases given [N]."""
+        return self.total + np.asarray(self.cross.sum(axis=0))
+
+    @property
+    def at_worst_phases(self) -> Array:
+        """What the force does not exceed at any relative phases of the other meshes [N]."""
+        return self.total + np.asarray(self.cross_reach.sum(axis=0))
+
+    @property
+    def cross_peak(self) -> Array:
+        """Largest modulus of the increment from each other mesh over the engagement and all relative phases [N]."""
+        return np.asarray(np.max(np.maximum(self.cross_reach, -self.cross_least), axis=1))
 
 
 def dynamic_error(
@@ -123,7 +141,7 @@ def tooth_force(
     harmonics : int
         Harmonics of the mesh frequency that are summed, with the rotational ones below where teeth are uneven.
     other_phases : int
-        Relative phases of the other meshes tried for `cross_peak`.
+        Relative phases of the other meshes tried for `cross_reach` and `cross_least`.
     phases : array_like, shape () or (meshes,)
         Phase of each mesh at one and the same moment [its base pitches]; only differences between meshes matter.
     """
@@ -142,7 +160,7 @@ def tooth_force(
     at_once = np.broadcast_to(np.asarray(phases, dtype=float), (len(errors),))
     since = time - at_once[mesh] / float(frequency[mesh])  # from the moment that the phases hold for
     cross = np.zeros((len(errors), place.size))
-    peak = np.zeros(len(errors))
+    reach, least = np.zeros_like(cross), np.zeros_like(cross)
     for j in range(len(errors)):
         if j == mesh:
             continue
@@ -154,10 +172,10 @@ def tooth_force(
             shift = np.exp(2j * math.pi * np.outer(n[part], np.arange(other_phases) / other_phases))
             waves = np.exp(2j * math.pi * np.outer(other, n[part]))
             all_phases += k[:, None] * 2.0 * np.real(waves @ (terms[part, None] * shift))
-        cross[j], peak[j] = all_phases[:, 0], np.max(np.abs(all_phases))
-    for array in (place, time, static, own, cross, peak):
+        cross[j], reach[j], least[j] = all_phases[:, 0], all_phases.max(axis=1), all_phases.min(axis=1)
+    for array in (place, time, static, own, cross, reach, least):
         array.flags.writeable = False
-    return ToothForce(place, time, static, own, cross, peak)
+    return ToothForce(place, time, static, own, cross, reach, least)
 
 
 def root_stress(forces: Mapping[int, ArrayLike], kernels: Mapping[int, ArrayLike]) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from fegear.dynamics.gear_train import GearTrain
@@ -74,12 +74,15 @@ class TrainInputs:
         Of each mesh.
     speed_of : str
         Body that speeds refer to.
+    assumed : bool
+        Whether that is assumed: speeds are given, and not whose they are.
     """
 
     part: TrainPart
     inertias: Mapping[str, float]
     pairs: Mapping[str, GearPair]
     speed_of: str
+    assumed: bool = field(default=False, compare=False)
 
 
 def train_inputs(scene: Scene) -> TrainInputs:
@@ -87,7 +90,9 @@ def train_inputs(scene: Scene) -> TrainInputs:
     part = train_part(scene)
     pairs = {name: scene.pairs[part.pair_of(name)] for name in part.mesh}
     inertias = {name: _inertia(scene, body) for name, body in part.body.items()}
-    return TrainInputs(part, inertias, pairs, scene.case.dynamics.speed_of or next(iter(part.body)))
+    dynamics = scene.case.dynamics
+    assumed = dynamics.speed_of is None and dynamics.speed_values.size > 0
+    return TrainInputs(part, inertias, pairs, dynamics.speed_of or next(iter(part.body)), assumed)
 
 
 def _inertia(scene: Scene, part: BodyPart) -> float:

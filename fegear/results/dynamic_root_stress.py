@@ -143,12 +143,19 @@ def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
             ]
             if known:
                 columns.append(Column(f"stress_error{end}", s.error, "MPa", f"what {by} leave in stress_own_mesh{end}"))
-            worst = int(np.argmax(s.own))
-            values.append(
-                Value(f"{name}.{member}.largest_dynamic_root_tension{end}", float(s.own[worst]), "MPa",
-                      float(s.error[worst]) if known else None,
-                      f"gear {gear}, {by}, without the other meshes, contact at x = {force.x[worst] * 1e3:.5g} mm")
-            )  # fmt: skip
+            alone = len(made.force.train.names) == 1
+            largest = [("", s.total, "" if alone else "with all meshes, at the case's phases, ")]
+            if not alone:
+                largest += [
+                    ("_any_phase", s.any_phase, "at most, whatever the phases of the other meshes, "),
+                    ("_own_mesh", s.own, "without the other meshes, "),
+                ]
+            values += [
+                Value(f"{name}.{member}.largest_dynamic_root_tension{which}{end}", float(of.max()), "MPa",
+                      float(s.error[at] * of[at] / s.own[at]) if known else None,
+                      f"gear {gear}, {by}, {meaning}contact at x = {force.x[at] * 1e3:.5g} mm")
+                for which, of, meaning in largest for at in (int(np.argmax(of)),)
+            ]  # fmt: skip
         title = f"Dynamic root stress of gear {gear} as {member}, mesh {name}"
         tables.append(Table(f"root_stress_history_{name}_{asked.labels[member]}", tuple(columns), title))
     notes = {asked.gears[member]: found for member, found in made.notes.items()}

@@ -125,8 +125,21 @@ def _doubt(data: LoadedFlanksData) -> tuple[float, float]:
     return abs(other - fine), float(data.error.peak_to_peak[i])
 
 
+def _reference_remarks(data: GearTrain, asked: TrainInputs) -> list[str]:
+    """Say whose speeds are meant, where bodies turn at different speeds and the order of tables alone tells."""
+    ratios = np.abs(data.train.ratios)
+    if not asked.assumed or float(np.ptp(ratios)) <= 1e-12 * float(ratios.max()):
+        return []
+    low, high = (float(ratio) / data.speed_ratio for ratio in (ratios.min(), ratios.max()))
+    said = (
+        f"No dynamics.speed_of was given; assumed default: speeds are those of {asked.speed_of}, the first table under "
+        f"[train.body]. Bodies turn at {low:.4g} to {high:.4g} times that; write speed_of under [dynamics]."
+    )
+    return [said]
+
+
 def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
-    remarks: list[str] = []
+    remarks = _reference_remarks(data, asked)
     values: list[Value] = []
     for (name, part), mesh, one in zip(asked.part.mesh.items(), data.train.meshes, data.meshes, strict=True):
         if not one.a_drives:

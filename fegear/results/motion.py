@@ -61,14 +61,15 @@ class SweepInputs:
 def check_friction(scene: Scene, _subject: str = "") -> None:
     """Refuse friction where teeth are coupled or touch off the path."""
     effects = scene.case.effects
+    # whose teeth touch along the face cannot be mended by effects: first
+    if effects.friction and scene.case.train is not None:
+        for mesh in scene.case.train.mesh:
+            needs_plane_teeth(scene, mesh, "effects.friction", "true")
     if effects.friction and (effects.neighbour_coupling or effects.corner_contact):
         raise InputError(
             "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
             "switch neighbour_coupling and corner_contact off",
         )  # fmt: skip
-    if effects.friction and scene.case.train is not None:
-        for mesh in scene.case.train.mesh:
-            needs_plane_teeth(scene, mesh, "effects.friction", "true")
 
 
 def check_motion(scene: Scene, subject: str = "") -> None:

@@ -86,14 +86,13 @@ def _compute(asked: ToothForceInputs, upstream: Upstream, _work: Work) -> ToothF
 
 def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
     name, data, i, force = asked.mesh, made.train, made.mesh, made.force
-    cross = force.cross.sum(axis=0)
     table = Table(
         f"tooth_force_{name}",
         (
             Column("t", force.time, "s", "from the mesh's phase zero"),
             Column("x", force.x, "mm", "place of the tooth pair on the line of action"),
             Column("force", force.total, "N", "on one tooth pair, without the other meshes' share"),
-            Column("force_with_others", force.total + cross, "N", "with the other meshes' share, at the case's phases"),
+            Column("force_with_others", force.with_others, "N", "with the other meshes' share, at the case's phases"),
             Column("static", force.static, "N", "static part"),
             Column("own_increment", force.own, "N", "from this mesh's transmission error"),
             *(
@@ -104,10 +103,19 @@ def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
         ),
         f"Force on one tooth pair of mesh {name}",
     )
-    worst = int(np.argmax(force.total))
+    alone = len(data.names) == 1
+    largest = [("", force.with_others, "" if alone else "with all meshes, at the case's phases, ")]
+    if not alone:
+        largest += [
+            ("_any_phase", force.at_worst_phases, "at most, whatever the phases of the other meshes, "),
+            ("_own_mesh", force.total, "without the other meshes, "),
+        ]
     values = [
-        Value(f"{name}.largest_tooth_force", float(force.total[worst]), "N", None,
-              f"without the other meshes, at x = {force.x[worst] * 1e3:.5g} mm"),
+        *(
+            Value(f"{name}.largest_tooth_force{end}", float(of.max()), "N", None,
+                  f"{meaning}at x = {force.x[int(np.argmax(of))] * 1e3:.5g} mm")
+            for end, of, meaning in largest
+        ),
         Value(f"{name}.largest_static_tooth_force", float(force.static.max()), "N", None, "quasi-static"),
         *(
             Value(f"{name}.largest_increment_from_{other}", float(force.cross_peak[j]), "N", None,
@@ -146,7 +154,7 @@ def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
     name, x, marks = names[data.mesh], force.x * 1e3, path_marks(data.train.meshes[data.mesh].pair)
     top = [Curve(x, force.static, "static", "static"), Curve(x, force.total, "static and own increment", "own force")]
     if len(names) > 1:
-        top.append(Curve(x, force.total + force.cross.sum(axis=0), "with the other meshes", "with other meshes"))
+        top.append(Curve(x, force.with_others, "with the other meshes", "with other meshes"))
     parts = {j: force.own if j == data.mesh else force.cross[j] for j in range(len(names))}
     below = [Curve(x, part, f"from mesh {names[j]}", f"series:{j}") for j, part in parts.items()]
     mean = Mark("y", float(data.train.forces[data.mesh]))

@@ -41,6 +41,8 @@ class FrictionInputs:
     law : FrictionPart
     speeds : ndarray
         Of the body that speeds refer to [rad/s].
+    stated : float
+        The one of them that values are stated at.
     positions : int
         Over the path of contact.
     """
@@ -48,6 +50,7 @@ class FrictionInputs:
     mesh: str
     law: FrictionPart
     speeds: Array
+    stated: float
     positions: int
 
 
@@ -80,7 +83,9 @@ def _check(scene: Scene, subject: str) -> None:
 
 def _inputs(scene: Scene, name: str) -> FrictionInputs:
     part = scene.case.dynamics
-    return FrictionInputs(name, part.friction, part.speed_values, part.positions)
+    speeds = np.unique([*part.speed_values, *(() if part.speed is None else (part.speed,))])
+    stated = float(speeds[-1]) if part.speed is None else part.speed
+    return FrictionInputs(name, part.friction, speeds, stated, part.positions)
 
 
 def _compute(asked: FrictionInputs, upstream: Upstream, work: Work) -> FrictionData:
@@ -134,12 +139,17 @@ def _present(data: FrictionData, asked: FrictionInputs) -> Outcome:
             Column("friction_loss", loss, "W", "mean power that tooth friction takes"),
             Column("mean_coefficient", mean, "", "friction coefficient that would take as much everywhere"),
             Column("efficiency", 1.0 - loss / power, "", "of the mesh, by tooth friction alone"),
-            Column("loss_error", np.array([one.loss_error for one in found]), "W", "of the integration"),
+            Column(
+                "loss_error",
+                np.array([one.loss_error for one in found]),
+                "W",
+                "of the integration and the fitted teeth",
+            ),
         ),
         f"Friction loss of mesh {name} over speed",
     )
-    top = found[-1]
-    at = f"at {data.speeds[-1] * RPM:.6g} rpm {of}"
+    top = found[int(np.flatnonzero(data.speeds == asked.stated)[0])]
+    at = f"at {asked.stated * RPM:.6g} rpm {of}"
     relative = top.loss_error / top.loss if top.loss else 0.0
     values = (
         Value(f"{name}.friction_loss", top.loss, "W", top.loss_error, at),

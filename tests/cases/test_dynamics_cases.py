@@ -49,17 +49,40 @@ def test_four_square_tooth_force():
     tables, values, _ = run("four_square_dynamics")
     table = tables["tooth_force_I"]
     assert list(table)[:4] == ["t [s]", "x [mm]", "force [N]", "force_with_others [N]"]
-    assert values["I.largest_tooth_force"] / POUND == pytest.approx(338.0, abs=0.5)
+    assert values["I.largest_tooth_force_own_mesh"] / POUND == pytest.approx(338.0, abs=0.5)
+    # the headline is that of the table, with the other meshes
+    assert values["I.largest_tooth_force"] == table["force_with_others [N]"].max()
+    assert values["I.largest_tooth_force"] > values["I.largest_tooth_force_own_mesh"] + 10.0
     pitch = 2 * math.pi * 44.45 * math.cos(math.radians(20.0)) / 28
     assert np.interp(46 / 64 * pitch, table["x [mm]"], table["force [N]"]) / POUND == pytest.approx(98.5, abs=0.3)
     assert 5.0 < values["I.largest_increment_from_II"] / POUND < 7.5
+
+
+def test_no_phase_of_the_other_mesh_gives_more_than_the_largest_of_any_phase():
+    """Force and root tension of the four-square rig, the slave gears meshing an eighth of a pitch later each time."""
+    largest = {}
+    for phase in np.arange(8) / 8.0:
+        _, values, _ = run("four_square_dynamics", f"train.mesh.II.phase={phase}")
+        for name in ("I.largest_tooth_force", *(f"I.{m}.largest_dynamic_root_tension" for m in ("driver", "driven"))):
+            largest.setdefault(name, []).append(values[name])
+            bound = values[f"{name}_any_phase"]
+            assert values[name] <= bound
+            assert bound > values[f"{name}_own_mesh"]
+    for name, found in largest.items():
+        assert max(found) > min(found)
+        assert bound_is_met(max(found), values[f"{name}_any_phase"])
+
+
+def bound_is_met(found, bound):
+    """Of two meshes the bound is the largest itself, but for the phases between those tried."""
+    return found == pytest.approx(bound, rel=5e-3)
 
 
 def test_four_square_test_gears_of_least_excitation():
     """Figs. 23, 25: 366 lb largest, 17.6 lb at x = 41 A/64, 5 to 7 lb from the slave gears; lines 1e3 to 1e4 lower."""
     tables, values, _ = run("four_square_minimum_excitation")
     table = tables["tooth_force_I"]
-    assert values["I.largest_tooth_force"] / POUND == pytest.approx(366.0, abs=0.5)
+    assert values["I.largest_tooth_force_own_mesh"] / POUND == pytest.approx(366.0, abs=0.5)
     last = np.interp(41 / 64 * pitch_mm(), table["x [mm]"], table["force [N]"])
     assert last / POUND == pytest.approx(17.6, abs=0.3)
     assert 5.0 < values["I.largest_increment_from_II"] / POUND < 7.0
@@ -273,6 +296,57 @@ def test_a_motion_that_never_repeats_is_a_sample_without_an_error():
     largest = next(value for value in results.values if value.name == "I.largest_dynamic_factor")
     assert largest.error is None
     assert "1000 periods" in largest.meaning
+
+
+def test_the_body_that_speeds_refer_to_is_named_and_the_order_of_tables_means_nothing_then(tmp_path):
+    """Read from the other end, a line of the spectrum went from 288.6 to 1298.3 N: the first was the reference."""
+    text = (CASES / "two_stage_gearbox.toml").read_text()
+    bodies = text.split("[train.body]\n")[1].split("\n\n")[0]
+    turned = text.replace(bodies, "\n".join(reversed(bodies.splitlines())))
+    assert turned != text
+    found = {}
+    for name, case in (("as it is", text), ("turned", turned), ("assumed", turned.replace('speed_of = "motor"\n', ""))):
+        path = CASES / "two_stage_gearbox.toml"
+        results = run_text(case, path, tmp_path, 'results=["mesh-force-spectrum"]')
+        found[name] = {value.name: value.value for value in results.values}
+        said = [remark for remark in results.remarks if "dynamics.speed_of" in remark]
+        assert bool(said) == (name == "assumed")
+    assert found["turned"] == pytest.approx(found["as it is"], rel=1e-9)
+    assert found["assumed"] != pytest.approx(found["as it is"], rel=0.1)
+
+
+def run_text(text, beside, folder, *overrides):
+    """Run the text of a case that stands beside another one, so that its files are found."""
+    path = folder / beside.name
+    path.write_text(text)
+    if not (folder / "data").exists():
+        (folder / "data").symlink_to(beside.parent / "data")
+    scene = read_scene(path, overrides)
+    return run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
+
+
+def test_friction_of_a_helical_stage_is_refused_with_a_remedy_that_helps():
+    """It was told to switch effects off, after which it was refused for its helix."""
+    with pytest.raises(InputError, match="leave it out") as told:
+        make_plan(read_scene(CASES / "helical_stage_train.toml", ["effects.friction=true"]), STAGES)
+    assert "neighbour_coupling" not in str(told.value)
+
+
+def test_tooth_friction_is_stated_at_the_one_speed_that_the_case_names():
+    """It was stated at the fastest of `speeds`, ten times as much; its error was below round-off of its own inputs."""
+    asked = ('results=["tooth-friction"]', "effects={friction=true, parametric=true, hertz='load-dependent'}")
+    several = "dynamics.speeds=['1000 rpm', '10000 rpm']"
+    _, at_one, _ = run("lin_dynamic_factor", *asked, several, "dynamics.speed='1000 rpm'")
+    tables, between, results = run("lin_dynamic_factor", *asked, several, "dynamics.speed='3000 rpm'")
+    table = tables["friction_loss_I"]
+    assert table["speed [rpm]"] == pytest.approx([1000.0, 3000.0, 10_000.0])
+    assert at_one["I.friction_loss"] == pytest.approx(table["friction_loss [W]"][0], rel=1e-9)
+    assert between["I.friction_loss"] == pytest.approx(table["friction_loss [W]"][1], rel=1e-9)
+    loss = results.values["I.friction_loss"]
+    assert "3000 rpm" in loss.meaning
+    # the teeth are fitted to 1e-9: no integral over them is more exact
+    assert loss.error >= 1e-9 * loss.value
+    assert results.values["I.friction_efficiency"].error > 1e-13
 
 
 def test_a_speed_at_which_the_motion_grows_is_a_row_of_the_sweep():

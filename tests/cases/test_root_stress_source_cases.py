@@ -93,6 +93,19 @@ def test_history_is_load_times_formula_on_both_gears(name):
     assert np.median(np.abs(mirrored - a["stress [MPa]"])) < 1e-3 * a["stress [MPa]"].max()
 
 
+def test_stress_from_the_neighbours_loads_has_an_error_too():
+    """It was zero wherever a tooth carries nothing itself, and less than round-off of the sections beside that."""
+    _, tables, _, _ = run(
+        "calculix_pair", HISTORY, "effects.corner_contact=false", "accuracy={tolerance=5e-3}", "pair.I.loads=['800 N']"
+    )
+    for label in ("I_a", "I_a_driven"):
+        table = tables[f"root_stress_history_{label}"]
+        stress, error = np.abs(table["stress [MPa]"]), table["stress_error [MPa]"]
+        most = int(np.argmax(stress))
+        felt = stress > 1e-6 * stress.max()
+        assert (error[felt] >= 0.5 * error[most] / stress[most] * stress[felt]).all()
+
+
 def test_formula_stands_beside_finite_elements_and_changes_nothing_of_theirs():
     coarse = ("effects.corner_contact=false", "accuracy={tolerance=5e-3}", "pair.I.loads=['800 N']")
     _, alone, told, _ = run("calculix_pair", HISTORY, *coarse)
