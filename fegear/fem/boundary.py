@@ -15,6 +15,7 @@ import numpy as np
 
 from fegear.errors import RangeError
 from fegear.geometry.curves import Curve, arc_length
+from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,7 +40,7 @@ _SHORT_FILLET, _SHORT_FILLET_EDGES, _USUAL_FRACTION = 0.1, 8, 0.2
 #: without number.
 _SMALLEST_BORE, _THINNEST_RIM = 1e-4, 5e-3
 #: Widest angle of an edge on the bore [rad]: a cubic edge misses its circle by the fourth power of it over 384.
-_WIDEST_BORE_EDGE = 0.25
+_WIDEST_BORE_EDGE = 0.15
 #: An edge on a tip rounding that turns by more than this [rad] is shorter than what matters there and stays straight:
 #: gmsh draws triangles over two such edges, whose corner between two tangents would be flat.
 _SHARPEST_TURN = 0.26
@@ -101,7 +102,7 @@ def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1) -> Chain:
     normals = curve.normals(np.interp(nodes, length, parameter))
     vertices, middles, tangents = points[:, ::2], points[:, 1::2], np.stack([-normals[1], normals[0]])
     if name == "tip_rounding":
-        sharp = np.einsum("cn,cn->n", tangents[:, 1:], tangents[:, :-1]) < math.cos(_SHARPEST_TURN)
+        sharp = (tangents[:, 1:] * tangents[:, :-1]).sum(axis=0) < math.cos(_SHARPEST_TURN)
         middles = np.where(sharp, 0.5 * (vertices[:, 1:] + vertices[:, :-1]), middles)
     return Chain(name, vertices, middles, tangents)
 
@@ -151,8 +152,13 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     ]
     if not land:
         front[0] = _from_the_side(front[0], tooth)
-    back_tip = [_mirrored(chain, "tip") for chain in reversed(front) if chain.name.startswith("tip")]
-    back_flank = _mirrored(_on_curve("flank", tooth.involute, _back_size(tooth, settings)), "back_flank")
+    back_laws = _back_sizes(tooth, settings)
+    back_tip = [
+        _mirrored(_on_curve(_boundary(piece, tooth), pieces[piece], law), "tip")
+        for piece, law in reversed(back_laws.items())
+        if piece in pieces and piece != "flank"
+    ]
+    back_flank = _mirrored(_on_curve("flank", tooth.involute, back_laws["flank"]), "back_flank")
     fillet = _on_curve("fillet", tooth.fillet, _fillet_size(tooth, settings), fewest)
     back_fillet = _mirrored(fillet if land else _from_the_side(fillet, tooth), "back_fillet")
     top = (land + front)[0].vertices
@@ -165,13 +171,10 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
         return np.minimum(first + settings.side_growth * depth, np.minimum(width, rim))
 
     side_b = _side(top[:, 0], bore_radius, body_size)
-    turn = _rotation(pitch_angle)
-    side_a = Chain(
-        "side_a",
-        (turn @ side_b.vertices)[:, ::-1],
-        (turn @ side_b.middles)[:, ::-1],
-        (-turn @ side_b.tangents)[:, ::-1],
+    vertices, middles, tangents = (
+        turned(part, -pitch_angle)[:, ::-1] for part in (side_b.vertices, side_b.middles, -side_b.tangents)
     )
+    side_a = Chain("side_a", vertices, middles, tangents)
     by_size = round(pitch_angle * bore_radius / float(body_size(np.array(outer - bore_radius))))
     bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
     bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
@@ -251,16 +254,39 @@ def _fillet_size(tooth: Tooth, settings: MeshSettings) -> Law:
     radius = 1.0 / np.maximum(np.abs(tooth.fillet.curvatures(parameter)), 1e-9)
     finest = _SHARPEST * settings.root_edge_length
     sizes = np.clip(settings.root_fraction * radius, finest, settings.root_edge_length)
-    # No faster than edges may grow, from the sharpest place on.
-    steps = settings.growth * np.abs(length[:, None] - length)
-    sizes = (sizes + steps).min(axis=1)
+    # No faster than edges may grow, from the sharpest place on to either side.
+    grown = settings.growth * length
+    upward = np.minimum.accumulate(sizes - grown) + grown
+    downward = np.minimum.accumulate((sizes + grown)[::-1])[::-1] - grown
+    sizes = np.minimum(upward, downward)
     return lambda s: np.interp(s, length, sizes)
 
 
-def _back_size(tooth: Tooth, settings: MeshSettings) -> Law:
-    """Edges on the unloaded flank grow away from its fillet."""
+def _back_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
+    """Edge lengths along the other side from its fillet to the tooth's centre line.
+
+    Nothing is loaded there: edges grow away from the fillet, from the centre line, where they are as long as the loaded
+    side's, and from a rounded tip, which they must follow.
+    """
+    grow, longest = settings.growth, settings.back_edge_length
+    flank, land = _length(tooth.involute), _length(tooth.outline["tip_land"])
+    edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
     last = float(_fillet_size(tooth, settings)(np.array([_length(tooth.fillet)]))[0])
-    return lambda s: np.minimum(last + settings.growth * s, settings.back_edge_length)
+    middle = float(_front_sizes(tooth, settings)["tip_land"](np.array([land]))[0])
+    # a rounding that turns sharper than an edge can follow is drawn straight, as on the loaded side
+    round_ = max(_SHARPEST_TURN * tooth.tip_rounding, settings.tip_edge_length) if tooth.tip_rounding > 0.0 else longest
+
+    def size(s: Array) -> Array:
+        """By the distance from the start of the flank."""
+        by_ends = np.minimum(last + grow * s, middle + grow * np.abs(flank + edge + land - s))
+        off_tip = np.maximum(np.maximum(flank - s, s - flank - edge), 0.0)
+        return np.minimum(np.minimum(by_ends, round_ + grow * off_tip), longest)
+
+    return {
+        "flank": size,
+        "tip_edge": lambda s: size(s + flank),
+        "tip_land": lambda s: size(s + flank + edge),
+    }
 
 
 def _front_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
@@ -282,12 +308,6 @@ def _front_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
     }
 
 
-def _rotation(angle: float) -> Array:
-    """Matrix that turns counterclockwise."""
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s], [s, c]])
-
-
 def _side(top: Array, bore_radius: float, size: Law) -> Chain:
     outer = float(np.hypot(*top))
     # Evenly in depth down to the bore, and evenly in the logarithm of the radius for bores near the centre.
@@ -306,6 +326,6 @@ def _bore(right: Array, bore_radius: float, edges: int, pitch_angle: float) -> C
     angle = np.linspace(-half, half, 2 * edges + 1)
     points = bore_radius * np.stack([np.sin(angle), np.cos(angle)])
     points[:, -1] = right
-    points[:, 0] = _rotation(pitch_angle) @ right
+    points[:, 0] = turned(right, -pitch_angle)
     tangents = np.stack([np.cos(angle), -np.sin(angle)])[:, ::2]
     return Chain("bore", points[:, ::2], points[:, 1::2], tangents)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: Part of the difference from the coarser solution of the error estimate that is taken for the error of the finer one:
 #: of c_0, of neighbours, of stresses. Smooth errors of order four leave a third; gmsh draws every mesh anew, positions
 #: differ, and a neighbour's deflection, a small error anyway, differs least regularly.
-_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 2.4, 0.9
+_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 2.4, 1.1
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5

@@ -138,12 +138,14 @@ def uneven_section(tooth: Tooth, bore_radius: float, coarseness: float = 1.0, ot
     Section
     """
     multiples = (coarseness, *(others or coarseness,) * (len(_EDGES) - 1))
-    boundaries = [
-        sector_boundary(tooth, bore_radius, _settings(f, *edges)) for f, edges in zip(multiples, _EDGES, strict=True)
-    ]
+    settings = [_settings(f, *edges) for f, edges in zip(multiples, _EDGES, strict=True)]
+    boundaries = [sector_boundary(tooth, bore_radius, kind) for kind in settings]
     # Neighbours fit: all have the sides and the bore of tooth 0.
     shared = {chain.name: chain for chain in boundaries[0] if chain.name in _SHARED}
-    kinds = [mesh_inside([shared.get(c.name, c) for c in chains], tooth.teeth) for chains in boundaries]
+    kinds = [
+        mesh_inside([shared.get(c.name, c) for c in chains], tooth.teeth, growth=kind.side_growth)
+        for chains, kind in zip(boundaries, settings, strict=True)
+    ]
     first = -((tooth.teeth - 1) // 2)
     return gear_section({k: kinds[min(abs(k), 2)] for k in range(first, first + tooth.teeth)})
 
@@ -155,7 +157,7 @@ def _settings(f: float, root: float, flank: float, end: float, growth: float) ->
         flank_edge_length=flank * f,
         tip_edge_length=end * f,
         junction_edge_length=end * f,
-        back_edge_length=0.4 * f,
+        back_edge_length=0.36 * f,
         growth=growth,
         tip_growth=growth,
         side_growth=0.45,

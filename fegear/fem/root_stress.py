@@ -102,7 +102,7 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
 
 #: The stress round its largest value is smoothed by a polynomial through this many points of this degree: the trochoid
 #: is analytic, so the stress away from the contact is too, and the fit averages out the scatter of single edges.
-_FITS = ((20, 6), (12, 4))
+_FITS = ((20, 8), (12, 4))
 #: Where a fit leaves more than this share of the largest stress, the contact is too near for a smooth curve.
 _MISFIT = 0.01
 _GRID = np.linspace(-1.0, 1.0, 201)

@@ -247,10 +247,15 @@ def test_cubic_elements_that_turn_inside_out_are_refused():
 
 
 def test_meshes_whose_cubic_edges_turn_an_element_inside_out_are_drawn_finer():
-    """The quadratic elements of this coarse mesh are sound, a cubic one beside the small fillet was not."""
+    """The quadratic elements of this coarse mesh are sound, a cubic one beside the small fillet was not.
+
+    Meshes of plane teeth had none among 90 tried; those of solid teeth are frontal.
+    """
     tooth = Tooth(105, BasicRack(1.0, 1.25, 0.0454), 0.076)
     coarse, cubic = (replace(settings_at(-3), order=order) for order in (2, 4))
-    quadratic, finer = (mesh_sector(tooth, 0.1 * tooth.root_radius, settings) for settings in (coarse, cubic))
+    quadratic, finer = (
+        mesh_sector(tooth, 0.1 * tooth.root_radius, settings, frontal=True) for settings in (coarse, cubic)
+    )
     with pytest.raises(InputError, match="inside out"):
         assemble(quadratic, NU, "strain", 4)
     assert finer.triangles.shape[1] > quadratic.triangles.shape[1]
@@ -261,6 +266,6 @@ def test_scikit_fem_has_nothing_to_remark(caplog):
     """Its remarks on the order of arrays would stand between the user's lines."""
     tooth = Tooth(28)
     mesh = mesh_sector(tooth, 0.1 * tooth.root_radius, MeshSettings().scaled(0.7))
-    assert mesh.vertex_count > 1000
+    assert mesh.vertex_count > 800
     assemble(mesh, NU, "strain", 4)
     assert caplog.records == []

@@ -207,4 +207,4 @@ def test_decks_have_short_numbers_and_refuse_what_is_off_the_face(tmp_path):
     with pytest.raises(InputError, match=r"lies off the face, which runs from -0.35 to 0.35 mm"):
         write_solid(gear, tmp_path, "g", {"solid-inp"}, face_positions=(1e-3,))
     with pytest.raises(InputError, match="is the most"):
-        write_solid(Gear(TOOTH, 1e-3, 2.5e-3, 0.3), tmp_path, "g", {"solid-inp"})
+        write_solid(Gear(Tooth(40, TOOTH.rack), 1e-3, 15e-3, 0.3), tmp_path, "g", {"solid-inp"})

@@ -81,7 +81,8 @@ def own_contact(compliance, gap, load):
     def forces(zeta):
         return nnls(lower.T, np.linalg.solve(lower, zeta - gap))[0]
 
-    most = gap.min() + load * compliance.diagonal().max()
+    # Above what a single station under all of the load takes: there the search would end on its own root.
+    most = gap.min() + 1.5 * load * compliance.diagonal().max()
     zeta = brentq(lambda at: forces(at).sum() - load, gap.min() + 1e-15, most, rtol=1e-13, xtol=1e-18)
     return zeta, forces(zeta)
 

@@ -127,7 +127,7 @@ def test_the_other_hand_is_the_mirror_image():
 
 def explicit(tooth, settings, tau, width, bore, sectors, closed):
     """Sectors side by side, every unknown of them in one sparse matrix; solved for forces on the middle one."""
-    mesh = mesh_sector(tooth, bore, settings.section)
+    mesh = mesh_sector(tooth, bore, settings.section, frontal=True)
     section = make_section(mesh, settings.section.order, tau, NU, tooth.base_radius)
     face = face_functions(width, settings.degree(width))
     m = face.count

@@ -1,7 +1,7 @@
 """Write random_gears.json: random gears with converged values, to hold error estimates and tolerances against them.
 
 The first thirty are for the error estimates, the last ten for tolerances. What the estimates' constants were set on are
-other gears (seed 101). Run by hand; it takes some five minutes:
+other gears (seed 101). Run by hand; it takes two minutes:
 
 python tests/golden/make_random_gears.py
 """
@@ -20,17 +20,17 @@ from fegear.geometry import BasicRack, Tooth
 
 #: Fourth order on edges a third to a sixth of the default's; narrow pressures, so that nothing is extrapolated far.
 FINE = MeshSettings(
-    root_edge_length=0.04,
+    root_edge_length=0.03,
     root_fraction=0.06,
-    flank_edge_length=0.012,
-    tip_edge_length=0.002,
-    junction_edge_length=0.003,
-    back_edge_length=0.2,
-    growth=0.2,
-    tip_growth=0.15,
-    side_growth=0.25,
-    body_fraction=0.7,
-    rim_fraction=0.25,
+    flank_edge_length=0.01,
+    tip_edge_length=0.0015,
+    junction_edge_length=0.002,
+    back_edge_length=0.15,
+    growth=0.15,
+    tip_growth=0.11,
+    side_growth=0.18,
+    body_fraction=0.5,
+    rim_fraction=0.18,
     patch_half_width=0.06,
     order=4,
 )
@@ -93,6 +93,6 @@ def converged(tooth, bore, nu, plane, positions=POSITIONS, settings=FINE):
 
 
 if __name__ == "__main__":
-    gears = random_gears(30, 202) + random_gears(10, 303)
+    gears = random_gears(30, 404) + random_gears(10, 505)
     told = [g | converged(tooth_of(g), g["bore"], g["poisson_ratio"], g["plane"]) for g in gears]
     Path(__file__).with_name("random_gears.json").write_text(json.dumps(told) + "\n")

@@ -226,7 +226,8 @@ def test_many_teeth_tend_to_the_rack_like_one_over_their_number():
     c = []
     for teeth in (125, 250, 500, 1000):
         tooth = Tooth(teeth)
-        known = solved(tooth, bore=1.0 - 2.5 / tooth.root_radius)
+        # the last step is .4 % of the compliance, and FAST's meshes leave a tenth of it
+        known = solved(tooth, settings_at(0), bore=1.0 - 2.5 / tooth.root_radius)
         c.append(known.self_compliance([tooth.pitch_radius, tooth.tip_radius], HALF_WIDTH))
     steps = -np.diff(c, axis=0)
     assert (steps > 0.0).all()

@@ -245,7 +245,7 @@ def _solve(
 ) -> SolidSolution:  # fmt: skip
     started = time.perf_counter()
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
-    mesh = mesh_sector(tooth, bore_radius, settings.section) if mesh is None else mesh
+    mesh = mesh_sector(tooth, bore_radius, settings.section, frontal=True) if mesh is None else mesh
     section = make_section(mesh, settings.section.order, tau, nu, tooth.base_radius)
     face = face_functions(width, settings.degree(width), held)
     known = solid_unknowns(section, face, settings, held, plane_strain=plane_strain)
