@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from fegear.contact.transmission_error import TransmissionError
 
 #: Distance from a jump at which both sides of it are looked at [base pitches].
-_BESIDE = 1e-7
+BESIDE = 1e-7
 
 
 def secant_stiffness(loaded: Loaded) -> Array:
@@ -43,8 +43,8 @@ def roll_positions(engagement: Engagement, count: int) -> Array:
         Even steps over the base pitch.
     """
     start, pitch = engagement.pair.x_start, engagement.pair.base_pitch
-    beside = np.array([b + side * _BESIDE * pitch for b in engagement.breaks for side in (-1.0, 1.0)])
+    beside = np.array([b + side * BESIDE * pitch for b in engagement.breaks for side in (-1.0, 1.0)])
     x = np.concatenate([np.linspace(start, start + pitch, count + 1), beside])
-    inside = (x > start + 0.5 * _BESIDE * pitch) & (x < start + (1.0 - 0.5 * _BESIDE) * pitch)
-    ends = np.array([start + _BESIDE * pitch, start + (1.0 - _BESIDE) * pitch])
+    inside = (x > start + 0.5 * BESIDE * pitch) & (x < start + (1.0 - 0.5 * BESIDE) * pitch)
+    ends = np.array([start + BESIDE * pitch, start + (1.0 - BESIDE) * pitch])
     return np.unique(np.concatenate([x[inside], ends]))

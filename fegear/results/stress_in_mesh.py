@@ -109,7 +109,7 @@ class StressInMeshData:
 
 
 def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshData:
-    from fegear.contact.mesh_curve import roll_positions
+    from fegear.contact.mesh_curve import BESIDE, roll_positions
     from fegear.contact.root_stress_history import superposed_stress
     from fegear.contact.tooth_stress import with_peaks
 
@@ -123,7 +123,9 @@ def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshD
         for member in MEMBERS
     }
     at_peaks = {member: (source,) for member, source in sources.items()}
-    state = e.solve(e.grid(with_peaks(e, found.nominal, roll_positions(e, POSITIONS), at_peaks)), [found.nominal])
+    x = with_peaks(e, found.nominal, roll_positions(e, POSITIONS), at_peaks)
+    apart = np.diff(x, prepend=-np.inf) > BESIDE * pair.base_pitch  # peaks of two teeth at one kink are one place
+    state = e.solve(e.grid(x[apart]), [found.nominal])
     contacts = state.grid.contacts
     pairs = np.arange(contacts.number[0] - 1, contacts.number[-1] + 2)
     gears: dict[Member, FilletStress] = {}

@@ -113,8 +113,11 @@ def test_formula_stands_beside_finite_elements_and_changes_nothing_of_theirs():
     _, turned, other, _ = run("calculix_pair", HISTORY, *coarse, source("cornell", "fe"))
     for label in ("I_a", "I_a_driven"):
         a, b, c = (one[f"root_stress_history_{label}"] for one in (alone, both, turned))
-        for key in a:
-            np.testing.assert_array_equal(a[key], b[key])
+        shared = np.isin(b["x [mm]"], a["x [mm]"])  # the formula's own peaks are rows of their own
+        assert a["x [mm]"].size <= shared.sum()
+        for key in set(a) - {"t [s]"}:
+            for x, value in zip(a["x [mm]"], a[key], strict=True):
+                assert value in b[key][b["x [mm]"] == x]
         np.testing.assert_array_equal(b["stress [MPa]"], c["stress_fe [MPa]"])
         np.testing.assert_array_equal(b["compression [MPa]"], c["compression_fe [MPa]"])
         np.testing.assert_array_equal(b["stress_cornell [MPa]"], c["stress [MPa]"])
