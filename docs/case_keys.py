@@ -27,7 +27,7 @@ def _row(one: KeyHelp) -> str:
 
 def page_with_keys(text: str) -> str:
     """The page with its tables as the model has them."""
-    nodes = SchemaNodes(case_schema({name: stage.about for stage in STAGES for name in stage.results}))
+    nodes = SchemaNodes(case_schema({name: entry.about for entry in STAGES.entries for name in entry.results}))
 
     def made(found: re.Match[str]) -> str:
         name = found[1]

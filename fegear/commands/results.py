@@ -13,11 +13,12 @@ if TYPE_CHECKING:
 
 def results(as_json: AsJson = False) -> None:
     """List the results that a case can ask for, by subject."""
-    from fegear.results.catalogue import RESULTS, SUBJECTS
+    from fegear.results.catalogue import RESULTS, STAGES, SUBJECTS
 
     voice = Voice(as_json=as_json)
     column = max(map(len, RESULTS))
-    for subject, stages in SUBJECTS.items():
+    subjects = {subject: [STAGES.called(entry.name) for entry in entries] for subject, entries in SUBJECTS.items()}
+    for subject, stages in subjects.items():
         voice.say(f"{subject}:")
         # Several stages may give one result, each for gears and pairs of its kind.
         once = {name: _meaning(stage, name) for stage in reversed(stages) for name in reversed(stage.results)}
@@ -25,7 +26,7 @@ def results(as_json: AsJson = False) -> None:
             voice.say(line)
     voice.say('Ask for them by results = ["geometry", ...] in a case, or by --results geometry,stiffness.')
     found = [
-        (subject, stage, name) for subject, stages in SUBJECTS.items() for stage in stages for name in stage.results
+        (subject, stage, name) for subject, stages in subjects.items() for stage in stages for name in stage.results
     ]
     voice.tell(
         {

@@ -78,5 +78,5 @@ def schema_text() -> str:
     from fegear.case.schema import case_schema
     from fegear.results.catalogue import STAGES
 
-    results = {name: stage.about for stage in STAGES for name in stage.results}
+    results = {name: entry.about for entry in STAGES.entries for name in entry.results}
     return json.dumps(case_schema(results), indent=1, ensure_ascii=False) + "\n"

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.case.names import nearest
+from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Stage, Task
 from fegear.errors import InputError
 
@@ -66,11 +67,8 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     InputError
         If a result is unknown, or the scene lacks what a stage needs: a part, or an effect.
     """
-    by_name = {stage.name: stage for stage in stages}
-    by_result: dict[str, list[Stage]] = {}
-    for stage in stages:
-        for result in stage.results:
-            by_result.setdefault(result, []).append(stage)
+    known = Catalogue.of(stages)
+    by_result = known.by_result()
 
     reasons: dict[Task, list[str]] = {}
     order: list[Task] = []
@@ -80,7 +78,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
             if reason not in reasons[task]:
                 reasons[task].append(reason)
             return
-        stage = by_name[task.stage]
+        stage = known.called(task.stage)
         _require_effects(scene, stage)
         stage.check(scene, task.subject)
         reasons[task] = [reason]
@@ -91,7 +89,8 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
     for result in scene.case.results:
         if result not in by_result:
             raise InputError("results", f'"{result}"', "is no result that fegear knows", nearest(result, by_result))
-        wanted = [(stage, subject) for stage in by_result[result] for subject in stage.subjects(scene)]
+        asked = [known.called(name) for name in by_result[result]]
+        wanted = [(stage, subject) for stage in asked for subject in stage.subjects(scene)]
         if not wanted:
             raise InputError(
                 "results",
@@ -107,16 +106,17 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
 
     on = scene.case.effects.on()
     steps = tuple(
-        Step(task, by_name[task.stage], tuple(reasons[task]), tuple(e for e in by_name[task.stage].effects if e in on))
-        for task in order
+        Step(task, stage, tuple(reasons[task]), tuple(e for e in stage.effects if e in on))
+        for task, stage in ((task, known.called(task.stage)) for task in order)
     )
     running = {step.stage.name for step in steps}
-    skipped = tuple((stage.name, _why_not(stage, scene.case.results)) for stage in stages if stage.name not in running)
+    skipped = tuple((one.name, _why_not(one, scene.case.results)) for one in known.entries if one.name not in running)
     used = {effect for step in steps for effect in step.effects}
     # What `fegear cost` studies in this case is wanted too, if not by a run.
-    used |= {effect for name in scene.case.cost.stages if name in by_name for effect in by_name[name].effects}
+    names = {entry.name for entry in known.entries}
+    used |= {effect for name in scene.case.cost.stages if name in names for effect in known.called(name).effects}
     idle = tuple(effect for effect in on if effect not in used)
-    return Plan(steps, skipped, idle, tuple(_idle(effect, stages) for effect in idle))
+    return Plan(steps, skipped, idle, tuple(_idle(effect, known) for effect in idle))
 
 
 def _idle(effect: str, stages: Sequence[Stage]) -> str:
@@ -139,7 +139,7 @@ def _require_effects(scene: Scene, stage: Stage) -> None:
         )
 
 
-def _why_not(stage: Stage, wanted: Sequence[str]) -> str:
+def _why_not(stage: Entry, wanted: Sequence[str]) -> str:
     if not stage.results:
         return "needed by no requested result"
     if any(result in wanted for result in stage.results):

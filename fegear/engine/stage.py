@@ -132,12 +132,6 @@ class Stage:
 
     Parameters
     ----------
-    name : str
-        Unique; also the first half of its tasks' names.
-    title : str
-        What it does, for the plan and the progress bar.
-    results : tuple of str
-        Names by which ``results = [...]`` asks for it; empty for stages that only serve others.
     subjects : callable
         ``subjects(scene)`` -> names it will be done for when asked for by name.
     inputs : callable
@@ -152,8 +146,6 @@ class Stage:
         ``needs(scene, subject)`` -> tasks that must run first.
     check : callable
         ``check(scene, subject)`` raises `InputError` when the scene lacks something the stage cannot do without.
-    about : str
-        What its results tell, in a line; empty for stages that only serve others.
     effects : tuple of str
         Effects that change what it computes.
     requires : tuple of Need
@@ -162,19 +154,21 @@ class Stage:
         ``forecast(scene, subject)`` -> `Forecast`, for ``fegear plan``.
     cites : callable
         ``cites(scene, subject)`` -> what the result rests on.
+    name, title, results, about : str, str, tuple of str, str
+        What it is called: given by the catalogue, see `Entry`.
     """
 
-    name: str
-    title: str
-    results: tuple[str, ...]
     subjects: Callable[[Scene], tuple[str, ...]]
     inputs: Callable[[Scene, str], Any]
     compute: Callable[[Any, Upstream, Work], Any]
     present: Callable[[Any, Any], Outcome]
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
-    about: str = ""
     effects: tuple[str, ...] = ()
     requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown
     cites: Cites = _uncited
+    name: str = ""
+    title: str = ""
+    results: tuple[str, ...] = ()
+    about: str = ""

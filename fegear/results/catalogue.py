@@ -1,4 +1,4 @@
-"""The stages that fegear knows, by subject."""
+"""Every stage that fegear knows, by subject, as plain data: its module is imported when a plan asks for it."""
 
 from __future__ import annotations
 
@@ -6,153 +6,428 @@ import copyreg
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from fegear.engine.catalogue import Catalogue, Entry
 from fegear.engine.stage import Stage
-from fegear.results import (
-    contact_lines,
-    contact_pattern,
-    crosscheck,
-    deformed_in_mesh,
-    design_chart,
-    dynamic_factor,
-    dynamic_increments,
-    dynamic_root_stress,
-    flank_design,
-    flank_generation,
-    flank_load_factors,
-    flank_load_sharing,
-    flank_root_stress,
-    flank_stress_in_mesh,
-    flank_surface,
-    flank_tolerance_robustness,
-    flank_transmission_error,
-    followed_modes,
-    gear_solution,
-    gear_train,
-    geometry,
-    load_distribution,
-    load_sharing,
-    loaded_flanks,
-    loaded_pair,
-    loading_spectrum,
-    mesh_force_spectrum,
-    mesh_stiffness_matrix,
-    motion,
-    natural_modes,
-    pair_forces,
-    rating,
-    relief,
-    relief_chart,
-    relief_curves,
-    root_stress,
-    root_stress_history,
-    root_stress_study,
-    solid_solution,
-    solid_stiffness,
-    stiffness,
-    stress_in_mesh,
-    tolerance_robustness,
-    tooth_contact,
-    tooth_force,
-    tooth_friction,
-    tooth_geometry_check,
-    tooth_loss,
-    train_loss,
-    transmissibility,
-    transmission_error,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-
 #: Every stage by the subject of its results, in the order in which plans list those that they skip.
-SUBJECTS: Mapping[str, tuple[Stage, ...]] = MappingProxyType(
+SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
     {
         "A gear and its teeth": (
-            geometry.GEOMETRY,
-            tooth_geometry_check.TOOTH_GEOMETRY_CHECK,
-            gear_solution.GEAR_SOLUTION,
-            stiffness.STIFFNESS,
-            solid_solution.SOLID_SOLUTION,
-            solid_stiffness.SOLID_STIFFNESS,
-            root_stress.ROOT_STRESS,
-            crosscheck.CROSSCHECK,
-            root_stress_study.ROOT_STRESS_STUDY,
+            Entry(
+                "geometry",
+                "geometry.GEOMETRY",
+                "Geometry",
+                ("geometry",),
+                "what a drawing states and what follows from it: circles, span over teeth, contact ratio, backlash",
+            ),
+            Entry(
+                "tooth-geometry-check",
+                "tooth_geometry_check.TOOTH_GEOMETRY_CHECK",
+                "Drawing against rules of thumb",
+                ("tooth-geometry-check",),
+                "tip thickness, rim, undercut, contact ratio and clearances against rules of thumb",
+            ),
+            Entry(
+                "gear-solution",
+                "gear_solution.GEAR_SOLUTION",
+                "Influence functions of a gear",
+                (),
+                "",
+            ),
+            Entry(
+                "stiffness",
+                "stiffness.STIFFNESS",
+                "Compliance and root stress, whole gear",
+                ("stiffness",),
+                "compliance of a loaded tooth and its neighbours, and its root stress, over load positions",
+            ),
+            Entry(
+                "solid-solution",
+                "solid_solution.SOLID_SOLUTION",
+                "Influence functions of a gear with its width",
+                (),
+                "",
+            ),
+            Entry(
+                "stiffness-over-face",
+                "solid_stiffness.SOLID_STIFFNESS",
+                "Compliance and root stress over the face",
+                ("stiffness",),
+                "compliance of a loaded tooth and its neighbours, and its root stress, over load positions",
+            ),
+            Entry(
+                "root-stress",
+                "root_stress.ROOT_STRESS",
+                "Root stress along the fillets",
+                ("root-stress",),
+                "stress along both fillets of a tooth, for every load position",
+            ),
+            Entry(
+                "crosscheck",
+                "crosscheck.CROSSCHECK",
+                "Closed forms against finite elements",
+                ("crosscheck",),
+                "closed forms for stiffness and root stress (ISO 6336, AGMA 908 and others) beside finite elements",
+            ),
+            Entry(
+                "root-stress-study",
+                "root_stress_study.ROOT_STRESS_STUDY",
+                "Root-stress formulas against finite elements over many gears",
+                ("root-stress-study",),
+                "where each root-stress formula is high or low, over many gears",
+            ),
         ),
         "A pair under load": (
-            loaded_pair.LOADED_PAIR,
-            load_sharing.LOAD_SHARING,
-            transmission_error.TRANSMISSION_ERROR,
-            root_stress_history.ROOT_STRESS_HISTORY,
-            stress_in_mesh.STRESS_IN_MESH,
-            deformed_in_mesh.OUTLINE_MOTION,
-            deformed_in_mesh.DEFORMED_IN_MESH,
-            loaded_flanks.LOADED_FLANKS,
-            flank_load_sharing.FLANK_LOAD_SHARING,
-            flank_transmission_error.FLANK_TRANSMISSION_ERROR,
-            flank_root_stress.FLANK_ROOT_STRESS,
-            flank_stress_in_mesh.FLANK_STRESS_IN_MESH,
-            load_distribution.LOAD_DISTRIBUTION,
-            flank_load_factors.FLANK_LOAD_FACTORS,
-            contact_pattern.CONTACT_PATTERN,
-            mesh_stiffness_matrix.MESH_STIFFNESS_MATRIX,
-            rating.RATING,
-            flank_surface.FLANK_SURFACE,
-            flank_surface.WIDE_FLANK_SURFACE,
-            tooth_loss.TOOTH_LOSS,
-            tooth_loss.WIDE_TOOTH_LOSS,
+            Entry(
+                "loaded-pair",
+                "loaded_pair.LOADED_PAIR",
+                "Compliances of a loaded pair",
+                (),
+                "",
+            ),
+            Entry(
+                "load-sharing",
+                "load_sharing.LOAD_SHARING",
+                "Load sharing",
+                ("load-sharing",),
+                "load, deflection and contact pressure of a tooth pair from first to last contact",
+            ),
+            Entry(
+                "transmission-error",
+                "transmission_error.TRANSMISSION_ERROR",
+                "Transmission error",
+                ("transmission-error",),
+                "loaded transmission error, mesh stiffness, their harmonics, and both over load",
+            ),
+            Entry(
+                "root-stress-history",
+                "root_stress_history.ROOT_STRESS_HISTORY",
+                "Root stress through the mesh",
+                ("root-stress-history",),
+                "root stress of both gears as a tooth passes through the mesh",
+            ),
+            Entry(
+                "stress-in-mesh",
+                "stress_in_mesh.STRESS_IN_MESH",
+                "Root stress of the gears in mesh",
+                (),
+                "",
+            ),
+            Entry(
+                "outline-motion",
+                "deformed_in_mesh.OUTLINE_MOTION",
+                "Motion of a gear's outline",
+                (),
+                "",
+            ),
+            Entry(
+                "deformed-in-mesh",
+                "deformed_in_mesh.DEFORMED_IN_MESH",
+                "Deformed teeth of the gears in mesh",
+                (),
+                "",
+            ),
+            Entry(
+                "loaded-flanks",
+                "loaded_flanks.LOADED_FLANKS",
+                "Contact over the flanks",
+                (),
+                "",
+            ),
+            Entry(
+                "flank-load-sharing",
+                "flank_load_sharing.FLANK_LOAD_SHARING",
+                "Load sharing over the flanks",
+                ("load-sharing",),
+                "load, deflection and contact pressure of a tooth pair from first to last contact",
+            ),
+            Entry(
+                "flank-transmission-error",
+                "flank_transmission_error.FLANK_TRANSMISSION_ERROR",
+                "Transmission error over the flanks",
+                ("transmission-error",),
+                "loaded transmission error, mesh stiffness, their harmonics, and both over load",
+            ),
+            Entry(
+                "flank-root-stress",
+                "flank_root_stress.FLANK_ROOT_STRESS",
+                "Root stress over the face",
+                ("root-stress-history",),
+                "root stress of both gears as a tooth passes through the mesh",
+            ),
+            Entry(
+                "flank-stress-in-mesh",
+                "flank_stress_in_mesh.FLANK_STRESS_IN_MESH",
+                "Root stress of the gears in mesh over the face",
+                (),
+                "",
+            ),
+            Entry(
+                "load-distribution",
+                "load_distribution.LOAD_DISTRIBUTION",
+                "Load over the flanks",
+                ("load-distribution",),
+                "line load and pressure over the flanks of a spur or helical pair with its width, load factors K",
+            ),
+            Entry(
+                "flank-load-factors",
+                "flank_load_factors.FLANK_LOAD_FACTORS",
+                "Load factors over the flanks",
+                ("load-distribution",),
+                "line load and pressure over the flanks of a spur or helical pair with its width, load factors K",
+            ),
+            Entry(
+                "contact-pattern",
+                "contact_pattern.CONTACT_PATTERN",
+                "Contact pattern",
+                ("load-distribution",),
+                "line load and pressure over the flanks of a spur or helical pair with its width, load factors K",
+            ),
+            Entry(
+                "mesh-stiffness-matrix",
+                "mesh_stiffness_matrix.MESH_STIFFNESS_MATRIX",
+                "Stiffness matrix of the mesh",
+                ("mesh-stiffness-matrix",),
+                "stiffness of a loaded mesh against translation and tilt of its gears: K_M, kappa and mu",
+            ),
+            Entry(
+                "rating",
+                "rating.RATING",
+                "Load capacity",
+                ("rating",),
+                "safeties of flanks and roots by ISO 6336, every factor; computed ones and AGMA 2101 beside",
+            ),
+            Entry(
+                "flank-surface",
+                "flank_surface.FLANK_SURFACE",
+                "Flank surface",
+                ("flank-surface",),
+                "sliding, pressure, temperatures, lubricant film and safeties of the flanks from A to E",
+            ),
+            Entry(
+                "wide-flank-surface",
+                "flank_surface.WIDE_FLANK_SURFACE",
+                "Flank surface over the face",
+                ("flank-surface",),
+                "sliding, pressure, temperatures, lubricant film and safeties of the flanks from A to E",
+            ),
+            Entry(
+                "tooth-loss",
+                "tooth_loss.TOOTH_LOSS",
+                "Tooth loss",
+                ("tooth-loss",),
+                "friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train",
+            ),
+            Entry(
+                "wide-tooth-loss",
+                "tooth_loss.WIDE_TOOTH_LOSS",
+                "Tooth loss over the face",
+                ("tooth-loss",),
+                "friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train",
+            ),
         ),
         "Profile relief": (
-            relief.RELIEF,
-            relief_curves.RELIEF_CURVES,
-            relief_chart.RELIEF_CHART,
-            relief_chart.ROBUSTNESS,
-            tolerance_robustness.TOLERANCE_ROBUSTNESS,
-            flank_tolerance_robustness.FLANK_TOLERANCE_ROBUSTNESS,
-            loading_spectrum.LOADING_SPECTRUM,
-            flank_design.FLANK_DESIGN,
+            Entry(
+                "relief",
+                "relief.RELIEF",
+                "Relief for least excitation",
+                ("relief",),
+                "profile relief of both gears that leaves the least transmission error, and what a shop can grind",
+            ),
+            Entry(
+                "relief-curves",
+                "relief_curves.RELIEF_CURVES",
+                "Transmission error and load, relief by relief",
+                ("relief-curves",),
+                "transmission error and load of a tooth pair over the roll angle for a family of tip reliefs",
+            ),
+            Entry(
+                "relief-chart",
+                "relief_chart.RELIEF_CHART",
+                "Chart of tip reliefs",
+                ("relief-chart",),
+                "transmission error over amount and length of tip relief, at several loads",
+            ),
+            Entry(
+                "robustness",
+                "relief_chart.ROBUSTNESS",
+                "Robustness of the reliefs",
+                ("robustness",),
+                "what is left of a designed relief under other loads, spacing errors and grinding errors",
+            ),
+            Entry(
+                "tolerance-robustness",
+                "tolerance_robustness.TOLERANCE_ROBUSTNESS",
+                "Deviations inside the tolerances",
+                ("robustness",),
+                "transmission error, root stress, pressure and K_Hbeta of pairs drawn inside their tolerances",
+            ),
+            Entry(
+                "flank-tolerance-robustness",
+                "flank_tolerance_robustness.FLANK_TOLERANCE_ROBUSTNESS",
+                "Deviations inside the tolerances, over the face",
+                ("robustness",),
+                "transmission error, root stress, pressure and K_Hbeta of pairs drawn inside their tolerances",
+            ),
+            Entry(
+                "loading-spectrum",
+                "loading_spectrum.LOADING_SPECTRUM",
+                "Tooth loading functions and their spectra",
+                ("loading-spectrum",),
+                "how a tooth pair may be loaded so that all pairs add up, and what that excites in the teeth",
+            ),
+            Entry(
+                "flank-design",
+                "flank_design.FLANK_DESIGN",
+                "Relief of loaded flanks",
+                ("flank-design",),
+                "relief over profile and face for the least transmission error under load, exact and as ground",
+            ),
         ),
         "Helical pairs": (
-            tooth_contact.TOOTH_CONTACT,
-            contact_lines.CONTACT_LINES,
-            flank_generation.FLANK_GENERATION,
-            transmissibility.TRANSMISSIBILITY,
-            followed_modes.FOLLOWED_MODES,
-            pair_forces.PAIR_FORCES,
+            Entry(
+                "tooth-contact",
+                "tooth_contact.TOOTH_CONTACT",
+                "Tooth contact analysis",
+                ("tooth-contact",),
+                "unloaded contact of helical flanks, misaligned or not: transmission error, path, ellipses",
+            ),
+            Entry(
+                "contact-lines",
+                "contact_lines.CONTACT_LINES",
+                "Contact lines",
+                ("contact-lines",),
+                "lines along which the flanks of an aligned helical pair touch, and their total length over a cycle",
+            ),
+            Entry(
+                "flank-generation",
+                "flank_generation.FLANK_GENERATION",
+                "Generation of helical flanks",
+                ("flank-generation",),
+                "rack cutters of a helical pair, the flanks that they generate, and the design parameters",
+            ),
+            Entry(
+                "transmissibility",
+                "transmissibility.TRANSMISSIBILITY",
+                "Force transmissibility",
+                ("transmissibility",),
+                "forces that a helical pair passes from its mesh to its bearings, over frequency",
+            ),
+            Entry(
+                "followed-modes",
+                "followed_modes.FOLLOWED_MODES",
+                "Modes over a parameter",
+                ("followed-modes",),
+                "modes of a helical pair followed over bearing stiffness, helix angle or mesh parameters",
+            ),
+            Entry(
+                "pair-forces",
+                "pair_forces.PAIR_FORCES",
+                "Mesh and bearing forces",
+                ("pair-forces",),
+                "mesh and bearing forces of a helical pair over speed, by transmission error and external forces",
+            ),
         ),
         "Gear trains in motion": (
-            gear_train.GEAR_TRAIN,
-            natural_modes.NATURAL_MODES,
-            dynamic_increments.DYNAMIC_INCREMENTS,
-            mesh_force_spectrum.MESH_FORCE_SPECTRUM,
-            tooth_force.TOOTH_FORCE,
-            dynamic_root_stress.DYNAMIC_ROOT_STRESS,
-            tooth_friction.TOOTH_FRICTION,
-            train_loss.TRAIN_LOSS,
-            motion.MOTION,
-            dynamic_factor.DYNAMIC_FACTOR,
-            design_chart.DESIGN_CHART,
+            Entry(
+                "gear-train",
+                "gear_train.GEAR_TRAIN",
+                "Gear train",
+                ("gear-train",),
+                "bodies, shafts, meshes, speeds and mean forces of the train, as fegear takes them",
+            ),
+            Entry(
+                "natural-modes",
+                "natural_modes.NATURAL_MODES",
+                "Natural frequencies and Campbell diagram",
+                ("natural-modes", "campbell"),
+                "natural frequencies and modes, and the speeds at which the meshes excite them",
+            ),
+            Entry(
+                "dynamic-increments",
+                "dynamic_increments.DYNAMIC_INCREMENTS",
+                "Dynamic increment functions",
+                ("dynamic-increments",),
+                "dynamic increment functions of every mesh over frequency, with what they tend to (Mark)",
+            ),
+            Entry(
+                "mesh-force-spectrum",
+                "mesh_force_spectrum.MESH_FORCE_SPECTRUM",
+                "Mesh force spectra",
+                ("mesh-force-spectrum",),
+                "harmonics of the force in every mesh at a speed, and which mesh each comes from",
+            ),
+            Entry(
+                "tooth-force",
+                "tooth_force.TOOTH_FORCE",
+                "Force on one tooth pair",
+                ("tooth-force",),
+                "force on one tooth pair in motion, with and without the other meshes",
+            ),
+            Entry(
+                "dynamic-root-stress",
+                "dynamic_root_stress.DYNAMIC_ROOT_STRESS",
+                "Dynamic root stress",
+                ("dynamic-root-stress",),
+                "root stress of one tooth in motion",
+            ),
+            Entry(
+                "tooth-friction",
+                "tooth_friction.TOOTH_FRICTION",
+                "Tooth friction over the path",
+                ("tooth-friction",),
+                "friction coefficient, friction torques and loss of a tooth pair over its path of contact",
+            ),
+            Entry(
+                "train-loss",
+                "train_loss.TRAIN_LOSS",
+                "Tooth loss of the train",
+                ("tooth-loss",),
+                "friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train",
+            ),
+            Entry(
+                "motion",
+                "motion.MOTION",
+                "Motion over the speeds",
+                (),
+                "",
+            ),
+            Entry(
+                "dynamic-factor",
+                "dynamic_factor.DYNAMIC_FACTOR",
+                "Dynamic factor over speed",
+                ("dynamic-factor",),
+                "largest tooth force over the static one, over speed, with loss of contact and friction",
+            ),
+            Entry(
+                "design-chart",
+                "design_chart.DESIGN_CHART",
+                "Design chart of tip relief",
+                ("design-chart",),
+                "dynamic factor over amount and length of tip relief",
+            ),
         ),
     }
 )
 
 #: Every stage.
-STAGES: tuple[Stage, ...] = tuple(stage for stages in SUBJECTS.values() for stage in stages)
-
-_BY_NAME = MappingProxyType({stage.name: stage for stage in STAGES})
+STAGES = Catalogue([entry for entries in SUBJECTS.values() for entry in entries], "fegear.results")
 
 
 def stage_called(name: str) -> Stage:
     """A stage by its name."""
-    return _BY_NAME[name]
+    return STAGES.called(name)
 
 
 def _reduced(stage: Stage) -> str | tuple[Any, ...]:
     """How a stage travels between processes: by its name, for its functions have none."""
-    return (stage_called, (stage.name,)) if _BY_NAME.get(stage.name) is stage else stage.__reduce_ex__(4)
+    return (stage_called, (stage.name,)) if STAGES.holds(stage) else stage.__reduce_ex__(4)
 
 
 copyreg.pickle(Stage, _reduced)
 
 #: Every name by which a case may ask for a result.
-RESULTS: tuple[str, ...] = tuple(dict.fromkeys(name for stage in STAGES for name in stage.results))
+RESULTS: tuple[str, ...] = tuple(dict.fromkeys(name for entry in STAGES.entries for name in entry.results))

@@ -124,10 +124,6 @@ def _present(data: ContactLinesData, asked: ContactLinesInputs) -> Outcome:
 
 
 CONTACT_LINES = Stage(
-    name="contact-lines",
-    title="Contact lines",
-    results=("contact-lines",),
-    about="lines along which the flanks of an aligned helical pair touch, and their total length over a cycle",
     subjects=lambda scene: tuple(scene.helical_pairs),
     inputs=_inputs,
     compute=_compute,

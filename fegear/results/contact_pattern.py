@@ -116,10 +116,6 @@ def _figure(inputs: ContactPatternInputs, data: ContactPatternData) -> Figure:
 
 
 CONTACT_PATTERN = Stage(
-    name="contact-pattern",
-    title="Contact pattern",
-    results=("load-distribution",),
-    about="line load and pressure over the flanks of a spur or helical pair with its width, load factors K",
     subjects=distributed_pairs,
     inputs=_inputs,
     compute=_compute,

@@ -177,10 +177,6 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
 
 
 CROSSCHECK = Stage(
-    name="crosscheck",
-    title="Closed forms against finite elements",
-    results=("crosscheck",),
-    about="closed forms for stiffness and root stress (ISO 6336, AGMA 908 and others) beside finite elements",
     subjects=lambda scene: (_WHOLE,) if scene.spur_gears or _helical(scene) else (),
     needs=_needs,
     inputs=_inputs,

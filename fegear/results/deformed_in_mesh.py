@@ -56,9 +56,6 @@ def _motion(asked: MotionInputs, upstream: Upstream, _work: Work) -> OutlineMoti
 
 
 OUTLINE_MOTION = Stage(
-    name="outline-motion",
-    title="Motion of a gear's outline",
-    results=(),
     subjects=lambda scene: tuple(scene.spur_gears),
     needs=lambda _scene, name: needs_solution(name),
     inputs=lambda _scene, _name: MotionInputs(_REACH),
@@ -147,9 +144,6 @@ def _check_compliance(scene: Scene, name: str) -> None:
 
 
 DEFORMED_IN_MESH = Stage(
-    name="deformed-in-mesh",
-    title="Deformed teeth of the gears in mesh",
-    results=(),
     subjects=plane_pairs,
     needs=_needs_motion,
     inputs=mesh_inputs,

@@ -364,10 +364,6 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
 
 
 DESIGN_CHART = Stage(
-    name="design-chart",
-    title="Design chart of tip relief",
-    results=("design-chart",),
-    about="dynamic factor over amount and length of tip relief",
     subjects=the_train,
     needs=_needs,
     inputs=_inputs,

@@ -221,10 +221,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 DYNAMIC_FACTOR = Stage(
-    name="dynamic-factor",
-    title="Dynamic factor over speed",
-    results=("dynamic-factor",),
-    about="largest tooth force over the static one, over speed, with loss of contact and friction",
     subjects=meshes,
     needs=_needs,
     inputs=_inputs,

@@ -160,10 +160,6 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
 
 
 DYNAMIC_INCREMENTS = Stage(
-    name="dynamic-increments",
-    title="Dynamic increment functions",
-    results=("dynamic-increments",),
-    about="dynamic increment functions of every mesh over frequency, with what they tend to (Mark)",
     subjects=the_train,
     needs=needs_train,
     inputs=lambda scene, _subject: FrequencyInputs(scene.case.dynamics.frequencies.array),

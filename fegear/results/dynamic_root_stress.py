@@ -204,10 +204,6 @@ def _cites(scene: Scene, name: str) -> Iterator[Citation]:
 
 
 DYNAMIC_ROOT_STRESS = Stage(
-    name="dynamic-root-stress",
-    title="Dynamic root stress",
-    results=("dynamic-root-stress",),
-    about="root stress of one tooth in motion",
     subjects=own_meshes,
     needs=_needs,
     inputs=_inputs,

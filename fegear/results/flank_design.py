@@ -218,10 +218,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 FLANK_DESIGN = Stage(
-    name="flank-design",
-    title="Relief of loaded flanks",
-    results=("flank-design",),
-    about="relief over profile and face for the least transmission error under load, exact and as ground",
     subjects=_pairs,
     inputs=_inputs,
     compute=_compute,

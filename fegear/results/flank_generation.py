@@ -194,10 +194,6 @@ def _present(data: FlankGenerationData, asked: FlankGenerationInputs) -> Outcome
 
 
 FLANK_GENERATION = Stage(
-    name="flank-generation",
-    title="Generation of helical flanks",
-    results=("flank-generation",),
-    about="rack cutters of a helical pair, the flanks that they generate, and the design parameters",
     subjects=lambda scene: tuple(scene.helical_pairs),
     inputs=_inputs,
     compute=_compute,

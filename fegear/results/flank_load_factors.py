@@ -156,10 +156,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 FLANK_LOAD_FACTORS = Stage(
-    name="flank-load-factors",
-    title="Load factors over the flanks",
-    results=("load-distribution",),
-    about="line load and pressure over the flanks of a spur or helical pair with its width, load factors K",
     subjects=distributed_pairs,
     inputs=Subject.of,
     compute=_compute,

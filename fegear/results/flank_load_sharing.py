@@ -73,10 +73,6 @@ def _present(data: FlankLoadSharingData, inputs: Subject) -> Outcome:
 
 
 FLANK_LOAD_SHARING = Stage(
-    name="flank-load-sharing",
-    title="Load sharing over the flanks",
-    results=("load-sharing",),
-    about="load, deflection and contact pressure of a tooth pair from first to last contact",
     subjects=wide_pairs,
     needs=needs_flanks,
     inputs=Subject.of,

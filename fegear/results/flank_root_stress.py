@@ -221,10 +221,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 FLANK_ROOT_STRESS = Stage(
-    name="flank-root-stress",
-    title="Root stress over the face",
-    results=("root-stress-history",),
-    about="root stress of both gears as a tooth passes through the mesh",
     subjects=wide_pairs,
     needs=needs_flank_roots,
     inputs=_inputs,

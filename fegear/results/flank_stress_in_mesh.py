@@ -131,9 +131,6 @@ def _largest(rooted: RootedLines, force: Array, z: Array, moments: _Moments) -> 
 
 
 FLANK_STRESS_IN_MESH = Stage(
-    name="flank-stress-in-mesh",
-    title="Root stress of the gears in mesh over the face",
-    results=(),
     subjects=wide_pairs,
     needs=needs_flank_roots,
     inputs=mesh_inputs,

@@ -286,13 +286,8 @@ _CITES = citing(
     Citation("iso-ts-6336-22", "film thickness and micropitting safety S_lambda", "clauses 5 to 11"),
     Citation("blok", "flash temperature of sliding flanks"),
 )
-_ABOUT = "sliding, pressure, temperatures, lubricant film and safeties of the flanks from A to E"
 
 FLANK_SURFACE = Stage(
-    name="flank-surface",
-    title="Flank surface",
-    results=("flank-surface",),
-    about=_ABOUT,
     subjects=plane_pairs,
     needs=needs_pair,
     inputs=_inputs,
@@ -305,10 +300,6 @@ FLANK_SURFACE = Stage(
 )
 
 WIDE_FLANK_SURFACE = Stage(
-    name="wide-flank-surface",
-    title="Flank surface over the face",
-    results=("flank-surface",),
-    about=_ABOUT,
     subjects=wide_pairs,
     needs=needs_flanks,
     inputs=_inputs,

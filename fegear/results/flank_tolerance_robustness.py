@@ -190,10 +190,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 FLANK_TOLERANCE_ROBUSTNESS = Stage(
-    name="flank-tolerance-robustness",
-    title="Deviations inside the tolerances, over the face",
-    results=("robustness",),
-    about="transmission error, root stress, pressure and K_Hbeta of pairs drawn inside their tolerances",
     subjects=_subjects,
     needs=_needs,
     inputs=_inputs,

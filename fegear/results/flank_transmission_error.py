@@ -122,10 +122,6 @@ def _check(scene: Scene, name: str) -> None:
 
 
 FLANK_TRANSMISSION_ERROR = Stage(
-    name="flank-transmission-error",
-    title="Transmission error over the flanks",
-    results=("transmission-error",),
-    about="loaded transmission error, mesh stiffness, their harmonics, and both over load",
     subjects=wide_pairs,
     needs=needs_flanks,
     inputs=Subject.of,

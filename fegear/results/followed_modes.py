@@ -226,10 +226,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 FOLLOWED_MODES = Stage(
-    name="followed-modes",
-    title="Modes over a parameter",
-    results=("followed-modes",),
-    about="modes of a helical pair followed over bearing stiffness, helix angle or mesh parameters",
     subjects=_pairs,
     needs=mesh_needs,
     inputs=lambda scene, name: FollowedInputs(helical_pair_inputs(scene, name), name),

@@ -56,9 +56,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 GEAR_SOLUTION = Stage(
-    name="gear-solution",
-    title="Influence functions of a gear",
-    results=(),
     subjects=lambda scene: tuple(scene.spur_gears),
     inputs=gear_to_solve,
     compute=_compute,

@@ -187,10 +187,6 @@ TRAIN_SOURCES = citing(
 
 
 GEAR_TRAIN = Stage(
-    name="gear-train",
-    title="Gear train",
-    results=("gear-train",),
-    about="bodies, shafts, meshes, speeds and mean forces of the train, as fegear takes them",
     subjects=the_train,
     needs=_needs,
     inputs=lambda scene, _subject: train_inputs(scene),

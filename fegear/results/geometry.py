@@ -79,10 +79,6 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
 
 
 GEOMETRY = Stage(
-    name="geometry",
-    title="Geometry",
-    results=("geometry",),
-    about="what a drawing states and what follows from it: circles, span over teeth, contact ratio, backlash",
     subjects=_everything,
     inputs=lambda scene, _subject: drawing_of(scene),
     compute=lambda drawing, _upstream, _work: drawing,

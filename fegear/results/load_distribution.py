@@ -222,10 +222,6 @@ def _forecast(_scene: Scene, _name: str) -> Forecast:
 
 
 LOAD_DISTRIBUTION = Stage(
-    name="load-distribution",
-    title="Load over the flanks",
-    results=("load-distribution",),
-    about="line load and pressure over the flanks of a spur or helical pair with its width, load factors K",
     subjects=distributed_pairs,
     inputs=_inputs,
     compute=lambda inputs, upstream, _work: loaded_flanks(upstream, inputs.name),

@@ -95,10 +95,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 LOAD_SHARING = Stage(
-    name="load-sharing",
-    title="Load sharing",
-    results=("load-sharing",),
-    about="load, deflection and contact pressure of a tooth pair from first to last contact",
     subjects=plane_pairs,
     needs=needs_pair,
     inputs=Subject.of,

@@ -302,9 +302,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 LOADED_FLANKS = Stage(
-    name="loaded-flanks",
-    title="Contact over the flanks",
-    results=(),
     subjects=wide_pairs,
     inputs=flanks_to_load,
     compute=_compute,

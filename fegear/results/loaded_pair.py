@@ -209,9 +209,6 @@ def _cites(scene: Scene, name: str) -> Iterator[Citation]:
 
 
 LOADED_PAIR = Stage(
-    name="loaded-pair",
-    title="Compliances of a loaded pair",
-    results=(),
     subjects=plane_pairs,
     needs=_needs,
     inputs=_inputs,

@@ -296,10 +296,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 LOADING_SPECTRUM = Stage(
-    name="loading-spectrum",
-    title="Tooth loading functions and their spectra",
-    results=("loading-spectrum",),
-    about="how a tooth pair may be loaded so that all pairs add up, and what that excites in the teeth",
     subjects=_subjects,
     inputs=_inputs,
     compute=_compute,

@@ -232,10 +232,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 MESH_FORCE_SPECTRUM = Stage(
-    name="mesh-force-spectrum",
-    title="Mesh force spectra",
-    results=("mesh-force-spectrum",),
-    about="harmonics of the force in every mesh at a speed, and which mesh each comes from",
     subjects=meshes,
     needs=needs_train,
     inputs=_inputs,

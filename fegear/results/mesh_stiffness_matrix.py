@@ -290,10 +290,6 @@ def needs_wide_pair(scene: Scene, name: str, result: str) -> None:
 
 
 MESH_STIFFNESS_MATRIX = Stage(
-    name="mesh-stiffness-matrix",
-    title="Stiffness matrix of the mesh",
-    results=("mesh-stiffness-matrix",),
-    about="stiffness of a loaded mesh against translation and tilt of its gears: K_M, kappa and mu",
     subjects=lambda scene: wide_pairs(scene) or tuple(scene.pairs),
     inputs=lambda _scene, name: MeshStiffnessInputs(name),
     compute=_compute,

@@ -169,9 +169,6 @@ def _sources(scene: Scene, _subject: str) -> Iterator[Citation]:
 
 
 MOTION = Stage(
-    name="motion",
-    title="Motion over the speeds",
-    results=(),
     subjects=the_train,
     needs=needs_train,
     inputs=_inputs,

@@ -191,10 +191,6 @@ def _critical_figure(train: GearTrain, diagram: Campbell) -> tuple[Figure, ...]:
 
 
 NATURAL_MODES = Stage(
-    name="natural-modes",
-    title="Natural frequencies and Campbell diagram",
-    results=("natural-modes", "campbell"),
-    about="natural frequencies and modes, and the speeds at which the meshes excite them",
     subjects=the_train,
     needs=needs_train,
     inputs=_speeds,

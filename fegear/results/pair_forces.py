@@ -385,10 +385,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 PAIR_FORCES = Stage(
-    name="pair-forces",
-    title="Mesh and bearing forces",
-    results=("pair-forces",),
-    about="mesh and bearing forces of a helical pair over speed, by transmission error and external forces",
     subjects=_pairs,
     needs=_needs,
     inputs=_inputs,

@@ -301,10 +301,6 @@ def _cites(scene: Scene, _name: str) -> tuple[Citation, ...]:
 
 
 RATING = Stage(
-    name="rating",
-    title="Load capacity",
-    results=("rating",),
-    about="safeties of flanks and roots by ISO 6336, every factor; computed ones and AGMA 2101 beside",
     subjects=lambda scene: tuple(scene.pairs),
     inputs=_inputs,
     compute=_compute,

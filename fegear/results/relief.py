@@ -201,10 +201,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 RELIEF = Stage(
-    name="relief",
-    title="Relief for least excitation",
-    results=("relief",),
-    about="profile relief of both gears that leaves the least transmission error, and what a shop can grind",
     subjects=design_pairs,
     needs=needs_pair,
     inputs=_inputs,

@@ -281,10 +281,6 @@ _CITES = citing(
 
 
 RELIEF_CHART = Stage(
-    name="relief-chart",
-    title="Chart of tip reliefs",
-    results=("relief-chart",),
-    about="transmission error over amount and length of tip relief, at several loads",
     subjects=design_pairs,
     needs=needs_pair,
     inputs=_chart_inputs,
@@ -297,10 +293,6 @@ RELIEF_CHART = Stage(
 
 
 ROBUSTNESS = Stage(
-    name="robustness",
-    title="Robustness of the reliefs",
-    results=("robustness",),
-    about="what is left of a designed relief under other loads, spacing errors and grinding errors",
     subjects=_robustness_pairs,
     needs=lambda _scene, name: (Task("relief", name),),
     inputs=_robustness_inputs,

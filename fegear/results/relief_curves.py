@@ -201,10 +201,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 RELIEF_CURVES = Stage(
-    name="relief-curves",
-    title="Transmission error and load, relief by relief",
-    results=("relief-curves",),
-    about="transmission error and load of a tooth pair over the roll angle for a family of tip reliefs",
     subjects=design_pairs,
     needs=needs_pair,
     inputs=_inputs,

@@ -126,10 +126,6 @@ def _fillet_figure(name: str, radius: float, table: Table) -> Figure:
 
 
 ROOT_STRESS = Stage(
-    name="root-stress",
-    title="Root stress along the fillets",
-    results=("root-stress",),
-    about="stress along both fillets of a tooth, for every load position",
     subjects=chosen_gears,
     needs=lambda _scene, name: (Task("stiffness", name),),
     inputs=FilletInputs.of,

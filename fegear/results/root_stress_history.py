@@ -162,10 +162,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 ROOT_STRESS_HISTORY = Stage(
-    name="root-stress-history",
-    title="Root stress through the mesh",
-    results=("root-stress-history",),
-    about="root stress of both gears as a tooth passes through the mesh",
     subjects=plane_pairs,
     needs=_needs,
     inputs=_inputs,

@@ -309,10 +309,6 @@ def _forecast(scene: Scene, _subject: str) -> Forecast:
 
 
 ROOT_STRESS_STUDY = Stage(
-    name="root-stress-study",
-    title="Root-stress formulas against finite elements over many gears",
-    results=("root-stress-study",),
-    about="where each root-stress formula is high or low, over many gears",
     subjects=lambda scene: ("",) if scene.spur_gears else (),
     inputs=_inputs,
     compute=_compute,

@@ -49,9 +49,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 SOLID_SOLUTION = Stage(
-    name="solid-solution",
-    title="Influence functions of a gear with its width",
-    results=(),
     subjects=lambda scene: tuple(scene.gears),
     inputs=solid_gear_to_solve,
     compute=_compute,

@@ -215,10 +215,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 SOLID_STIFFNESS = Stage(
-    name="stiffness-over-face",
-    title="Compliance and root stress over the face",
-    results=("stiffness",),
-    about="compliance of a loaded tooth and its neighbours, and its root stress, over load positions",
     subjects=_subjects,
     needs=lambda _scene, name: needs_solid_solution(name),
     inputs=_inputs,

@@ -175,10 +175,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 STIFFNESS = Stage(
-    name="stiffness",
-    title="Compliance and root stress, whole gear",
-    results=("stiffness",),
-    about="compliance of a loaded tooth and its neighbours, and its root stress, over load positions",
     subjects=lambda scene: chosen_gears(scene) if scene.case.stiffness.face_positions is None else (),
     needs=lambda _scene, name: needs_solution(name),
     inputs=_inputs,

@@ -170,9 +170,6 @@ def _largest(
 
 
 STRESS_IN_MESH = Stage(
-    name="stress-in-mesh",
-    title="Root stress of the gears in mesh",
-    results=(),
     subjects=plane_pairs,
     needs=needs_mesh,
     inputs=mesh_inputs,

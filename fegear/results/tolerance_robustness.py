@@ -324,10 +324,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 TOLERANCE_ROBUSTNESS = Stage(
-    name="tolerance-robustness",
-    title="Deviations inside the tolerances",
-    results=("robustness",),
-    about="transmission error, root stress, pressure and K_Hbeta of pairs drawn inside their tolerances",
     subjects=_subjects,
     needs=_needs,
     inputs=_inputs,

@@ -397,10 +397,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 TOOTH_CONTACT = Stage(
-    name="tooth-contact",
-    title="Tooth contact analysis",
-    results=("tooth-contact",),
-    about="unloaded contact of helical flanks, misaligned or not: transmission error, path, ellipses",
     subjects=_pairs,
     inputs=_inputs,
     compute=_compute,

@@ -179,10 +179,6 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 
 TOOTH_FORCE = Stage(
-    name="tooth-force",
-    title="Force on one tooth pair",
-    results=("tooth-force",),
-    about="force on one tooth pair in motion, with and without the other meshes",
     subjects=own_meshes,
     needs=needs_train,
     inputs=_inputs,

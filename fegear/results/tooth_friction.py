@@ -209,10 +209,6 @@ def _cites(scene: Scene, _name: str) -> Iterator[Citation]:
 
 
 TOOTH_FRICTION = Stage(
-    name="tooth-friction",
-    title="Tooth friction over the path",
-    results=("tooth-friction",),
-    about="friction coefficient, friction torques and loss of a tooth pair over its path of contact",
     subjects=meshes,
     needs=needs_train,
     inputs=_inputs,

@@ -97,10 +97,6 @@ def _figures(checks: tuple[Check, ...], share: np.ndarray) -> tuple[Figure, ...]
 
 
 TOOTH_GEOMETRY_CHECK = Stage(
-    name="tooth-geometry-check",
-    title="Drawing against rules of thumb",
-    results=("tooth-geometry-check",),
-    about="tip thickness, rim, undercut, contact ratio and clearances against rules of thumb",
     subjects=lambda scene: ("",) if scene.gears else (),
     inputs=_inputs,
     compute=_compute,

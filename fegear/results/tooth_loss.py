@@ -289,13 +289,7 @@ def _forecast(_scene: Scene, _name: str) -> Forecast:
     return Forecast({"positions": _POSITIONS}, 0.05)
 
 
-_ABOUT = "friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train"
-
 TOOTH_LOSS = Stage(
-    name="tooth-loss",
-    title="Tooth loss",
-    results=("tooth-loss",),
-    about=_ABOUT,
     subjects=plane_pairs,
     needs=needs_pair,
     inputs=_inputs,
@@ -308,10 +302,6 @@ TOOTH_LOSS = Stage(
 )
 
 WIDE_TOOTH_LOSS = Stage(
-    name="wide-tooth-loss",
-    title="Tooth loss over the face",
-    results=("tooth-loss",),
-    about=_ABOUT,
     subjects=wide_pairs,
     needs=needs_flanks,
     inputs=_inputs,

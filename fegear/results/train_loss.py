@@ -169,10 +169,6 @@ def _check(scene: Scene, _subject: str) -> None:
 
 
 TRAIN_LOSS = Stage(
-    name="train-loss",
-    title="Tooth loss of the train",
-    results=("tooth-loss",),
-    about="friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train",
     subjects=the_train,
     needs=_needs,
     inputs=_inputs,

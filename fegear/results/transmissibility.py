@@ -286,10 +286,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 TRANSMISSIBILITY = Stage(
-    name="transmissibility",
-    title="Force transmissibility",
-    results=("transmissibility",),
-    about="forces that a helical pair passes from its mesh to its bearings, over frequency",
     subjects=lambda scene: tuple(scene.case.transmissibility),
     needs=mesh_needs,
     inputs=_inputs,

@@ -211,10 +211,6 @@ def _forecast(scene: Scene, name: str) -> Forecast:
 
 
 TRANSMISSION_ERROR = Stage(
-    name="transmission-error",
-    title="Transmission error",
-    results=("transmission-error",),
-    about="loaded transmission error, mesh stiffness, their harmonics, and both over load",
     subjects=plane_pairs,
     needs=needs_pair,
     inputs=_inputs,

@@ -108,7 +108,7 @@ class Section:
 
 @cache
 def _nodes() -> SchemaNodes:
-    return SchemaNodes(case_schema({name: stage.about for stage in STAGES for name in stage.results}))
+    return SchemaNodes(case_schema({name: entry.about for entry in STAGES.entries for name in entry.results}))
 
 
 def form(document: Mapping[str, Any]) -> tuple[Section, ...]:

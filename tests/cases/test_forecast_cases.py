@@ -26,7 +26,7 @@ def planned(name: str, *overrides: str):
 
 
 def test_every_task_of_every_case_is_predicted():
-    silent = Stage("x", "x", (), lambda _scene: (), *3 * (lambda *_: None,)).forecast
+    silent = Stage(lambda _scene: (), *3 * (lambda *_: None,)).forecast
     assert not [stage.name for stage in STAGES if stage.forecast is silent]
     for path in sorted(CASES.glob("*.toml")):
         scene, plan = planned(path.stem)

@@ -45,25 +45,25 @@ class Workshop:
             return tuple(scene.gears)
 
         self.stages = (
-            Stage("blank", "Blank", (), gears, *work("blank")),
+            Stage(gears, *work("blank"), name="blank", title="Blank"),
             Stage(
-                "tooth",
-                "Tooth",
-                ("teeth",),
                 gears,
                 *work("tooth"),
                 lambda s, g: (Task("blank", g),),
                 effects=("relief",),
+                name="tooth",
+                title="Tooth",
+                results=("teeth",),
             ),
             Stage(
-                "pair",
-                "Pair",
-                ("pairs", "both"),
                 lambda s: ("I",),
                 *work("pair"),
                 lambda s, p: (Task("tooth", "a"), Task("tooth", "b")),
+                name="pair",
+                title="Pair",
+                results=("pairs", "both"),
             ),
-            Stage("noise", "Noise", ("noise",), lambda s: tuple(s.pairs), *work("noise")),
+            Stage(lambda s: tuple(s.pairs), *work("noise"), name="noise", title="Noise", results=("noise",)),
         )
 
 

@@ -1,0 +1,62 @@
+"""The catalogue: plain data, from which modules are imported when a plan asks for them."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fegear.engine.catalogue import Catalogue
+from fegear.engine.stage import Stage
+from fegear.results.catalogue import RESULTS, STAGES, SUBJECTS
+
+CASE = Path(__file__).parents[2] / "cases" / "nasa_four_square.toml"
+
+LOADED = """
+import sys
+from fegear.case.reading import read_scene
+from fegear.engine.plan import make_plan
+from fegear.results.catalogue import STAGES
+scene = read_scene(sys.argv[1], ['results=["stiffness"]'])
+assert not [m for m in sys.modules if m.startswith("fegear.results.") and m != "fegear.results.catalogue"]
+make_plan(scene, STAGES)
+print(*(m.rpartition(".")[2] for m in sys.modules if m.startswith("fegear.results.")))
+"""
+
+
+def test_every_entry_finds_a_stage_that_is_named_after_it():
+    homes = [entry.home for entry in STAGES.entries]
+    assert len(set(homes)) == len(homes) == len(STAGES) == len({entry.name for entry in STAGES.entries})
+    for entry, stage in zip(STAGES.entries, STAGES, strict=True):
+        assert isinstance(stage, Stage)
+        assert (stage.name, stage.title, stage.results, stage.about) == (
+            entry.name, entry.title, entry.results, entry.about,
+        )  # fmt: skip
+        assert stage is STAGES.called(entry.name)
+        # What serves other stages alone has no line in lists of results; whatever can be asked for has one.
+        assert bool(entry.results) == bool(entry.about)
+    assert {name for entries in SUBJECTS.values() for entry in entries for name in entry.results} == set(RESULTS)
+    assert STAGES[0] is STAGES.called(STAGES.entries[0].name)
+    assert STAGES[1:3] == tuple(STAGES)[1:3]
+    with pytest.raises(KeyError):
+        STAGES.called("stifness")
+
+
+def test_a_plan_imports_no_result_that_it_does_not_need():
+    """138 such modules were imported at every start, for .25 to .3 s."""
+    ran = subprocess.run([sys.executable, "-c", LOADED, str(CASE)], capture_output=True, text=True, check=True)
+    loaded = set(ran.stdout.split())
+    assert {"gear_solution", "stiffness"} <= loaded
+    homes = {entry.home.partition(".")[0] for entry in STAGES.entries}
+    # The stages of a solved gear, plane or wide, and what says where the contacts of its pairs are.
+    assert loaded & homes <= {"gear_solution", "stiffness", "solid_solution", "solid_stiffness", "loaded_pair"}
+
+
+def test_stages_at_hand_are_a_catalogue_too():
+    own = Stage(tuple, len, max, min, name="own", results=("one", "two"))
+    made = Catalogue.of([own])
+    assert made.called("own") is own
+    assert made.by_result() == {"one": ["own"], "two": ["own"]}
+    assert Catalogue.of(made) is made
+    assert made.holds(own)
+    assert not STAGES.holds(own)
