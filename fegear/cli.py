@@ -59,7 +59,7 @@ COMMANDS = (
     (results, "What a case can ask for."),
     (run, "Compute a case: tables, pictures, report."),
     (plan, "What a run would compute, why, and how long it takes."),
-    (compare, "Two runs or two cases held against each other."),
+    (compare, "Compare two runs or two cases."),
     (sweep, "A case over a grid of values."),
     (effects, "What each effect changes in a case."),
     (cost, "What accuracy costs in time."),

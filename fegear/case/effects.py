@@ -17,14 +17,14 @@ class EffectsPart(Part):
     )
     hertz: Literal["load-dependent", "linear", "none"] = Field(
         default="none",
-        description="Contact deformation: as it grows with the load, linearised at the nominal load, or left out.",
+        description="Contact deformation: as it grows with the load, linearised at the nominal load, or neglected.",
     )
     relief: bool = Field(default=False, description="Whether profile and flank modifications count.")
     spacing_errors: bool = Field(default=False, description="Whether spacing errors of the teeth count.")
     corner_contact: bool = Field(
         default=False, description="Whether deflected teeth meet before and after the nominal path of contact."
     )
-    contact_loss: bool = Field(default=False, description="Whether teeth may part and hammer in motion.")
+    contact_loss: bool = Field(default=False, description="Loss of contact and impacts in motion.")
     friction: bool = Field(default=False, description="Whether teeth rub.")
     parametric: bool = Field(default=False, description="Whether the mesh stiffness varies in time.")
     misalignment: bool = Field(default=False, description="Whether misalignment and line errors of a pair count.")

@@ -67,7 +67,7 @@ class RackPart(Part):
 
     profile: str | None = Field(
         default=None,
-        description="Profile of ISO 53, A to D, from which the keys that are left out are taken; without it C.",
+        description="Profile of ISO 53, A to D, from which the keys that are not given are taken; without it C.",
     )
     addendum: Number | None = Field(
         default=None,
@@ -182,7 +182,7 @@ class GearPart(Part):
     )
     tooth_mesh_fillet: Literal["rack", "own"] = Field(
         default="rack",
-        description="Whether the fillet of `tooth_mesh` is held against the one that the rack cuts, or is your own "
+        description="Whether the fillet of `tooth_mesh` is compared with the one that the rack cuts, or is your own "
         "(optimised, ground).",
     )
     relief: ReliefPart | None = Field(
@@ -211,7 +211,7 @@ class GearPart(Part):
         default=None, description="of flanks and root fillets, for scuffing, micropitting, friction and rating"
     )
     flank_treatment: FlankTreatment | None = Field(
-        default=None, description="what was done to the flanks: factor X_W of scuffing; through-hardened unless told"
+        default=None, description="what was done to the flanks: factor X_W of scuffing (default: through-hardened)"
     )
     tolerance_class: Annotated[int, Field(ge=1, le=11)] | None = Field(
         default=None,

@@ -42,7 +42,7 @@ class Case(Part):
         default_factory=StiffnessPart, description="Where the tables of compliance and root stress are taken."
     )
     study: StudyPart | None = Field(
-        default=None, description="Gears over which root-stress formulas are held against finite elements."
+        default=None, description="Gears over which root-stress formulas are compared with finite elements."
     )
     tooth_contact: ToothContactPart = Field(
         default_factory=ToothContactPart, description="How finely the contact of rigid flanks is followed."
@@ -65,7 +65,7 @@ class Case(Part):
     loading: LoadingPart | None = Field(default=None, description="Tooth loading functions to look at.")
     transmission_error: TransmissionErrorPart = Field(
         default_factory=TransmissionErrorPart,
-        description="A method from the literature beside the exact transmission error.",
+        description="A method from the literature, in addition to the exact transmission error.",
     )
     train: TrainPart | None = Field(
         default=None, description="The gear train: bodies, shafts, meshes, dampers and torques."
@@ -77,5 +77,7 @@ class Case(Part):
         default_factory=EffectsPart, description="The physical effects that count; each is off unless named."
     )
     accuracy: AccuracyPart = Field(default_factory=AccuracyPart, description="How exact the finite elements shall be.")
-    rating: RatingPart = Field(default_factory=RatingPart, description="What stands beside the rating by ISO 6336.")
+    rating: RatingPart = Field(
+        default_factory=RatingPart, description="What is evaluated in addition to the rating by ISO 6336."
+    )
     cost: CostPart = Field(default_factory=CostPart, description="What `fegear cost` studies; a run does not read it.")

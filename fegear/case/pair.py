@@ -81,7 +81,7 @@ class RootStressPart(Part):
         Field(min_length=1),
     ] = Field(
         default=("fe",),
-        description="Finite elements or formulas; of a list the first is the result, the others stand beside it.",
+        description="Finite elements or formulas; of a list the first is the result, the others are compared with it.",
     )
 
     @model_validator(mode="after")

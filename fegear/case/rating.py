@@ -26,7 +26,7 @@ class RatingPart(Part):
     beside: Annotated[tuple[Beside, ...], BeforeValidator(_several, json_schema_input_type=Beside | list[Beside])] = (
         Field(
             default=("agma-2101",),
-            description="What stands beside ISO 6336: computed load distribution and root stress, which "
+            description="What is evaluated in addition to ISO 6336: computed load distribution and root stress, which "
             "take seconds to minutes, and those of ANSI/AGMA 2101-D04.",
         )
     )

@@ -59,5 +59,5 @@ class TolerancePart(Part):
     )
     reliefs: RobustReliefPart | None = Field(
         default=None,
-        description="Tip reliefs of both gears are tried: the best in a percentile beside the nominal best.",
+        description="Tip reliefs of both gears are tried: the best in a percentile is compared with the nominal best.",
     )

@@ -173,7 +173,7 @@ class PairFrictionPart(Part):
     """``friction = { law = "schlenk" }`` or ``{ coefficient = 0.05 }``: of the flanks of a pair, for `tooth-loss`."""
 
     law: FrictionLaw | None = Field(
-        default=None, description='friction law; "constant" with a coefficient, else "schlenk" unless told'
+        default=None, description='friction law (default: "constant" with a coefficient, else "schlenk")'
     )
     coefficient: Annotated[Number, Field(ge=0.0, le=0.5)] | None = Field(
         default=None, description="friction coefficient of the law constant"

@@ -117,7 +117,7 @@ OF_THE_GEAR = ("mass", "inertia_x", "inertia_y", "inertia_z", "base_radius", "ha
 
 
 class RigidGearPart(Part):
-    """One gear: mass, inertia, size and bearing; where the mesh is a pair's, what is left out is that of its gear."""
+    """One gear: mass, inertia, size and bearing; where the mesh is a pair's, what is not given is that of its gear."""
 
     mass: PositiveMass | None = Field(default=None, description="Mass of the gear.")
     inertia_x: PositiveInertia | None = Field(default=None, description="Moment of inertia about x.")

@@ -14,7 +14,7 @@ class TransmissionErrorPart(Part):
 
     method: Literal["quadrature", "mark-series"] = Field(
         default="quadrature",
-        description="The exact quadrature alone, or Mark's series and closed forms beside it, with what they miss.",
+        description="The exact quadrature alone, or Mark's series and closed forms as well, with what they miss.",
     )
     terms: Annotated[int, Field(ge=0, le=200)] = Field(
         default=3, description="M of Mark's series, 0 to 200; the report advises 3 at least."

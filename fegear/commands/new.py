@@ -53,7 +53,7 @@ def new(
     torque: Annotated[str | None, typer.Option("--torque", help='On the pinion, e.g. "260 N m".')] = None,
     speed: Annotated[str | None, typer.Option("--speed", help='Of the pinion, e.g. "1480 rpm".')] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
-    no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors beside it.")] = False,
+    no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors next to it.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a commented case that runs; on a terminal and without options, ask for what it needs.

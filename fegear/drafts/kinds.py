@@ -32,7 +32,7 @@ _LOADED = (*_TOOTH, "torque", "speed")
 
 #: Kinds by name.
 KINDS: Mapping[str, Kind] = MappingProxyType({
-    "gear": Kind("one gear: its tooth's stiffness and root stress, beside the standards' formulas", ("gear",), _TOOTH),
+    "gear": Kind("one gear: its tooth's stiffness and root stress, and the standards' formulas", ("gear",), _TOOTH),
     "pair": Kind("a pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _LOADED),
     "relief": Kind("a pair whose profile relief is to be designed", ("pinion", "wheel"), _LOADED),
     "helical": Kind("a helical pair and the errors of its assembly", ("pinion", "wheel"),

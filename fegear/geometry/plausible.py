@@ -132,7 +132,7 @@ def refuse_relief_elsewhere(relief: EndRelief | Crowning | TabulatedRelief, low:
     if hasattr(relief, "amount") and 0.0 < last - first < _SHORTEST_RELIEF * room:
         raise InputError(
             "relief", f"from roll angle {math.degrees(first):.7g} to {math.degrees(last):.7g} deg",
-            f"is {(last - first) / room:.2g} of the active profile long, which nobody grinds",
+            f"is {(last - first) / room:.2g} of the active profile long, which cannot be ground",
             "check the unit of its length or its start; write tip_chamfer for a broken edge",
         )  # fmt: skip
     missed = hasattr(relief, "roll") and (first >= high or last <= low)

@@ -70,7 +70,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 "crosscheck.CROSSCHECK",
                 "Closed forms against finite elements",
                 ("crosscheck",),
-                "closed forms for stiffness and root stress (ISO 6336, AGMA 908 and others) beside finite elements",
+                "closed forms for stiffness and root stress (ISO 6336, AGMA 908, ...) compared with finite elements",
             ),
             Entry(
                 "root-stress-study",
@@ -198,7 +198,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 "rating.RATING",
                 "Load capacity",
                 ("rating",),
-                "safeties of flanks and roots by ISO 6336, every factor; computed ones and AGMA 2101 beside",
+                "safeties of flanks and roots by ISO 6336, every factor; computed ones and AGMA 2101 for comparison",
             ),
             Entry(
                 "flank-surface",
@@ -219,14 +219,14 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 "tooth_loss.TOOTH_LOSS",
                 "Tooth loss",
                 ("tooth-loss",),
-                "friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train",
+                "friction loss of the teeth, H_V compared with Ohlendorf and Wimmer, efficiency of pair and train",
             ),
             Entry(
                 "wide-tooth-loss",
                 "tooth_loss.WIDE_TOOTH_LOSS",
                 "Tooth loss over the face",
                 ("tooth-loss",),
-                "friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train",
+                "friction loss of the teeth, H_V compared with Ohlendorf and Wimmer, efficiency of pair and train",
             ),
         ),
         "Profile relief": (
@@ -386,7 +386,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 "train_loss.TRAIN_LOSS",
                 "Tooth loss of the train",
                 ("tooth-loss",),
-                "friction loss of the teeth, H_V beside Ohlendorf and Wimmer, efficiency of pair and train",
+                "friction loss of the teeth, H_V compared with Ohlendorf and Wimmer, efficiency of pair and train",
             ),
             Entry(
                 "motion",

@@ -125,7 +125,7 @@ def response_figures(name: str, stiffness: float, response: Response, undamped: 
             f"transmissibility_{key}_{name}",
             f"{title} mesh force transmissibility of pair {name}",
             f"Pair {name}: first index the mesh force, second the external force, over q = (y, z, b theta_x, "
-            "a theta_y, a theta_z). Entries that are equal share a curve; what is zero is left out.",
+            "a theta_y, a theta_z). Entries that are equal share a curve; what is zero is not drawn.",
             tuple(
                 panel(f"|{_matrix(matrix)}|", entries(matrix, rows, COORDINATES), _ON[matrix]) for matrix in matrices
             ),

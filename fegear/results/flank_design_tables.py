@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _JUDGED = (
     ("te_peak_to_peak", "peak_to_peak", "um", "left at the design load"),
     ("K_Hbeta", "face_load_factor", "", "at the design load"),
-    ("hertz_pressure", "pressure", "MPa", "largest, tips and form circles left out"),
+    ("hertz_pressure", "pressure", "MPa", "largest, without tips and form circles"),
     ("te_mean_over_scatter", "mean_over_scatter", "um", "peak to peak, mean over the misalignments of the scatter"),
     ("te_p95_over_scatter", "most_over_scatter", "um", "peak to peak that 95 % of the misalignments do not exceed"),
     ("K_Hbeta_p95_over_scatter", "factor_over_scatter", "", "K_Hbeta that 95 % of the misalignments do not exceed"),
@@ -95,7 +95,7 @@ def map_table(name: str, design: FlankDesign) -> Table:
         Column("K_Hbeta", np.concatenate([s.mapped.face_load_factor.ravel() for s in states]), "",
                "largest over mean load per face width"),
         Column("hertz_pressure", np.concatenate([s.mapped.pressure.ravel() for s in states]), "MPa",
-               "largest, tips and form circles left out"),
+               "largest, without tips and form circles"),
     )  # fmt: skip
     return Table(f"flank_map_{name}", columns, f"Reliefs of pair {name} over misalignment and load")
 

@@ -182,9 +182,9 @@ def _present(data: FlankGenerationData, asked: FlankGenerationInputs) -> Outcome
     )  # fmt: skip
     remarks = []
     if not pair.pinion.twist:
-        remarks.append(f"Pair {name}: screw parameter and lead of a spur gear are infinite and left out.")
+        remarks.append(f"Pair {name}: screw parameter and lead of a spur gear are infinite and not listed.")
     if pair.crown:
-        remarks.append(f"Pair {name}: the lengthwise crown is not part of the rack cutter and left out here.")
+        remarks.append(f"Pair {name}: the lengthwise crown is not part of the rack cutter and not drawn.")
     tables = (
         _design_table(name, rows), _cutters_table(name, data),
         *(_flank_table(name, gear, flank) for gear, flank in zip(gears, data.flanks, strict=True)),

@@ -158,7 +158,7 @@ def _factors(name: str, data: FlankSurfaceData, asked: PairSurface) -> Table:
     symbols, values, units, clauses = zip(*rows, strict=True)
     columns = (
         Column("factor", np.array(symbols), "", "symbol"),
-        Column("value", np.array(values), "", "in the unit beside it"),
+        Column("value", np.array(values), "", "in the unit of the next column"),
         Column("in", np.array(units), "", "unit"),
         Column("clause", np.array(clauses), "", "where it stands"),
     )

@@ -139,9 +139,9 @@ def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
               f"face: at most {cells}"),
         Value(f"{name}.largest_line_load", float(stated.largest_line_load[i]), "N/mm",
               float(data.error.largest_line_load[i]),
-              "on one contact line, tips and form circles left out"),
+              "on one contact line, without tips and form circles"),
         Value(f"{name}.largest_hertz_pressure", float(inner.max()), "MPa", float(data.error.largest_pressure[i]),
-              f"smooth flanks, tips and form circles left out, {where}"),
+              f"smooth flanks, without tips and form circles, {where}"),
         Value(f"{name}.largest_share", float(found.share[:, :, i].max()), "",
               float(data.error.share[:, :, i].max()), "of one tooth pair"),
     )  # fmt: skip
@@ -163,7 +163,7 @@ def _remarks(name: str, data: LoadedFlanksData) -> list[str]:
             f"Pair {name}: "
             + ("sharp tip edges carry" if tips else "contact lines end at tips or form circles under")
             + f" up to {edge * 1e-3:.4g} N/mm. A sharp edge has no largest pressure: the number beside it grows with "
-            "the number of panels, and largest_hertz_pressure leaves it out. "
+            "the number of panels, and largest_hertz_pressure excludes it. "
             + (
                 "Round the tips (tip_radius_rounding) to give it one."
                 if tips

@@ -238,8 +238,8 @@ def _sliced(data: LoadedFlanksData) -> tuple[str, ...]:
     if not data.missed:
         return ()
     told = (
-        f"Pair {data.asked.name}: coupled slices of the plane section stand in for solid gears. Their compliances have "
-        f"been seen to miss those of solids by up to {data.missed:.0%}, which the estimated errors count."
+        f"Pair {data.asked.name}: coupled slices of the plane section are used instead of solid gears. Their "
+        f"compliances miss those of solids by up to {data.missed:.0%}, which the estimated errors count."
     )
     return (told,)
 
@@ -274,12 +274,12 @@ def _short(data: LoadedFlanksData) -> tuple[str, ...]:
 def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
     """Say how much the effects would change that are off."""
     told = {
-        "neighbour_coupling": "what pairs do to each other is left out",
+        "neighbour_coupling": "coupling between tooth pairs is neglected",
         "hertz": "contacts do not widen with their load",
-        "relief": "gears have a relief or lead modifications that are left out",
-        "spacing_errors": "gears have spacing_errors that are left out",
+        "relief": "gears have a relief or lead modifications that are neglected",
+        "spacing_errors": "gears have spacing_errors that are neglected",
         "corner_contact": "contact lines end at the tips instead of going on along their edges",
-        "misalignment": "the pair has a misalignment or line_error that is left out",
+        "misalignment": "the pair has a misalignment or line_error that is neglected",
     }
     i = data.nominal
     mean, factor = float(data.stated.mean[i]), float(data.stated.face_load_factor[i])

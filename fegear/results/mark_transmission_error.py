@@ -197,7 +197,7 @@ def _figures(name: str, data: MarkData, rotational: FourierSeries | None) -> tup
     spacing = Figure(
         f"transmission_error_rotational_series_{name}", f"Spacing errors of pair {name} by Mark's closed form",
         f"Pair {name}: rotational harmonics of the transmission error, by exact load sharing and by (1.28) with the "
-        "transfer function (1.29), which knows the contact ratio alone. Harmonics of the mesh are left out.",
+        "transfer function (1.29), which knows the contact ratio alone. Harmonics of the mesh are not drawn.",
         (Panel(
             Axis("frequency over the tooth-mesh frequency"),
             Axis("amplitude of the transmission error", "um, 0-peak", log=True), points,

@@ -193,7 +193,7 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
             )  # fmt: skip
         found.append(
             Value(f"{name}.largest_pressure_computed", data.computed.pressure, "MPa", None,
-                  "over the computed flanks at the load with K_A, K_gamma and K_v, tips and form circles left out")
+                  "over the computed flanks at the load with K_A, K_gamma and K_v, without tips and form circles")
         )  # fmt: skip
     return (*found, *life_values(data, asked))
 

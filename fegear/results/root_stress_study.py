@@ -267,7 +267,7 @@ def _scatter(table: Table, names: tuple[str, ...], ratio: Array) -> Figure:
     ticks = tuple((float(k), f"{z:.0f}") for k, z in enumerate(counts))
     edges = tuple(Mark("x", k + 0.5) for k in range(counts.size - 1))
     panel = Panel(
-        Axis("number of teeth; formulas stand beside each other", ticks=ticks),
+        Axis("number of teeth; one bar for each formula", ticks=ticks),
         Axis("formula / FE"),
         tuple(points),
         (*edges, Mark("y", 1.0, "finite elements")),

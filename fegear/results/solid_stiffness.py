@@ -163,7 +163,7 @@ def _sliced(table: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
     """Say what slices are."""
     if table.influence.settings.source == "solid":
         return ()
-    said = "coupled slices of its plane section stand in for the solid; errors are the largest misses on solid gears"
+    said = "coupled slices of its plane section are used instead of the solid; errors are their largest on solid gears"
     return (f"Gear {asked.name} over its face: {said}.",)
 
 

@@ -41,7 +41,7 @@ def tolerance_remarks(data: ToleranceData, asked: PairDrawn) -> tuple[str, ...]:
     found = [told, *asked.untold]
     if asked.own_spacing:
         found.append(
-            f"Pair {name}: spacing_errors of its gears are left out of the draws, which have pitches of their own."
+            f"Pair {name}: spacing_errors of its gears do not count in the draws, which have pitches of their own."
         )
     if data.reasons:
         first = min(data.reasons)

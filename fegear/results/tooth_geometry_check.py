@@ -50,8 +50,8 @@ def _present(checks: tuple[Check, ...], _drawing: Drawing) -> Outcome:
         "tooth_geometry_check",
         (
             Column("of", np.array([check.of for check in checks]), "", "gear or pair"),
-            Column("rule", np.array([check.rule for check in checks]), "", "what is held against its limit"),
-            Column("value", scale * np.array([check.value for check in checks]), "", "in the unit beside it"),
+            Column("rule", np.array([check.rule for check in checks]), "", "what is compared with its limit"),
+            Column("value", scale * np.array([check.value for check in checks]), "", "in the unit of the next column"),
             Column("limit", scale * np.array([check.limit for check in checks]), "", "the least that is usual"),
             Column("unit", np.array([check.unit for check in checks]), "", "of value and limit; empty for ratios"),
             Column("verdict", verdicts, "", "holds or broken"),
@@ -60,7 +60,7 @@ def _present(checks: tuple[Check, ...], _drawing: Drawing) -> Outcome:
         "The drawing against rules of thumb",
     )
     values = (
-        Value("rules_checked", float(len(checks)), "", 0.0, "rules that this case can be held against"),
+        Value("rules_checked", float(len(checks)), "", 0.0, "rules that apply to this case"),
         Value("rules_broken", float(len(broken)), "", 0.0, "of them"),
     )
     remarks = tuple(

@@ -241,8 +241,8 @@ def _loads_figure(data: ToothLossData, inputs: ToothLossInputs) -> Figure:
     return Figure(
         f"tooth_loss_loads_{name}",
         f"Tooth loss of pair {name} over the load",
-        f"Pair {name}: loss factor H_V by the computed load, beside those of rigid gears, and share of the power that "
-        f"the teeth lose by the law {inputs.friction.law}. Under little load reliefs stay open and tips bear nothing.",
+        f"Pair {name}: loss factor H_V by the computed load and of rigid gears, and share of the power "
+        f"that the teeth lose by the law {inputs.friction.law}. Under little load reliefs stay open, tips unloaded.",
         (
             Panel(axis, Axis("loss factor H_{V}"), (Curve(load, factor, "computed load", "series:0"), *flat)),
             Panel(axis, Axis("power lost", "%", zero=True), (Curve(load, lost, "", "red", dash="solid"),)),

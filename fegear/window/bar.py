@@ -63,7 +63,7 @@ class Bar:
     def _desk(self) -> Desk:
         desk = self._bench.desk
         if desk is None:
-            raise InputError("case", "(none)", "is on the desk", "choose a template")
+            raise InputError("case", "(none)", "is open", "choose a template")
         return desk
 
     def refresh(self) -> None:

@@ -251,7 +251,7 @@ class Bench:
 
     def _on_desk(self) -> Desk:
         if self.desk is None:
-            raise InputError("case", "(none)", "is on the desk", "choose a template")
+            raise InputError("case", "(none)", "is open", "choose a template")
         return self.desk
 
     def _put(self, text: str, *, moving: bool) -> None:

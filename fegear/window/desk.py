@@ -168,7 +168,7 @@ class Desk:
             self.change(with_value(self.text, path, value))
         except ValueError as error:
             raise InputError(
-                "case", f'"{self.name}.toml"', f"is no valid TOML: {error}", "mend the text first"
+                "case", f'"{self.name}.toml"', f"is no valid TOML: {error}", "correct the text first"
             ) from None
 
     def undo(self) -> None:
@@ -244,13 +244,13 @@ class Desk:
             data = self._file.written(self.text)
         except UnicodeEncodeError:
             raise InputError(
-                "case", f'"{self.name}"', "holds half a character, which no file takes", "mend the text"
+                "case", f'"{self.name}"', "holds half a character, which no file takes", "correct the text"
             ) from None
         write_file(path, data, "case")
         self._file = self._file._replace(text=self.text, digest=digest_of(data))
 
     def _settled(self) -> None:
-        """Keep nothing beside the file any more: it has what is on the desk."""
+        """Keep nothing beside the file any more: it has what is open."""
         self._saved = self.text
         self.restored = ""
         self._journal.forget()

@@ -111,7 +111,7 @@ class Page:
         except FegearError as error:
             ui.notify(str(error), type="warning", multi_line=True)
         except tomllib.TOMLDecodeError as error:
-            ui.notify(f"The case is no valid TOML: {error}; mend the text first.", type="warning", multi_line=True)
+            ui.notify(f"The case is no valid TOML: {error}; correct the text first.", type="warning", multi_line=True)
 
     def _hear(self, what: str, content: dict[str, Any]) -> None:
         if what == "changed":

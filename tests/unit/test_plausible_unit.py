@@ -84,8 +84,8 @@ def test_the_case_itself_is_plausible():
             r"gear\.a\.relief = from roll angle .* lies elsewhere than the active profile",
         ),
         ('gear.a.relief={tip={amount="9 um", normalised_length=100}}', "lies elsewhere"),
-        ('gear.a.relief={tip={amount="9 um", normalised_length=0.0009}}', "of the active profile long, which nobody"),
-        ('gear.a.relief={tip={amount="9 um", length="1 um"}}', "of the active profile long, which nobody grinds"),
+        ('gear.a.relief={tip={amount="9 um", normalised_length=0.0009}}', "of the active profile long, which cannot"),
+        ('gear.a.relief={tip={amount="9 um", length="1 um"}}', "of the active profile long, which cannot be ground"),
         (
             "pair.I.lubricant={viscosity_40='220 mm^2/s', temperature='60 degC', density_15='895000 kg/m^3'}",
             r"pair\.I\.lubricant\.density_15 = 895000 kg/m\^3: is the density of no oil",

@@ -1092,7 +1092,7 @@ def test_what_is_moved_by_hand_while_the_text_is_no_toml_is_refused_in_words(mon
     Page._by_hand(lambda: bench.move_load("I", "load", "3 kN", moving=True))
     Page._by_hand(lambda: bench.move_relief("a", "tip", 26.0, 5.0, moving=True))
     assert len(told) == 2
-    assert all("no valid TOML" in one and "mend the text first" in one for one in told)
+    assert all("no valid TOML" in one and "correct the text first" in one for one in told)
 
 
 def test_a_fault_of_fegear_is_said_to_be_one_and_the_next_case_is_computed(computing):

@@ -34,7 +34,7 @@ def _figure(found: list[tuple[str, float]], tolerance: float) -> Figure:
     )
     axes = Axis("estimated relative error", log=True), Axis(categories=names)
     return Figure(
-        "estimated_errors", "Estimated errors beside the tolerance",
+        "estimated_errors", "Estimated errors and the tolerance",
         "Estimated error of every value over the value; left of the line it is within the case's tolerance.",
         (Panel(*axes, points, (Mark("x", tolerance, "tolerance"),)),),
     )  # fmt: skip
