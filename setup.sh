@@ -73,5 +73,7 @@ fegear_setup() {
         fi
     fi
     fegear_pip --editable "$root${extra:+[$extra]}" || return 1
+    # The equations of motion become machine code now, half a minute, not in the first run that needs them.
+    "$venv/bin/python" -I -m fegear.dynamics.prepare >/dev/null 2>&1 || :
     printf '%s\n' "$state" >"$stamp"
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 import pickle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -54,10 +55,11 @@ class _CheckedFiles(IndexDataCacheFile):  # type: ignore[misc]  # numba has no t
 
 
 class _Forgiving:
-    """A cache of numba's that costs time where it fails, and nothing else."""
+    """A cache of numba's that costs time where it fails, and nothing else; it says so where that time is long."""
 
-    def __init__(self, cache: Any) -> None:
+    def __init__(self, cache: Any, long: str) -> None:
         self._cache = cache
+        self._long = long
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._cache, name)
@@ -65,9 +67,12 @@ class _Forgiving:
     def load_overload(self, *what: object) -> object:
         """Return what was kept; None for whatever cannot be read."""
         try:
-            return self._cache.load_overload(*what)
+            found = self._cache.load_overload(*what)
         except Exception:  # noqa: BLE001  (anything may stand in a file)
-            return None
+            found = None
+        if found is None and self._long:
+            logging.getLogger(__name__).warning("%s", self._long)
+        return found
 
     def save_overload(self, *what: object) -> None:
         """Keep it, if that can be done."""
@@ -77,7 +82,7 @@ class _Forgiving:
             return
 
 
-def machine_code(function: Callable[..., Any], made_from: str = "") -> Callable[..., Any]:
+def machine_code(function: Callable[..., Any], made_from: str = "", long: str = "") -> Callable[..., Any]:
     """Compile a function at its first call, or take the machine code of an earlier process.
 
     Parameters
@@ -86,6 +91,8 @@ def machine_code(function: Callable[..., Any], made_from: str = "") -> Callable[
         Plain Python on arrays, as numba takes it.
     made_from : str
         Digest of what else its machine code is made from: numba looks at the age of the function's own file alone.
+    long : str
+        Warning that is logged before it is compiled, where that takes long.
 
     Returns
     -------
@@ -100,5 +107,5 @@ def machine_code(function: Callable[..., Any], made_from: str = "") -> Callable[
     kept = made._cache  # noqa: SLF001  (numba has no open door to it)
     files = kept._cache_file  # noqa: SLF001
     kept._cache_file = _CheckedFiles(kept.cache_path, kept._impl.filename_base, (files._source_stamp, made_from))  # noqa: SLF001
-    made._cache = _Forgiving(kept)  # noqa: SLF001
+    made._cache = _Forgiving(kept, long)  # noqa: SLF001
     return made

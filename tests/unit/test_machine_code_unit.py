@@ -14,7 +14,14 @@ from pathlib import Path
 import pytest
 
 from fegear.dynamics import kernel
+from fegear.dynamics.excitation import MeshExcitation
 from fegear.dynamics.machine_code import machine_code
+from fegear.dynamics.motion import propagate, static_state
+from fegear.dynamics.motion_model import MotionModel
+from fegear.dynamics.packing import pack
+from fegear.dynamics.periodic import Periodic
+from fegear.dynamics.prepare import prepare
+from fegear.dynamics.train import Body, Mesh, Shaft, Torque, Train
 
 _number = itertools.count()
 
@@ -110,3 +117,28 @@ def test_every_function_of_the_kernel_is_compiled_with_the_others():
     assert {path.name for path in folder.glob("*.py")} == named | {"__init__.py", "arrays.py"}
     functions = inspect.getmembers(kernel.arrays, inspect.isfunction)
     assert not [name for name, one in functions if one.__module__ == kernel.arrays.__name__]
+
+
+def test_who_has_to_wait_reads_why_and_only_once(made, caplog):
+    """The first motion of a fresh clone took 28 silent seconds."""
+    slow = "Compiling: half a minute, once."
+    assert machine_code(made.twice, long=slow)(3.5) == 7.0
+    assert [one.message for one in caplog.records] == [slow]
+    assert machine_code(made.twice, long=slow)(3.5) == 7.0
+    assert len(caplog.records) == 1
+
+
+def test_what_the_set_up_compiles_serves_every_train():
+    """A train with a shaft, backlash and more bodies than the set-up's has no signature of its own."""
+    prepare()
+    before = len(kernel.compiled().signatures)
+    constant = MeshExcitation.from_mesh(Periodic.constant(2e8), Periodic.constant(0.0))
+    train = Train(
+        (Body("1", 2e-3), Body("2", 2e-3), Body("3", 4e-3)),
+        shafts=(Shaft("s", "2", "3", 2e4),),
+        meshes=(Mesh("g", "1", "2", 0.05, 0.05, 30, 30, 2e8, 100.0, 1e-4),),
+        torques=(Torque("1", 25.0), Torque("3", 25.0)),
+    )
+    packed = pack(MotionModel(train, (constant,), 100.0))
+    propagate(packed, *static_state(packed), 1e-3, tangents=True, record=100)
+    assert len(kernel.compiled().signatures) == before == 1

@@ -41,6 +41,7 @@ __all__ = [
     "compiled",
 ]  # fmt: skip
 
+_LONG = "Compiling the equations of motion to machine code: about half a minute, once (the set-up does it beforehand)."
 #: Modules whose functions call each other as machine code.
 COMPILED = (polynomials, series, collocation, steps)
 
@@ -57,7 +58,7 @@ def compiled() -> Callable[..., Any]:
 
     digest = source_digest()
     made: dict[object, Callable[..., Any]] = {
-        function: machine_code(function, digest)
+        function: machine_code(function, digest, _LONG if function is steps.travel else "")
         for module in COMPILED
         for _, function in inspect.getmembers(module, inspect.isfunction)
         if function.__module__ == module.__name__
