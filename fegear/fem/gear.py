@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -29,8 +28,6 @@ _SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 2.4, 1.1
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
-#: How many times the others a single difference over the flank counts in what is usual.
-_WILD = 100.0
 #: What is modelled nearer to an end of the flank than the mesh resolves is wrong by the first power of the edges'
 #: length, of which neighbouring levels differ by two fifths.
 _END_SHARE = 3.0
@@ -172,24 +169,21 @@ class GearInfluence:
         # The back fillet has the loaded one's shape and no shorter edges: it errs no less, should
         # its difference vanish by chance.
         least = _USUAL * max(self._usual_stress(k, at) for at in (SIDES if side == "compression" else (side,)))
-        value, difference = self._stress_difference(k, side, self._modules(radius), self._half_width(half_width))
-        return self._known(_STRESS_SHARE * np.maximum(difference, least * np.abs(value))) / self.gear.module
+        r, b = self._modules(radius), self._half_width(half_width)
+        value, difference = self._stress_difference(k, side, r, b)
+        share = np.where(self._at_an_end(r, b), _END_SHARE, _STRESS_SHARE)
+        return self._known(np.maximum(share * difference, _STRESS_SHARE * least * np.abs(value))) / self.gear.module
 
     def _stress_difference(self, k: int, side: Side, r: Array, b: ArrayLike) -> tuple[Array, Array]:
         fine = self.fine.largest_root_stress(k, side, r, b)[0]
         return fine, np.abs(fine - self._other.largest_root_stress(k, side, r, b)[0])
 
     def _usual_stress(self, k: int, side: Side) -> float:
-        """Of the value; a single difference is taken for no more than a hundred times the others.
-
-        Under a contact that reaches onto a sharp fillet it is ten thousand times them, and is told for that contact.
-        """
+        """Of the value."""
 
         def relative() -> Array:
             value, difference = self._stress_difference(k, side, self._samples, REFERENCE_HALF_WIDTH)
-            found = np.sort(difference / value)
-            found[-1] = min(found[-1], _WILD * math.sqrt(np.mean(found[:-1] ** 2)))
-            return found
+            return difference / value
 
         return self._usually((k, side), relative)
 

@@ -13,7 +13,7 @@ from fegear.fem.contact_width import REFERENCE_HALF_WIDTH, check_half_widths
 from fegear.fem.corner import corner_angles, wedge_slope
 from fegear.fem.elasticity import assemble
 from fegear.fem.ring import close_ring
-from fegear.fem.root_stress import FilletStrain, extreme, fillet_strain
+from fegear.fem.root_stress import FilletStrain, extreme, fillet_strain, search_end
 from fegear.fem.trace import LoadedFlank, loaded_flank
 from fegear.one_thread import one_thread
 from fegear.tally import tallied
@@ -38,6 +38,9 @@ _NARROWER = 0.6
 #: The wider pressure takes this share of the room to the nearest corner or curvature jump: what the corner does to it
 #: goes with the square of that share, which is taken out, and then with higher powers of it.
 _ROOM_SHARE = 0.7
+#: How far below the edge of a contact root tension begins [modules]: nearer, stress is what the contact itself leaves,
+#: and a coarse mesh does not resolve it.
+_CLEARANCE = 0.05
 #: Mean distance of two points of a semi-elliptic pressure over its half-width.
 _MEAN = 256.0 / (45.0 * np.pi**2)
 
@@ -140,18 +143,17 @@ class Influence:
     def _fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
         """Loads for the stress in the fillet, how far above it they stand and their half-width.
 
-        In their exact place, for it decides about the bending; narrowed where they would reach past tip or corner. The
-        last ones are kept: all teeth and both fillets are asked for at the same radii.
+        In their exact place, for it decides about the bending; narrowed where they would reach past an end of the
+        flank, for nothing presses on a fillet. The last ones are kept: all teeth and both fillets are asked for at the
+        same radii.
         """
         r, half = np.atleast_1d(np.asarray(radius, dtype=float)), np.asarray(half_width, dtype=float)
         key = r.tobytes(), half.tobytes()
         if self._last.get("key") == key:
             return self._last["loads"]
         arc = np.atleast_1d(self.flank.arc_of_radius(r))
-        above, room = arc - self.flank.flank_start, self.flank.flank_end - arc
-        if self.flank.lower_corner:
-            room = np.minimum(above, room)
-        width = np.minimum(half, np.maximum(room, _POINT))
+        above = arc - self.flank.flank_start
+        width = np.minimum(half, np.maximum(np.minimum(above, self.flank.flank_end - arc), _POINT))
         low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
         loads = self.flank.few_patches(np.clip(arc, low, high), width), above, width
         self._last.update(key=key, loads=loads)
@@ -278,16 +280,13 @@ class Influence:
     ) -> tuple[Array, Array]:
         """Largest tension (or compression) of a fillet and the arc length where it sits, shape (Q,) each.
 
-        It is looked for beside the contact: where the contact itself presses on the fillet the stress is its pressure,
-        which is no root stress.
+        That of the whole fillet, up to the start of the flank, but no nearer than .05 modules to the contact's edge;
+        of a fillet that this would leave less than half of, that of its lower half (`search_end`).
         """
         fillet = self.fillets[side]
         loads, above, width = self._fillet_loads(radius_q, half_width)
-        end = np.full(above.shape, fillet.length)
-        if k == 0 and side == "tension":
-            # Beside it by one corner distance more, but by half at most of what a short fillet leaves free.
-            free = np.maximum(fillet.length + above - width, 0.0)
-            end = np.minimum(end, np.maximum(free - self.corner_distance, 0.5 * free))
+        beside = k == 0 and side == "tension"
+        end = search_end(fillet.length, above, width, _CLEARANCE) if beside else np.full(above.shape, fillet.length)
         return extreme((loads @ self.stress[k, side].T).T, fillet.arc, 1.0 if side == "tension" else -1.0, end)
 
 

@@ -17,6 +17,7 @@ from fegear.fem.trace import lagrange, lagrange_slope
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+    from scipy.sparse import csr_array
 
     from fegear.arrays import Array, Index
     from fegear.fem.elasticity import SectorElasticity
@@ -100,12 +101,30 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
     )
 
 
-#: The stress round its largest value is smoothed by a polynomial through this many points of this degree: the trochoid
-#: is analytic, so the stress away from the contact is too, and the fit averages out the scatter of single edges.
-_FITS = ((20, 8), (12, 4))
-#: Where a fit leaves more than this share of the largest stress, the contact is too near for a smooth curve.
-_MISFIT = 0.01
-_GRID = np.linspace(-1.0, 1.0, 201)
+#: Each point of the curve along a fillet is smoothed by a polynomial of this degree through so many Gauss points about
+#: it: the fillet is analytic, so stress away from the contact is too, and the fit averages out the scatter of edges.
+_POINTS, _DEGREE = 10, 5
+
+
+def search_end(length: float, above: Array, half_width: ArrayLike, clearance: float) -> Array:
+    """Arc length up which root stress is looked for below contacts, shape (P,) [modules].
+
+    Root stress is that of the fillet, from the root land up to the start of the flank, but no nearer to the edge of
+    the contact than the clearance; a fillet that this would leave less than half of is looked at over its lower half.
+
+    Parameters
+    ----------
+    length : float
+        Of the fillet [modules].
+    above : ndarray, shape (P,)
+        How far above the fillet the contacts stand [modules].
+    half_width : array_like
+        Of the contacts [modules].
+    clearance : float
+        [modules].
+    """
+    free = np.maximum(length + above - np.asarray(half_width, dtype=float), 0.0)
+    return np.minimum(length, np.maximum(free - clearance, 0.5 * free))
 
 
 def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Array, Array]:
@@ -115,53 +134,62 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Arr
     ----------
     values : ndarray, shape (points, P)
     arc : ndarray, shape (points,)
+        Ascending, two points at least.
     sign : {1, -1}
     end : array_like
-        Arc length at which the search ends.
+        Arc length at which the search ends, no farther from the points than an edge's end.
 
     Returns
     -------
     value, place : ndarray, shape (P,)
-        From a least-squares polynomial round the largest of the points, or straight from that point where the load
-        stands so near that no smooth curve follows them.
+        Of the cubic Hermite curve through smoothed values and slopes at the points. The curve is linear in the values
+        and has no corner, so its largest value changes steadily with them and with the end.
     """
-    columns = np.arange(values.shape[1])
-    ends = np.broadcast_to(np.asarray(end, dtype=float), columns.shape)
-    counts = np.maximum(np.searchsorted(arc, ends, side="right"), 1)
-    beyond = np.arange(arc.size)[:, None] >= counts
-    top = np.argmax(np.where(beyond, -np.inf, sign * values), axis=0)
-    value, place = values[top, columns].copy(), arc[top].copy()
-    left = np.ones(columns.size, dtype=bool)
-    for points, degree in _FITS:
-        for at, count in np.unique(np.stack([top, counts])[:, left], axis=1).T:
-            chosen = np.flatnonzero(left & (top == at) & (counts == count))
-            first = int(np.clip(at - points // 2, 0, max(count - points, 0)))
-            window = slice(first, min(first + points, int(count)))
-            low = 0.0 if first == 0 else float(arc[first])
-            high = ends[chosen] if window.stop == count else np.full(chosen.size, arc[window.stop - 1])
-            found, where, misfit = _smoothed(sign * values[window, chosen], arc[window], degree, low, high)
-            good = misfit <= _MISFIT * np.abs(values[:count, chosen]).max(axis=0)
-            value[chosen[good]], place[chosen[good]] = sign * found[good], where[good]
-            left[chosen[good]] = False
-    return value, place
+    smoothing, slopes = _smoothing(arc)
+    height, step = sign * (smoothing @ values), np.diff(arc)[:, None]
+    rise = sign * (slopes @ values)
+    a, p, q = height[:-1], rise[:-1] * step, rise[1:] * step
+    square, cube = 3.0 * np.diff(height, axis=0) - 2.0 * p - q, p + q - 2.0 * np.diff(height, axis=0)
+    low, high = np.zeros_like(step), np.ones_like(step)
+    low[0], high[-1] = -arc[0] / step[0], np.inf
+    ends = np.broadcast_to(np.asarray(end, dtype=float), values.shape[1:])
+    within = (ends - arc[:-1, None]) / step
+    high = np.clip(within, low, high)
+    # Where the slope p + 2 square t + 3 cube t^2 vanishes, without cancellation; where it does not, any place will do.
+    root = -(square + np.copysign(np.sqrt(np.maximum(square**2 - 3.0 * cube * p, 0.0)), square))
+    flat = [
+        np.divide(over, under, out=np.zeros_like(a), where=np.abs(under) > np.abs(over) * 1e-9)
+        for over, under in ((root, 3.0 * cube), (p, root))
+    ]
+    best = np.full(a.shape, -np.inf)
+    at = np.zeros_like(a)
+    for t in (low, high, *(np.clip(place, low, high) for place in flat)):
+        found = a + t * (p + t * (square + t * cube))
+        higher = found > best
+        best, at = np.where(higher, found, best), np.where(higher, t, at)
+    best[1:][within[1:] < 0.0] = -np.inf
+    top, columns = np.argmax(best, axis=0), np.arange(values.shape[1])
+    return sign * best[top, columns], arc[top] + at[top, columns] * step[top, 0]
 
 
-def _smoothed(values: Array, arc: Array, degree: int, low: float, high: Array) -> tuple[Array, Array, Array]:
-    """Largest value between two arc lengths of a polynomial through points, its place and the largest misfit."""
-    chebyshev = np.polynomial.chebyshev
-    middle, half = 0.5 * (arc[0] + arc[-1]), max(0.5 * (arc[-1] - arc[0]), 1e-300)
-    basis = chebyshev.chebvander((arc - middle) / half, max(0, min(degree, arc.size // 2)))
-    coefficients = np.linalg.lstsq(basis, values, rcond=None)[0]
-    columns = np.arange(values.shape[1])
-    places = 0.5 * (low + high) + 0.5 * (high - low) * _GRID[:, None]
-    curve = np.einsum("gpi,ip->gp", chebyshev.chebvander((places - middle) / half, basis.shape[1] - 1), coefficients)
-    best = np.argmax(curve, axis=0)
-    # A parabola through the best of the grid and its neighbours takes the grid's step out.
-    inner = np.clip(best, 1, _GRID.size - 2)
-    before, here, after = (curve[inner + step, columns] for step in (-1, 0, 1))
-    bend = before - 2.0 * here + after
-    shift = np.divide(0.5 * (before - after), bend, out=np.zeros_like(bend), where=bend < 0.0)
-    shift = np.where(best == inner, np.clip(shift, -1.0, 1.0), best - inner)
-    peak = here + 0.5 * shift * (after - before) + 0.5 * shift**2 * bend
-    misfit = np.abs(basis @ coefficients - values).max(axis=0)
-    return peak, places[inner, columns] + shift * 0.5 * (high - low) * (_GRID[1] - _GRID[0]), misfit
+def _smoothing(arc: Array) -> tuple[csr_array, csr_array]:
+    """Matrices from values at points to a smooth curve's values and slopes there, shape (points, points).
+
+    Sparse, for their products then have the same bits for one column as for many.
+    """
+    from scipy.sparse import csr_array
+
+    chebyshev, count = np.polynomial.chebyshev, min(_POINTS, arc.size)
+    first = np.clip(np.arange(arc.size) - count // 2, 0, arc.size - count)
+    column = first[:, None] + np.arange(count)
+    near = arc[column]
+    middle, half = 0.5 * (near[:, 0] + near[:, -1]), 0.5 * (near[:, -1] - near[:, 0])
+    degree = min(_DEGREE, count // 2)
+    fit = np.linalg.pinv(chebyshev.chebvander((near - middle[:, None]) / half[:, None], degree))
+    place = (arc - middle) / half
+    values = chebyshev.chebvander(place, degree)
+    derived = np.stack([chebyshev.chebval(place, chebyshev.chebder(one)) for one in np.eye(degree + 1)], axis=1)
+    row = np.broadcast_to(np.arange(arc.size)[:, None], column.shape)
+    weights = (np.einsum("nd,ndk->nk", basis, fit) for basis in (values, derived / half[:, None]))
+    one, other = (csr_array((w.ravel(), (row.ravel(), column.ravel())), shape=(arc.size,) * 2) for w in weights)
+    return one, other

@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.errors import RangeError
 from fegear.fem.ring import closed_ring
-from fegear.fem.root_stress import extreme
+from fegear.fem.root_stress import extreme, search_end
 from fegear.fem.sector import mesh_sector
 from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.contact import PressedLines
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from fegear.fem.mesh import SectorMesh
     from fegear.geometry.tooth import Tooth
 
-#: How far below a contact's edge root tension begins [modules], or half of what of the fillet it leaves free.
-_FROM_CONTACT = 0.25
+#: How far below the edge of a pressed band root tension begins [modules].
+_CLEARANCE = 0.25
 _FILLETS: dict[Side, str] = {"tension": "fillet", "compression": "back_fillet"}
 
 
@@ -135,15 +135,14 @@ class SolidSolution(TwistedFlank):
     def root_end(self, k: int, side: Side, pressed: Bands) -> Array:
         """Arc length up to which root stress is looked for, shape (P,) [modules]: beside a contact near the fillet.
 
-        Nearer to it the stress is that of the contact, which is no root stress.
+        As in the plane (`search_end`), but farther from the contact, whose pressed band is as wide as a coarser section
+        resolves.
         """
         length = self.fillets[side].length
-        end = np.full(pressed.count, length)
         if k != 0 or side != "tension":
-            return end
+            return np.full(pressed.count, length)
         above = self.flank.arc_of_radius(pressed.radius) - self.flank.flank_start
-        free = np.maximum(length + above - pressed.half_width, 0.0)
-        return np.minimum(end, np.maximum(free - _FROM_CONTACT, 0.5 * free))
+        return search_end(length, above, pressed.half_width, _CLEARANCE)
 
     def fillet_stress(self, k: int, side: Side, pressed: Bands, zeta: ArrayLike) -> Array:
         """Surface stress of a fillet of tooth k per unit force on bands of tooth 0 [1/module^2].
