@@ -6,7 +6,17 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.part import Number, Part, PositiveForce, PositiveLength, PositiveNumber, refuse, refuse_more
+from fegear.case.part import (
+    Number,
+    Part,
+    PositiveForce,
+    PositiveLength,
+    PositiveNumber,
+    PositiveSpeed,
+    quantity,
+    refuse,
+    refuse_more,
+)
 
 #: Most curves of one case: each is a few thousand numbers.
 _MOST_CURVES = 200
@@ -51,6 +61,14 @@ class LoadingPart(Part):
     highest_order: Annotated[Number, Field(gt=3.0, le=1e4)] = Field(
         default=30.0, description="Up to which spectra go, in tooth-mesh frequencies."
     )
+    speed: PositiveSpeed | None = Field(
+        default=None, description="Speed of the pair's driver, at which its teeth answer by themselves."
+    )
+    tooth_frequency: Annotated[float, quantity("frequency", positive=True)] | None = Field(
+        default=None,
+        description="Lowest natural frequency of the teeth of both gears; without it that of each as a beam on its "
+        "foundation.",
+    )
     content_above: Annotated[Number, Field(gt=0.0, le=1e3)] = Field(
         default=20.0, description="Order from which content counts as high in `loading_trade_off`, to ten times that."
     )
@@ -61,7 +79,7 @@ class LoadingPart(Part):
             raise refuse("contradicts length", "give either length or contact_ratio", key="contact_ratio")
         if self.exponents is not None and self.family != "polynomial":
             raise refuse('has a meaning only with family = "polynomial"', key="exponents")
-        for key in ("length", "load"):
+        for key in ("length", "load", "speed", "tooth_frequency"):
             if getattr(self, key) is not None and self.pair is None:
                 raise refuse("has a meaning only with a pair", 'name it: pair = "I"', key=key)
         if self.pair is None and self.contact_ratio is None:

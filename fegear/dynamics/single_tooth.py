@@ -1,16 +1,24 @@
-"""Force on one tooth pair of a train on its way through the mesh: which pair, at which places, at which speed."""
+"""Force on one tooth pair of a train on its way through the mesh: which pair, at which places, at which speed.
+
+The forces on all tooth pairs in contact at one moment, each at its own place, add up to the force in the mesh (Mark,
+after Eq. 3.36): the vibration then meets the stiffness of the teeth that are in contact, not its mean.
+"""
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fegear.contact.flank.lines import life_of_contact
 from fegear.dynamics.mesh_excitation import tooth_pair_at
-from fegear.dynamics.tooth_force import tooth_force
+from fegear.dynamics.tooth_force import dynamic_error, tooth_force
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fegear.arrays import Array
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.tooth_force import ToothForce
@@ -21,6 +29,31 @@ _LINES = 256
 _LOOKED_AT = 101
 #: How near to the ends of the path the last positions are, in base pitches.
 _INSIDE = 1e-9
+
+
+@dataclass(frozen=True)
+class MeshForce:
+    """Force in a mesh over one base pitch, all meshes' shares included; arrays of shape (n,).
+
+    Attributes
+    ----------
+    phase : ndarray
+        Of the mesh [its base pitches].
+    time : ndarray
+        [s], zero at phase zero.
+    of_teeth : ndarray
+        Sum of the forces on the tooth pairs in contact [N].
+    by_mean_stiffness : ndarray
+        Mean force and mean stiffness times the increments of the transmission error [N] (3.2 to 3.10).
+    pairs : ndarray of int
+        Tooth pairs in contact.
+    """
+
+    phase: Array
+    time: Array
+    of_teeth: Array
+    by_mean_stiffness: Array
+    pairs: NDArray[np.integer]
 
 
 def summed_harmonics(data: GearTrain, harmonics: int) -> int:
@@ -85,3 +118,33 @@ def force_at(
         data.train, data.errors, i, speed / data.speed_ratio, x, k, m, pitch, number=number, harmonics=harmonics,
         other_phases=other_phases, phases=data.phases,
     )  # fmt: skip
+
+
+def mesh_force(data: GearTrain, i: int, speed: float, count: int, harmonics: int, number: int = 0) -> MeshForce:
+    """Force in mesh `i` at a speed of the reference body [rad/s], by its teeth and by its mean stiffness.
+
+    Over the base pitch in which tooth pair `number` passes the pitch point and the next one comes there; at `count`
+    even phases, and beside those at which pairs enter and leave. Pair j is (phase - j) base pitches past the pitch
+    point at the same moment.
+    """
+    pitch = data.meshes[i].pair.base_pitch
+    start, end = (place / pitch for place in life_of_contact(data.meshes[i].pair))
+    changes = [(edge + side * _INSIDE) % 1.0 for edge in (start, end) for side in (-1.0, 1.0)]
+    phase = number + np.unique([*np.linspace(0.0, 1.0, count), *changes])
+    total, pairs = np.zeros(phase.size), np.zeros(phase.size, dtype=int)
+    for j in range(math.floor(number - end), math.ceil(number + 1 - start) + 1):
+        on = (phase - j > start) & (phase - j < end)
+        if on.any():
+            tooth = force_at(data, i, speed, (phase[on] - j) * pitch, harmonics, j, other_phases=1)
+            total[on] += tooth.with_others
+            pairs[on] += tooth.static > 0.0
+    reference, errors, train = speed / data.speed_ratio, data.errors, data.train
+    frequency = train.mesh_frequencies(reference)
+    time = phase / float(frequency[i])
+    increment = errors[i].mean - errors[i](phase)
+    for j, ahead in enumerate(data.phases):
+        since = (phase - data.phases[i]) * float(frequency[j] / frequency[i])
+        at = phase if j == i else ahead + since
+        increment = increment + dynamic_error(train, errors, i, j, reference, at, harmonics)
+    linear = data.forces[i] + train.meshes[i].stiffness * increment
+    return MeshForce(phase, time, total, linear, pairs)

@@ -27,7 +27,7 @@ def loading_figures(data: LoadingData, asked: LoadingInputs) -> tuple[Figure, ..
     figures = [_families(data, shown, end), _functions(data, asked, shown, end, of)]
     if data.functions[0].order == 1 and data.functions[0].terms[0][2] > 0.0:
         figures.append(_factors(data, words, end))
-    return (*figures, _spectra(data, shown, end, of))
+    return (*figures, _spectra(data, shown, end, of), _response(data, shown, end, of))
 
 
 def labels(functions: tuple[LoadingFunction, ...]) -> list[str]:
@@ -123,4 +123,23 @@ def _spectra(data: LoadingData, shown: list[tuple[int, str, str]], end: str, of:
             Axis("frequency over the tooth-mesh frequency", log=True),
             Axis("spectrum over design load and base pitch", log=True, limits=(_LEAST * top, top)), tuple(curves),
         ),),
+    )  # fmt: skip
+
+
+def _response(data: LoadingData, shown: list[tuple[int, str, str]], end: str, of: str) -> Figure:
+    left, largest = [], []
+    for i, word, role in shown:
+        answer = data.response[i]
+        left.append(Curve(data.order, answer.residual, word, role, markers=False, width=1.4))
+        largest.append(Curve(data.order, answer.largest, word, role, markers=False, width=1.4))
+    order = Axis("natural frequency of the tooth over the tooth-mesh frequency", log=True)
+    marks = tuple(Mark("x", own.order, own.member) for own in data.teeth)
+    return Figure(
+        f"loading_tooth_response{end}", f"Answer of a tooth by itself{of}",
+        "A tooth as an oscillator without damping under the load of one passage: the vibration left when contact ends, "
+        "and the largest deflection during contact, both over the deflection under the design load at rest.",
+        (
+            Panel(order, Axis("vibration left, 0-peak", log=True, limits=(1e-4, 4.0)), tuple(left), marks),
+            Panel(order, Axis("largest deflection", zero=True), tuple(largest), marks),
+        ),
     )  # fmt: skip

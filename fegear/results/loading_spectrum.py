@@ -14,13 +14,17 @@ from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Column, Outcome, Table, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError, RangeError
+from fegear.geometry.pair import MEMBERS
 from fegear.results.drawn_loading import loading_figures
 
 if TYPE_CHECKING:
     from fegear.arrays import Array
     from fegear.case.reading import Scene
     from fegear.design.loading import LoadingFunction, SlopeTradeOff
+    from fegear.design.tooth_response import ToothResponse
     from fegear.engine.stage import Upstream, Work
+    from fegear.geometry import GearPair
+    from fegear.geometry.pair import Member
 
 #: Positions on a ramp and over the path.
 _RAMP, _PATH = 201, 401
@@ -49,6 +53,8 @@ class LoadingInputs:
         Length of the pair's path of contact [m]; nan without a pair.
     name : str
         Of the pair, empty without one.
+    gears : GearPair or None
+        The pair, where the case gives it a speed.
     """
 
     part: LoadingPart
@@ -58,6 +64,28 @@ class LoadingInputs:
     load: float
     path: float
     name: str = field(compare=False)
+    gears: GearPair | None = None
+
+
+@dataclass(frozen=True)
+class OwnVibration:
+    """What the teeth of one gear of the pair do by themselves at the case's speed.
+
+    Parameters
+    ----------
+    member : {"driver", "driven"}
+    frequency : float
+        Lowest natural frequency of a tooth [Hz].
+    order : float
+        The same over the tooth-mesh frequency.
+    response : tuple of ToothResponse
+        To each loading function, arrays of shape (1,).
+    """
+
+    member: Member
+    frequency: float
+    order: float
+    response: tuple[ToothResponse, ...]
 
 
 @dataclass(frozen=True)
@@ -81,6 +109,10 @@ class LoadingData:
     factor, factor_asymptote : ndarray, shape (F, G)
         The braces of (4.15b) and (4.16), and s sinc(q).
     trade_off : SlopeTradeOff
+    response : tuple of ToothResponse
+        Of a tooth to each function, over its natural frequency in `order`.
+    teeth : tuple of OwnVibration
+        Of both gears at the case's speed; empty without one.
     sum_misfit : float
         Largest difference of the loads of all pairs together from W_d, over W_d.
     """
@@ -96,6 +128,8 @@ class LoadingData:
     factor: Array
     factor_asymptote: Array
     trade_off: SlopeTradeOff
+    response: tuple[ToothResponse, ...]
+    teeth: tuple[OwnVibration, ...]
     sum_misfit: float
 
 
@@ -112,7 +146,8 @@ def _inputs(scene: Scene, name: str) -> LoadingInputs:
     load = part.load or scene.case.pair[name].normal_load(pair)
     if load is None:
         raise InputError("loading.load", "(not given)", "is needed with a pair that has no load", 'write load = "1 kN"')
-    return LoadingInputs(part, length, pair.base_pitch, 0.5 * (pair.x_start + pair.x_end), load, pair.path_length, name)
+    gears, middle = pair if part.speed else None, 0.5 * (pair.x_start + pair.x_end)
+    return LoadingInputs(part, length, pair.base_pitch, middle, load, pair.path_length, name, gears)
 
 
 def loading_functions(asked: LoadingInputs) -> tuple[LoadingFunction, ...]:
@@ -152,6 +187,7 @@ def _check(scene: Scene, name: str) -> None:
 
 def _compute(asked: LoadingInputs, _upstream: Upstream, _work: Work) -> LoadingData:
     from fegear.design.loading import slope_trade_off
+    from fegear.design.tooth_response import tooth_response
 
     functions, pitch = loading_functions(asked), asked.base_pitch
     first = functions[0]
@@ -170,8 +206,24 @@ def _compute(asked: LoadingInputs, _upstream: Upstream, _work: Work) -> LoadingD
         functions, x, np.stack([f.fraction(x) for f in functions]), order, moduli("spectrum"), moduli("asymptote"),
         moduli("envelope"), q, np.stack([f.ramp.spectrum_factor(q) for f in functions]),
         np.stack([f.ramp.asymptotic_factor(q) for f in functions]),
-        slope_trade_off(functions, asked.part.content_above), misfit,
+        slope_trade_off(functions, asked.part.content_above), tuple(tooth_response(f, order) for f in functions),
+        _own_vibrations(asked, functions), misfit,
     )  # fmt: skip
+
+
+def _own_vibrations(asked: LoadingInputs, functions: tuple[LoadingFunction, ...]) -> tuple[OwnVibration, ...]:
+    from fegear.design.tooth_response import tooth_response
+    from fegear.formulas.tooth_vibration import tooth_frequency
+
+    pair, part, found = asked.gears, asked.part, []
+    if pair is None or part.speed is None:
+        return ()
+    mesh = part.speed / (2.0 * math.pi) * pair.driver.tooth.teeth
+    for member in MEMBERS:
+        frequency = part.tooth_frequency or tooth_frequency(pair.gear(member))
+        order = frequency / mesh
+        found.append(OwnVibration(member, frequency, order, tuple(tooth_response(f, [order]) for f in functions)))
+    return tuple(found)
 
 
 def _frequencies(top: float) -> Array:
@@ -207,7 +259,15 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
             ("asymptote", list(data.asymptote), "", "what it tends to at high frequency (4.20)"),
             ("envelope", list(data.envelope), "", "largest size of that (4.22)"),
         )),
+        _long(data, f"loading_tooth_response{end}", "Answer of a tooth by itself, over its deflection at rest", (
+            ("order", data.order, "", "natural frequency of the tooth over the tooth-mesh frequency"),
+        ), (
+            ("residual", [r.residual for r in data.response], "", "0-peak, left when contact ends, without damping"),
+            ("envelope", [r.envelope for r in data.response], "", "what it does not exceed at high frequency (4.22)"),
+            ("largest", [r.largest for r in data.response], "", "largest deflection during contact"),
+        )),
         _trade_off_table(f"loading_trade_off{end}", data, asked, length),
+        *_own_table(f"loading_tooth_vibration{end}", data),
     ]  # fmt: skip
     ratio, of = asked.length / asked.base_pitch, f"{asked.name}." if asked.name else ""
     values = [
@@ -223,7 +283,15 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
             Value(f"{of}loading_length", asked.length, "mm", 0.0, "L, over which a pair is loaded"),
             Value(f"{of}loading_ramp", outer, "mm", 0.0, "over which the load rises at initiation"),
         ]
+        for own in data.teeth:
+            key = f"{of}tooth_frequency_{own.member}"
+            given = "given" if asked.part.tooth_frequency else "lowest natural one of a tooth, a beam on its foundation"
+            values.append(Value(key, own.frequency, "Hz", None, f"{given}; order {own.order:.5g} of the tooth mesh"))
     remarks = []
+    if data.teeth:
+        remarks.append(
+            f"Pair {asked.name}: a tooth's own vibration neglects damping, its neighbours and the mate that it touches."
+        )
     if any(f.ramp.slope == 0.0 for f in data.functions):
         remarks.append(
             "Loading that starts with slope zero has no asymptote of second order: its spectrum falls faster than the "
@@ -268,6 +336,23 @@ def _which(data: LoadingData, rows: int) -> tuple[Column, ...]:
     )
 
 
+def _own_table(name: str, data: LoadingData) -> tuple[Table, ...]:
+    """Every function's answer by the teeth of both gears at the case's speed; none without one."""
+    if not data.teeth:
+        return ()
+    rows, count = [(own, response) for own in data.teeth for response in own.response], len(data.teeth)
+    which = (Column(c.name, np.tile(c.si, count), c.unit, c.meaning) for c in _which(data, 1))
+    columns = (
+        Column("gear", np.array([own.member for own, _ in rows]), "", "driver or driven"),
+        *which,
+        Column("order", np.array([own.order for own, _ in rows]), "", "natural frequency over tooth-mesh frequency"),
+        Column("residual", np.array([r.residual[0] for _, r in rows]), "", "left when contact ends, 0-peak, over the "
+               "deflection under the design load"),
+        Column("largest", np.array([r.largest[0] for _, r in rows]), "", "largest deflection during contact"),
+    )  # fmt: skip
+    return (Table(name, columns, "Answer of the teeth by themselves at the case's speed"),)
+
+
 def _trade_off_table(name: str, data: LoadingData, asked: LoadingInputs, unit: str) -> Table:
     found, inverse = data.trade_off, f"1/{unit}" if unit else ""
     start = "change of the load over the design load, at initiation" + ("" if unit else ", per base pitch")
@@ -292,7 +377,7 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
     part = scene.case.loading
     lists = (part.slopes, part.exponents, part.peaks) if part else ()
     count = math.prod(len(values) for values in lists if values)
-    return Forecast({"functions": count}, 0.02 + 0.02 * count)
+    return Forecast({"functions": count}, 0.02 + 0.06 * count)
 
 
 LOADING_SPECTRUM = Stage(

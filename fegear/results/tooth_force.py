@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.dynamics.gear_train import GearTrain
     from fegear.dynamics.pull import Pull
+    from fegear.dynamics.single_tooth import MeshForce
     from fegear.dynamics.tooth_force import ToothForce
     from fegear.engine.stage import Upstream, Work
 
@@ -39,6 +40,8 @@ class ToothForceData:
         That it is summed from.
     pull : Pull or None
         How far the mesh force falls below zero.
+    together : MeshForce
+        What all tooth pairs in contact carry together.
     """
 
     train: GearTrain
@@ -47,6 +50,7 @@ class ToothForceData:
     number: int
     harmonics: int
     pull: Pull | None
+    together: MeshForce
 
 
 @dataclass(frozen=True)
@@ -74,14 +78,15 @@ def _inputs(scene: Scene, name: str) -> ToothForceInputs:
 
 def _compute(asked: ToothForceInputs, upstream: Upstream, _work: Work) -> ToothForceData:
     from fegear.dynamics.pull import largest_pull
-    from fegear.dynamics.single_tooth import force_history, heaviest_pair, summed_harmonics
+    from fegear.dynamics.single_tooth import force_history, heaviest_pair, mesh_force, summed_harmonics
 
     data = gear_train(upstream)
     i = data.train.mesh_index(asked.mesh)
     number, harmonics = heaviest_pair(data, i), summed_harmonics(data, asked.harmonics)
     force = force_history(data, i, asked.speed, asked.positions, harmonics, number)
     pull = largest_pull(data, i, [asked.speed / data.speed_ratio], asked.harmonics)
-    return ToothForceData(data, i, force, number, harmonics, pull)
+    together = mesh_force(data, i, asked.speed, asked.positions, harmonics, number)
+    return ToothForceData(data, i, force, number, harmonics, pull, together)
 
 
 def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
@@ -122,6 +127,7 @@ def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
                   "over the engagement and all relative phases")
             for j, other in enumerate(data.names) if j != i
         ),
+        *_mesh_force_values(name, made.together),
     ]  # fmt: skip
     remarks = pull_remarks(made.pull)
     uneven = data.meshes[i].error.pitches
@@ -132,7 +138,34 @@ def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
         )
         remarks = (*remarks, sentence)
     settings: dict[str, object] = {"harmonics": made.harmonics, "speed": asked.speed}
-    return Outcome(made, (table,), tuple(values), settings, remarks, (_tooth_force_figure(made, asked.speed),))
+    figures = _tooth_force_figure(made, asked.speed), _mesh_force_figure(made, asked.speed)
+    tables = table, _mesh_force_table(name, made.together)
+    return Outcome(made, tables, tuple(values), settings, remarks, figures)
+
+
+def _mesh_force_values(name: str, found: MeshForce) -> tuple[Value, ...]:
+    about = "sum of the forces on the tooth pairs in contact, with all meshes, at the case's phases"
+    return (
+        Value(f"{name}.largest_mesh_force_of_teeth", float(found.of_teeth.max()), "N", None, about),
+        Value(f"{name}.least_mesh_force_of_teeth", float(found.of_teeth.min()), "N", None, about),
+        Value(f"{name}.largest_mesh_force_by_mean_stiffness", float(found.by_mean_stiffness.max()), "N", None,
+              "of the linearised train, whose lines the mesh force's spectrum has"),
+    )  # fmt: skip
+
+
+def _mesh_force_table(name: str, found: MeshForce) -> Table:
+    return Table(
+        f"mesh_force_of_teeth_{name}",
+        (
+            Column("t", found.time, "s", "from the mesh's phase zero"),
+            Column("phase", found.phase, "", "of the mesh, in base pitches"),
+            Column("force", found.of_teeth, "N", "sum of the forces on the tooth pairs in contact, with all meshes"),
+            Column("force_by_mean_stiffness", found.by_mean_stiffness, "N", "mean force and mean stiffness times the "
+                   "increments of the transmission error"),
+            Column("pairs", found.pairs, "", "tooth pairs in contact"),
+        ),
+        f"Force in mesh {name} over one base pitch, by its teeth and by its mean stiffness",
+    )  # fmt: skip
 
 
 def over_time(force: ToothForce) -> Axis:
@@ -171,6 +204,24 @@ def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
     )
 
 
+def _mesh_force_figure(data: ToothForceData, speed: float) -> Figure:
+    found, name = data.together, data.train.names[data.mesh]
+    curves = (
+        Curve(found.phase, found.by_mean_stiffness, "by the mean stiffness", "static", dash="dash", markers=False),
+        Curve(found.phase, found.of_teeth, "sum of the teeth", "own force", markers=False),
+    )
+    mean = Mark("y", float(data.train.forces[data.mesh]))
+    return Figure(
+        f"mesh_force_of_teeth_{name}",
+        f"Force in mesh {name} over one base pitch",
+        f"Mesh {name}: what the tooth pairs in contact carry together, and the force that the mean stiffness gives. "
+        "Both leave the mean force (level line) by the same increment of the transmission error; the teeth answer it "
+        "with the stiffness that they have at that moment.",
+        (Panel(Axis("phase", "base pitches"), Axis("mesh force", "N", zero=True), curves, (mean,)),),
+        under=f"{speed * RPM:.6g} rpm",
+    )
+
+
 def _forecast(scene: Scene, _name: str) -> Forecast:
     """At least 256 harmonics at one speed."""
     part = scene.case.dynamics
@@ -185,6 +236,6 @@ TOOTH_FORCE = Stage(
     compute=_compute,
     present=_present,
     check=needs_one_speed,
-    cites=citing(Citation("mark", "force on a single tooth pair", "Eqs. 3.23 to 3.29")),
+    cites=citing(Citation("mark", "force on a single tooth pair", "Eqs. 3.23 to 3.36")),
     forecast=_forecast,
 )
