@@ -1,14 +1,17 @@
 """How far the numbers of every case move with the last bit, by their stated errors: docs/studies/last_bit.csv.
 
-Run as ``python docs/last_bit_study.py [CASE ...]`` (an hour of one core for all) to make the table anew. Every case is
-computed as it is, under noise of one unit in the last place where rounding enters (tests/helpers/other_processor, what
-another processor would compute), and with every quantity of the case file off by up to 1e-12 of itself; so are the
-random and the unusual gears of tests/golden at a tolerance of 1e-3, and ten searches for reliefs of random pairs.
-A number that has a stated error is compared with it, any other with the largest magnitude in its unit in its table.
+Run as ``python docs/last_bit_study.py FOLDER [NAME ...]`` to make the table anew: hours of one core for all. Each run's
+numbers are kept in the folder, so a study that was ended goes on where it was, and names (of groups or cases) add to
+what is there. Every case is computed as it is, under noise of one unit in the last place where rounding enters
+(tests/helpers/other_processor, what another processor would compute), and with every quantity of the case file off by
+up to 1e-12 of itself; so are the random and the unusual gears of tests/golden at a tolerance of 1e-3, and ten searches
+for reliefs of random pairs. A number that has a stated error is compared with it; any other, and one that is stated as
+exact, with the largest magnitude in its unit in its table or among the values.
 """
 
 from __future__ import annotations
 
+import argparse
 import csv
 import importlib
 import json
@@ -18,7 +21,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
+import time
 from pathlib import Path
 from typing import Any
 
@@ -29,10 +32,20 @@ CASES = DOCS.parent / "cases"
 OTHER = DOCS.parent / "tests" / "helpers" / "other_processor"
 GOLDEN = DOCS.parent / "tests" / "golden"
 TABLE = DOCS / "studies" / "last_bit.csv"
+PAGE = DOCS / "hard-cases.md"
+#: Of the table on the page; the lines below it belong to it up to the first that does not start like a row.
+PAGE_HEAD = (
+    "| case | draws | numbers with an error | last bit | inputs | numbers without | last bit | inputs |",
+    "|---|---|---|---|---|---|---|---|",
+)
 COMMAND = "# python docs/last_bit_study.py"
-HEAD = ("case", "noise", "with_error", "of_its_error", "which", "without_error", "of_its_size", "which_of_these")
+_NUMBERS = ("with_error", "of_its_error", "which", "without_error", "of_its_size", "which_of_these")
+HEAD = ("case", "cases", "noise", "draws", *_NUMBERS)
 SEEDS = (1, 2, 3)
 INPUT = 1e-12
+#: A slope, a share or an angle [rad] below this is compared with it: it is round-off of numbers near one where zero.
+BARE = 1e-5
+ANGLES = ("", "rad", "mrad", "deg", "arcmin", "arcsec")
 GEAR = """results = ["stiffness"]
 [gear.a]
 teeth = {teeth}
@@ -117,14 +130,22 @@ def found(results: Any) -> dict[str, tuple[list[float], list[float] | None, floa
     """Every number of a run by its name, its stated errors where it has some, and what its size is compared with."""
     from fegear.engine.stated_errors import error_columns
 
-    numbers = {v.name: ([v.si], None if v.si_error is None else [v.si_error], abs(v.si)) for v in results.values}
+    of_unit: dict[str, float] = {}
+    for v in results.values:
+        if v.unit and np.isfinite(v.si):
+            of_unit[v.unit] = max(of_unit.get(v.unit, 0.0), abs(v.si))
+    numbers = {
+        v.name: ([v.si], None if v.si_error is None else [v.si_error], of_unit.get(v.unit, abs(v.si)))
+        for v in results.values
+    }
     for table in results.tables:
         columns = {column.name: column for column in table.columns if column.si.dtype.kind == "f"}
         errors = error_columns(table)
         size: dict[str, float] = {}
         for column in columns.values():
             largest = float(np.max(np.abs(column.si), initial=0.0, where=np.isfinite(column.si)))
-            size[column.unit] = max(size.get(column.unit, 0.0), largest)
+            least = BARE if column.unit in ANGLES else 0.0
+            size[column.unit] = max(size.get(column.unit, least), largest)
         for name, column in columns.items():
             if name not in errors.values():
                 error = columns[errors[name]].si.tolist() if name in errors else None
@@ -132,24 +153,32 @@ def found(results: Any) -> dict[str, tuple[list[float], list[float] | None, floa
     return numbers
 
 
-def computed(folder: Path, names: list[str], out: Path) -> None:
-    """Compute cases in this process and write their numbers down."""
+def computed(folder: Path, kept: Path, run: str, names: list[str]) -> None:
+    """Compute cases in this process and write down the numbers of each, or its refusal, as soon as it is done."""
     import fegear
     from fegear.errors import FegearError
 
-    every = {}
     for name in names:
+        start = time.process_time()
         try:
-            every[name] = found(fegear.run(folder / f"{name}.toml", progress=False))
+            numbers: Any = found(fegear.run(folder / f"{name}.toml", progress=False))
         except FegearError as problem:
-            every[name] = str(problem)
-    out.write_text(json.dumps(every))
+            numbers = str(problem)
+        out = kept / name / f"{run}.json"
+        out.parent.mkdir(parents=True, exist_ok=True)
+        part = out.with_suffix(".part")
+        part.write_text(json.dumps({"seconds": time.process_time() - start, "numbers": numbers}))
+        part.rename(out)
+        print(run, name, f"{time.process_time() - start:.1f} s", flush=True)
 
 
-def under(noise: str, seed: int, names: list[str]) -> dict[str, Any]:
-    """Numbers of the cases under one noise, computed in a process of its own."""
+def under(noise: str, seed: int, names: list[str], kept: Path) -> None:
+    """Compute what is missing of the cases under one noise, in a process of its own."""
+    names = [name for name in names if not _kept(kept, name, noise, seed).exists()]
+    if not names:
+        return
     with tempfile.TemporaryDirectory() as made:
-        folder, out = Path(made) / "cases", Path(made) / "found.json"
+        folder = Path(made) / "cases"
         shutil.copytree(CASES, folder)
         written(folder)
         if noise == "input":
@@ -163,9 +192,13 @@ def under(noise: str, seed: int, names: list[str]) -> dict[str, Any]:
             environment["FEGEAR_LAST_BIT"] = str(seed)
             paths.insert(0, str(OTHER))
         environment["PYTHONPATH"] = os.pathsep.join(p for p in paths if p)
-        command = [sys.executable, __file__, "--computed", str(folder), str(out), *names]
+        run = _kept(kept, "", noise, seed).stem
+        command = [sys.executable, __file__, "--computed", str(folder), str(kept), run, *names]
         subprocess.run(command, env=environment, check=True)
-        return json.loads(out.read_text())
+
+
+def _kept(kept: Path, name: str, noise: str, seed: int) -> Path:
+    return kept / name / f"{noise.replace(' ', '_')}_{seed}.json"
 
 
 def off_by(text: str, seed: int, noisy: Any) -> str:
@@ -188,52 +221,107 @@ def spread(exact: Any, others: list[Any]) -> tuple[int, float, str, int, float, 
     worst = {True: (0.0, ""), False: (0.0, "")}
     count = {True: 0, False: 0}
     for name, (values, errors, largest) in exact.items():
-        stated = errors is not None
-        count[stated] += 1
         x = np.array(values, dtype=float)
-        size = np.array(errors, dtype=float) if stated else np.full(x.shape, largest)
-        for other in others:
-            y = np.array(other[name][0], dtype=float) if not isinstance(other, str) and name in other else np.array([])
-            if y.shape != x.shape:
-                ratio = np.inf
-            else:
-                moved = np.where(x == y, 0.0, np.abs(y - x))
-                moved[np.isnan(x) & np.isnan(y)] = 0.0
-                # a number stated as exact may be off by its own round-off
-                bare = np.where(size > 0.0, size, np.where(stated, 1e-13 * np.abs(x), 1.0))
-                ratio = float(
-                    np.max(np.divide(moved, bare, out=np.where(moved > 0, np.inf, 0.0), where=bare > 0), initial=0.0)
-                )
-            if not ratio <= worst[stated][0]:
-                worst[stated] = ratio, name
+        error = np.full(x.shape, np.nan if errors is None else errors, dtype=float)
+        stated = error > 0.0
+        size = np.where(stated, error, largest)
+        for kind, these in ((True, stated), (False, ~stated)):
+            count[kind] += int(these.sum())
+            for other in others if these.any() else ():
+                ratio = _moved(x, other, name, size, these)
+                if not ratio <= worst[kind][0]:
+                    worst[kind] = ratio, name
     return count[True], *worst[True], count[False], *worst[False]
 
 
-def main(names: list[str]) -> None:
-    """Make the table: a row for each case, and for each group of gears or searches its worst."""
+def _moved(x: Any, other: Any, name: str, size: Any, these: Any) -> float:
+    """Largest move of those numbers of a column, over their sizes; infinite where the other has no such column."""
+    y = np.array(other[name][0], dtype=float) if not isinstance(other, str) and name in other else np.array([])
+    if y.shape != x.shape:
+        return np.inf
+    with np.errstate(invalid="ignore", divide="ignore"):
+        alike = (x == y) | (np.isnan(x) & np.isnan(y))
+        moves = np.where(alike, 0.0, np.abs(y - x) / size)[these]
+    return float(np.max(np.where(np.isnan(moves), np.inf, moves), initial=0.0))
+
+
+def rows(groups: dict[str, list[str]], kept: Path) -> list[tuple[Any, ...]]:
+    """Two rows for each case, and for each group of gears or searches its worst, of all that has been computed."""
+    found = []
+    for group, members in groups.items():
+        both = [_row(group, noise, members, kept) for noise in ("last bit", "input")]
+        found += [row for row in both if all(both)]
+    return found
+
+
+def _row(group: str, noise: str, members: list[str], kept: Path) -> tuple[Any, ...]:
+    """The worst of a group under one noise; empty where nothing has been computed."""
+    spreads, draws = [], []
+    for name in members:
+        seen = [path for seed in SEEDS if (path := _kept(kept, name, noise, seed)).exists()]
+        if seen and (plain := _kept(kept, name, "none", 0)).exists():
+            exact, *others = (json.loads(path.read_text())["numbers"] for path in (plain, *seen))
+            spreads.append(spread(exact, others))
+            draws.append(len(seen))
+    if not spreads:
+        return ()
+    stated, bare = max(spreads, key=lambda row: row[1]), max(spreads, key=lambda row: row[4])
+    counts = sum(row[0] for row in spreads), sum(row[3] for row in spreads)
+    worst = f"{stated[1]:.2g}", stated[2], counts[1], f"{bare[4]:.2g}", bare[5]
+    return group, len(spreads), noise, min(draws), counts[0], *worst
+
+
+def page_lines() -> list[str]:
+    """Rows of the table of the page, of the table that is kept: both noises of a case side by side."""
+    with TABLE.open(encoding="utf-8") as file:
+        next(file)
+        kept = list(csv.DictReader(file))
+    lines = list(PAGE_HEAD)
+    for bit, inputs in zip(kept[::2], kept[1::2], strict=True):
+        assert (bit["case"], bit["noise"], inputs["noise"]) == (inputs["case"], "last bit", "input")
+        name = f"{bit['cases']} {bit['case']}" if " " in bit["case"] else f"`{bit['case']}`"
+        cells = [name, bit["draws"]]
+        for count, ratio in (("with_error", "of_its_error"), ("without_error", "of_its_size")):
+            numbers = int(bit[count])
+            cells += [f"{numbers:,}", *(row[ratio] if numbers else "" for row in (bit, inputs))]
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+def write_page() -> None:
+    """Put the rows of the table that is kept on the page."""
+    lines = PAGE.read_text("utf-8").splitlines()
+    start = lines.index(PAGE_HEAD[0])
+    end = next((i for i in range(start, len(lines)) if not lines[i].startswith("|")), len(lines))
+    PAGE.write_text("\n".join([*lines[:start], *page_lines(), *lines[end:], ""]), "utf-8")
+
+
+def main(arguments: list[str]) -> None:
+    """Compute what is missing and make the table of all that is there."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder", type=Path, help="where the numbers of each run are kept")
+    parser.add_argument("names", nargs="*", help="groups or cases to compute; none for all")
+    parser.add_argument("--draws", type=int, default=len(SEEDS), help="of each noise; 0 for the cases as they are")
+    parser.add_argument("--table", action="store_true", help="compute nothing")
+    given = parser.parse_intermixed_args(arguments)
     with tempfile.TemporaryDirectory() as made:
         groups = written(Path(made))
     groups |= {path.stem: [path.stem] for path in sorted(CASES.glob("*.toml"))}
-    groups = {group: groups[group] for group in names or groups}
     every = [name for group in groups.values() for name in group]
-    tasks = [("none", 0), *(("last bit", seed) for seed in SEEDS), *(("input", seed) for seed in SEEDS)]
-    with ThreadPoolExecutor(os.cpu_count()) as threads:
-        known = dict(zip(tasks, threads.map(lambda task: under(*task, every), tasks), strict=True))
-    rows = []
-    for group, members in groups.items():
-        for noise in ("last bit", "input"):
-            spreads = [spread(known["none", 0][m], [known[noise, seed][m] for seed in SEEDS]) for m in members]
-            stated, bare = max(spreads, key=lambda row: row[1]), max(spreads, key=lambda row: row[4])
-            counts = sum(row[0] for row in spreads), sum(row[3] for row in spreads)
-            rows.append((group, noise, counts[0], f"{stated[1]:.2g}", stated[2], counts[1], f"{bare[4]:.2g}", bare[5]))
-            print(*rows[-1], sep="  ", flush=True)
+    names = [one for name in given.names or groups for one in groups.get(name, [name])]
+    if unknown := set(names) - set(every):
+        parser.error(f"no such case: {', '.join(sorted(unknown))}")
+    tasks = [("none", 0), *((noise, seed) for seed in SEEDS[: given.draws] for noise in ("last bit", "input"))]
+    for task in [] if given.table else tasks:
+        under(*task, names, given.folder)
     with TABLE.open("w", newline="", encoding="utf-8") as file:
         file.write(COMMAND + "\n")
-        csv.writer(file, lineterminator="\n").writerows([HEAD, *rows])
+        csv.writer(file, lineterminator="\n").writerows([HEAD, *rows(groups, given.folder)])
+    write_page()
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--computed"]:
-        computed(Path(sys.argv[2]), sys.argv[4:], Path(sys.argv[3]))
+        computed(Path(sys.argv[2]), Path(sys.argv[3]), sys.argv[4], sys.argv[5:])
     else:
         main(sys.argv[1:])

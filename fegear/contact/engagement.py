@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from fegear.contact.pair_compliance import PairCompliance
     from fegear.geometry.pair import GearPair
 
+#: Roll positions nearer to each other are one [base pitches]: beyond round-off, below any length that a shop measures.
+_APART = 1e-12
+
 
 @dataclass(frozen=True)
 class Loaded:
@@ -190,7 +193,10 @@ class Engagement:
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Roll positions [m] in one base pitch where pairs enter or leave or a modification has a kink."""
+        """Roll positions [m] in one base pitch where pairs enter or leave or a modification has a kink.
+
+        Those that coincide but for round-off, across the seam of the pitch too, are one.
+        """
         pair = self.pair
         places = [
             pair.x_start,
@@ -200,5 +206,10 @@ class Engagement:
             *(float(pair.x_of_radius(radius, "driver")) for radius in self.compliance.driver.kinks),
             *(float(pair.x_of_radius(radius, "driven")) for radius in self.compliance.driven.kinks),
         ]
-        inside = [x for x in places if pair.x_start <= x <= pair.x_end]
-        return tuple(sorted({float(x) for x in self.meshing.reduced(inside)}))
+        apart = _APART * pair.base_pitch
+        inside = [x for x in places if pair.x_start - apart <= x <= pair.x_end + apart]
+        found: list[float] = []
+        for x in sorted(float(x) for x in self.meshing.reduced(inside)):
+            if not found or found[-1] + apart < x < pair.x_start + pair.base_pitch - apart:
+                found.append(x)
+        return tuple(found)

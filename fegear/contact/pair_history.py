@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.mesh_curve import BESIDE
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
@@ -64,9 +66,9 @@ def pair_history(engagement: Engagement, load: ArrayLike, positions: int = 200, 
         before, after = (min(c.reach, pitch) for c in engagement.meshing.corners)
     first, last = pair.x_start - before, pair.x_end + after
     places = [b + k * pitch for b in engagement.breaks for k in range(-2, 6)]
-    beside = [b + side for b in places if first < b < last for side in (-1e-7 * pitch, 1e-7 * pitch)]
+    near = BESIDE * pitch
+    beside = [b + side for b in places if first + near < b < last - near for side in (-near, near)]
     x = np.unique(np.concatenate([np.linspace(first, last, positions), beside]))
-    x = x[(x >= first) & (x <= last)]
     number = np.floor((x - pair.x_start) / pitch).astype(int)
     grid = engagement.grid(x - number * pitch)
     index = np.clip(number - grid.contacts.number[0], 0, grid.contacts.number.size - 1)

@@ -10,6 +10,7 @@ from fegear.contact.pair_history import pair_history
 from fegear.design.charts import welbourn_amount
 from fegear.errors import InputError
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.relief import EndRelief
 
 
 def pair(addendum=1.0, z=28):
@@ -80,3 +81,19 @@ def test_spacing_errors_stay_with_their_teeth():
     shared = plain.share[:, 0] < 0.99
     assert (early.share[shared, 0] >= plain.share[shared, 0]).all()
     assert (next_one.share[shared, 0] <= plain.share[shared, 0] + 1e-12).all()
+
+
+@pytest.mark.parametrize("steps", range(-4, 5))
+def test_round_off_of_a_relief_that_starts_at_single_contact_adds_no_position(steps):
+    """Where one place is both the start of a relief and the end of another pair's contact, it counts once."""
+    p = pair()
+    start, end = (p.roll_angle(x, "driver") for x in (p.x_hpstc, p.x_end))
+    for roll in (float(start), float(end)):
+        off = roll * (1.0 + steps * 2.0**-52)
+        engagement = engaged(p, driver_relief=EndRelief(10e-6, off, 1.1 * off))
+        pitches = np.diff(np.append(engagement.breaks, engagement.breaks[0] + p.base_pitch)) / p.base_pitch
+        assert pitches.min() > 1e-3
+        assert len(engagement.breaks) == 2
+        h = pair_history(engagement, [2000.0], 120)
+        assert h.x.size == 120 + 2 * 2
+        assert np.diff(h.x).min() > 1e-8 * p.base_pitch

@@ -1,12 +1,14 @@
 """Solid influence functions as their users meet them: errors, seconds, settings by tolerance, recalled from disk."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from fegear.errors import InputError
 from fegear.fem.solid import SolidSettings, hats, solid_influence, solid_settings
+from fegear.fem.solid.settings import whole
 from fegear.geometry import BasicRack, Tooth
 from fegear.solution_cache import SolutionCache, cache_on_disk
 
@@ -66,3 +68,15 @@ def test_nothing_that_leaves_an_error_is_the_same_in_the_solution_that_shows_it(
         assert other.waves_per_module < settings.waves_per_module
         assert other.wave_reach < settings.wave_reach
         assert other.band_half_width > settings.band_half_width
+
+
+@pytest.mark.parametrize("waves", [0.6, 1.2, 1.5, 2.0])
+def test_round_off_of_a_face_s_width_adds_no_function_along_it(waves):
+    """15 mm over a module of 3 mm may be 5.000000000005: one function more moved K_Hbeta of a pair by .1 %."""
+    settings = replace(SolidSettings(), waves_per_module=waves, least_degree=3)
+    for width in (5.0, 10.0, 12.5):
+        degrees = {settings.degree(width * (1.0 + off)) for off in (-2e-12, 0.0, 2e-12)}
+        pieces = {whole(2.5 * width * (1.0 + off)) for off in (-2e-12, 0.0, 2e-12)}
+        assert len(degrees) == len(pieces) == 1
+        assert settings.degree(width) >= waves * width - 1e-9
+        assert abs(pieces.pop() - 2.5 * width) <= 0.5

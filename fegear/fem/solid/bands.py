@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fegear.errors import RangeError
+from fegear.fem.solid.settings import whole
 from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
@@ -189,7 +190,7 @@ def _gauss(pressed: Bands, face: FaceFunctions) -> tuple[Array, Array]:
     # A straight profile and, along a sloping line, a pressure that moves up the flank: some points more than for these.
     # On a short part of the face a function is nearly a polynomial of as low a degree as its part of the waves.
     degree = max(face.degrees)
-    waves = math.ceil(degree * 2.0 * float(half.max()) / face.width) if half.size else 0
+    waves = whole(degree * 2.0 * float(half.max()) / face.width, up=True) if half.size else 0
     x, w = np.polynomial.legendre.leggauss(min(degree // 2 + 4, waves + 5))
     z = (0.5 * (ends[1:] + ends[:-1])[:, :, None] + half * x).transpose(1, 0, 2).reshape(pressed.count, -1)
     weight = (half * w).transpose(1, 0, 2).reshape(pressed.count, -1)

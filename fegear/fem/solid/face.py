@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.fem.elements import line_functions
+from fegear.fem.solid.settings import whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -151,4 +152,4 @@ def face_functions(width: float, degree: int, held: tuple[float, float] | None =
     between = [x for x in held if -half + near < x < half - near]
     breaks = (-half, *between, half)
     share = np.sqrt(np.diff(breaks) / width)
-    return FaceFunctions(breaks, tuple(max(4, round(degree * float(s))) for s in share))
+    return FaceFunctions(breaks, tuple(max(4, whole(degree * float(s))) for s in share))

@@ -18,7 +18,7 @@ from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.fillet import SolidFillet
 from fegear.fem.solid.plausible import check_solid
-from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.settings import SolidSettings, whole
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
 from fegear.fem.solid.solution import SolidSolution
@@ -213,7 +213,7 @@ def contact_line(solution: SolidSolution, radius: ArrayLike, stations: ArrayLike
 def sample_lines(solution: SolidSolution) -> Iterator[tuple[Array, Array, Mask]]:
     """Contact lines all over the flank: radii, stations, and which stations stand above its foot."""
     flank, half, rb = solution.flank, 0.5 * solution.width, solution.tooth.base_radius
-    steps = max(4, round(min(solution.width / _STATION, _MOST_STATIONS)))
+    steps = max(4, whole(min(solution.width / _STATION, _MOST_STATIONS)))
     stations = np.linspace(-half, half, steps + 1)
     length = flank.flank_end - flank.flank_start
     for share in _UP:

@@ -71,7 +71,7 @@ class SolidSettings:
 
     def degree(self, width: float) -> int:
         """Degree of the polynomials along a face [modules]."""
-        return max(int(self.least_degree), math.ceil(self.waves_per_module * width))
+        return max(int(self.least_degree), whole(self.waves_per_module * width, up=True))
 
     def scaled(self, factor: float) -> SolidSettings:
         """Return a coarser (factor > 1) or finer set: everything that leaves an error changes."""
@@ -91,10 +91,17 @@ class SolidSettings:
         return replace(other, room_share=_OTHER_ROOM * self.room_share)
 
 
+#: By how much what a count is made of may be off; no count hangs on so little.
+_ROUND_OFF = 1e-9
 #: Elements of order 4, more functions along the face, narrower bands.
 _THIRD = SolidSettings(
     section=replace(_SECTION, order=4), waves_per_module=2.0, least_degree=11, wave_reach=3.0, band_half_width=0.2
 )
+
+
+def whole(number: float, *, up: bool = False) -> int:
+    """Nearest whole number, or the next one above: round-off of a face of five modules makes no sixth part of it."""
+    return math.ceil(number - _ROUND_OFF) if up else math.floor(number + 0.5 + _ROUND_OFF)
 
 
 def solid_settings(tolerance: float) -> SolidSettings:

@@ -14,6 +14,7 @@ from fegear.fem.root_stress import extreme
 from fegear.fem.solid.bands import bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.influence import ENTRY_SHARES
+from fegear.fem.solid.settings import whole
 from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
@@ -265,7 +266,7 @@ def _root(solution: SolidSolution, side: Side, asked: BandsOfTable, module: floa
     """Look for the largest stress over a fillet and the face, load by load."""
     fillet, sign = solution.fillets[side], 1.0 if side == "tension" else -1.0
     pressed, shape = asked.bands(solution), (asked.radius.size, asked.place.size)
-    count = max(_FEWEST_PLACES, 2 * round(0.5 * _PLACES_PER_MODULE * solution.width) + 1)
+    count = max(_FEWEST_PLACES, 2 * whole(0.5 * _PLACES_PER_MODULE * solution.width) + 1)
     places = np.linspace(-0.5, 0.5, count) * solution.width
     stress = solution.fillet_stress(0, side, pressed, places)  # (3, points, S, P)
     flat = stress[0].reshape(stress.shape[1], -1)
