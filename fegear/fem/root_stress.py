@@ -172,6 +172,20 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Arr
     return sign * best[top, columns], arc[top] + at[top, columns] * step[top, 0]
 
 
+def curves_apart(values: Array, others: Array) -> Array:
+    """How far two curves are apart where the first counts: above half its largest value, shape (...).
+
+    The largest values of two solutions may agree by chance; their curves do not.
+
+    Parameters
+    ----------
+    values, others : ndarray, shape (..., places)
+        Stress, positive where it is largest.
+    """
+    counts = values >= 0.5 * values.max(axis=-1, keepdims=True)
+    return np.asarray(np.where(counts, np.abs(others - values), 0.0).max(axis=-1))
+
+
 def _smoothing(arc: Array) -> tuple[csr_array, csr_array]:
     """Matrices from values at points to a smooth curve's values and slopes there, shape (points, points).
 

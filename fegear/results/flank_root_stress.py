@@ -98,6 +98,7 @@ def _inputs(scene: Scene, name: str) -> FlankRootStressInputs:
 def _compute(asked: FlankRootStressInputs, upstream: Upstream, work: Work) -> FlankRootStressData:
     from fegear.contact.flank.root_stress import rooted_lines
     from fegear.contact.tooth_stress import ToothStress
+    from fegear.fem.root_stress import curves_apart
     from fegear.fem.solid.influence import ENTRY_SHARES
 
     loaded = loaded_flanks(upstream, asked.name)
@@ -113,15 +114,15 @@ def _compute(asked: FlankRootStressInputs, upstream: Upstream, work: Work) -> Fl
         largest: dict[Side, list[Array]] = {"tension": [], "compression": []}
         off = []
         for i in range(found.load.size):
+            felt = {side: rooted.stress(side, found.contact.force[:, :, i], z) for side, _ in _SIDES}
             for side, sign in _SIDES:
-                one = rooted.stress(side, found.contact.force[:, :, i], z)
-                largest[side].append(one.largest(sign)[0])
-                if i == loaded.nominal:
-                    maps.setdefault(member, {})[side] = one
+                largest[side].append(felt[side].largest(sign)[0])
+            if i == loaded.nominal:
+                maps[member] = felt
             if again:
                 other = again.stress("tension", coarse.contact.force[:, :, i], z)
-                by_coarse = np.interp(rooted.x, other.x, other.largest(1.0)[0])
-                off.append(ENTRY_SHARES["root_tension"] * np.abs(by_coarse - largest["tension"][-1]))
+                by_coarse = np.stack([np.interp(rooted.x, other.x, at) for at in other.value.T], axis=1)
+                off.append(ENTRY_SHARES["root_tension"] * curves_apart(felt["tension"].value, by_coarse))
             else:  # slices know how far they are off
                 off.append(influence.error.get("root_tension", np.nan) * np.abs(largest["tension"][-1]))
         tension, compression, error = (np.stack(x, axis=1) for x in (largest["tension"], largest["compression"], off))

@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.fem.boundary import check_bore
 from fegear.fem.contact_width import REFERENCE_HALF_WIDTH
+from fegear.fem.root_stress import curves_apart
 from fegear.fem.settings import MeshSettings
 from fegear.fem.shape_cache import known_or_solved
 from fegear.fem.solid.bands import Bands, hats
@@ -42,10 +43,11 @@ _KINDS = (SolidSolution, FaceFunctions, LoadedFlank, SolidFillet, SolidSettings,
 _UP, _FOOT, _ABOVE_FOOT = (0.12, 0.3, 0.5, 0.7, 0.88), 0.07, 0.35
 #: Parts of the difference from the coarser solution, whose edges are longer by a factor of 1.35, that are taken for the
 #: largest error of the finer one over flank and face. Neighbours see the body, which has almost as few edges in both.
-_SHARES = {"contact": 1.0, "neighbour": 4.0, "root_tension": 1.5, "root_compression": 1.5}
+_SHARES = {"contact": 1.0, "neighbour": 4.0, "root_tension": 1.0, "root_compression": 1.0}
 #: The same of single entries, where no largest difference stands in for one that is small by chance: of errors that go
-#: with the power 1.7 of the edges, and of stress, whose goes with the first.
-ENTRY_SHARES = {"contact": 1.5, "neighbour": 4.0, "root_tension": 2.9, "root_compression": 2.9}
+#: with the power 1.7 of the edges, and of stress, whose goes with the first, but of which the worst along the face is
+#: taken (`curves_apart`).
+ENTRY_SHARES = {"contact": 1.5, "neighbour": 4.0, "root_tension": 1.5, "root_compression": 1.5}
 #: Stations along them: so far apart [modules], so many steps at most.
 _STATION, _MOST_STATIONS = 0.5, 24
 
@@ -193,8 +195,7 @@ class SolidInfluence:
                 first = sign * self.fine.largest_root_stress(0, side, one, stations)[0][:, counts]
                 second = sign * self.coarse.largest_root_stress(0, side, other, stations)[0][:, counts]
                 if counts.any():
-                    apart = np.abs(first.max(axis=0) / second.max(axis=0) - 1.0)
-                    worst[f"root_{side}"] = float(apart.max())
+                    worst[f"root_{side}"] = float((curves_apart(first.T, second.T) / first.max(axis=0)).max())
             found = {key: max(value, worst.get(key, 0.0)) for key, value in found.items()}
         return read_only({key: _SHARES[key] * value for key, value in found.items()})
 

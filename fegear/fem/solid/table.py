@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.errors import RangeError
-from fegear.fem.root_stress import extreme
+from fegear.fem.root_stress import curves_apart, extreme
 from fegear.fem.solid.bands import bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.influence import ENTRY_SHARES
@@ -95,7 +95,8 @@ class SolidTable(ReadOnlyArrays):
     root : mapping of {"tension", "compression"} to RootStressOfBands
     errors : mapping of str to ndarray
         Estimated absolute error of c_self, c_neighbour, root_tension, root_compression: by what a coarser solution
-        differs, the worst along the face and over the radii beside each; NaN without one.
+        differs (stress: along the face, where it is large), the worst along the face and over the radii beside each;
+        NaN without one.
     influence : SolidInfluence
         What the table was made from.
     seconds : float
@@ -148,18 +149,21 @@ def solid_table(
     asked = bands_of_table(influence.fine, r / m, np.asarray(positions, dtype=float) / m, np.asarray(half_width) / m, m)
     z, before, after, b = (x * m for x in (asked.place, asked.before, asked.after, asked.half_width))
     fine = band_numbers(influence.fine, asked)
+    root = {side: _root(influence.fine, side, asked, m) for side in influence.fine.fillets}
     relative = {key: np.full((r.size, 1), np.nan) for key in fine}
     if influence.settings.source == "slices":
         relative = {key: np.full((r.size, 1), influence.error[_MISSED[key]]) for key in fine}
     elif influence.coarse is not None:
         coarse = band_numbers(influence.coarse, asked)
+        apart = {key: np.abs(coarse[key] / fine[key] - 1.0) for key in fine}
+        for side, found in root.items():
+            sign = 1.0 if side == "tension" else -1.0
+            along = curves_apart(sign * found.along, sign * _root(influence.coarse, side, asked, m).along)
+            apart[f"root_{side}"] = along / np.abs(found.value)
         beside = _radii_beside(influence.fine, asked.radius)
-        for key in fine:
-            relative[key] = ENTRY_SHARES[_ESTIMATE[key]] * _worst_beside(
-                np.abs(coarse[key] / fine[key] - 1.0).max(axis=1), beside
-            )
+        for key, difference in apart.items():
+            relative[key] = ENTRY_SHARES[_ESTIMATE[key]] * _worst_beside(difference.max(axis=1), beside)
     c = {key: fine[key] / (gear.material.young_modulus * m) for key in ("c_self", "c_prev", "c_next")}
-    root = {side: _root(influence.fine, side, asked, m) for side in influence.fine.fillets}
     errors = {
         "c_self": relative["c_self"] * c["c_self"],
         "c_neighbour": np.maximum(relative["c_prev"] * c["c_prev"], relative["c_next"] * c["c_next"]),
