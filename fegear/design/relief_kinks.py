@@ -126,6 +126,11 @@ class Positions:
         return np.diff(self.x)
 
     @cached_property
+    def whole(self) -> Mask:
+        """Which of the intervals are none between both sides of a change, shape (P - 1,)."""
+        return np.asarray(self.width > _CHANGE * self.period)
+
+    @cached_property
     def changes(self) -> tuple[tuple[int, int, int], ...]:
         """Position outside, position inside a change of pairs, where one more is in reach, and the way inward, +-1."""
         gaps = np.append(self.width, self.x[0] + self.period - self.x[-1])

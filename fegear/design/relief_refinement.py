@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 _STEP = 3e-6
 #: What is seen this close to the extremes takes part, over what is left.
 _NEAR = 0.12
-#: Rounds at most, and the step over the relief that ends them: harmonics have small kinks wherever a relief starts at a
-#: roll position, and gain nothing from more.
-_ROUNDS = {"peak_to_peak": (12, 1e-10), "effective_error": (5, 1e-6)}
+#: Rounds at most, the step over the relief that ends them, and steps of each: harmonics have small kinks wherever a
+#: relief starts at a roll position, and gain nothing from more.
+_ROUNDS = {"peak_to_peak": (12, 1e-10, 60), "effective_error": (5, 1e-6, 25)}
 #: First extent of trust.
 _TRUST = 0.04
 
@@ -167,7 +167,7 @@ def refine(trials: Trials, start: Floats, limits: Limits, aim: Aim | None = None
 
     p, trust, evaluations = np.clip(start, limits.low, limits.high), _TRUST, 9
     tried, left, value = tried_at(p)
-    rounds, ended = _ROUNDS[trials.metric]
+    rounds, ended, steps = _ROUNDS[trials.metric]
     for _ in range(rounds):
         if not left > 0.0:
             break
@@ -184,7 +184,7 @@ def refine(trials: Trials, start: Floats, limits: Limits, aim: Aim | None = None
         bounds = [*zip(low, high, strict=True), (-np.inf, top), *[(-np.inf, np.inf)] * (problem.size - 5)]
         found = minimize(
             lambda y, towards=towards: float(towards @ y), begin, jac=lambda _y, towards=towards: towards,
-            method="SLSQP", bounds=bounds, options={"ftol": 1e-12, "maxiter": 25},
+            method="SLSQP", bounds=bounds, options={"ftol": 1e-12, "maxiter": steps},
             constraints=[{"type": "ineq", "fun": problem.values, "jac": problem.slopes}],
         )  # fmt: skip
         d = np.clip(found.x[:4], low, high)

@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.contact.load_sharing import SharedLoad, share_load
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
+from fegear.design.relief_extremes import Between, removed
 from fegear.design.relief_kinks import Positions
 from fegear.geometry.relief import roll_of_radius
 
@@ -111,6 +112,10 @@ class Trials:
         return Positions(points.x, points.period, self.bench.grid.contacts.present.sum(axis=0))
 
     @cached_property
+    def _between(self) -> Between:
+        return Between(self.bench, self._positions, self._depths, self.loads, self.power)
+
+    @cached_property
     def _depths(self) -> Floats:
         """Distance of each contact from the tips of both gears over the path, shape (2, n, P)."""
         pair, contacts = self.bench.engagement.pair, self.bench.grid.contacts
@@ -127,18 +132,8 @@ class Trials:
 
     def _removed(self, p: Floats) -> tuple[Floats, Floats]:
         """Removal of candidates, shape (C, n, P) [m], and by the four numbers, (C, 4, n, P)."""
-        slope = np.empty((p.shape[0], 4, *self._depths.shape[1:]))
-        total = np.zeros((p.shape[0], *self._depths.shape[1:]))
-        for gear in (0, 1):
-            amount, length = p[:, 2 * gear, None, None], p[:, 2 * gear + 1, None, None]
-            depth = self._depths[gear] / length
-            s = np.maximum(1.0 - depth, 0.0)
-            form = s if self.power == 1.0 else s * s
-            slope[:, 2 * gear] = form
-            rise = np.where(s > 0.0, depth, 0.0) if self.power == 1.0 else 2.0 * s * depth
-            slope[:, 2 * gear + 1] = rise * (amount / length)
-            total += amount * form
-        return total, slope
+        total, slope = removed(self._depths[:, None], p.T[..., None, None], self.power)
+        return total, np.moveaxis(slope, 0, 1)
 
     @cached_property
     def _kernel(self) -> Floats:
@@ -201,8 +196,9 @@ class Trials:
         return self._tried(p, zeta, weight, by_number, by_set, least)
 
     def _tried(
-        self, p: Floats, zeta: Floats, weight: Floats, by_number: Floats, by_set: Floats, loaded: Index
-    ) -> Tried:
+        self, p: Floats, zeta: Floats, weight: Floats, by_number: Floats, by_set: Floats, loaded: Index,
+        pairs: Floats | None = None,
+    ) -> Tried:  # fmt: skip
         """Of approaches (C, P, L), slopes by removals (C, n, P, L) and by the numbers, all sets' and the loaded."""
         slope = np.einsum("cjpl,ckjp->ckpl", weight, by_number)
         if self.metric == "effective_error":
@@ -216,10 +212,15 @@ class Trials:
         least = loaded[:, None]
         by_set = zeta[:, None] + np.maximum(by_set - np.take_along_axis(by_set, least, axis=1), 0.0)
         np.put_along_axis(slopes, least[:, None], slope[:, :, None], axis=2)
-        peaks, troughs = self._positions.kinks(zeta, slope)
+        starts, by_start = zeta[:, :0], slope[:, :, :0]
+        if pairs is None:
+            peaks, troughs = self._positions.kinks(zeta, slope)
+            sharp = troughs
+        else:
+            peaks, troughs, sharp, starts, by_start = self._between.extremes(p, zeta, pairs)
         high, by_high = zeta.copy(), slope.copy()
         high[self._positions.flanks(zeta, peaks, with_changes=True)] = -np.inf
-        beside = self._positions.flanks(zeta, troughs, with_changes=False)
+        beside = self._positions.flanks(zeta, sharp, with_changes=False)
         by_set[np.broadcast_to(beside[:, None], by_set.shape)] = np.inf
         for found in (self._positions.entering(zeta, slope), peaks):
             c, i, load = found.where
@@ -230,7 +231,8 @@ class Trials:
         if self.power == 1.0:
             other, by_other = self._starting(p, zeta, slope, weight)
             high, by_high = np.concatenate([high, other], axis=1), np.concatenate([by_high, by_other], axis=2)
-        low, by_low = by_set.reshape(count, -1, loads), slopes.reshape(count, 4, -1, loads)
+        low = np.concatenate([by_set.reshape(count, -1, loads), starts], axis=1)
+        by_low = np.concatenate([slopes.reshape(count, 4, -1, loads), by_start], axis=2)
         return Tried(*(self.seen(part) for part in (high, by_high, low, by_low)))
 
     def _starting(self, p: Floats, zeta: Floats, slope: Floats, weight: Floats) -> tuple[Floats, Floats]:
@@ -290,4 +292,6 @@ class Trials:
         zeta = np.moveaxis(shared.transmission_error.reshape(positions, p.shape[0], -1), 1, 0)
         first, last = active.argmax(axis=0), n - 1 - active[::-1].argmax(axis=0)
         loaded = self._set_of[first, last].reshape(positions, p.shape[0], -1)
-        return self._tried(p, zeta, weight, by_number, self._by_set(removal), np.moveaxis(loaded, 1, 0))
+        by_set = self._by_set(removal)
+        pairs = np.moveaxis(shared.loads.reshape(n, positions, p.shape[0], -1), 2, 1)
+        return self._tried(p, zeta, weight, by_number, by_set, np.moveaxis(loaded, 1, 0), pairs)

@@ -27,6 +27,8 @@ from fegear.geometry.plausible import deepest_relief
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fegear.arrays import Floats, Index
     from fegear.contact.engagement import Engagement
 
@@ -44,13 +46,14 @@ _BEST, _STARTS, _APART = 4000, 64, 2
 #: the three descents. The largest and smallest transmission errors sit on kinks, found between even positions; its
 #: harmonics need good quadrature.
 _STAGES = {
-    "peak_to_peak": ((56, 64, 0.15, 10), (56, 16, 0.15, 8), (160, 6, 0.1, 8)),
-    "effective_error": ((0, 48, 0.15, 12), (0, 16, 0.15, 8), (0, 4, 0.1, 6)),
+    "peak_to_peak": ((56, 64, 0.15, 10), (56, 16, 0.15, 7)),
+    "effective_error": ((0, 48, 0.15, 10), (0, 16, 0.15, 7)),
 }
 #: Ends of the last descent that are led to the ground, and of the equally good those that are led to the end.
 _GROUNDS, _CHOSEN = 3, 3
-#: Of the equally good, those with the least removal that are led on; a penalty below this is none.
-_LED, _WITHIN = 4, 1e-3
+#: Ends that leave so many times the least are not led on, nor are those that lie so near to one that was, in their
+#: units; a penalty below this is none.
+_HOPELESS, _BESIDE_END, _WITHIN = 1.03, 0.04, 1e-3
 #: Candidates closer than this in all numbers, in their units, are the same.
 _SAME = 0.01
 #: Starts that agree leave at most so much times the least.
@@ -192,8 +195,10 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         p, values, count = descend(trials.exact if step else trials.rough, trials, p, limits, trust, rounds)
         solved += count if step else 0
         of_starts = values if step == 1 else of_starts
-    grounds = []
+    grounds: list[tuple[float, Floats]] = []
     for i in _apart(p, values, limits, _GROUNDS):
+        if grounds and (values[i] > _HOPELESS * grounds[0][0] or _led_already(p[i], grounds, limits)):
+            continue
         end, left, count = refine(trials, p[i], limits)
         grounds.append((left, end))
         solved += count
@@ -216,6 +221,11 @@ def _apart(p: Floats, values: Floats, limits: Limits, most: int) -> list[int]:
         if len(found) == most:
             break
     return found
+
+
+def _led_already(p: Floats, ends: Sequence[tuple[float, Floats, *tuple[float, ...]]], limits: Limits) -> bool:
+    """Whether a candidate lies beside an end that another came to."""
+    return any((np.abs(p - one[1]) < _BESIDE_END * limits.unit).all() for one in ends)
 
 
 def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits) -> tuple[Floats, float, Floats, int]:
@@ -247,18 +257,16 @@ def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits
     ends = equals[(equals / unit @ outward.T).argmax(axis=0)]
     along = np.concatenate([np.tile(rule, (starts.shape[0], 1)), -outward])
     p, values, solved = descend(
-        trials.exact, trials, np.concatenate([starts, ends]), limits, 0.1, 10, Aim(along, allowed)
+        trials.exact, trials, np.concatenate([starts, ends]), limits, 0.1, 7, Aim(along, allowed)
     )
     # Whatever came within what is allowed may lead on to less removal.
     within = p[values - (along * p / unit).sum(axis=1) < _WITHIN]
     removals = (within / unit) @ rule
-    starts = within[_apart(within, removals, limits, _LED)]
-    of_rule = Aim(np.tile(rule, (starts.shape[0], 1)), allowed)
-    closer, removals, count = descend(trials.exact, trials, starts, limits, 0.05, 8, of_rule)
-    solved += count
-    led = []
-    for i in _apart(closer, removals, limits, _CHOSEN):
-        end, left, count = refine(trials, closer[i], limits, Aim(rule[None], allowed))
+    led: list[tuple[float, Floats, float]] = []
+    for i in _apart(within, removals, limits, _CHOSEN):
+        if _led_already(within[i], led, limits):
+            continue
+        end, left, count = refine(trials, within[i], limits, Aim(rule[None], allowed))
         solved += count
         led.append((float(rule @ (end / unit)), end, left))
     fewest = min(removal for removal, _, _ in led)

@@ -15,9 +15,14 @@ from scipy.optimize import differential_evolution, minimize
 
 from fegear.contact.closed_form_compliance import closed_form_compliance
 from fegear.contact.engagement import Engagement
+from fegear.contact.fe_compliance import finite_element_compliance
 from fegear.contact.pair_compliance import PairCompliance
+from fegear.contact.transmission_error import contact_changes, transmission_error
 from fegear.design.optimise import grindable, optimise_tip_relief
+from fegear.design.relief_trials import Trials
+from fegear.design.tip_relief_search import _even
 from fegear.errors import InputError
+from fegear.fem import MeshSettings, solve_gear
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 from fegear.geometry.plausible import deepest_relief
 from fegear.geometry.relief import roll_of_radius
@@ -50,8 +55,12 @@ class Reference:
         b = c.half_width(np.asarray(load), rho[0] * rho[1] / (rho[0] + rho[1]))
         for m in ("driver", "driven"):
             source, r = c.source(m), pair.radius(inside, m)
-            own = own + source.own(r) + source.log_slope * np.log(source.reference_half_width(r) / b)
-            own = own + source.power * (load / c.face_width) ** -0.1
+            own = own + source.own(r)
+            if c.hertz == "none":  # as wide as under 100 N/mm
+                own = own + source.power * 1e5**-0.1
+            else:
+                own = own + source.log_slope * np.log(source.reference_half_width(r) / b)
+                own = own + source.power * (load / c.face_width) ** -0.1
         self.stiffness = np.where(self.there, c.face_width / own, 0.0)
         count = range(self.at.shape[0])
         self.sets = list(chain.from_iterable(combinations(count, k + 1) for k in count))
@@ -151,6 +160,51 @@ def test_no_brute_force_finds_less(z1, z2, addendum, shift, shape, metric):
     assert found.objective <= 1.0001 * found.before[0]
 
 
+def left_at(e, load, relief):
+    """Peak to peak at 192 even roll positions, both sides of all kinks, and close by these."""
+    pair = e.pair
+    solved = transmission_error(relief.applied(e), load, 12)
+    even = pair.x_start + pair.base_pitch * (np.arange(192) + 0.5) / 192
+    kinks = np.array([*relief.applied(e).breaks, *contact_changes(relief.applied(e), load)])
+    x = e.meshing.reduced(np.concatenate([even, kinks, kinks - 1e-9 * pair.base_pitch, kinks + 1e-9 * pair.base_pitch]))
+    values = relief.applied(e).solve(relief.applied(e).grid(x), [load]).transmission_error[:, 0]
+    return max(np.ptp(values), solved.peak_to_peak)
+
+
+@pytest.mark.parametrize("shape", ["linear", "parabolic"])
+def test_a_relief_on_finite_elements_leaves_what_the_search_says(shape):
+    """A pair that parted just before a straight relief's start left .748 um where the search saw .664."""
+    teeth = Tooth(23, BasicRack(), profile_shift=0.3), Tooth(57, BasicRack(), profile_shift=-0.1)
+    gears = [Gear(t, 3e-3, bore, 10e-3) for t, bore in zip(teeth, (15e-3, 40e-3), strict=True)]
+    settings = MeshSettings().scaled(1.6)
+    sources = [finite_element_compliance(solve_gear(g, settings, reach=2, estimate_error=False)) for g in gears]
+    e = Engagement(PairCompliance(GearPair(*gears), *sources), corner_contact=True)
+    load = 90.0 / gears[0].base_radius
+    found = grindable(e, load, shape)
+    assert left_at(e, load, found) == pytest.approx(1.01 * found.least, rel=1e-3)
+    assert found.objective == pytest.approx(1.01 * found.least, rel=1e-3)
+    assert found.peak_to_peak[0] < {"linear": 0.665e-6, "parabolic": 0.87e-6}[shape]
+
+
+@pytest.mark.parametrize("hertz", ["linear", "load-dependent"])
+@pytest.mark.parametrize("power", [1.0, 2.0])
+@pytest.mark.parametrize(("teeth", "addendum"), [((24, 36), 1.0), ((50, 50), 1.3), ((52, 86), 0.8)])
+def test_extremes_between_positions_are_those_of_a_dense_curve(teeth, addendum, power, hertz):
+    """At 56 positions; lines continued to where they meet were off by up to 3e-3 of the mean error."""
+    e, load = engaged(*teeth, addendum=addendum, hertz=hertz)
+    trials = Trials(_even(e, 56), np.array([load]), power, "peak_to_peak")
+    scale = trials.mean()
+    rng = np.random.default_rng(5)
+    p = rng.uniform([0.1 * scale, 0.05, 0.1 * scale, 0.05], [1.5 * scale, 0.8, 1.5 * scale, 0.8], (10, 4))
+    tried = trials.exact(p)
+    dense = Trials(_even(e, 6000), np.array([load]), power, "peak_to_peak")
+    # Values at the positions alone.
+    truth = [np.ptp(dense._shared(dense._removed(one[None])[0]).transmission_error) for one in p]
+    more = (trials.left(tried.seen, tried.low) - truth) / scale
+    assert more.min() > -2e-6
+    assert more.max() < 2e-4  # a kink halfway between two of them
+
+
 def test_the_two_gears_of_a_like_pair_may_change_places():
     e, load = engaged(28, 28)
     one = grindable(e, load, "parabolic")
@@ -178,6 +232,10 @@ PAIRS = [
     pytest.param((39, 95), {"addendum": 0.8, "hertz": "load-dependent"}, "parabolic", marks=pytest.mark.long),
     pytest.param((50, 50), {"addendum": 1.3}, "parabolic", marks=pytest.mark.long),
     pytest.param((52, 50), {"addendum": 1.3, "shift": 0.1}, "linear", marks=pytest.mark.long),
+    # Different by 1e-3 to 9e-3 where extremes were continued from neighbouring positions.
+    pytest.param((24, 36), {"hertz": "load-dependent"}, "linear", marks=pytest.mark.long),
+    pytest.param((31, 90), {}, "linear", marks=pytest.mark.long),
+    pytest.param((44, 45), {"hertz": "load-dependent"}, "linear", marks=pytest.mark.long),
 ]
 
 
@@ -211,16 +269,7 @@ def test_the_band_holds_what_is_equally_good():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "seed",
-    [
-        pytest.param(
-            seed,
-            marks=[pytest.mark.xfail(strict=True, reason="parabolic reliefs of this pair: 9.6 % above")] * (seed == 9),
-        )
-        for seed in range(30)
-    ],
-)
+@pytest.mark.parametrize("seed", range(30))
 def test_no_differential_evolution_finds_less_on_random_pairs(seed):
     """It found 1.88389 for 1.9341 um and .269379 for .27935 um."""
     rng = np.random.default_rng(seed)
