@@ -150,6 +150,16 @@ class GearInfluence:
         found = np.maximum(share * self._self_difference(r, b), _SHARE * _USUAL * usual)
         return self._known(found) / self.gear.material.young_modulus
 
+    def contact_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
+        """Estimated error of `self_compliance` as the approach of a true contact [m^2/N].
+
+        That of the mesh, and beside the tip by how much a contact gives way less than under Hertz's pressure
+        (`Influence.tip_shift`).
+        """
+        r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
+        shift = self.fine.tip_shift(r, self.settings.patch_half_width, b)
+        return self.self_error(radius, half_width) + shift / self.gear.material.young_modulus
+
     def _self_difference(self, radius: Array, half_width: Array) -> Array:
         fine = self.fine.self_compliance(radius, self.settings.patch_half_width, half_width)
         return np.abs(fine - self._other.self_compliance(radius, self.coarse_patch, half_width))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from functools import cached_property
@@ -38,6 +39,11 @@ _NARROWER = 0.6
 #: The wider pressure takes this share of the room to the nearest corner or curvature jump: what the corner does to it
 #: goes with the square of that share, which is taken out, and then with higher powers of it.
 _ROOM_SHARE = 0.7
+#: From how far beside the tip on a true contact keeps to Hertz's pressure [modules]: there the mating flank stiffens as
+#: fast as this one softens.
+_BESIDE_TIP = 0.15
+#: How far down the flank its compliance is compared, at most [modules] and as a share of the distance from the tip.
+_STEP, _STEP_SHARE = 0.05, 0.25
 #: How far below the edge of a contact root tension begins [modules]: nearer, stress is what the contact itself leaves,
 #: and a coarse mesh does not resolve it.
 _CLEARANCE = 0.05
@@ -201,6 +207,27 @@ class Influence:
         bend = self.curvature_slope * _MEAN * self._curvature(arc)
         return regular - self.log_slope * np.log(width) + bend * width
 
+    def tip_shift(self, radius: ArrayLike, patch: float, half_width: ArrayLike) -> Array:
+        """How much less a true contact beside the tip gives way than Hertz's pressure in its place, shape (P,) [1/E].
+
+        Towards the tip a tooth grows softer, so a convex body pressed on it carries more of its load below the place
+        where it was aimed at, and gives way less. With c' the slope of c_0 and R the body's radius, the load W moves by
+        u = c' W R / 2 beside which the approach is c_0 - c' u + u^2 / (2 R W): 3/8 c'^2 R W less, R W from Hertz.
+
+        Parameters
+        ----------
+        radius, patch, half_width
+            As for `self_compliance`.
+        """
+        arc, width = self.place(radius, half_width)
+        end = self.flank.flank_end + self.flank.beyond
+        off = np.maximum(end - arc, width)
+        step = np.minimum(_STEP_SHARE * off, _STEP)
+        below = np.maximum(arc - step, self.flank.flank_start + np.minimum(width, 0.5 * (arc - self.flank.flank_start)))
+        at, lower = (self.self_compliance(self.flank.radius_of_arc(s), patch, width) for s in (arc, below))
+        slope = (at - lower) / np.maximum(arc - below, _POINT)
+        return np.asarray(0.1875 * slope**2 * width**2 / self.log_slope / (1.0 + (off / _BESIDE_TIP) ** 2))
+
     @property
     def _corners(self) -> list[tuple[float, float, float]]:
         """Arc position, direction into the flank and angle of the flank's corners."""
@@ -287,7 +314,8 @@ class Influence:
         loads, above, width = self._fillet_loads(radius_q, half_width)
         beside = k == 0 and side == "tension"
         end = search_end(fillet.length, above, width, _CLEARANCE) if beside else np.full(above.shape, fillet.length)
-        return extreme((loads @ self.stress[k, side].T).T, fillet.arc, 1.0 if side == "tension" else -1.0, end)
+        sign, stress = 1.0 if side == "tension" else -1.0, (loads @ self.stress[k, side].T).T
+        return extreme(stress, fillet.arc, sign, end, _CLEARANCE if beside else math.inf)
 
 
 @tallied("tooth shapes")

@@ -8,6 +8,7 @@ converges one order faster than elsewhere (superconvergence), and needs no inter
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -127,7 +128,7 @@ def search_end(length: float, above: Array, half_width: ArrayLike, clearance: fl
     return np.minimum(length, np.maximum(free - clearance, 0.5 * free))
 
 
-def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Array, Array]:
+def extreme(values: Array, arc: Array, sign: float, end: ArrayLike, clearance: float = math.inf) -> tuple[Array, Array]:
     """Largest (sign +1) or smallest (-1) value along a fillet and its arc length.
 
     Parameters
@@ -138,6 +139,9 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Arr
     sign : {1, -1}
     end : array_like
         Arc length at which the search ends, no farther from the points than an edge's end.
+    clearance : float
+        From there to the contact's edge: what lies beyond half of it does not enter the curve, for a mesh that does
+        not resolve the contact is wrong there by many times the stress.
 
     Returns
     -------
@@ -145,6 +149,9 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Arr
         Of the cubic Hermite curve through smoothed values and slopes at the points. The curve is linear in the values
         and has no corner, so its largest value changes steadily with them and with the end.
     """
+    ends = np.broadcast_to(np.asarray(end, dtype=float), values.shape[1:])
+    if clearance < math.inf:
+        values = _without_contact(values, arc, ends, clearance)
     smoothing, slopes = _smoothing(arc)
     height, step = sign * (smoothing @ values), np.diff(arc)[:, None]
     rise = sign * (slopes @ values)
@@ -152,7 +159,6 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Arr
     square, cube = 3.0 * np.diff(height, axis=0) - 2.0 * p - q, p + q - 2.0 * np.diff(height, axis=0)
     low, high = np.zeros_like(step), np.ones_like(step)
     low[0], high[-1] = -arc[0] / step[0], np.inf
-    ends = np.broadcast_to(np.asarray(end, dtype=float), values.shape[1:])
     within = (ends - arc[:-1, None]) / step
     high = np.clip(within, low, high)
     # Where the slope p + 2 square t + 3 cube t^2 vanishes, without cancellation; where it does not, any place will do.
@@ -170,6 +176,15 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike) -> tuple[Arr
     best[1:][within[1:] < 0.0] = -np.inf
     top, columns = np.argmax(best, axis=0), np.arange(values.shape[1])
     return sign * best[top, columns], arc[top] + at[top, columns] * step[top, 0]
+
+
+def _without_contact(values: Array, arc: Array, ends: Array, clearance: float) -> Array:
+    """Values that fade, between a fifth and a half of the clearance beyond the end, into that at the end."""
+    faded = np.clip(((arc[:, None] - ends) / clearance - 0.2) / 0.3, 0.0, 1.0)
+    below, columns = np.clip(np.searchsorted(arc, ends) - 1, 0, arc.size - 2), np.arange(ends.size)
+    share = np.clip((ends - arc[below]) / (arc[below + 1] - arc[below]), 0.0, 1.0)
+    last = (1.0 - share) * values[below, columns] + share * values[below + 1, columns]
+    return np.asarray(values + faded * (last - values))
 
 
 def curves_apart(values: Array, others: Array) -> Array:

@@ -138,7 +138,7 @@ def _columns(known: GearInfluence, r: Array, b: Array) -> dict[str, Array]:
         "c_self": known.self_compliance(r, b),
         "c_prev": np.diagonal(known.neighbour(-1, r, r)),
         "c_next": np.diagonal(known.neighbour(1, r, r)),
-        "error_of_c_self": known.self_error(r, b),
+        "error_of_c_self": known.contact_error(r, b),
         "error_of_c_neighbour": np.diagonal(known.neighbour_error(1, r, r)),
     }
     for side in ("tension", "compression"):

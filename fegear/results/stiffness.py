@@ -71,7 +71,7 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
         known, at = t.influence, np.array([gear.pitch_radius])
         b = np.interp(gear.pitch_radius, t.radius[np.argsort(t.radius)], t.half_width[np.argsort(t.radius)])
         for key, c, error, meaning in (
-            ("c_self", known.self_compliance(at, b)[0], known.self_error(at, b)[0], "self compliance"),
+            ("c_self", known.self_compliance(at, b)[0], known.contact_error(at, b)[0], "self compliance"),
             ("c_prev", known.neighbour(-1, at, at)[0, 0], known.neighbour_error(-1, at, at)[0, 0], "tooth before"),
             ("c_next", known.neighbour(1, at, at)[0, 0], known.neighbour_error(1, at, at)[0, 0], "tooth after"),
         ):
