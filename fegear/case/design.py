@@ -14,6 +14,7 @@ from fegear.case.part import (
     PositiveForce,
     PositiveLength,
     PositiveNumber,
+    PositivePressure,
     at_most,
     refuse,
     refuse_more,
@@ -76,6 +77,13 @@ class RobustnessPart(Part):
         return self
 
 
+class AllowablePart(Part):
+    """``allowable = { root_tension, hertz_pressure }``: stresses that `peak = "least-stress"` weighs by."""
+
+    root_tension: PositivePressure = Field(description="Root tension that may not be exceeded.")
+    hertz_pressure: PositivePressure = Field(description="Hertzian pressure that may not be exceeded.")
+
+
 class DesignPart(Part):
     """Which pair is to be relieved, for which load, and how its teeth are to share it."""
 
@@ -102,10 +110,15 @@ class DesignPart(Part):
     inner_slope: Annotated[Number, Field(ge=0.0)] = Field(
         default=1.0, description="Slope s of the inner ramps, for contact ratios above 2."
     )
-    peak: PositiveNumber | Literal["least-root-stress"] | None = Field(
+    peak: PositiveNumber | Literal["least-root-stress", "least-stress"] | None = Field(
         default=None,
         description="Largest load of a tooth pair over the design load (F), for contact ratios above 2, or "
-        "`least-root-stress`; without it the middle of its range.",
+        "`least-root-stress`, or `least-stress` for root tension and Hertzian pressure together; without it the middle "
+        "of its range.",
+    )
+    allowable: AllowablePart | None = Field(
+        default=None,
+        description='With `peak = "least-stress"`: the larger share of these stresses is made least.',
     )
     grind: list[Shape] = Field(
         default_factory=_both_shapes, description="Shapes of tip relief that a shop can grind; an empty list for none."
@@ -130,6 +143,11 @@ class DesignPart(Part):
     def _one_choice(self) -> Self:
         if self.length is not None and self.contact_ratio is not None:
             raise refuse("contradicts length", "give either length or contact_ratio", key="contact_ratio")
+        if (self.peak == "least-stress") != (self.allowable is not None):
+            remedy = (
+                'give peak = "least-stress" and allowable = { root_tension = "430 MPa", hertz_pressure = "1200 MPa" }'
+            )
+            raise refuse('goes with peak = "least-stress", and that with it', remedy, key="allowable")
         if self.exponent is not None and self.family != "polynomial":
             raise refuse('has a meaning only with family = "polynomial"', key="exponent")
         return self

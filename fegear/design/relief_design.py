@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fegear.design.loading import LoadingFunction
     from fegear.design.minimum_excitation import MinimumExcitationRelief, ReliefTable
     from fegear.design.optimise import TipReliefPair
-    from fegear.design.root_stress_loading import StressOptimum
+    from fegear.design.root_stress_loading import Allowed, StressOptimum
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Shape
 
@@ -56,6 +56,8 @@ class DesignTask:
         Of the curves [N].
     positions, harmonics : int
         Of the curves over the base pitch, and of the transmission errors.
+    allowed : Allowed, optional
+        With it pressure counts in that choice too.
     """
 
     loading: LoadingFunction
@@ -66,6 +68,7 @@ class DesignTask:
     loads: tuple[float, ...]
     positions: int
     harmonics: int
+    allowed: Allowed | None = None
 
 
 @dataclass(frozen=True)
@@ -146,7 +149,7 @@ def design_relief(
         driver_spacing=np.empty(0), driven_spacing=np.empty(0),
     )  # fmt: skip
     if task.least_root_stress:
-        chosen = least_root_stress(design_stress(plain.compliance), task.loading)
+        chosen = least_root_stress(design_stress(plain.compliance), task.loading, allowed=task.allowed)
         task = replace(task, loading=chosen.loading)
     states = {"no relief": plain, "designed": minimum_excitation(plain, task.loading, load)}
     designed = states["designed"]

@@ -1,4 +1,8 @@
-"""Loading functions chosen for the least root stress (Mark, section 4: F and r for contact ratios above 2)."""
+"""Loading functions chosen for the least stress (Mark, section 4: F and r for contact ratios above 2).
+
+By the larger root tension of both gears alone, or together with the pressure between the flanks, which the paper says
+might be taken into account: then by the larger of both over what the case allows of each.
+"""
 
 from __future__ import annotations
 
@@ -44,6 +48,35 @@ class DesignStress:
         """The larger of both gears."""
         return max(self.largest(loading, member) for member in self.kernels)
 
+    def pressure(self, loading: LoadingFunction) -> float:
+        """Largest Hertzian pressure over the path [Pa] for a design load of 1 N; it grows like the root of the load."""
+        pair = self.compliance.pair
+        a, b = (pair.flank_curvature_radius(self.x, member) for member in MEMBERS)
+        loaded = loading.fraction(self.x) > 0.0
+        relative = (a * b / (a + b))[loaded]
+        return float(self.compliance.pressure(loading.fraction(self.x[loaded]), relative).max())
+
+
+@dataclass(frozen=True, slots=True)
+class Allowed:
+    """What a loading is chosen by where both stresses count.
+
+    Parameters
+    ----------
+    root_tension, hertz_pressure : float
+        That may not be exceeded [Pa].
+    load : float
+        Design load [N].
+    """
+
+    root_tension: float
+    hertz_pressure: float
+    load: float
+
+    def used(self, tension: float, pressure: float) -> float:
+        """The larger share of what is allowed, of tension and pressure under 1 N."""
+        return max(tension * self.load / self.root_tension, pressure * self.load**0.5 / self.hertz_pressure)
+
 
 def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStress:
     """Collect the root-stress kernels along the path once; then any loading costs a few products.
@@ -75,28 +108,32 @@ def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStr
 
 @dataclass(frozen=True)
 class StressOptimum:
-    """Loading with the least largest root stress.
+    """Loading with the least largest stress.
 
     Parameters
     ----------
     loading : LoadingFunction
     stress : float
         Largest root tension of both gears per unit design load [Pa/N].
-    candidates : tuple of (exponent or None, peak, stress)
+    pressure : float
+        Largest Hertzian pressure under 1 N [Pa].
+    candidates : tuple of (exponent or None, peak, stress, pressure)
         Best F of each exponent tried.
     """
 
     loading: LoadingFunction
     stress: float
-    candidates: tuple[tuple[int | None, float, float], ...]
+    pressure: float
+    candidates: tuple[tuple[int | None, float, float, float], ...]
 
 
 def least_root_stress(
     stress: DesignStress,
     loading: LoadingFunction,
     exponents: Sequence[int | None] = (None, 3, 5, 7, 9),
+    allowed: Allowed | None = None,
 ) -> StressOptimum:
-    """Choose F and r so that the largest root stress is least; the slope at contact initiation stays as given.
+    """Choose F and r so that the largest stress is least; the slope at contact initiation stays as given.
 
     Parameters
     ----------
@@ -105,6 +142,8 @@ def least_root_stress(
         Contact ratio above 2; its first ramp's slope s is kept, its exponent and peak are replaced.
     exponents : sequence of int or None
         r to try; None is the sinusoidal family. Those too low for the slope are skipped.
+    allowed : Allowed, optional
+        With it the larger share of root tension and Hertzian pressure counts; without it root tension alone.
     """
     from scipy.optimize import minimize_scalar
 
@@ -121,7 +160,9 @@ def least_root_stress(
         base = replace(loading, ramp=Ramp(slope, r), inner_ramp=Ramp(1.0, r))
 
         def worst(peak: float, base: LoadingFunction = base) -> float:
-            return stress.worst(replace(base, peak=float(np.clip(peak, low, high))))
+            one = replace(base, peak=float(np.clip(peak, low, high)))
+            tension = stress.worst(one)
+            return tension if allowed is None else allowed.used(tension, stress.pressure(one))
 
         # The largest of several smooth functions of F has kinks: scan, then refine by golden section.
         scan = np.linspace(low, high, 21)
@@ -134,4 +175,5 @@ def least_root_stress(
     if not found:
         raise InputError("design.exponent", tuple(exponents), f"has none that allows the initial slope {slope}")
     best = min(found, key=lambda item: item[0])
-    return StressOptimum(best[1], best[0], tuple((r, f.peak, value) for value, f, r in found))
+    candidates = tuple((r, f.peak, stress.worst(f), stress.pressure(f)) for _, f, r in found)
+    return StressOptimum(best[1], stress.worst(best[1]), stress.pressure(best[1]), candidates)

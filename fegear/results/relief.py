@@ -117,10 +117,9 @@ def _loading(part: DesignPart, p: GearPair) -> LoadingFunction:
 
 
 def _check(scene: Scene, name: str) -> None:
-    if design_part(scene).peak == "least-root-stress" and scene.case.pair[name].compliance.source != "fe":
-        raise InputError(
-            "design.peak", '"least-root-stress"', "needs root stresses", f'set pair.{name}.compliance.source = "fe"'
-        )
+    peak = design_part(scene).peak
+    if isinstance(peak, str) and scene.case.pair[name].compliance.source != "fe":
+        raise InputError("design.peak", f'"{peak}"', "needs root stresses", f'set pair.{name}.compliance.source = "fe"')
     pair = scene.pairs[name]
     for member in MEMBERS:
         ends = [float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end)]
@@ -144,14 +143,17 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
 
 def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData:
     from fegear.design.relief_design import DesignTask, design_relief, relief_at
+    from fegear.design.root_stress_loading import Allowed
 
     (found,) = upstream.values()
     pair: LoadedPair = found.pair
     part = inputs.part
     load = part.load or pair.nominal
+    limits = part.allowable
+    allowed = None if limits is None else Allowed(limits.root_tension, limits.hertz_pressure, load)
     task = DesignTask(
-        _loading(part, pair.engagement.pair), load, part.peak == "least-root-stress", tuple(part.grind), part.metric,
-        tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS,
+        _loading(part, pair.engagement.pair), load, isinstance(part.peak, str), tuple(part.grind), part.metric,
+        tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed,
     )  # fmt: skip
     design = design_relief(pair.engagement, pair.shifted, task, work.progress)
     neglected = neglected_in_design(inputs.asked, design.designed, load, inputs.tolerance)
@@ -164,9 +166,9 @@ def _present(data: ReliefData, inputs: ReliefInputs) -> Outcome:
     name, design, load = inputs.asked.name, data.design, data.design.task.load
     loading, tables, values = design.task.loading, [], []
     if design.chosen is not None:
-        table, value = least_stress_table(name, design.chosen, load)
+        table, stresses = least_stress_table(name, design.chosen, load)
         tables.append(table)
-        values.append(value)
+        values += stresses
     reliefs = relief_tables(name, design, inputs)
     tables += reliefs
     tables += [points_table(name, inputs.labels[m], inputs.gears[m], table) for m, table in data.points.items()]

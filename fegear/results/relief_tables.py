@@ -24,20 +24,25 @@ if TYPE_CHECKING:
     from fegear.results.relief import ReliefInputs
 
 
-def least_stress_table(name: str, best: StressOptimum, load: float) -> tuple[Table, Value]:
-    """Loadings that were tried for the least root stress, and the least."""
-    labels = ["sinusoidal" if r is None else f"polynomial, r = {r}" for r, _, _ in best.candidates]
+def least_stress_table(name: str, best: StressOptimum, load: float) -> tuple[Table, tuple[Value, ...]]:
+    """Loadings that were tried for the least stress, and the stresses of the one chosen."""
+    exponents, peaks, tensions, pressures = zip(*best.candidates, strict=True)
+    labels = ["sinusoidal" if r is None else f"polynomial, r = {r}" for r in exponents]
+    at_load = math.sqrt(load)
     table = Table(
         f"loading_candidates_{name}",
         (
             Column("family", np.array(labels), "", "of the ramps"),
-            Column("peak", np.array([f for _, f, _ in best.candidates]), "", "F, best of its family"),
-            Column("root_tension", np.array([s * load for _, _, s in best.candidates]), "MPa", "largest of both gears"),
+            Column("peak", np.array(peaks), "", "F, best of its family"),
+            Column("root_tension", np.array(tensions) * load, "MPa", "largest of both gears"),
+            Column("hertz_pressure", np.array(pressures) * at_load, "MPa", "largest over the path"),
         ),
-        f"Loadings of {name} tried for the least root stress",
+        f"Loadings of {name} tried for the least stress",
     )
-    return table, Value(
-        f"{name}.design_root_tension", best.stress * load, "MPa", None, "largest of both gears, design load"
+    about = "largest of both gears, design load"
+    return table, (
+        Value(f"{name}.design_root_tension", best.stress * load, "MPa", None, about),
+        Value(f"{name}.design_hertz_pressure", best.pressure * at_load, "MPa", None, "largest over the path"),
     )
 
 

@@ -222,6 +222,7 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("mark_minimum_excitation", ("design.roll_angles=['11 deg']",), "off the active profile of the driver"),
         ("mark_minimum_excitation", ("design.exponent=7",), "only with family"),
         ("mark_minimum_excitation", ('design.peak="least-root-stress"',), "needs root stresses"),
+        ("high_contact_ratio", ('design.peak="least-stress"',), 'goes with peak = "least-stress"'),
     ],
 )
 def test_what_cannot_be_computed_is_refused_in_words(case, overrides, words):

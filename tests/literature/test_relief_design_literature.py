@@ -16,7 +16,7 @@ from fegear.design.loading import LoadingFunction, Ramp
 from fegear.design.minimum_excitation import minimum_excitation, relief_table
 from fegear.design.optimise import grindable, optimise_tip_relief
 from fegear.design.robustness import robustness
-from fegear.design.root_stress_loading import design_stress, least_root_stress
+from fegear.design.root_stress_loading import Allowed, design_stress, least_root_stress
 from fegear.errors import InputError, RangeError
 from fegear.fem import MeshSettings, solve_gear
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
@@ -94,6 +94,41 @@ def test_least_root_stress_beats_every_other_choice(high):
             other = loading(high, 2.15, ramp=Ramp(1.0, r), inner_ramp=Ramp(1.0, r), peak=float(peak))
             assert best.stress <= stress.worst(other) * (1 + 1e-9)
     assert len(best.candidates) == 3
+
+
+def test_pressure_counts_in_the_joint_choice_of_r_and_f(high):
+    """Where the flanks are allowed little, F falls to what spreads the pressure; where much, it is that of the root."""
+    stress, load = design_stress(high.compliance, 81), 3000.0
+    start = loading(high, 2.15, ramp=Ramp(1.0))
+    root = least_root_stress(stress, start, (None, 3, 7))
+    tension, pressure = root.stress * load, root.pressure * load**0.5
+    lax = least_root_stress(stress, start, (None, 3, 7), Allowed(tension, 10.0 * pressure, load))
+    assert (lax.stress, lax.loading) == (pytest.approx(root.stress, rel=1e-9), lax.loading)
+    low, high_peak = start.peak_range
+    for share in (0.5, 0.95, 1.0):
+        allowed = Allowed(tension, share * pressure, load)
+        best = least_root_stress(stress, start, (None, 3, 7), allowed)
+        used = allowed.used(best.stress, best.pressure)
+        for peak in np.linspace(low, high_peak, 9):
+            for r in (None, 3, 7):
+                other = loading(high, 2.15, ramp=Ramp(1.0, r), inner_ramp=Ramp(1.0, r), peak=float(peak))
+                assert used <= allowed.used(stress.worst(other), stress.pressure(other)) * (1 + 1e-9)
+    strict = least_root_stress(stress, start, (None, 3, 7), Allowed(tension, 0.5 * pressure, load))
+    assert strict.pressure < root.pressure
+    assert strict.stress > root.stress
+
+
+def test_pressure_of_a_design_is_hertz_s(high):
+    """p = sqrt(w E* / (pi R)) with the loading's own load, where it is largest."""
+    stress, f = design_stress(high.compliance, 81), loading(high, 2.15, ramp=Ramp(1.0), peak=0.6)
+    pair, c = high.pair, high.compliance
+    curvature = sum(1.0 / pair.flank_curvature_radius(stress.x, m) for m in ("driver", "driven"))
+    by_hand = np.sqrt(f.fraction(stress.x) / c.face_width * c.contact_modulus * curvature / np.pi).max()
+    assert stress.pressure(f) == pytest.approx(by_hand, rel=1e-12)
+
+
+def test_the_choice_is_fixed_for_contact_ratios_up_to_two(high):
+    stress = design_stress(high.compliance, 81)
     with pytest.raises(InputError, match="fixed for contact ratios up to 2"):
         least_root_stress(stress, loading(high, 1.9))
 
