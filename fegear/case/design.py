@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -9,6 +10,7 @@ from pydantic import Field, model_validator
 from fegear.case.part import (
     Angle,
     Length,
+    LengthOrZero,
     Number,
     Part,
     PositiveForce,
@@ -84,6 +86,25 @@ class AllowablePart(Part):
     hertz_pressure: PositivePressure = Field(description="Hertzian pressure that may not be exceeded.")
 
 
+class FilmPart(Part):
+    """``film = { x, thickness }``: the layer of oil between the flanks at the design load."""
+
+    x: Annotated[list[Length], Field(min_length=1)] = Field(
+        description="Places on the line of action from the pitch point, rising; straight between them, level beyond."
+    )
+    thickness: Annotated[list[LengthOrZero], Field(min_length=1)] = Field(
+        description="Thickness of the film at each place, such as the `film_thickness` of `flank-surface`."
+    )
+
+    @model_validator(mode="after")
+    def _matching(self) -> Self:
+        if len(self.thickness) != len(self.x):
+            raise refuse(f"must have one value for each of the {len(self.x)} places of x", key="thickness")
+        if any(b <= a for a, b in pairwise(self.x)):
+            raise refuse("must rise from place to place", "sort the places, each of them once", key="x")
+        return self
+
+
 class DesignPart(Part):
     """Which pair is to be relieved, for which load, and how its teeth are to share it."""
 
@@ -119,6 +140,10 @@ class DesignPart(Part):
     allowable: AllowablePart | None = Field(
         default=None,
         description='With `peak = "least-stress"`: the larger share of these stresses is made least.',
+    )
+    film: FilmPart | None = Field(
+        default=None,
+        description="Layer of oil between the flanks, half of which each relief makes up for; without it none.",
     )
     grind: list[Shape] = Field(
         default_factory=_both_shapes, description="Shapes of tip relief that a shop can grind; an empty list for none."

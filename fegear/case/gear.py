@@ -306,7 +306,7 @@ class GearPart(Part):
             if key in self.model_fields_set:
                 raise refuse("is that of a spur gear", f"write normal_{key} for a gear with a helix_angle", key=key)
         for key in ("plane", "tooth_mesh", "tooth_mesh_fillet"):
-            if self.has_helix and key in self.model_fields_set:
+            if self.has_helix and getattr(self, key) != type(self).model_fields[key].default:
                 raise refuse(
                     "is not computed for a gear with a helix_angle yet", f"remove {key}: results do without it", key=key
                 )

@@ -26,6 +26,10 @@ FacePositions = Annotated[
 ]
 
 
+#: Load positions of a plane table.
+_POSITIONS = 100
+
+
 class StiffnessPart(Part):
     """Which gear, at which radii, under how wide a contact; with face positions as a solid, band by band."""
 
@@ -34,7 +38,7 @@ class StiffnessPart(Part):
         default=None, description="Radii at which the flank is loaded; give these or `positions`."
     )
     positions: Annotated[int, Field(ge=2, le=100_000)] = Field(
-        default=100,
+        default=_POSITIONS,
         description="Load positions, equally spaced in roll angle over the active profile (without a pair over the "
         "whole involute); with `face_positions` 12 unless given.",
     )
@@ -62,7 +66,7 @@ class StiffnessPart(Part):
 
     @model_validator(mode="after")
     def _one_choice(self) -> Self:
-        if self.radii is not None and "positions" in self.model_fields_set:
+        if self.radii is not None and self.positions != _POSITIONS:
             raise refuse("contradicts radii", "give either radii or positions", key="positions")
         if self.contact_half_width is not None and self.load is not None:
             raise refuse("contradicts contact_half_width", "give either of them", key="load")

@@ -122,7 +122,7 @@ class TrainMeshPart(Part):
     def _one_damping(self) -> Self:
         if self.damping is not None and self.damping_ratio is not None:
             raise refuse("contradicts damping", "give either", key="damping_ratio")
-        if "damping_law" in self.model_fields_set and self.damping is None and self.damping_ratio is None:
+        if self.damping_law != "constant" and self.damping is None and self.damping_ratio is None:
             raise refuse(
                 "has a meaning only with damping", "give damping_ratio or damping, or leave it out", key="damping_law"
             )

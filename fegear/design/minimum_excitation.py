@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fegear.contact.engagement import Engagement
     from fegear.contact.pair_compliance import PairCompliance
     from fegear.design.loading import LoadingFunction
+    from fegear.design.oil_film import OilFilm
     from fegear.geometry.pair import Member
 
 #: The extrapolation takes its slope from the end of the design zone to this fraction of the ramp inside it: the slope
@@ -48,12 +49,15 @@ class MinimumExcitationRelief:
     loading : LoadingFunction
     load : float
         W_d [N].
+    film : OilFilm, optional
+        Between the flanks at that load; half of it is removed from each.
     """
 
     compliance: PairCompliance
     member: Member
     loading: LoadingFunction
     load: float
+    film: OilFilm | None = None
 
     def __post_init__(self) -> None:
         """Refuse design zones that reach beyond the path of contact, and loads that are none."""
@@ -115,11 +119,17 @@ class MinimumExcitationRelief:
         """Deflection of this gear's flank at x under the design loads, its own and its neighbours' [m] (4.5)."""
         return self.deflection_by_own_load(x) + self.deflection_by_neighbours(x)
 
+    def half_film(self, x: ArrayLike) -> Array:
+        """Half the film at x [m]; zero without one."""
+        return np.zeros(np.shape(x)) if self.film is None else self.film.half(x)
+
     @cached_property
     def offset(self) -> float:
-        """Largest deflection over the design zone [m]: where the relief is zero."""
-        x = np.concatenate([np.linspace(self.loading.x_start, self.loading.x_end, 1201), self.loading.kinks])
-        return float(self.deflection(x).max())
+        """Largest deflection, less half the film, over the design zone [m]: where the relief is zero."""
+        start, end = self.loading.x_start, self.loading.x_end
+        places = [x for x in (self.film.x if self.film else ()) if start < x < end]
+        x = np.concatenate([np.linspace(start, end, 1201), self.loading.kinks, places])
+        return float((self.deflection(x) - self.half_film(x)).max())
 
     @cached_property
     def end_slopes(self) -> tuple[float, float]:
@@ -136,16 +146,17 @@ class MinimumExcitationRelief:
         before = np.maximum(self.loading.x_start - where, 0.0)
         after = np.maximum(where - self.loading.x_end, 0.0)
         first, last = self.end_slopes
-        return np.asarray(self.offset - self.deflection(where) + first * before + last * after)
+        return np.asarray(self.offset - self.deflection(where) + self.half_film(where) + first * before + last * after)
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Roll angles where the loading, or a neighbour's, has a kink."""
+        """Roll angles where the loading, or a neighbour's, or the film has a kink."""
         pair = self.compliance.pair
         places = {
             x + k * pair.base_pitch for x in self.loading.kinks for k in range(-3, 4)
             if pair.x_start <= x + k * pair.base_pitch <= pair.x_end
         }  # fmt: skip
+        places.update(x for x in (self.film.x if self.film else ()) if pair.x_start <= x <= pair.x_end)
         return tuple(sorted(float(pair.roll_angle(x, self.member)) for x in places))
 
     def removal(self, roll: ArrayLike) -> Array:
@@ -154,7 +165,12 @@ class MinimumExcitationRelief:
 
 
 def minimum_excitation(
-    engagement: Engagement, loading: LoadingFunction, load: float, *, full_matrix: bool = True
+    engagement: Engagement,
+    loading: LoadingFunction,
+    load: float,
+    *,
+    full_matrix: bool = True,
+    film: OilFilm | None = None,
 ) -> Engagement:
     """Give both gears of a pair the relief of (4.6) for a design load.
 
@@ -168,6 +184,8 @@ def minimum_excitation(
         W_d [N].
     full_matrix : bool
         Whether the design counts what a loaded tooth does to its neighbours; False is the paper's (5.4).
+    film : OilFilm, optional
+        Between the flanks at the design load.
 
     Raises
     ------
@@ -176,8 +194,8 @@ def minimum_excitation(
         tooth almost at once, and the straight line beyond the design zone is then all but vertical.
     """
     c = engagement.compliance if full_matrix else replace(engagement.compliance, coupling=False)
-    driver = MinimumExcitationRelief(c, "driver", loading, load)
-    driven = MinimumExcitationRelief(c, "driven", loading, load)
+    driver = MinimumExcitationRelief(c, "driver", loading, load, film)
+    driven = MinimumExcitationRelief(c, "driven", loading, load, film)
     refuse_deeper_than_the_tooth(driver, driven)
     return replace(engagement, driver_relief=driver, driven_relief=driven)
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fegear.design.charts import Metric
     from fegear.design.loading import LoadingFunction
     from fegear.design.minimum_excitation import MinimumExcitationRelief, ReliefTable
+    from fegear.design.oil_film import OilFilm
     from fegear.design.optimise import TipReliefPair
     from fegear.design.root_stress_loading import Allowed, StressOptimum
     from fegear.geometry.pair import Member
@@ -58,6 +59,8 @@ class DesignTask:
         Of the curves over the base pitch, and of the transmission errors.
     allowed : Allowed, optional
         With it pressure counts in that choice too.
+    film : OilFilm, optional
+        Between the flanks at the design load; the reliefs make up for it, and everything runs with it.
     """
 
     loading: LoadingFunction
@@ -69,6 +72,7 @@ class DesignTask:
     positions: int
     harmonics: int
     allowed: Allowed | None = None
+    film: OilFilm | None = None
 
 
 @dataclass(frozen=True)
@@ -151,11 +155,14 @@ def design_relief(
     if task.least_root_stress:
         chosen = least_root_stress(design_stress(plain.compliance), task.loading, allowed=task.allowed)
         task = replace(task, loading=chosen.loading)
-    states = {"no relief": plain, "designed": minimum_excitation(plain, task.loading, load)}
+    film = task.film
+    states = {"no relief": plain, "designed": minimum_excitation(plain, task.loading, load, film=film)}
     designed = states["designed"]
     if plain.compliance.coupling and max(plain.compliance.driver.reach, plain.compliance.driven.reach) > 0:
-        states["diagonal only"] = minimum_excitation(plain, task.loading, load, full_matrix=False)
-    others = [minimum_excitation(replace(plain, compliance=s.compliance), task.loading, load) for s in shifted]
+        states["diagonal only"] = minimum_excitation(plain, task.loading, load, full_matrix=False, film=film)
+    others = [
+        minimum_excitation(replace(plain, compliance=s.compliance), task.loading, load, film=film) for s in shifted
+    ]
     reliefs = _reliefs(designed, states.get("diagonal only"), others)
     report(0.3)
     ground: dict[Shape, TipReliefPair] = {}
@@ -163,17 +170,19 @@ def design_relief(
         ground[shape] = grindable(designed, load, shape, task.metric)
         states[f"{shape} tip relief"] = ground[shape].applied(plain)
         report(0.3 + 0.5 * (number + 1) / len(task.grind))
+    if film is not None:
+        states = {label: film.between(state) for label, state in states.items()}
     te = {label: transmission_error(state, load, task.harmonics) for label, state in states.items()}
     x = roll_positions(engagement, task.positions)
     curves = {label: state.solve(state.grid(x), task.loads) for label, state in states.items()}
     left = None
     if shifted:
-        off = [replace(designed, compliance=s.compliance) for s in shifted]
+        off = [replace(states["designed"], compliance=s.compliance) for s in shifted]
         left = sum(transmission_error(state, load, task.harmonics).peak_to_peak for state in off)
         left = max(left, _DIGITS * te["designed"].mean)
     driver, driven = (reliefs[member].table.relieved() for member in MEMBERS)
     read = replace(designed, driver_relief=driver, driven_relief=driven)
-    tables_leave = transmission_error(read, load, task.harmonics).peak_to_peak
+    tables_leave = transmission_error(read if film is None else film.between(read), load, task.harmonics).peak_to_peak
     return ReliefDesign(task, chosen, designed, reliefs, ground, te, curves, left, tables_leave)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fegear.case.design import DesignPart
 from fegear.engine.citation import Citation, citing
-from fegear.engine.outcome import Outcome
+from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.errors import InputError, RangeError
 from fegear.geometry.pair import MEMBERS
@@ -142,6 +142,7 @@ def _inputs(scene: Scene, name: str) -> ReliefInputs:
 
 
 def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData:
+    from fegear.design.oil_film import OilFilm
     from fegear.design.relief_design import DesignTask, design_relief, relief_at
     from fegear.design.root_stress_loading import Allowed
 
@@ -150,10 +151,11 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
     part = inputs.part
     load = part.load or pair.nominal
     limits = part.allowable
+    film = None if part.film is None else OilFilm(tuple(part.film.x), tuple(part.film.thickness))
     allowed = None if limits is None else Allowed(limits.root_tension, limits.hertz_pressure, load)
     task = DesignTask(
         _loading(part, pair.engagement.pair), load, isinstance(part.peak, str), tuple(part.grind), part.metric,
-        tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed,
+        tuple(sorted({*pair.loads, load})), POSITIONS, HARMONICS, allowed, film,
     )  # fmt: skip
     design = design_relief(pair.engagement, pair.shifted, task, work.progress)
     neglected = neglected_in_design(inputs.asked, design.designed, load, inputs.tolerance)
@@ -164,7 +166,8 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
 
 def _present(data: ReliefData, inputs: ReliefInputs) -> Outcome:
     name, design, load = inputs.asked.name, data.design, data.design.task.load
-    loading, tables, values = design.task.loading, [], []
+    loading, tables = design.task.loading, []
+    values: list[Value] = []
     if design.chosen is not None:
         table, stresses = least_stress_table(name, design.chosen, load)
         tables.append(table)
@@ -186,6 +189,11 @@ def _present(data: ReliefData, inputs: ReliefInputs) -> Outcome:
 
 def _remarks(data: ReliefData, inputs: ReliefInputs) -> tuple[str, ...]:
     remarks, te, name = [], data.design.te, inputs.asked.name
+    if inputs.part.film is not None:
+        remarks.append(
+            f"Pair {name}: each relief makes up for half the oil film at the design load, and what is left counts the "
+            "film, as thick at every other load; tip reliefs to grind were searched without it."
+        )
     if "diagonal only" in te:
         d, n = te["diagonal only"].peak_to_peak, te["no relief"].peak_to_peak
         remarks.append(

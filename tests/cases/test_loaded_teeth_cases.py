@@ -222,6 +222,8 @@ def test_the_command_writes_the_tables_that_others_build_on(tmp_path):
         ("mark_minimum_excitation", ("design.roll_angles=['11 deg']",), "off the active profile of the driver"),
         ("mark_minimum_excitation", ("design.exponent=7",), "only with family"),
         ("mark_minimum_excitation", ('design.peak="least-root-stress"',), "needs root stresses"),
+        ("mark_minimum_excitation", ("design.film={x=['0 mm'],thickness=['1 um','2 um']}",), "one value for each"),
+        ("mark_minimum_excitation", ("design.film={x=['1 mm','0 mm'],thickness=['1 um','2 um']}",), "must rise"),
         ("high_contact_ratio", ('design.peak="least-stress"',), 'goes with peak = "least-stress"'),
     ],
 )

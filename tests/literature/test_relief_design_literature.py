@@ -14,6 +14,7 @@ from fegear.contact.transmission_error import transmission_error
 from fegear.design.charts import harris_map, relief_chart
 from fegear.design.loading import LoadingFunction, Ramp
 from fegear.design.minimum_excitation import minimum_excitation, relief_table
+from fegear.design.oil_film import OilFilm
 from fegear.design.optimise import grindable, optimise_tip_relief
 from fegear.design.robustness import robustness
 from fegear.design.root_stress_loading import Allowed, design_stress, least_root_stress
@@ -82,6 +83,25 @@ def test_contact_ratio_above_two(high):
         te = transmission_error(minimum_excitation(high, f, 3000.0), 3000.0)
         assert te.peak_to_peak < 1e-9 * te.mean
         np.testing.assert_allclose(te.loaded.loads[:, :, 0], 3000 * f.fraction(te.loaded.pair_x), atol=3e-3)
+
+
+def test_half_the_film_goes_into_each_relief(nasa):
+    """Mark, after (4.6): what leaves no error dry leaves the film's own with oil; with half of it removed, none."""
+    pair, f = nasa.pair, loading(nasa, 1.312)
+    film = OilFilm((pair.x_start, 0.1e-3, pair.x_end), (0.5e-6, 0.9e-6, 1.6e-6))
+    dry, oiled = (minimum_excitation(nasa, f, LOAD, film=one) for one in (None, film))
+    x = np.unique([*np.linspace(f.x_start, f.x_end, 2401), *f.kinks, 0.1e-3])
+    for member in ("driver", "driven"):
+        change = getattr(oiled, f"{member}_relief").at(x) - getattr(dry, f"{member}_relief").at(x)
+        np.testing.assert_allclose(np.diff(change), np.diff(film.half(x)), atol=1e-18)
+        assert getattr(oiled, f"{member}_relief").at(x).min() == pytest.approx(0.0, abs=1e-9)
+    left, of_film = transmission_error(film.between(oiled), LOAD), transmission_error(film.between(dry), LOAD)
+    assert left.peak_to_peak < 1e-9 * left.mean
+    assert of_film.peak_to_peak > 0.2e-6
+    constant = OilFilm((0.0,), (2e-6,))
+    even = transmission_error(constant.between(dry), LOAD)
+    assert even.peak_to_peak < 1e-9 * even.mean
+    assert even.mean == pytest.approx(transmission_error(dry, LOAD).mean - 2e-6, rel=1e-9)
 
 
 def test_least_root_stress_beats_every_other_choice(high):

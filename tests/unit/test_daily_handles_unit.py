@@ -167,7 +167,7 @@ def test_completion_installs_in_every_shell(shell, file, tmp_path):
         ('results=["stifness"]', '"stiffness"; known here: campbell, contact-lines'),
         ("gear.a.plane=strian", "must be 'strain', 'stress' or 'auto'"),
         ('gear.a.rack={tip_radius="ful"}', "gear.a.rack.tip_radius = \"ful\": must be a number or 'full'."),
-        ("design.peak=leest", "design.peak = \"leest\": must be a number or 'least-root-stress'."),
+        ("design.peak=leest", "design.peak = \"leest\": must be a number or 'least-root-stress' or 'least-stress'."),
         ("design.peak=-1.0", "design.peak = -1.0: must be greater than 0."),
         ("pair.I.iso_6336.edition=2005", "must be 2006 or 2019"),
         ('design.grind=["linar"]', "design.grind[0] = \"linar\": must be 'linear' or 'parabolic'"),
