@@ -46,7 +46,7 @@ _BEST, _STARTS, _APART = 4000, 64, 2
 #: the three descents. The largest and smallest transmission errors sit on kinks, found between even positions; its
 #: harmonics need good quadrature.
 _STAGES = {
-    "peak_to_peak": ((56, 64, 0.15, 10), (56, 16, 0.15, 7)),
+    "peak_to_peak": ((56, 64, 0.15, 8), (56, 12, 0.15, 6)),
     "effective_error": ((0, 48, 0.15, 10), (0, 16, 0.15, 7)),
 }
 #: Ends of the last descent that are led to the ground, and of the equally good those that are led to the end.

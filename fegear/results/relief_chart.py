@@ -186,6 +186,7 @@ def _present_robustness(data: RobustnessData, inputs: RobustnessInputs) -> Outco
             rows.append((label, r.load_factors[i], r.spacing_errors[j], r.relief_errors[k], value))
         factor, spacing, depth = r.worst_case
         where = f"load x {factor:g}, spacing error {spacing * 1e6:g} um, relief {depth:+.0%}"
+        where = f"worst of the {r.values.size} combinations asked for, which bounds no others: {where}"
         values.append(
             Value(f"{name}.worst_{metric}.{label.replace(' ', '_')}", r.worst, "um", None, f"{label}, {where}")
         )
