@@ -141,7 +141,7 @@ class OperationPart(Part):
                 f"has shares that add up to {shares:.6g}", "shares of the time add up to 1", key="spectrum",
                 value="(a list)",
             )  # fmt: skip
-        if not bins and "spectrum_line" in self.model_fields_set:
+        if not bins and self.spectrum_line != "part-2":
             raise refuse("has a meaning only with a spectrum", "give a spectrum, or remove it", key="spectrum_line")
         if bins and self.load_cycles is not None:
             raise refuse("has no meaning with a spectrum", "give life", key="load_cycles")
