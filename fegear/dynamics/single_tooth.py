@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from fegear.arrays import Array
     from fegear.dynamics.gear_train import GearTrain
+    from fegear.dynamics.periodic import Periodic
     from fegear.dynamics.tooth_force import ToothForce
 
 #: Lines that tooth forces are summed from, at least.
@@ -29,6 +30,8 @@ _LINES = 256
 _LOOKED_AT = 101
 #: How near to the ends of the path the last positions are, in base pitches.
 _INSIDE = 1e-9
+#: How far beside a corner of the transmission error places stand [base pitches].
+_BESIDE = 1e-7
 
 
 @dataclass(frozen=True)
@@ -83,22 +86,21 @@ def positions(data: GearTrain, i: int, count: int, number: int = 0) -> Array:
     low, high = start + _INSIDE * pitch, end - _INSIDE * pitch
     functions = (data.meshes[i].error, *found.stiffness)
     cuts = np.concatenate([(f.breaks + j) * f.pitches - number % f.pitches for f in functions for j in range(-4, 5)])
-    near = np.unique(cuts[(cuts * pitch > low) & (cuts * pitch < high)])
-    beside = np.sort(np.concatenate([near - 1e-7, near + 1e-7])) * pitch
-    jumps = _jumps(data, i, beside[(beside > low) & (beside < high)], number)
+    jumps = _jumps(data.meshes[i].error, np.sort(cuts), (low / pitch, high / pitch), number) * pitch
     return np.unique(np.concatenate([np.linspace(low, high, count), jumps]))
 
 
-def _jumps(data: GearTrain, i: int, x: Array, number: int) -> Array:
-    """Places beside true corners of the transmission error; ends of fitted pieces are none."""
-    pitch = data.meshes[i].pair.base_pitch
-    slope = data.meshes[i].error.slope(x / pitch + number)
-    near = np.abs(np.diff(x)) < 3e-7 * pitch
-    kink = near & (np.abs(np.diff(slope)) > 1e-3 * np.max(np.abs(slope), initial=1e-30))
-    keep = np.zeros(x.size, dtype=bool)
-    keep[:-1] |= kink
-    keep[1:] |= kink
-    return x[keep]
+def _jumps(error: Periodic, cuts: Array, ends: tuple[float, float], number: int) -> Array:
+    """Places on both sides of true corners of the transmission error [base pitches]; ends of fitted pieces are none.
+
+    What functions have of one corner differs by round-off, and some have an end on either side of it: they are one.
+    """
+    apart = np.diff(cuts) > 3.0 * _BESIDE
+    sides = np.stack([cuts[np.append(True, apart)] - _BESIDE, cuts[np.append(apart, True)] + _BESIDE])
+    sides = sides[:, (sides[0] > ends[0]) & (sides[1] < ends[1])]
+    slope = error.slope(sides + number)
+    kink = np.abs(slope[1] - slope[0]) > 1e-3 * np.max(np.abs(slope), initial=1e-30)
+    return np.asarray(sides[:, kink].ravel())
 
 
 def force_history(data: GearTrain, i: int, speed: float, count: int, harmonics: int, number: int = 0) -> ToothForce:
