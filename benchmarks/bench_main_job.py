@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.fem import MeshSettings, solve_gear, stiffness_table
+from fegear.fem import level_for, settings_at, solve_gear, stiffness_table
 from fegear.fem.elasticity import assemble
 from fegear.fem.sector import mesh_sector
 from fegear.fem.whole_gear import whole_gear
@@ -24,7 +24,7 @@ from fegear.geometry import BasicRack, Gear, Tooth
 from fegear.output.mesh_export import write_meshes
 
 CASE = Path(__file__).parents[1] / "cases" / "lin_table1.toml"
-SETTINGS = MeshSettings()
+SETTINGS = settings_at(level_for(1e-3))
 
 
 def gear_of(teeth: int) -> Gear:

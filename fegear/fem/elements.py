@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -94,11 +95,9 @@ class SectorElements:
             Of the maps, positive [modules^2].
         """
         from skfem import MappingAffine
-        from skfem.quadrature import get_quadrature_tri
 
-        element, mapping = _element(self.order), MappingAffine(self.grid, tind=np.flatnonzero(~self.curved))
-        points, weight = get_quadrature_tri(2 * (self.order - 1))
-        slope = np.stack([element.lbasis(points, i)[1] for i in range(self.dofs.element_dofs.shape[0])])
+        mapping = MappingAffine(self.grid, tind=np.flatnonzero(~self.curved))
+        _, weight, slope = _reference(self.order, 2 * (self.order - 1))
         return slope, weight, mapping.invA, np.abs(mapping.detA)
 
     def bent(self) -> tuple[Array, Array]:
@@ -116,10 +115,15 @@ class SectorElements:
         InputError
             If an element is turned inside out.
         """
-        chosen = np.flatnonzero(self.curved)
-        basis = self._basis(intorder=_CURVED_DEGREE, elements=chosen)
-        _refuse_inverted(basis.mapping.detDF(basis.X, tind=chosen), self.origin)
-        return _gradients(basis), basis.dx
+        from skfem import MappingIsoparametric
+
+        chosen, mapping = np.flatnonzero(self.curved), MappingIsoparametric(self.grid, self.grid.elem())
+        places, weight, slope = _reference(self.order, _CURVED_DEGREE)
+        determinant = mapping.detDF(places, tind=chosen)
+        _refuse_inverted(determinant, self.origin)
+        # The map once for all shape functions, which a Basis would ask for it one by one.
+        gradient = np.einsum("nkq,kamq->mnaq", slope, mapping.invDF(places, tind=chosen))
+        return np.ascontiguousarray(gradient), np.abs(determinant) * weight
 
     def integration(self) -> tuple[Array, Array, Array, Array]:
         """Shape functions, their gradients and the places of the quadrature points, for integrals of both.
@@ -214,13 +218,12 @@ def check_cubic_edges(mesh: SectorMesh) -> None:
     InputError
     """
     from skfem import MappingIsoparametric
-    from skfem.quadrature import get_quadrature_tri
 
     elements = sector_elements(mesh, order=3)
     chosen = np.flatnonzero(elements.curved)
     if chosen.size:
         # Not at the corners: where two smooth edges of one element meet the determinant is zero as it should be.
-        places = get_quadrature_tri(_CURVED_DEGREE)[0]
+        places = _reference(elements.order, _CURVED_DEGREE)[0]
         mapping = MappingIsoparametric(elements.grid, elements.grid.elem())
         _refuse_inverted(mapping.detDF(places, tind=chosen), mesh.origin)
 
@@ -263,6 +266,18 @@ def _element(order: int) -> Any:
     from skfem import ElementTriP2, ElementTriP3, ElementTriP4
 
     return {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}[order]()
+
+
+@lru_cache
+def _reference(order: int, degree: int) -> tuple[Array, Array, Array]:
+    """Quadrature points (2, q) and weights (q,) of a degree; slopes of an order's shape functions there, (n, 2, q)."""
+    from skfem.quadrature import get_quadrature_tri
+
+    element, (places, weight) = _element(order), get_quadrature_tri(degree)
+    slope = np.stack([element.lbasis(places, i)[1] for i in range(element.doflocs.shape[0])])
+    for array in (places, weight, slope):
+        array.flags.writeable = False
+    return places, weight, slope
 
 
 def _bends(

@@ -12,7 +12,7 @@ from fegear.fem.contact_width import REFERENCE_HALF_WIDTH
 from fegear.fem.influence import SIDES, Influence, Side
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -22,15 +22,16 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
 
 #: Part of the difference from the coarser solution of the error estimate that is taken for the error of the finer one:
-#: of c_0, of neighbours, of stresses. Smooth errors of order four leave a third; gmsh draws every mesh anew, positions
-#: differ, and a neighbour's deflection, a small error anyway, differs least regularly.
-_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.2, 2.4, 1.1
-#: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
-#: times what the difference usually is over the flank.
-_USUAL = 1.5
+#: of c_0, of neighbours, of stresses, learned from random gears (docs/numerics.md). Smooth errors of order four
+#: leave a third; but gmsh draws every mesh anew, positions differ, pressures narrow less than edges, and a neighbour's
+#: deflection, a small error anyway, differs least regularly.
+_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.8, 2.4, 1.0
 #: What is modelled nearer to an end of the flank than the mesh resolves is wrong by the first power of the edges'
 #: length, of which neighbouring levels differ by two fifths.
 _END_SHARE = 3.0
+#: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
+#: times what the difference usually is over the flank.
+_USUAL = 1.5
 #: Positions over the flank, evenly in roll angle, at which usual errors are looked for; for the largest, twice as many
 #: and these distances from its ends [modules].
 _SAMPLES = 17
@@ -144,10 +145,7 @@ class GearInfluence:
     def self_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
         """Estimated error of `self_compliance` [m^2/N]: what a coarser mesh with wider pressures changes."""
         r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
-        share = np.where(self._at_an_end(r, b), _END_SHARE, _SHARE)
-        reference = np.asarray(REFERENCE_HALF_WIDTH)
-        usual = self._usually("c_self", lambda: self._self_difference(self._samples, reference))
-        found = np.maximum(share * self._self_difference(r, b), _SHARE * _USUAL * usual)
+        found = self._self_estimate(r, b, self._self_difference(r, b)[1])
         return self._known(found) / self.gear.material.young_modulus
 
     def contact_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
@@ -160,15 +158,28 @@ class GearInfluence:
         shift = self.fine.tip_shift(r, self.settings.patch_half_width, b)
         return self.self_error(radius, half_width) + shift / self.gear.material.young_modulus
 
-    def _self_difference(self, radius: Array, half_width: Array) -> Array:
+    def _self_estimate(self, radius: Array, half_width: Array, difference: Array) -> Array:
+        share = np.where(self._at_an_end(radius, half_width), _END_SHARE, _SHARE)
+        return np.maximum(share * difference, _SHARE * _USUAL * _root_mean_square(self._self_at_samples[1]))
+
+    def _self_difference(self, radius: Array, half_width: Array) -> tuple[Array, Array]:
+        """Value, and its difference from the other solution's."""
         fine = self.fine.self_compliance(radius, self.settings.patch_half_width, half_width)
-        return np.abs(fine - self._other.self_compliance(radius, self.coarse_patch, half_width))
+        return fine, np.abs(fine - self._other.self_compliance(radius, self.coarse_patch, half_width))
+
+    @functools.cached_property
+    def _self_at_samples(self) -> tuple[Array, Array]:
+        return self._self_difference(self._samples, np.asarray(REFERENCE_HALF_WIDTH))
 
     def neighbour_error(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
         """Estimated error of `neighbour` [m^2/N], shape (P, Q)."""
         own = self._neighbour_difference(k, self._modules(radius_p), self._modules(radius_q))
-        usual = self._usually(k, lambda: self._neighbour_difference(k, self._samples, self._samples))
-        return self._known(_NEIGHBOUR_SHARE * np.maximum(own, _USUAL * usual)) / self.gear.material.young_modulus
+        return self._known(self._neighbour_estimate(k, own)) / self.gear.material.young_modulus
+
+    def _neighbour_estimate(self, k: int, difference: Array) -> Array:
+        if k not in self._usual:
+            self._usual[k] = _root_mean_square(self._neighbour_difference(k, self._samples, self._samples))
+        return _NEIGHBOUR_SHARE * np.maximum(difference, _USUAL * self._usual[k])
 
     def _neighbour_difference(self, k: int, p: Array, q: Array) -> Array:
         fine = self.fine.neighbour(k, p, q, self.settings.patch_half_width)
@@ -176,35 +187,47 @@ class GearInfluence:
 
     def root_stress_error(self, k: int, side: Side, radius: ArrayLike, half_width: ArrayLike | None = None) -> Array:
         """Estimated error of `largest_root_stress` [1/m], shape (P,)."""
+        r, b = self._modules(radius), self._half_width(half_width)
+        return (
+            self._known(self._stress_estimate(k, side, r, b, *self._stress_difference(k, side, r, b)))
+            / self.gear.module
+        )
+
+    def _stress_estimate(
+        self, k: int, side: Side, radius: Array, half_width: Array, value: Array, difference: Array
+    ) -> Array:
         # The back fillet has the loaded one's shape and no shorter edges: it errs no less, should
         # its difference vanish by chance.
         least = _USUAL * max(self._usual_stress(k, at) for at in (SIDES if side == "compression" else (side,)))
-        r, b = self._modules(radius), self._half_width(half_width)
-        value, difference = self._stress_difference(k, side, r, b)
-        share = np.where(self._at_an_end(r, b), _END_SHARE, _STRESS_SHARE)
-        return self._known(np.maximum(share * difference, _STRESS_SHARE * least * np.abs(value))) / self.gear.module
+        # The loaded fillet feels a contact at its upper end; the back one is as far from it as from any.
+        near = self._at_an_end(radius, half_width) & (k == 0 and side == "tension")
+        share = np.where(near, _END_SHARE, _STRESS_SHARE)
+        return np.maximum(share * difference, _STRESS_SHARE * least * np.abs(value))
 
     def _stress_difference(self, k: int, side: Side, r: Array, b: ArrayLike) -> tuple[Array, Array]:
+        """Value, and its difference from the other solution's."""
         fine = self.fine.largest_root_stress(k, side, r, b)[0]
         return fine, np.abs(fine - self._other.largest_root_stress(k, side, r, b)[0])
 
     def _usual_stress(self, k: int, side: Side) -> float:
         """Of the value."""
+        if (k, side) not in self._usual:
+            value, difference = self._stress_at_samples(k, side)
+            self._usual[k, side] = _root_mean_square(difference / value)
+        return self._usual[k, side]
 
-        def relative() -> Array:
-            value, difference = self._stress_difference(k, side, self._samples, REFERENCE_HALF_WIDTH)
-            return difference / value
+    def _stress_at_samples(self, k: int, side: Side) -> tuple[Array, Array]:
+        if (k, side) not in self._sampled:
+            self._sampled[k, side] = self._stress_difference(k, side, self._samples, REFERENCE_HALF_WIDTH)
+        return self._sampled[k, side]
 
-        return self._usually((k, side), relative)
-
-    def _usually(self, key: object, difference: Callable[[], Array]) -> float:
-        """Root mean square of a difference over the flank: asked for with every table, found once."""
-        if key not in self._usual:
-            self._usual[key] = float(np.sqrt(np.mean(difference() ** 2)))
-        return self._usual[key]
+    @functools.cached_property
+    def _sampled(self) -> dict[tuple[int, Side], tuple[Array, Array]]:
+        return {}
 
     @functools.cached_property
     def _usual(self) -> dict[object, float]:
+        """Root mean squares of differences over the flank: asked for with every table, found once."""
         return {}
 
     @functools.cached_property
@@ -221,17 +244,19 @@ class GearInfluence:
             c_self (of a contact 0.02 modules wide to either side), c_neighbour (over c_self), root_tension and
             root_compression.
         """
-        r = self._everywhere * self.gear.module
-        b = REFERENCE_HALF_WIDTH * self.gear.module
-        own = self.self_compliance(r, b)
-        errors = {"c_self": self.self_error(r, b) / own}
+        between, b = self._between_samples, np.asarray(REFERENCE_HALF_WIDTH)
+        r = np.concatenate([self._samples, between])
+        own, difference = np.hstack([self._self_at_samples, self._self_difference(between, b)])
+        errors = {"c_self": self._self_estimate(r, b, difference) / own}
         if self.reach:
-            errors["c_neighbour"] = np.diagonal(self.neighbour_error(1, r, r)) / own
+            difference = np.diagonal(self._neighbour_difference(1, r, r))
+            errors["c_neighbour"] = self._neighbour_estimate(1, difference) / own
         for side in SIDES:
-            errors[f"root_{side}"] = self.root_stress_error(0, side, r) / np.abs(
-                self.largest_root_stress(0, side, r)[0]
+            value, difference = np.hstack(
+                [self._stress_at_samples(0, side), self._stress_difference(0, side, between, b)]
             )
-        return {key: float(np.max(values)) for key, values in errors.items()}
+            errors[f"root_{side}"] = self._stress_estimate(0, side, r, b, value, difference) / np.abs(value)
+        return {key: float(np.max(self._known(values))) for key, values in errors.items()}
 
     def _known(self, estimate: Array) -> Array:
         """The estimate, if there is a second solution to derive it from."""
@@ -256,16 +281,20 @@ class GearInfluence:
         return np.clip(self.gear.tooth.radius_of_roll(np.linspace(first, last, _SAMPLES)), low, high)
 
     @functools.cached_property
-    def _everywhere(self) -> Array:
-        """Radii at which the largest errors are looked for: twice as many, and beside the ends [modules]."""
+    def _between_samples(self) -> Array:
+        """Radii at which largest errors are looked for, too: between the samples, and near the ends [modules]."""
         (low, high), rb = self._flank_ends, self.gear.tooth.base_radius
         between = np.sqrt(0.5 * (self._samples[1:] ** 2 + self._samples[:-1] ** 2))
         # On an involute the squared radius grows by twice the base radius times the arc length.
         near = 2.0 * rb * np.array(_BESIDE_ENDS)
         ends = np.sqrt(np.concatenate([low**2 + near, high**2 - near]))
-        return np.unique(np.concatenate([self._samples, between, ends[(ends > low) & (ends < high)]]))
+        return np.concatenate([between, ends[(ends > low) & (ends < high)]])
 
     @property
     def _flank_ends(self) -> tuple[float, float]:
         flank, tooth = self.fine.flank, self.gear.tooth
         return max(flank.lowest_radius, tooth.form_radius), min(flank.highest_radius, tooth.involute_tip_radius)
+
+
+def _root_mean_square(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

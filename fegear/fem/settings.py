@@ -9,6 +9,8 @@ from fegear.errors import InputError
 
 #: Unknowns of a sector beyond which neither time nor memory suffices: some 20 GB.
 _MOST_UNKNOWNS = 3e6
+#: No pressure on the mesh of a level is wider [modules].
+_WIDEST_PATCH = 0.36
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,18 +45,18 @@ class MeshSettings:
     """
 
     root_edge_length: float = 0.055
-    root_fraction: float = 0.2
+    root_fraction: float = 0.08
     flank_edge_length: float = 0.055
     tip_edge_length: float = 0.003
     junction_edge_length: float = 0.003
     back_edge_length: float = 0.3
     growth: float = 0.28
-    tip_growth: float = 0.22
+    tip_growth: float = 0.155
     side_growth: float = 0.4
     body_fraction: float = 1.4
     rim_fraction: float = 0.45
     corner_distance: float = 0.006
-    patch_half_width: float = 0.13
+    patch_half_width: float = 0.18
     order: int = 4
 
     def __post_init__(self) -> None:
@@ -79,8 +81,10 @@ class MeshSettings:
 
         Around the flank's ends the rows are half rings whose edges grow with the distance.
         """
-        fillet, flank, ring = 3.0, 2.3, 0.3  # modules: both fillets, the loaded flank, the ends' reach
-        rows = fillet / (self.growth * min(self.root_edge_length, 0.3 * self.root_fraction))
+        # Modules: both fillets, their sharpest parts, the loaded flank, the ends' reach.
+        fillet, sharpest, flank, ring = 2.5, 0.7, 2.3, 0.3
+        rows = sharpest / (self.growth * min(self.root_edge_length, 0.3 * self.root_fraction))
+        rows += (fillet - sharpest) / (self.growth * self.root_edge_length)
         rows += flank / (self.side_growth * min(self.flank_edge_length, self.back_edge_length))
         grown = [self.tip_growth * ring / edge for edge in (self.tip_edge_length, self.junction_edge_length)]
         ends = sum(math.pi / self.tip_growth**2 * (math.log1p(g) - g / (1.0 + g)) for g in grown)
@@ -109,12 +113,20 @@ class MeshSettings:
         )
 
     def refined(self, factor: float) -> MeshSettings:
-        """Return a finer (factor < 1) or coarser set for another accuracy: edges times `factor`, patch its root.
+        """Return a finer (factor < 1) or coarser set for another accuracy.
 
-        A pressure on a mesh has two errors: how well the mesh resolves it, and its own width's. So that both fall, the
-        patch narrows, but less than the edges do.
+        Edge lengths go with `factor`. How fast edges grow goes with its root, and so does the patch: a pressure on a
+        mesh has two errors, how well the mesh resolves it and its own width's, and both must fall; and a mesh of few
+        elements whose edges grow by more than their own length spoils what its short edges are there for.
         """
-        return replace(self.scaled(factor), patch_half_width=min(self.patch_half_width * math.sqrt(factor), 0.5))
+        root = math.sqrt(factor)
+        return replace(
+            self.scaled(factor),
+            growth=self.growth * root,
+            tip_growth=self.tip_growth * root,
+            side_growth=self.side_growth * root,
+            patch_half_width=min(self.patch_half_width * root, _WIDEST_PATCH),
+        )
 
 
 #: Edge lengths of neighbouring levels differ by this factor.

@@ -7,6 +7,8 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fegear.fem.boundary import check_bore
 from fegear.fem.gear import GearInfluence
 from fegear.fem.influence import Influence, solve_influence
@@ -27,8 +29,10 @@ if TYPE_CHECKING:
     Progress = Callable[[str], None]
 
 _HIGHEST_ORDER = 4
-#: Edges half as long for a tenth of the error; and how often at most a solution is refined.
-_LEVELS_PER_DECADE, _MOST_ROUNDS = 2.0, 4
+#: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md).
+_LEVELS = ((1e-2, -3), (1e-3, -2), (1e-4, 0), (1e-5, 2), (1e-6, 4))
+#: How many solutions are tried at most.
+_MOST_ROUNDS = 4
 
 
 @dataclass(frozen=True)
@@ -223,6 +227,7 @@ def _shape(gear: Gear) -> tuple[Tooth, float, float, Plane]:
 
 
 def level_for(tolerance: float) -> int:
-    """Level of `settings_at` that usually meets a relative tolerance: 0 for 1e-3, two levels a decade."""
-    level = math.ceil(-_LEVELS_PER_DECADE * math.log10(tolerance / 1e-3) - 1e-9)
-    return min(max(level, COARSEST_LEVEL), FINEST_LEVEL)
+    """Level of `settings_at` that usually meets a relative tolerance: -2 for 1e-3, 0 for 1e-4."""
+    decades, levels = zip(*((-math.log10(known), level) for known, level in _LEVELS), strict=True)
+    between = float(np.interp(-math.log10(tolerance), decades, levels))
+    return min(max(math.ceil(between - 1e-9), COARSEST_LEVEL), FINEST_LEVEL)

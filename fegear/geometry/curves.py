@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -43,6 +44,9 @@ class Curve(Protocol):
 
     def speed(self, parameter: ArrayLike) -> Array:
         """Arc length per parameter [modules], shape (N,)."""
+
+    def __hash__(self) -> int:
+        """Curves of the same data are one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,17 +277,22 @@ class Line:
         return np.ones(np.shape(parameter))
 
 
+@lru_cache(maxsize=64)
 def arc_length(curve: Curve, intervals: int = 400) -> tuple[Array, Array]:
     """Parameters and arc lengths from the start of a curve, by composite Gauss quadrature of its speed.
+
+    Found once for each curve: a mesh asks for those of its tooth some twenty times.
 
     Returns
     -------
     parameter, length : ndarray, shape (intervals + 1,)
-        Monotone tables for interpolation; lengths in modules.
+        Monotone tables for interpolation, read-only; lengths in modules.
     """
     nodes, weights = np.polynomial.legendre.leggauss(4)
     u = np.linspace(curve.start, curve.end, intervals + 1)
     half = 0.5 * np.diff(u)
     mid = 0.5 * (u[1:] + u[:-1])
     pieces = (curve.speed(mid[:, None] + half[:, None] * nodes) * weights).sum(axis=1) * np.abs(half)
-    return u, np.concatenate([[0.0], np.cumsum(pieces)])
+    length = np.concatenate([[0.0], np.cumsum(pieces)])
+    u.flags.writeable = length.flags.writeable = False
+    return u, length

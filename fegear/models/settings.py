@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from fegear.fem.settings import MeshSettings
 
 #: Processor seconds of one gear with the default settings and its error estimate, and how they grow with 1 / edge
-#: length and with the order: one core of a server, 12 to 200 teeth, edges of 2.8 to 0.35 times the default.
-_SECONDS, _GROWTH, _ORDER_GROWTH = 0.40, 2.0, 2.2
+#: length and with the order: one core of a server, 20 to 200 teeth, edges of 4 to 1 times the default.
+_SECONDS, _GROWTH, _ORDER_GROWTH = 0.55, 1.3, 2.2
 
 
 def settings_for(tolerance: float) -> MeshSettings:

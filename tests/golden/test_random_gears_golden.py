@@ -52,7 +52,7 @@ def truth_and_estimate(level, gears):
         tooth = generator.tooth_of(g)
         material = Material(1.0, g["poisson_ratio"])
         gear = Gear(tooth, 1.0, g["bore"] * tooth.root_radius, material=material, plane=g["plane"])
-        known = solve_gear(gear, settings_at(level), coarser=settings_at(level - 1))
+        known = solve_gear(gear, settings_at(level))
         radii = np.clip(g["radii"], known.lowest_radius, known.highest_radius)
         found = {
             "c_self": known.self_compliance(radii, HALF_WIDTH),

@@ -59,7 +59,7 @@ def exceeded(names, solved):
 
 
 def at_level(level):
-    return lambda gear: solve_gear(gear, settings_at(level), coarser=settings_at(level - 1))
+    return lambda gear: solve_gear(gear, settings_at(level))
 
 
 def check_honesty(found, count):
