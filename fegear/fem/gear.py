@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: of c_0, of neighbours, of stresses, learned from random gears (docs/numerics.md). Smooth errors of order four
 #: leave a third; but gmsh draws every mesh anew, positions differ, pressures narrow less than edges, and a neighbour's
 #: deflection, a small error anyway, differs least regularly.
-_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 1.8, 2.4, 1.0
+_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 2.1, 2.4, 1.0
 #: What is modelled nearer to an end of the flank than the mesh resolves is wrong by the first power of the edges'
 #: length, of which neighbouring levels differ by two fifths.
 _END_SHARE = 3.0

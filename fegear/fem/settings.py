@@ -48,7 +48,7 @@ class MeshSettings:
     root_fraction: float = 0.08
     flank_edge_length: float = 0.055
     tip_edge_length: float = 0.003
-    junction_edge_length: float = 0.003
+    junction_edge_length: float = 0.00075
     back_edge_length: float = 0.3
     growth: float = 0.28
     tip_growth: float = 0.155
