@@ -139,7 +139,7 @@ def test_generation_of_wrong_crowned_and_spur_flanks():
     assert not {"p", "H"} & set(tables["flank_design_I"])
     assert values["I.generated_apart"] < 1e-9
     assert values["I.largest_departure"] == 0.0
-    assert "infinite and left out" in results.remarks[0]
+    assert "infinite and not listed" in results.remarks[0]
 
 
 def test_kinds_of_contact_add_up():

@@ -17,7 +17,7 @@ from fegear.fem.field import _nodal_stress
 from fegear.fem.mesh import SectorMesh, with_middle_nodes
 from fegear.fem.ring import close_ring
 from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings, settings_at
+from fegear.fem.settings import LEVEL_RATIO, MeshSettings
 from fegear.geometry import BasicRack, Tooth
 
 _spec = importlib.util.spec_from_file_location(
@@ -252,7 +252,8 @@ def test_meshes_whose_cubic_edges_turn_an_element_inside_out_are_drawn_finer():
     Meshes of plane teeth had none among 90 tried; those of solid teeth are frontal.
     """
     tooth = Tooth(105, BasicRack(1.0, 1.25, 0.0454), 0.076)
-    coarse, cubic = (replace(settings_at(-3), order=order) for order in (2, 4))
+    rough = MeshSettings(root_fraction=0.2, junction_edge_length=0.003, tip_growth=0.22).scaled(LEVEL_RATIO**3)
+    coarse, cubic = (replace(rough, order=order) for order in (2, 4))
     quadratic, finer = (
         mesh_sector(tooth, 0.1 * tooth.root_radius, settings, frontal=True) for settings in (coarse, cubic)
     )

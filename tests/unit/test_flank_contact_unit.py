@@ -20,6 +20,7 @@ from fegear.contact.flank.touching import unloaded_error
 from fegear.contact.tooth_stress import loaded_states, tooth_stress
 from fegear.errors import InputError
 from fegear.fem import solve_gear
+from fegear.fem.root_stress import extreme
 from fegear.fem.solid import SolidSettings, solve_solid
 from fegear.fem.solid.bands import hats
 from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
@@ -367,8 +368,11 @@ def test_root_stress_is_the_sum_of_single_stations_over_own_and_neighbouring_tee
             whole = whole + solution.fillet_stress(k, "compression", line, z / MODULE)[0] @ force[p, s]
         stress = rooted.stress("compression", force, z)
         row = len(rooted.teeth) // 2
+        # Both are the largest of a curve through the Gauss points, which lies up to 1.3 % beyond the largest of these.
+        fillet = solution.fillets["compression"]
+        largest = extreme(whole, fillet.arc, -1.0, fillet.length)[0]
         # pressed bands come in few widths, which the fillet hardly feels
-        np.testing.assert_allclose(stress.value[row], whole.min(axis=0) / MODULE**2, rtol=1e-2)
+        np.testing.assert_allclose(stress.value[row], largest / MODULE**2, rtol=1e-2)
         twice = rooted.stress("compression", 2.0 * force, z)
         np.testing.assert_allclose(twice.value, 2.0 * stress.value, rtol=1e-9)
         # without coupling only the teeth that touch are stressed

@@ -31,7 +31,7 @@ CASE = {
     }},
     "pair": {"I": {"driver": "a", "driven": "a", "load": "2500 N"}},
     "effects": {"neighbour_coupling": True, "hertz": "load-dependent", "relief": True},
-    "accuracy": {"tolerance": 0.03},
+    "accuracy": {"tolerance": 1e-3},
 }  # fmt: skip
 MESHES = Path(__file__).parents[2] / "meshes"
 STRESS, DEFORMED = Task("stress-in-mesh", "I"), Task("deformed-in-mesh", "I")
