@@ -227,9 +227,7 @@ def largest_tension(results, load: float) -> float:
     return max(float(root_stress_history(e, state, member).largest[0]) for member in ("driver", "driven"))
 
 
-@pytest.mark.parametrize(
-    "seed", [1, 3, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(30) if seed not in (1, 3))]
-)
+@pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(30) if seed != 1)])
 def test_sizes_of_root_tension_of_random_pairs(seed):
     """Within a factor of two of brute force, and so is the difference of two runs: both peaks are found."""
     load, made = random_pair(seed)

@@ -15,7 +15,7 @@ from fegear.geometry import BasicRack, Gear, Material, Tooth
 
 HALF_WIDTH = 0.02
 TOLERANCES = (1e-2, 1e-3, 1e-2, 1e-3, 1e-4)
-ORDINARY, DRAWS = (4, 6), 300
+ORDINARY, DRAWS = (6,), 300
 
 
 def drawn(i):

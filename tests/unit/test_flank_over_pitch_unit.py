@@ -66,7 +66,7 @@ def stated(flanks, bodies, beta, gaps, loads=(LOAD,)):
     return over.stated, flank_error(flanks, found, bodies[beta, "coarse"], gaps, over, LOAD), over
 
 
-@pytest.mark.parametrize(("beta", "edges"), [(0.0, True), (15.0, True)])
+@pytest.mark.parametrize(("beta", "edges"), [pytest.param(0.0, True, marks=pytest.mark.long), (15.0, True)])
 def test_few_roll_positions_state_what_many_show(bodies, beta, edges):
     """Twelve positions were off by up to six times what was stated; so was what eight said of the peak to peak."""
     flanks = flanks_of(bodies, beta, edges=edges)
