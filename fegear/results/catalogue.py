@@ -30,13 +30,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 ("tooth-geometry-check",),
                 "tip thickness, rim, undercut, contact ratio and clearances against rules of thumb",
             ),
-            Entry(
-                "gear-solution",
-                "gear_solution.GEAR_SOLUTION",
-                "Influence functions of a gear",
-                (),
-                "",
-            ),
+            Entry("gear-solution", "gear_solution.GEAR_SOLUTION", "Influence functions of a gear"),
             Entry(
                 "stiffness",
                 "stiffness.STIFFNESS",
@@ -44,13 +38,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 ("stiffness",),
                 "compliance of a loaded tooth and its neighbours, and its root stress, over load positions",
             ),
-            Entry(
-                "solid-solution",
-                "solid_solution.SOLID_SOLUTION",
-                "Influence functions of a gear with its width",
-                (),
-                "",
-            ),
+            Entry("solid-solution", "solid_solution.SOLID_SOLUTION", "Influence functions of a gear with its width"),
             Entry(
                 "stiffness-over-face",
                 "solid_stiffness.SOLID_STIFFNESS",
@@ -81,13 +69,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
             ),
         ),
         "A pair under load": (
-            Entry(
-                "loaded-pair",
-                "loaded_pair.LOADED_PAIR",
-                "Compliances of a loaded pair",
-                (),
-                "",
-            ),
+            Entry("loaded-pair", "loaded_pair.LOADED_PAIR", "Compliances of a loaded pair"),
             Entry(
                 "load-sharing",
                 "load_sharing.LOAD_SHARING",
@@ -109,34 +91,10 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 ("root-stress-history",),
                 "root stress of both gears as a tooth passes through the mesh",
             ),
-            Entry(
-                "stress-in-mesh",
-                "stress_in_mesh.STRESS_IN_MESH",
-                "Root stress of the gears in mesh",
-                (),
-                "",
-            ),
-            Entry(
-                "outline-motion",
-                "deformed_in_mesh.OUTLINE_MOTION",
-                "Motion of a gear's outline",
-                (),
-                "",
-            ),
-            Entry(
-                "deformed-in-mesh",
-                "deformed_in_mesh.DEFORMED_IN_MESH",
-                "Deformed teeth of the gears in mesh",
-                (),
-                "",
-            ),
-            Entry(
-                "loaded-flanks",
-                "loaded_flanks.LOADED_FLANKS",
-                "Contact over the flanks",
-                (),
-                "",
-            ),
+            Entry("stress-in-mesh", "stress_in_mesh.STRESS_IN_MESH", "Root stress of the gears in mesh"),
+            Entry("outline-motion", "deformed_in_mesh.OUTLINE_MOTION", "Motion of a gear's outline"),
+            Entry("deformed-in-mesh", "deformed_in_mesh.DEFORMED_IN_MESH", "Deformed teeth of the gears in mesh"),
+            Entry("loaded-flanks", "loaded_flanks.LOADED_FLANKS", "Contact over the flanks"),
             Entry(
                 "flank-load-sharing",
                 "flank_load_sharing.FLANK_LOAD_SHARING",
@@ -162,8 +120,6 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 "flank-stress-in-mesh",
                 "flank_stress_in_mesh.FLANK_STRESS_IN_MESH",
                 "Root stress of the gears in mesh over the face",
-                (),
-                "",
             ),
             Entry(
                 "load-distribution",
@@ -388,13 +344,7 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 ("tooth-loss",),
                 "friction loss of the teeth, H_V compared with Ohlendorf and Wimmer, efficiency of pair and train",
             ),
-            Entry(
-                "motion",
-                "motion.MOTION",
-                "Motion over the speeds",
-                (),
-                "",
-            ),
+            Entry("motion", "motion.MOTION", "Motion over the speeds"),
             Entry(
                 "dynamic-factor",
                 "dynamic_factor.DYNAMIC_FACTOR",
