@@ -115,6 +115,10 @@ class IsoPart(Part):
         description="Own material factor W_W of the permissible film of ISO/TS 6336-22; from the steels of both flanks "
         "without.",
     )
+    flank_fracture_material_factor: Annotated[Number, Field(ge=0.3, le=2.0)] = Field(
+        default=1.0,
+        description="K_material of ISO/TS 6336-4: shear strength of both steels over that by their hardness.",
+    )
 
 
 #: How wide the teeth of a loaded pair are: a section, coupled slices of it, or solid gears.

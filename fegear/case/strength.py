@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from fegear.case.part import Part, PositivePressure, quantity, refuse
+from fegear.case.part import LengthOrZero, Part, PositiveLength, PositivePressure, quantity, refuse
 from fegear.errors import InputError
 from fegear.unit_text import UnreadableError, split
 
@@ -67,6 +68,53 @@ Hardness = Annotated[float, quantity("hardness", positive=True), BeforeValidator
 _WEAKEST, _STRONGEST = 1e6, 10e9
 
 
+Stress = Annotated[float, quantity("pressure")]
+Hardnesses = Annotated[list[Hardness], Field(min_length=2, max_length=500)]
+Depths = Annotated[list[LengthOrZero], Field(min_length=2, max_length=500)]
+#: Residual stresses beyond this are those of no steel [Pa].
+_LARGEST_RESIDUAL = 3e9
+
+
+def _refuse_depths(depths: list[float], values: list[float], name: str) -> None:
+    """Refuse a profile whose depths do not rise, or that are not as many as its values."""
+    if len(depths) != len(values):
+        raise refuse(f"has {len(depths)} depths for {len(values)} of {name}", "give one each", key="depth")
+    if any(one >= other for one, other in pairwise(depths)):
+        raise refuse("must rise from each depth to the next", "sort the measured points", key="depth")
+
+
+class HardnessProfilePart(Part):
+    """``hardness_profile = { depth, hardness }``: as measured below the flank."""
+
+    depth: Depths = Field(description="Depths below the finished flank, rising.")
+    hardness: Hardnesses = Field(description="Hardness at each depth in HV, HBW or HRC.")
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Self:
+        _refuse_depths(self.depth, self.hardness, "hardness")
+        return self
+
+
+class ResidualStressPart(Part):
+    """``residual_stress = { depth, stress }``: along profile and face, as measured; compression is negative."""
+
+    depth: Depths = Field(description="Depths below the finished flank, rising.")
+    stress: Annotated[list[Stress], Field(min_length=2, max_length=500)] = Field(
+        description="Residual stress at each depth, the same along profile and face; compression is negative."
+    )
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Self:
+        _refuse_depths(self.depth, self.stress, "stress")
+        for value in self.stress:
+            if abs(value) > _LARGEST_RESIDUAL:
+                raise refuse(
+                    f"is that of no steel, above {_LARGEST_RESIDUAL * 1e-9:g} GPa", "check the unit", key="stress",
+                    value=f"{value * 1e-6:g} MPa",
+                )  # fmt: skip
+        return self
+
+
 class StrengthPart(Part):
     """``strength = { material, quality, hardness, ... }``: what the flanks and roots of a gear bear.
 
@@ -95,6 +143,18 @@ class StrengthPart(Part):
         default=None,
         description="Hardness 12 mm from the quenched end of a Jominy bar, of case-hardened steel of quality MQ: from "
         "28 HRC the root bears more.",
+    )
+    case_depth: PositiveLength | None = Field(
+        default=None,
+        description="Case depth of the finished flank at 550 HV (CHD, Eht) of surface-hardened teeth, for "
+        "`flank-fracture`.",
+    )
+    hardness_profile: HardnessProfilePart | None = Field(
+        default=None, description="Measured hardness over depth, in place of the curve through case_depth."
+    )
+    residual_stress: ResidualStressPart | None = Field(
+        default=None,
+        description="Measured residual stress over depth; from the hardness by Lang's rule without.",
     )
     contact: PositivePressure | None = Field(
         default=None, description="Own allowable stress number (contact) sigma_Hlim in place of that of ISO 6336-5."
@@ -133,8 +193,9 @@ class StrengthPart(Part):
                     f"is that of no gear, {_WEAKEST * 1e-6:g} MPa to {_STRONGEST * 1e-9:g} GPa", "check the unit",
                     key=key, value=f"{value * 1e-6:g} MPa",
                 )  # fmt: skip
-        if self.core_hardness is not None and not self.material.startswith(_WITH_A_CORE):
-            raise refuse("has a meaning only for surface-hardened steel", "remove core_hardness", key="core_hardness")
+        for key in ("core_hardness", "case_depth", "hardness_profile", "residual_stress"):
+            if getattr(self, key) is not None and not self.material.startswith(_WITH_A_CORE):
+                raise refuse("has a meaning only for surface-hardened steel", f"remove {key}", key=key)
         if self.jominy_12 is not None and self.material != "case-hardened-steel":
             raise refuse("has a meaning only for case-hardened-steel", "remove jominy_12", key="jominy_12")
         if self.tensile_strength is not None and not self.material.endswith("iron"):

@@ -23,6 +23,8 @@ Plane = Literal["strain", "stress"]
 
 #: Hertz takes both bodies as half-planes; beyond this half-width over the smaller radius his parabola is no circle.
 LARGEST_WIDTH_RATIO = 0.3
+#: Distance in half-widths from which on the stresses are less than 1e-4 of the peak pressure.
+_FAR = 1e4
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +123,35 @@ def line_contact(line_load: ArrayLike, curvature: ArrayLike, modulus: float) -> 
             "lower the load or solve the contact with finite elements",
         )
     return LineContact(w, a, np.sqrt(w / math.pi * modulus * kappa))
+
+
+def stresses_below(along: ArrayLike, depth: ArrayLike) -> tuple[Array, Array, Array]:
+    """Stresses below a line contact without friction over its peak pressure (Johnson, Eqs. 4.47 to 4.49).
+
+    Both distances are in half-widths and count as `_FAR` beyond it, where next to nothing presses.
+
+    Parameters
+    ----------
+    along : array_like
+        From the middle of the contact.
+    depth : array_like
+        Below the surface, >= 0.
+
+    Returns
+    -------
+    along, down, shear : ndarray
+        Normal stresses along the surface and into the depth, and shear stress.
+    """
+    x, z = (np.clip(np.asarray(value, dtype=float), -_FAR, _FAR) for value in (along, depth))
+    inner = 1.0 - x**2 + z**2
+    whole = np.hypot(inner, 2.0 * x * z)
+    larger = np.sqrt(0.5 * (whole + np.abs(inner)))  # of m and n, the other from m n = |x| z: no cancellation
+    other = np.divide(np.abs(x) * z, larger, out=np.zeros(np.shape(larger)), where=larger > 0.0)
+    m, n = np.where(inner >= 0.0, larger, other), np.where(inner >= 0.0, other, larger)
+    total = np.maximum(m**2 + n**2, np.finfo(float).tiny)
+    part = (z**2 + n**2) / total
+    shear = -np.sign(x) * n * (m**2 - z**2) / total
+    return np.asarray(2.0 * z - m * (1.0 + part)), np.asarray(-m * (1.0 - part)), np.asarray(shear)
 
 
 def approach(

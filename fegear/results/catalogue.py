@@ -157,6 +157,13 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 "safeties of flanks and roots by ISO 6336, every factor; computed ones and AGMA 2101 for comparison",
             ),
             Entry(
+                "flank-fracture",
+                "flank_fracture.FLANK_FRACTURE",
+                "Flank fracture and case depth",
+                ("flank-fracture",),
+                "exposure of surface-hardened flanks over depth by ISO/TS 6336-4, and the case depth they need",
+            ),
+            Entry(
                 "flank-surface",
                 "flank_surface.FLANK_SURFACE",
                 "Flank surface",
