@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -103,8 +103,8 @@ class FlankFractureData:
     sharing, pressure, half_width, radius : ndarray, shape (N,)
         X_CP, p_dyn,CP [Pa], b_H and relative radius [m].
     gears : mapping of Member to GearExposure
-    contact_stress : (float, float)
-        sigma_H of driver and driven by ISO 6336-2 [Pa].
+    load : float
+        Along the line of action, of the spectrum's largest level where there is one [N].
     """
 
     x: Array
@@ -114,7 +114,7 @@ class FlankFractureData:
     half_width: Array
     radius: Array
     gears: dict[Member, GearExposure]
-    contact_stress: tuple[float, float]
+    load: float
 
 
 def _inputs(scene: Scene, name: str) -> FlankFractureInputs:
@@ -144,10 +144,16 @@ def _compute(inputs: FlankFractureInputs, _upstream: Upstream, _work: Work) -> F
 
     asked = inputs.asked
     try:
-        rating = rate_pair(rated(asked), given(asked))
+        conditions = rated(asked)
+        level = max(asked.levels, key=lambda one: one.tangential, default=None)
+        if level is not None:
+            duty = replace(conditions.duty, tangential=level.tangential, speed=level.speed)
+            conditions = replace(conditions, duty=duty)
+        rating = rate_pair(conditions, given(asked))
     except RangeError as error:
         raise at(f"pair.{asked.name}", error) from None
-    pair, duty = asked.pair, asked.conditions.duty
+    pair, duty = asked.pair, conditions.duty
+    load = asked.load * duty.tangential / asked.conditions.duty.tangential
     inside = _INSIDE * pair.base_pitch
     shift = {"B": inside, "D": -inside}
     named = {point.letter: point.x + shift.get(point.letter[0], 0.0) for point in path_points(pair)}
@@ -159,13 +165,13 @@ def _compute(inputs: FlankFractureInputs, _upstream: Upstream, _work: Work) -> F
     sharing, speeds = load_sharing(pair, x, grade), flank_speeds(pair, x, 1.0)
     one, other = pair.driver.material, pair.driven.material
     modulus = reduced_modulus((one.young_modulus, other.young_modulus), (one.poisson_ratio, other.poisson_ratio))
-    pressed = pressure(speeds, sharing * factors * asked.load / pair.face_width, modulus)
+    pressed = pressure(speeds, sharing * factors * load / pair.face_width, modulus)
     width = half_width(pressed, speeds.relative_radius, modulus)
     stress = [rating.contact_stress[asked.of(member)] for member in MEMBERS]
     gears = {member: _below(inputs, member, x, pressed, width, stress[i]) for i, member in enumerate(MEMBERS)}
     return FlankFractureData(
         x, {letter: int(np.searchsorted(x, place)) for letter, place in named.items()}, sharing, pressed, width,
-        speeds.relative_radius, gears, (stress[0], stress[1]),
+        speeds.relative_radius, gears, load,
     )  # fmt: skip
 
 

@@ -134,6 +134,11 @@ def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tu
         ):
             if measured is None:
                 told.append(f"Gear {gear}: {what} is by Lang's rule, which is recalled ({rule} of strength).")
+    if inputs.asked.levels:
+        told.append(
+            f"Pair {name}: exposure and case depths are those of the largest level of the spectrum, "
+            f"{data.load / inputs.asked.load:.4g} times the load, for which they are meant as for endurance."
+        )
     told += inputs.said
     told.append(
         f"Pair {name}: of ISO/TS 6336-4 print at hand backs the structure of A_FF, its symbols and the scope, "

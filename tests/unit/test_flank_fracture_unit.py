@@ -124,3 +124,12 @@ def test_helical_pairs_are_rated_too():
     values = {value.name: value.si for value in found.values}
     assert 0.04 < values["I.driver.A_FF"] < values["I.driver.A_FF_load"] < 2.0
     assert math.isfinite(values["I.driver.case_depth_crushing"])
+
+
+def test_a_spectrum_is_rated_at_its_largest_level():
+    spectrum = [{"load_factor": 1.5, "share": 0.1}, {"load_factor": 0.5, "share": 0.9}]
+    values, found = numbers(operation={"spectrum": spectrum, "life": "1000 h"})
+    alone, _ = numbers(torque="780 N*m")
+    assert values["driver.A_FF"] == pytest.approx(alone["driver.A_FF"], rel=1e-9)
+    assert values["driver.case_depth_crushing"] == pytest.approx(alone["driver.case_depth_crushing"], rel=1e-9)
+    assert any("largest level of the spectrum, 1.5 times" in remark for remark in found.remarks)

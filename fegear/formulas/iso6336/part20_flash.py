@@ -91,15 +91,7 @@ def load_sharing_factor(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
 
 
 def spur_sharing(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
-    """Share of the load of unmodified spur teeth, as parts 20 and 22 take it; `load_sharing_factor` says what it is.
-
-    Parameters
-    ----------
-    pair : GearPair
-    x : array_like
-        [m].
-    grade : int
-    """
+    """Share of the load of unmodified spur teeth, as parts 20 and 22 take it; arguments as `load_sharing_factor`."""
     place, start, end = np.asarray(x, dtype=float), pair.x_start, pair.x_end
     if pair.contact_ratio >= 2.0:
         return np.ones_like(place)
@@ -123,15 +115,10 @@ def buttressing(pair: GearPair, x: Array) -> Array:
     return np.asarray(np.maximum(1.0, np.maximum(np.minimum(at_start, peak), np.minimum(at_end, peak))))
 
 
-def optimal_relief(rated: RatedSurface) -> float:
-    """C_eff = K_A F_t / (b cos(alpha_t) c_gamma) [m] (Eq. B.1)."""
-    return rated.factors.application * rated.load / (rated.pair.face_width * rated.mesh_stiffness)
-
-
 def approach_factor(rated: RatedSurface, x: ArrayLike) -> Array:
     """X_J, shock at the start of engagement: 1 + (C_eff - C_a) / 50 um (x / g_alpha)^3 before C (Eqs. 45 to 48)."""
     place = np.asarray(x, dtype=float)
-    missing = (optimal_relief(rated) - rated.tip_relief[1]) / _APPROACH
+    missing = (rated.optimal_relief - rated.tip_relief[1]) / _APPROACH
     before = np.clip(-place / rated.pair.path_length, 0.0, None)
     return np.asarray(np.maximum(1.0, 1.0 + missing * before**3))
 
@@ -167,7 +154,7 @@ def flash_temperatures(rated: RatedSurface, x: ArrayLike) -> FlashTemperatures:
     own = flash(place)
     return FlashTemperatures(
         place, load_sharing_factor(rated.pair, place, rated.grade), approach_factor(rated, place), own, bulk + own,
-        mu, mean, bulk, bulk + float(whole.max()), optimal_relief(rated),
+        mu, mean, bulk, bulk + float(whole.max()), rated.optimal_relief,
     )  # fmt: skip
 
 

@@ -105,7 +105,7 @@ def load_sharing(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:
     ----------
     pair : GearPair
     x : array_like
-        [m].
+        Places on the path of contact [m].
     grade : int
         Tolerance class of the flanks.
     """
@@ -139,8 +139,7 @@ def friction(rated: RatedSurface) -> float:
 
 def relief_factor(rated: RatedSurface) -> float:
     """X_Ca: 1 + 0.24 e + 0.71 e^2 for flanks of class 6 or better with the relief C_eff, else 1 (100 and 101)."""
-    best = rated.factors.application * rated.load / (rated.pair.face_width * rated.mesh_stiffness)
-    if rated.grade > 6 or min(rated.tip_relief) < best:
+    if rated.grade > 6 or min(rated.tip_relief) < rated.optimal_relief:
         return 1.0
     e = max(contact_ratios(rated.pair))
     return 1.0 + 0.24 * e + 0.71 * e * e

@@ -126,6 +126,11 @@ class RatedSurface:
         return self.factors.product * self.load / self.pair.face_width
 
     @property
+    def optimal_relief(self) -> float:
+        """C_eff = K_A F_t / (b cos(alpha_t) c_gamma) [m] (ISO/TR 13989-1, Eq. B.1)."""
+        return self.factors.application * self.load / (self.pair.face_width * self.mesh_stiffness)
+
+    @property
     def power(self) -> float:
         """Nominal power that the pair transmits [W]."""
         return self.load * self.speed * self.pair.driver.base_radius
