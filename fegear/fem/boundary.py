@@ -35,6 +35,8 @@ _FEWEST_FILLET_EDGES = 4
 #: Shorter fillets [modules] are all curvature: so many edges at the default fraction of its radius, and in proportion
 #: to the root of that fraction at others, so that no two levels have the same few edges and err alike.
 _SHORT_FILLET, _SHORT_FILLET_EDGES, _USUAL_FRACTION = 0.1, 8, 0.2
+#: Edges where flank and a short fillet meet go with its length, down to this share of the usual ones.
+_SHORTEST_JOINT = 0.03
 #: Bores that can be meshed. Nearer the centre the whole gear turns about its bore so freely, with the inverse square of
 #: the radius, that nothing is left of the digits of a tooth's own strain; a thinner rim [modules] takes elements
 #: without number.
@@ -93,9 +95,12 @@ def graded(length: float, size: Law, *, fewest: int = 1, at: Array | None = None
     return nodes
 
 
-def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1) -> Chain:
+def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1, *, dense: bool = False) -> Chain:
+    """Edges along a curve; where `dense`, the law is sampled more and more densely toward the start."""
     parameter, length = arc_length(curve)
-    nodes = graded(float(length[-1]), size, fewest=fewest)
+    end = float(length[-1])
+    at = np.union1d(np.linspace(0.0, end, 513), np.geomspace(1e-6 * end, end, 257)) if dense else None
+    nodes = graded(end, size, fewest=fewest, at=at)
     halves = np.sort(np.concatenate([nodes, 0.5 * (nodes[1:] + nodes[:-1])]))
     points = curve.points(np.interp(halves, length, parameter))
     points[:, 0], points[:, -1] = curve.points(curve.start), curve.points(curve.end)
@@ -145,8 +150,15 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
     )
     front_laws = _front_sizes(tooth, settings)
     fewest = _fewest_edges(tooth, settings)
+    short_fillet = _length(tooth.fillet) < _SHORT_FILLET
     front = [
-        _on_curve(_boundary(piece, tooth), pieces[piece], law, fewest if piece == "fillet" else 1)
+        _on_curve(
+            _boundary(piece, tooth),
+            pieces[piece],
+            law,
+            fewest if piece == "fillet" else 1,
+            dense=short_fillet and piece == "flank",
+        )
         for piece, law in front_laws.items()
         if piece in pieces
     ]
@@ -294,7 +306,9 @@ def _front_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
     grow, root, corner = settings.growth, _fillet_size(tooth, settings), settings.tip_edge_length
     fillet, flank = _length(tooth.fillet), _length(tooth.involute)
     edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
-    joint = min(settings.junction_edge_length, float(root(np.array([fillet]))[0]))
+    # Root tension is looked for down from half of a short fillet: as near to a contact at the flank's start as that.
+    joint = settings.junction_edge_length * min(max(fillet / _SHORT_FILLET, _SHORTEST_JOINT), 1.0)
+    joint = min(joint, float(root(np.array([fillet]))[0]))
 
     def flank_size(s: Array) -> Array:
         by_ends = np.minimum(joint + settings.tip_growth * s, corner + settings.tip_growth * (flank - s))

@@ -26,7 +26,8 @@ class MeshSettings:
     flank_edge_length : float
         Edges along the loaded flank.
     tip_edge_length, junction_edge_length : float
-        Edges at the ends of the loaded flank: at its tip corner, and where it joins the fillet.
+        Edges at the ends of the loaded flank: at its tip corner, and where it joins the fillet (in proportion to the
+        length of fillets shorter than .1 modules).
     back_edge_length : float
         Longest edge along the other flank and the tip.
     growth, tip_growth, side_growth : float

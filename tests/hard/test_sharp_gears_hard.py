@@ -15,7 +15,7 @@ from fegear.geometry import BasicRack, Gear, Material, Tooth
 
 HALF_WIDTH = 0.02
 TOLERANCES = (1e-2, 1e-3, 1e-2, 1e-3, 1e-4)
-ORDINARY, DRAWS = (6,), 300
+ORDINARY, DRAWS = (6, 171), 300
 
 
 def drawn(i):
@@ -77,12 +77,11 @@ def missed(i):
 
 @pytest.mark.parametrize("i", ORDINARY)
 def test_tables_of_sharp_gears_are_within_their_tolerance_or_their_stated_error(i):
-    """With edges of .003 modules where flank and fillet meet two of twelve draws were 1.9 and 2 times outside."""
+    """With edges of .0015 modules where flank and fillet meet draw 171, a fillet of .0034, was 2.2 times outside."""
     assert max(missed(i).values()) <= 1.0
 
 
 @pytest.mark.long
-@pytest.mark.xfail(strict=True, reason="12 of 160 were up to 2.2 times outside: tension at 1e-3, contact at the fillet")
 def test_two_of_a_hundred_sharp_gears_are_outside_at_most():
     over = [max(missed(i).values()) for i in range(DRAWS)]
     print(f"{sum(one > 1.0 for one in over)} of {DRAWS} outside, the worst {max(over):.2f} times")
