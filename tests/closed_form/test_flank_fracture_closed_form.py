@@ -120,6 +120,26 @@ def test_exposure_without_residual_stress_is_that_under_the_middle_and_falls_wit
     assert twice.strength == pytest.approx(2.0 * found.strength)
 
 
+def test_residual_stress_counts_over_the_whole_passage():
+    """Own sums of lines of force at many places, and the planes' mean shear by eigenvalues of the deviator."""
+    pressed, residual, ratios = 1.4e9, -320e6, np.array([0.5, 1.5, 4.0])
+    width = np.array([0.3e-3])
+    depth = ratios * width[0]
+    found = exposure(depth, np.array([pressed]), width, np.full(3, 600.0), np.full(3, residual))
+
+    def shear_of(x, z):
+        along, down, shear = (pressed * value for value in flamant(x, z, 2000))
+        axial = 0.3 * (along + down) + residual
+        tensor = np.array([[along + residual, shear, 0.0], [shear, down, 0.0], [0.0, 0.0, axial]])
+        values = np.linalg.eigvalsh(tensor)
+        return math.sqrt(0.2 * ((values - values.mean()) ** 2).sum())
+
+    alone = abs(residual) * math.sqrt(2.0 / 15.0)
+    for i, z in enumerate(ratios):
+        own = max(shear_of(x, z) for x in np.linspace(0.0, 2.0 * (1.0 + z), 400)) - alone
+        assert found.stress[0, i] == pytest.approx(own, rel=2e-3)
+
+
 def test_crushing_depth_is_a_multiple_of_the_depth_of_the_largest_shear():
     """Eht_c = 2 sigma_H rho_C / U_H with rho_C of the normal section; the half-width is 4 sigma_H rho_C / E_r."""
     rack = BasicRack.named("A", math.radians(20.0))

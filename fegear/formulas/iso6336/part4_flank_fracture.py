@@ -30,7 +30,8 @@ CALIBRATION = 0.04
 #: Largest exposure with which no flank fracture is expected.
 PERMISSIBLE = 0.8
 #: Where the contact stands while it passes over a point, in half-widths and depths to one side; the other is alike.
-_PASSAGE = np.linspace(0.0, 2.0, 33)
+#: A_FF is at most .05 % lower than with twenty times as many places (40 random cases below the half-width).
+_PASSAGE = np.linspace(0.0, 2.0, 65)
 
 
 @dataclass(frozen=True, slots=True)
