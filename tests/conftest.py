@@ -46,9 +46,9 @@ def program():
     return find
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def scheduler():
-    """Address of a Dask scheduler with one worker on this machine."""
+    """Address of a Dask scheduler with one worker on this machine, while a module needs it: idle ones take time too."""
     program = (
         "from dask.distributed import LocalCluster\n"
         "import sys\n"

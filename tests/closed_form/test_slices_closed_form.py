@@ -88,7 +88,7 @@ def test_a_hub_narrower_than_the_face_is_refused():
         solid_influence(TOOTH, 0.0, 4.0, 0.3, BORE, dataclasses.replace(SETTINGS, source="slices"), held=(-1.0, 1.0))
 
 
-@pytest.mark.parametrize("tau", [0.0, TAU])
+@pytest.mark.parametrize("tau", [pytest.param(0.0, marks=pytest.mark.long), TAU])
 def test_near_a_solid_gear_that_was_not_in_the_fit(tau):
     """Where thin slices are a fifth off in the middle and blind beside the load."""
     solid = solve_solid(TOOTH, tau, 5.0, 0.3, BORE, SETTINGS)

@@ -41,7 +41,7 @@ def amplitudes(error, count):
 @pytest.mark.parametrize(
     ("corner", "rtol"),
     # teeth that stand alone are linear about the full load on one pair; off the path load sharing itself is fitted
-    [(False, 0.04), (True, 1e-3)],
+    [(False, 0.04), pytest.param(True, 1e-3, marks=pytest.mark.long)],
 )
 def test_rotational_harmonics_are_those_of_load_sharing(corner, rtol):
     engagement = uneven(corner_contact=corner)

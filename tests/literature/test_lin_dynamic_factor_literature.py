@@ -93,6 +93,7 @@ def test_unmodified_gears():
         assert 10_000 < where / RPM < 11_500
 
 
+@pytest.mark.long
 def test_falling_speed_keeps_the_contact_loss_branch():
     found = relieved(0.0, 0.0, 1.0)
     model = MotionModel(system(0.05).train(1 / found.mean_compliance()), (found,), 1.0)

@@ -135,7 +135,7 @@ def test_a_parabola_too_flat_leaves_the_contact_on_the_edge():
 
 
 @pytest.mark.parametrize(
-    "errors", [{"shaft": 3.0}, pytest.param({"shaft": -3.0}, marks=pytest.mark.long), {"lead": 2.0}]
+    "errors", [{"shaft": 3.0}, *(pytest.param(one, marks=pytest.mark.long) for one in ({"shaft": -3.0}, {"lead": 2.0}))]
 )
 def test_predesigned_parabola_absorbs_the_linear_error(errors):
     plain = drive(**errors, parabola=0.08)

@@ -130,7 +130,9 @@ def test_scipy_started_on_the_steady_motion_stays_on_it(name):
         assert np.max(np.abs(after - before)) < 1e-9 * np.max(np.abs(before))
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name", [name if "backside" in name else pytest.param(name, marks=pytest.mark.long) for name in CASES]
+)
 def test_waiting_for_the_transient_ends_on_the_same_motion(name):
     """DOP853 from the static state over 150 periods; the slowest motion decays by 0.93 a period: 1e-4 is left."""
     rpm, backlash, amplitude, force, shaft = CASES[name]

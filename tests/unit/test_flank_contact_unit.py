@@ -109,6 +109,7 @@ def test_a_spur_pair_that_cannot_move_along_the_axis_is_the_plane_pair():
             np.testing.assert_allclose(stress.largest(sign)[0], by_plane, atol=1e-2 * np.abs(by_plane).max())
 
 
+@pytest.mark.long
 def test_a_helix_that_goes_to_zero_is_a_spur_pair():
     spur = gear(0.0)
     straight = solid(spur)

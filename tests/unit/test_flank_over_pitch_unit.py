@@ -90,6 +90,7 @@ def test_few_roll_positions_state_what_many_show(bodies, beta, edges):
             assert getattr(error, key)[0] < 0.05 * wanted, key
 
 
+@pytest.mark.long
 def test_a_larger_load_besides_changes_nothing(bodies):
     """Contact lines go farther along tip edges for it, and roll positions stand elsewhere."""
     alone, error, _ = stated(flanks_of(bodies, 15.0, edges=True), bodies, 15.0, MISALIGNED)

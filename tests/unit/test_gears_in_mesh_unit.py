@@ -315,6 +315,7 @@ def test_a_helical_pair_of_the_other_hand_shows_the_same_from_the_other_end(over
     assert right.largest.value == pytest.approx(left.largest.value, rel=1e-9)
 
 
+@pytest.mark.long
 def test_without_a_helix_sections_show_what_plane_teeth_do(over_the_face, cache):
     data = over_the_face().outcomes[WIDE].data
     case = wide()

@@ -110,3 +110,14 @@ def test_a_missing_program_skips_its_test_or_fails_it(strict, tmp_path):
     assert done.returncode == (1 if strict else 0), done.stdout + done.stderr
     assert "apt-get install calculix-ccx" in done.stdout
     assert ("1 failed" if strict else "1 skipped") in done.stdout
+
+
+def test_what_is_set_up_for_development_serves_tests_and_site(machine, tmp_path):
+    script = tmp_path / "both.sh"
+    calls = "".join(f'fegear_setup "$FEGEAR_VENV" {extra}\n' for extra in ("dev", "test", "docs"))
+    script.write_text(f'root={ROOT}\n. "$root/setup.sh"\n{calls}')
+    done = machine(script, tmp_path / "venv")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("Setting up") == 1
+    again = machine(script, tmp_path / "venv", pip="false")
+    assert "Setting up" not in again.stderr
