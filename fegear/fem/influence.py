@@ -135,7 +135,14 @@ class Influence:
         return arc, width
 
     def _remote(self, radius: ArrayLike, patch: float) -> Array:
-        """Loads in their exact place for effects away from the contact, where a narrow patch needs no resolution."""
+        """Loads in their exact place for effects away from the contact, where a narrow patch needs no resolution.
+
+        The last ones are kept: both neighbours are asked for at the same radii.
+        """
+        key = np.asarray(radius, dtype=float).tobytes(), patch
+        kept: tuple[object, Array] | None = self._last.get("remote")
+        if kept is not None and kept[0] == key:
+            return kept[1]
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
         low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
@@ -144,7 +151,10 @@ class Influence:
         narrow = np.maximum(_NARROWER * wide, 0.5 * _POINT)
         loads = self.flank.patches(np.tile(np.clip(arc, low, high), 2), np.concatenate([wide, narrow]))
         share = -(narrow**2) / (wide**2 - narrow**2)
-        return share * loads[:, : arc.size] + (1.0 - share) * loads[:, arc.size :]
+        found = np.asarray(share * loads[:, : arc.size] + (1.0 - share) * loads[:, arc.size :])
+        found.flags.writeable = False
+        self._last["remote"] = key, found
+        return found
 
     def _fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
         """Loads for the stress in the fillet, how far above it they stand and their half-width.
