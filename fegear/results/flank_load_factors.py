@@ -94,9 +94,14 @@ def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankLoadFacto
     except RangeError as error:
         why_not = str(error)
     return FlankLoadFactorsData(
-        loaded, transverse, np.abs(transverse_load_factor(coarse, perfect_coarse) - transverse), root, root_coarse,
+        loaded, transverse, _apart(transverse, transverse_load_factor(coarse, perfect_coarse)), root, root_coarse,
         by_iso, why_not, straight_gap(pair, loaded.gaps), iso_root_exponent(pair),
     )  # fmt: skip
+
+
+def _apart(factor: Array, other: Array) -> Array:
+    """Difference of two solutions; never zero, which means exact, where both agree to the last digit by chance."""
+    return np.asarray(np.maximum(np.abs(other - factor), np.spacing(factor)))
 
 
 def _table(name: str, data: FlankLoadFactorsData) -> Table:

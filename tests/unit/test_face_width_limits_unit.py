@@ -18,9 +18,18 @@ def check(width):
     check_solid(TOOTH, 0.0, width, 0.3, SolidSettings(), None, 0)
 
 
+def accepted(width):
+    try:
+        check(width)
+    except RangeError:
+        return False
+    return True
+
+
 @pytest.mark.parametrize("width", [0.6 / 3.0, 0.2, 0.00042 / 0.0021, 60.0, 0.18 / 0.003])
 def test_a_face_as_wide_as_the_limit_is_solved_whatever_its_last_digit(width):
-    check(width)
+    assert accepted(width)
+    assert not accepted(width * (1.0 - 1e-7 if width < 1.0 else 1.0 + 1e-7))
 
 
 @pytest.mark.parametrize("width", [0.2 * (1.0 - 1e-7), 0.19, 60.0001])
