@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.contact.fourier import effective_error
 from fegear.contact.transmission_error import transmission_error
-from fegear.design.tip_relief_search import search
+from fegear.design.tip_relief_search import SHARE, search
 from fegear.errors import InputError
 from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
 
@@ -21,6 +21,11 @@ if TYPE_CHECKING:
     from fegear.contact.engagement import Engagement
     from fegear.design.charts import Metric
     from fegear.geometry.gear import Gear
+
+#: Reliefs and what they leave are found again within this of themselves whatever the last digits of inputs are.
+REPEATED = 1e-6
+#: What is left below this is nothing [m].
+_NOTHING = 1e-15
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,11 @@ class TipReliefPair:
         What the best of all reliefs of this shape leave [m], by the search's own roll positions. These, and all up to
         1 % above, count as equally good: of them the one with the least removal is taken, and of two such the longer.
     driver_band, driven_band : tuple of EndRelief
-        From where to where equally good reliefs go: least amount and length, and largest.
+        From where to where equally good reliefs go: least amount and length, and largest. Like gears have the same, and
+        the driver takes the deeper relief.
+    error, band_error : ndarray, shapes (4,), (2, 4)
+        Estimated errors of the reliefs taken and of the ends of the bands: amount [m] and roll angle of the start
+        [rad] of the driver's, then of the driven gear's.
     candidates : int
         Combinations of amounts and lengths scanned.
     evaluations : int
@@ -50,8 +59,10 @@ class TipReliefPair:
     starts, agreeing : int
         Searches from different places of the scan, and those of them that end within 5 % of the best: several vouch
         for the global minimum, a single one leaves a doubt.
-    runner_up : float
-        The least that the other searches leave [m]; the most that any leaves where all agree.
+    runner_up, runner_up_error : float
+        The least that the other searches leave [m]; the most that any leaves where all agree; and its estimated error.
+    objective_error : float
+        How far what is left by the search's own roll positions is from `objective` [m].
     seconds : float
         Processor time of the search.
     """
@@ -66,11 +77,15 @@ class TipReliefPair:
     least: float
     driver_band: tuple[EndRelief, EndRelief]
     driven_band: tuple[EndRelief, EndRelief]
+    error: Array
+    band_error: Array
     candidates: int
     evaluations: int
     starts: int
     agreeing: int
     runner_up: float
+    runner_up_error: float
+    objective_error: float
     seconds: float
 
     def applied(self, engagement: Engagement) -> Engagement:
@@ -120,10 +135,15 @@ def optimise_tip_relief(
     before = _left(replace(plain, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED), w)
     after = _left(replace(plain, driver_relief=tips[0], driven_relief=tips[1]), w)
     objective = float((after[metric] * w.max() / w).max())
+    # More may be left than the search saw: then the relief goes on as it does from the least to what is allowed.
+    off = max(abs(objective - found.left), REPEATED * objective)
+    per_left = np.abs(found.best - found.ground) / max(SHARE * found.least, _NOTHING)
+    by_roll = np.array([v for gear in gears for v in (1.0, pair.path_length / gear.base_radius)])
+    error = np.maximum(off * per_left, REPEATED * np.abs(found.best)) * by_roll
     return TipReliefPair(
         tips[0], tips[1], w, after["effective_error"], after["peak_to_peak"], before[metric], objective, found.least,
-        driver_band, driven_band, found.candidates, found.evaluations, found.starts, found.agreeing, found.runner_up,
-        seconds,
+        driver_band, driven_band, error, found.band_error * by_roll, found.candidates, found.evaluations, found.starts,
+        found.agreeing, found.runner_up, found.runner_up_error, off, seconds,
     )  # fmt: skip
 
 

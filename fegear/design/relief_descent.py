@@ -75,6 +75,31 @@ class Aim:
         return np.asarray(self.along + np.where(left > self.allowed, _FINE / self.allowed, 0.0)[:, None] * by_number)
 
 
+def _ahead(trials: Trials, tried: Tried, p: Floats, limits: Limits, trust: Floats, aim: Aim) -> tuple[Floats, Floats]:
+    """Steps from candidates to the least of the aim, what is seen taken as linear, and that: shapes (C, 4), (C,)."""
+    unit = limits.unit
+    reach, low, high = limits.around(p, trust)
+
+    def tangent(x: Floats) -> tuple[Floats, Floats]:
+        left, slope = trials.tangent(tried, x * reach)
+        return aim.value((p + x * reach) / unit, left), aim.slope(left, slope * unit) * (reach / unit)
+
+    x, least, _ = least_in_box(tangent, low, high, _ROUND_OFF, share=_GAP)
+    return x * reach, least
+
+
+def room(trials: Trials, p: Floats, limits: Limits, trust: float, aim: Aim | None = None) -> Floats:
+    """How much less of the aim may be near candidates, shape (C, 4): what they are off as ends of a search, shape (C,).
+
+    What is seen is taken as linear within a region of that trust; it curves upward, so there is less in truth. Never
+    below what ends a descent.
+    """
+    aim, tried = aim or Aim(), trials.exact(p)
+    values = aim.value(p / limits.unit, trials.left(tried.seen, tried.low))
+    _, least = _ahead(trials, tried, p, limits, np.full(p.shape[0], trust), aim)
+    return np.asarray(np.maximum(values - least, _ENDED * (np.abs(values) if aim.along is None else 1.0)))
+
+
 def descend(
     evaluate: Callable[[Floats], Tried],
     trials: Trials,
@@ -116,17 +141,10 @@ def descend(
     size = np.abs(values) if aim.along is None else np.ones(values.size)
     active = np.arange(p.shape[0])
     for _ in range(rounds):
-        q, own = p[active], aim.of(active)
-        reach, low, high = limits.around(q, trusted[active])
-
-        def tangent(
-            x: Floats, tried: Tried = tried, q: Floats = q, reach: Floats = reach, own: Aim = own
-        ) -> tuple[Floats, Floats]:
-            left, slope = trials.tangent(tried, x * reach)
-            return own.value((q + x * reach) / unit, left), own.slope(left, slope * unit) * (reach / unit)
-
-        x, least, _ = least_in_box(tangent, low, high, _ROUND_OFF, share=_GAP)
-        new = np.clip(q + x * reach, limits.low, limits.high)
+        own = aim.of(active)
+        step, least = _ahead(trials, tried, p[active], limits, trusted[active], own)
+        q = p[active]
+        new = np.clip(q + step, limits.low, limits.high)
         new_tried = evaluate(new)
         evaluations += new.shape[0]
         old, new_values = values[active], own.value(new / unit, trials.left(new_tried.seen, new_tried.low))

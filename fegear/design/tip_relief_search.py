@@ -7,7 +7,8 @@ descend with it, and the best ends with the exact load sharing. The deepest vall
 
 The ground is flat: reliefs of half and of twice the depth may leave the same within a hundredth, and which of them is
 lowest hangs on the last digits of the load. So all that leave at most a hundredth more than the least count as equally
-good. Of them the one with the least removal is taken, and of two such the longer; the others are stated as a band.
+good. Of them the one with the least removal is taken, and of two such the longer; the others are stated as a band. Of
+two like gears either may have either relief: the driver takes the deeper one, and both have the same band.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ import numpy as np
 
 from fegear.contact.fourier import Panels
 from fegear.design.evaluation import Bench, bench
-from fegear.design.relief_descent import Aim, Limits, descend
+from fegear.design.relief_descent import Aim, Limits, descend, room
 from fegear.design.relief_refinement import refine
 from fegear.design.relief_trials import Trials
+from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import deepest_relief
 from fegear.geometry.relief import roll_of_radius
 
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 
     from fegear.arrays import Floats, Index
     from fegear.contact.engagement import Engagement
+    from fegear.contact.pair_compliance import PairCompliance
+    from fegear.geometry.pair import GearPair
 
 #: Reliefs that leave at most this much more than the least, over it, are equally good.
 SHARE = 0.01
@@ -62,6 +66,10 @@ _AGREED = 1.05
 _LONGER = 0.01
 #: Removals that differ by less, in mean transmission errors, are equal: then the driver's counts.
 _EQUAL = 1e-6
+#: Region of trust within which an end of a band, or another valley, may go on.
+_DOUBT = 0.1
+#: Gears are alike whose sizes and compliances differ by less, over these.
+_LIKE = 1e-9
 #: Positions beside changes of pairs, over the distance of the even ones.
 _BESIDE = (0.04, 0.14, 0.35)
 #: States of all sets of pairs to a roll position up to which nothing is saved: three pairs under one load.
@@ -134,27 +142,32 @@ class Found:
         good.
     left, least : float
         What it leaves, and what the best of all leave [m], by the search's own roll positions.
-    band : ndarray, shape (2, 4)
-        From where to where the numbers of equally good reliefs go.
+    ground : ndarray, shape (4,)
+        The best of all.
+    band, band_error : ndarray, shape (2, 4)
+        From where to where the numbers of equally good reliefs go, and how much farther that may be.
     candidates : int
         Combinations scanned.
     evaluations : int
         Load sharings over a base pitch solved exactly.
     starts, agreeing : int
         Searches from places of the scan that lie apart, and those of them that come within 5 % of the lowest.
-    runner_up : float
-        The least that the others leave [m]; the most that any leaves where all agree.
+    runner_up, runner_up_error : float
+        The least that the others leave [m]; the most that any leaves where all agree; and how much less it may be.
     """
 
     best: Floats
     left: float
     least: float
+    ground: Floats
     band: Floats
+    band_error: Floats
     candidates: int
     evaluations: int
     starts: int
     agreeing: int
     runner_up: float
+    runner_up_error: float
 
 
 def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> Found:
@@ -195,6 +208,11 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         p, values, count = descend(trials.exact if step else trials.rough, trials, p, limits, trust, rounds)
         solved += count if step else 0
         of_starts = values if step == 1 else of_starts
+    agree = of_starts < _AGREED * of_starts.min() + 1e-6 * scale
+    other = int(of_starts.argmax() if agree.all() else np.where(agree, np.inf, of_starts).argmin())
+    doubt = float(room(trials, p[other : other + 1], limits, _DOUBT)[0])
+    like = _are_like(pair, engagement.compliance)
+    p = _driver_deeper(p) if like else p
     grounds: list[tuple[float, Floats]] = []
     for i in _apart(p, values, limits, _GROUNDS):
         if grounds and (values[i] > _HOPELESS * grounds[0][0] or _led_already(p[i], grounds, limits)):
@@ -202,14 +220,36 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         end, left, count = refine(trials, p[i], limits)
         grounds.append((left, end))
         solved += count
-    least = min(left for left, _ in grounds)
+    least, ground = min(grounds, key=lambda one: one[0])
     p, values = np.concatenate([[end for _, end in grounds], p]), np.append([left for left, _ in grounds], values)
-    chosen, left, band, count = _among_equals(trials, p[values <= (1.0 + SHARE) * least], (1.0 + SHARE) * least, limits)
-    agree = of_starts < _AGREED * of_starts.min() + 1e-6 * scale
+    best, count = _among_equals(trials, p[values <= (1.0 + SHARE) * least], (1.0 + SHARE) * least, limits, like)
     return Found(
-        chosen, left, least, band, candidates, solved + count, of_starts.size, int(agree.sum()),
-        float(of_starts.max() if agree.all() else of_starts[~agree].min()),
+        best.chosen, best.left, least, ground, best.band, best.band_error, candidates, solved + count, of_starts.size,
+        int(agree.sum()), float(of_starts[other]), doubt,
     )  # fmt: skip
+
+
+def _mirrored(p: Floats) -> Floats:
+    """Reliefs with those of driver and driven gear exchanged."""
+    return np.roll(p, 2, axis=-1)
+
+
+def _driver_deeper(p: Floats) -> Floats:
+    """Reliefs of like gears, those of driver and driven gear exchanged where the driven gear's is the deeper."""
+    return np.where(p[:, :1] < p[:, 2:3], _mirrored(p), p)
+
+
+def _are_like(pair: GearPair, compliance: PairCompliance) -> bool:
+    """Whether driver and driven gear may change places: their flanks have the same place, size and compliance."""
+    x = np.linspace(pair.x_start, pair.x_end, 9)
+    sizes, soft = [], []
+    for member, at in zip(MEMBERS, (x, x[::-1]), strict=True):
+        gear = pair.gear(member)
+        tip = roll_of_radius(gear, gear.involute_tip_radius)
+        sizes.append(np.array([gear.base_radius, tip, float(gear.tooth.teeth)]))
+        radius = np.asarray(pair.radius(at, member))
+        soft.append(np.concatenate([radius, np.asarray(compliance.source(member).own(radius))]))
+    return all(bool(np.allclose(one, other, rtol=_LIKE, atol=0.0)) for one, other in (sizes, soft))
 
 
 def _apart(p: Floats, values: Floats, limits: Limits, most: int) -> list[int]:
@@ -228,7 +268,17 @@ def _led_already(p: Floats, ends: Sequence[tuple[float, Floats, *tuple[float, ..
     return any((np.abs(p - one[1]) < _BESIDE_END * limits.unit).all() for one in ends)
 
 
-def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits) -> tuple[Floats, float, Floats, int]:
+@dataclass(frozen=True, slots=True)
+class _Choice:
+    """One of the equally good reliefs, and from where to where they go, see `Found`."""
+
+    chosen: Floats
+    left: float
+    band: Floats
+    band_error: Floats
+
+
+def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits, like: bool) -> tuple[_Choice, int]:
     """Choose one of the reliefs that leave no more than allowed, and find from where to where they go.
 
     Parameters
@@ -239,19 +289,17 @@ def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits
     allowed : float
         [m].
     limits : Limits
+    like : bool
+        Whether driver and driven gear may change places.
 
     Returns
     -------
-    chosen : ndarray, shape (4,)
-    left : float
-        What it leaves [m].
-    band : ndarray, shape (2, 4)
+    choice : _Choice
     evaluations : int
     """
     unit = limits.unit
     rule = np.array([1.0, -_LONGER, 1.0, -_LONGER])
-    removals = (rule * equals / unit).sum(axis=1)
-    starts = equals[_apart(equals, removals, limits, _CHOSEN)]
+    starts = equals[_apart(equals, equals / unit @ rule, limits, _CHOSEN)]
     outward = np.concatenate([-np.eye(4), np.eye(4)])
     # The band is looked for from what lies farthest out already.
     ends = equals[(equals / unit @ outward.T).argmax(axis=0)]
@@ -259,8 +307,10 @@ def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits
     p, values, solved = descend(
         trials.exact, trials, np.concatenate([starts, ends]), limits, 0.1, 7, Aim(along, allowed)
     )
+    doubt = room(trials, p[starts.shape[0] :], limits, _DOUBT, Aim(-outward, allowed)).reshape(2, -1)
     # Whatever came within what is allowed may lead on to less removal.
     within = p[values - (along * p / unit).sum(axis=1) < _WITHIN]
+    within = _driver_deeper(within) if like else within
     removals = (within / unit) @ rule
     led: list[tuple[float, Floats, float]] = []
     for i in _apart(within, removals, limits, _CHOSEN):
@@ -268,11 +318,16 @@ def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits
             continue
         end, left, count = refine(trials, within[i], limits, Aim(rule[None], allowed))
         solved += count
-        led.append((float(rule @ (end / unit)), end, left))
+        led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
+    # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
+    end, left, count = refine(trials, min(led, key=lambda one: one[0])[1], limits, Aim(rule[None], allowed))
+    led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
     fewest = min(removal for removal, _, _ in led)
     _, chosen, left = max((one for one in led if one[0] < fewest + _EQUAL), key=lambda one: float(one[1][0]))
     known = np.concatenate([within, chosen[None]])
-    return chosen, left, np.array([known.min(axis=0), known.max(axis=0)]), solved
+    known = np.concatenate([known, _mirrored(known)]) if like else known
+    error = (np.maximum(doubt, _mirrored(doubt)) if like else doubt) * unit
+    return _Choice(chosen, left, np.array([known.min(axis=0), known.max(axis=0)]), error), solved + count
 
 
 def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:

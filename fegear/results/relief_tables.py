@@ -92,8 +92,13 @@ def grindable_table(
     # What is left comes from the same evaluation as the single values, not from the search's coarser one.
     rows = [(shape, m, te[f"{shape} tip relief"], getattr(g, m)) for shape, g in ground.items() for m in MEMBERS]
     bands = [getattr(g, f"{m}_band") for g in ground.values() for m in MEMBERS]
+    errors = np.concatenate(
+        [np.vstack([g.error, g.band_error]).reshape(3, 2, 2).swapaxes(0, 1) for g in ground.values()]
+    )
     start = np.array([r.start for *_, r in rows])
     runner_up = np.array([ground[shape].runner_up for shape, *_ in rows])
+    doubt = np.array([ground[shape].runner_up_error for shape, *_ in rows])
+    left_off = np.array([ground[shape].objective_error for shape, *_ in rows])
     base = np.array([p.gear(m).base_radius for _, m, *_ in rows])
     return Table(
         f"grindable_{name}",
@@ -101,21 +106,29 @@ def grindable_table(
             Column("shape", np.array([shape for shape, *_ in rows]), "", "of the tip relief"),
             Column("gear", np.array([m for _, m, *_ in rows]), "", "driver or driven"),
             Column("amount", np.array([r.amount for *_, r in rows]), "um", "removal at the tip"),
+            Column("amount_error", errors[:, 0, 0], "um", "estimated error of amount"),
             Column("start_roll_angle", start, "deg", "where the relief starts"),
+            Column("start_roll_angle_error", errors[:, 0, 1], "deg", "estimated error of start_roll_angle"),
             Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius"),
             Column("te_peak_to_peak", np.array([t.peak_to_peak for _, _, t, _ in rows]), "um", "left at design load"),
+            Column("te_peak_to_peak_error", left_off, "um", "estimated error of te_peak_to_peak and te_effective"),
             Column("te_effective", np.array([t.effective_error for _, _, t, _ in rows]), "um", "A_e left"),
             Column("least", np.array([ground[shape].least for shape, *_ in rows]), "um", "left by the best of all"),
             Column(
                 "amount_from", np.array([a.amount for a, _ in bands]), "um", "equally good: up to 1 % above the least"
             ),
             Column("amount_to", np.array([b.amount for _, b in bands]), "um", "equally good"),
+            Column("amount_from_error", errors[:, 1, 0], "um", "how much less amount_from may be"),
+            Column("amount_to_error", errors[:, 2, 0], "um", "how much more amount_to may be"),
             Column("start_from", np.array([b.start for _, b in bands]), "deg", "equally good, roll angle"),
             Column("start_to", np.array([a.start for a, _ in bands]), "deg", "equally good, roll angle"),
+            Column("start_from_error", errors[:, 2, 1], "deg", "how much less start_from may be"),
+            Column("start_to_error", errors[:, 1, 1], "deg", "how much more start_to may be"),
             Column("candidates", np.array([ground[shape].candidates for shape, *_ in rows]), "", "reliefs scanned"),
             Column("starts", np.array([ground[shape].starts for shape, *_ in rows]), "", "valleys searched to the end"),
             Column("agreeing", np.array([ground[shape].agreeing for shape, *_ in rows]), "", "of them, within 5 %"),
             Column("runner_up", runner_up, "um", "the least that the other valleys leave"),
+            Column("runner_up_error", doubt, "um", "how much less runner_up may be"),
         ),
         f"Tip reliefs of {name} that a shop can grind",
     )
@@ -133,10 +146,12 @@ def tip_values(key: str, ground: TipReliefPair, member: Member) -> list[Value]:
     """
     relief, (first, last) = getattr(ground, member), getattr(ground, f"{member}_band")
     low, high = (math.degrees(one.start) for one in (last, first))
+    own = ground.error[:2] if member == "driver" else ground.error[2:]
+    starts = f"{low:.5g} to {high:.5g} deg"
     amounts = f"{first.amount * 1e6:.4g} to {last.amount * 1e6:.4g} um"
     return [
-        Value(f"{key}amount", relief.amount, "um", None, f"to grind; equally good with the rest: {amounts}"),
-        Value(f"{key}start", relief.start, "deg", None, f"roll angle; equally good: {low:.5g} to {high:.5g} deg"),
+        Value(f"{key}amount", relief.amount, "um", float(own[0]), f"to grind; equally good with the rest: {amounts}"),
+        Value(f"{key}start", relief.start, "deg", float(own[1]), f"roll angle; equally good: {starts}"),
     ]
 
 
@@ -159,7 +174,8 @@ def relief_values(name: str, design: ReliefDesign) -> list[Value]:
     values = []
     for label, t in design.te.items():
         key = label.replace(" ", "_")
-        error = design.left if label == "designed" else None
+        shape = next((one for one in design.ground if label == f"{one} tip relief"), None)
+        error = design.left if label == "designed" else None if shape is None else design.ground[shape].objective_error
         values.append(Value(f"{name}.te_peak_to_peak.{key}", t.peak_to_peak, "um", error, f"{label}, design load"))
         values.append(Value(f"{name}.te_effective.{key}", t.effective_error, "um", None, f"A_e, {label}, design load"))
     about = "designed, its relief tables read back linearly, design load"

@@ -215,6 +215,20 @@ def test_the_two_gears_of_a_like_pair_may_change_places():
     assert one.driver.amount + one.driven.amount == pytest.approx(other.driver.amount + other.driven.amount, rel=1e-3)
 
 
+def test_the_driver_of_a_like_pair_takes_the_deeper_relief_and_both_have_one_band():
+    """Under noise of 1e-12 reliefs of like gears changed places, and each gear had a band of its own."""
+    e, load = engaged(28, 28, hertz="load-dependent")
+    for one in (load, load * (1.0 + 1e-12)):
+        found = grindable(e, one)
+        assert found.driver.amount >= found.driven.amount
+        for mine, other in zip(found.driver_band, found.driven_band, strict=True):
+            assert (mine.amount, mine.start) == (other.amount, other.start)
+        assert found.driven_band[0].amount <= found.driven.amount
+        assert found.driver.amount <= found.driver_band[1].amount
+        assert (found.error > 0.0).all()
+        assert (found.band_error > 0.0).all()
+
+
 def scaled(e, load, by):
     """The same pair, all lengths scaled: loads and amounts go with the lengths, where a face width does."""
     gears = [
