@@ -74,7 +74,7 @@ fegear_setup() {
     fi
     fegear_pip --editable "$root${extra:+[$extra]}" || return 1
     # The equations of motion become machine code now, half a minute, not in the first run that needs them.
-    "$venv/bin/python" -I -m fegear.dynamics.prepare >/dev/null 2>&1 || :
+    "$venv/bin/python" -I -m fegear.dynamics.motion.prepare >/dev/null 2>&1 || :
     # What `dev` installs holds what tests and site need: they are not set up once more.
     served="$extra"
     [ "$extra" != dev ] || served="dev test docs"

@@ -10,13 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.contact.engagement import Engagement
-from fegear.contact.fe_compliance import finite_element_compliance
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.transmission_error import transmission_error
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import transmission_error
 from fegear.design.charts import relief_chart
-from fegear.fem import solve_gear
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 
 @pytest.fixture(scope="module")
@@ -49,10 +52,10 @@ def test_transmission_error_with_64_harmonics(benchmark, engagement):
 
 COLD = """
 import numpy as np
-from fegear.contact.engagement import Engagement
-from fegear.contact.fe_compliance import finite_element_compliance
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.transmission_error import transmission_error
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import transmission_error
 from fegear.fem import solve_gear
 from fegear.geometry import BasicRack, Gear, GearPair, Tooth
 gears = [Gear(Tooth(z, BasicRack(1.0, 1.25, 0.25)), 3e-3, b, 10e-3) for z, b in ((23, 0.015), (57, 0.04))]

@@ -11,15 +11,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fegear.dynamics.charts import chart_point
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.increments import dynamic_increments
-from fegear.dynamics.lin_model import FourInertia, linear_tip_relief
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.spectra import mesh_force_spectrum
-from fegear.dynamics.steady_state import speed_sweep, steady_state
-from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train, mesh_damping, shaft_damping
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.steady_state import speed_sweep, steady_state
+from fegear.dynamics.train.charts import FourInertia, chart_point, linear_tip_relief
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.spectra import mesh_force_spectrum
+from fegear.dynamics.train.train import Body, Damper, Mesh, Shaft, Torque, Train, mesh_damping, shaft_damping
 
 R, PITCH, FORCE = 0.04177, 9.373e-3, 8890.0
 

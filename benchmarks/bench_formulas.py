@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from fegear.formulas.root_stress_sources import root_stress_table
-from fegear.formulas.sources import SOURCES
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.formulas.sources import SOURCES, root_stress_table
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 
 def usual() -> Gear:

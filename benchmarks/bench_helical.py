@@ -5,10 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from fegear.dynamics.helical_pair import HelicalPairModel, RigidGear
-from fegear.dynamics.mesh_parameters import MeshParameters
-from fegear.dynamics.transmissibility import transmissibility
-from fegear.helical import HelicalGear, HelicalPair, Misalignment, pair_contact, tooth_contact
+from fegear.contact.unloaded import HelicalGear
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.tooth_contact import pair_contact, tooth_contact
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+from fegear.dynamics.helical_pair.model import HelicalPairModel, RigidGear
+from fegear.dynamics.helical_pair.transmissibility import transmissibility
 
 ARCMIN = math.pi / 10800.0
 

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import numpy as np
 
+from fegear.base.one_thread import one_thread
+from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.solid_influence import solid_settings_of
 from fegear.case.reading import read_scene
-from fegear.contact.flank import FlankPair
-from fegear.contact.flank.error import flank_error
-from fegear.contact.flank.over_pitch import over_pitch
-from fegear.models.loaded_flanks import flanks_to_load
-from fegear.models.solid_influence import solid_settings_of
-from fegear.one_thread import one_thread
-from fegear.studies.cost.flank_ladder import BODIES
-from fegear.studies.cost.flank_measure import solve_bodies
+from fegear.contact.wide.error import flank_error
+from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.over_pitch import over_pitch
+from fegear.studies.cost.ladder import BODIES
+from fegear.studies.cost.measure import solve_bodies
 
 CASE = Path(__file__).resolve().parents[1] / "cases" / "helical_pair.toml"
 

@@ -16,11 +16,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.fem import level_for, settings_at, solve_gear, stiffness_table
-from fegear.fem.elasticity import assemble
-from fegear.fem.sector import mesh_sector
-from fegear.fem.whole_gear import whole_gear
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import level_for, solve_gear
+from fegear.fem.plane.table import stiffness_table
+from fegear.fem.plane.whole_gear import whole_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.output.mesh_export import write_meshes
 
 CASE = Path(__file__).parents[1] / "cases" / "lin_table1.toml"

@@ -13,12 +13,12 @@ import sys
 import time
 from pathlib import Path
 
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import read_scene
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
-from fegear.solution_cache import SolutionCache
 
 CASE = Path(__file__).resolve().parents[1] / "cases" / "pinion_and_wheel.toml"
 

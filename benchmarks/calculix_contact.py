@@ -16,10 +16,17 @@ from pathlib import Path
 
 import numpy as np
 
-from fegear.contact import Engagement, PairCompliance, finite_element_compliance, root_stress_history
-from fegear.fem import MeshSettings, solve_gear
-from fegear.fem.sector import mesh_sector
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 MODULE = 3.175e-3
 LOAD = 350.0  # N on 1 mm of face

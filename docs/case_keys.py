@@ -8,8 +8,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from fegear.case.schema import case_schema
-from fegear.case.schema_nodes import KeyHelp, SchemaNodes
+from fegear.case.schema import KeyHelp, SchemaNodes, case_schema
 from fegear.results.catalogue import STAGES
 
 PAGE = Path(__file__).resolve().parent / "case-files.md"

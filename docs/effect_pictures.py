@@ -12,8 +12,7 @@ from pathlib import Path
 
 from fegear.case.reading import read_scene
 from fegear.output.effects import sentence, write_effects
-from fegear.studies.effect_facts import kernel_table, stage_table
-from fegear.studies.effect_study import effect_study
+from fegear.studies.effects import effect_study, kernel_table, stage_table
 
 DOCS = Path(__file__).parent
 CASES = DOCS.parent / "cases"

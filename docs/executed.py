@@ -18,7 +18,7 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from snippets import execute, runs
 
-from fegear.plain import code_version, content_key
+from fegear.base.plain import code_version, content_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 
-from fegear.plain import code_version, content_key
+from fegear.base.plain import code_version, content_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

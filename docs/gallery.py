@@ -23,8 +23,8 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from pygments.formatters import HtmlFormatter
 
+from fegear.base.plain import code_version, content_key
 from fegear.engine.citation import bibliography
-from fegear.plain import code_version, content_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,16 +16,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.stats import qmc
 
-from fegear.contact.flank import FlankPair
-from fegear.contact.flank.root_stress import rooted_lines
-from fegear.errors import FegearError
-from fegear.fem.solid import solid_settings, solve_solid
-from fegear.formulas.agma908_pair import bending_factor
+from fegear.base.errors import FegearError
+from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.root_stress import rooted_lines
+from fegear.fem.solid.settings import solid_settings
+from fegear.fem.solid.solution import solve_solid
+from fegear.formulas.agma.agma908 import bending_factor
 from fegear.formulas.iso6336.part3_pair import RatingChoice, ToothLoad, rate_helical, virtual_contact_ratio
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 if TYPE_CHECKING:
-    from fegear.contact.flank.lines import ContactLines
+    from fegear.contact.wide.lines import ContactLines
     from fegear.geometry.pair import Member
 
 TABLE = Path(__file__).parent / "studies" / "helical_root_stress.csv"

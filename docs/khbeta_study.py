@@ -15,18 +15,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.case.reading import read_scene
-from fegear.contact.flank import FlankGaps, FlankPair
-from fegear.contact.flank.load_factors import iso_face_load_factor
-from fegear.contact.flank.tip_edges import usual_gap
-from fegear.fem.solid import solid_settings, solve_solid, solve_thin_slices
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import usual_gap
+from fegear.contact.wide.load_factors import iso_face_load_factor
+from fegear.contact.wide.loaded import FlankPair
+from fegear.fem.solid.settings import solid_settings
+from fegear.fem.solid.slices import solve_thin_slices
+from fegear.fem.solid.solution import solve_solid
 from fegear.formulas.iso6336.part1_face_load import face_load_factor
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.fem.solid.flank_body import FlankBody
-    from fegear.geometry import GearPair
-    from fegear.geometry.pair import Member
+    from fegear.geometry.pair import GearPair, Member
 
 DOCS = Path(__file__).parent
 CASES = DOCS.parent / "cases"

@@ -18,17 +18,19 @@ import khbeta_study as khbeta
 import numpy as np
 import slices_study as slices
 
-from fegear.contact.flank import FlankGaps
-from fegear.contact.flank.load_factors import iso_face_load_factor
-from fegear.contact.formula_reach import off, reach, sentence
-from fegear.contact.gear_population import drawn_gears
-from fegear.contact.root_stress_study import of_population, root_stress_study
-from fegear.engine.figure import Axis, Figure, Mark, Panel, Zone
-from fegear.fem.settings import MeshSettings
-from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.contact.compared.formula_reach import off, reach, sentence
+from fegear.contact.compared.root_stress_study import drawn_gears, of_population, root_stress_study
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.load_factors import iso_face_load_factor
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Mark, Zone
+from fegear.fem.plane.settings import MeshSettings
+from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.output.draw_png import draw_pictures
-from fegear.results.drawn_formula_spread import fe_error, sentences, spread_curve, spread_figure
+from fegear.results.gear.root_stress_study import fe_error, sentences, spread_curve, spread_figure
 
 DOCS = Path(__file__).parent
 TABLE = DOCS / "studies" / "root_stress_population.csv"

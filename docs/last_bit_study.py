@@ -128,7 +128,7 @@ def written(folder: Path) -> dict[str, list[str]]:
 
 def found(results: Any) -> dict[str, tuple[list[float], list[float] | None, float]]:
     """Every number of a run by its name, its stated errors where it has some, and what its size is compared with."""
-    from fegear.engine.stated_errors import error_columns
+    from fegear.engine.outcome import error_columns
 
     of_unit: dict[str, float] = {}
     for v in results.values:
@@ -156,7 +156,7 @@ def found(results: Any) -> dict[str, tuple[list[float], list[float] | None, floa
 def computed(folder: Path, kept: Path, run: str, names: list[str]) -> None:
     """Compute cases in this process and write down the numbers of each, or its refusal, as soon as it is done."""
     import fegear
-    from fegear.errors import FegearError
+    from fegear.base.errors import FegearError
 
     for name in names:
         start = time.process_time()

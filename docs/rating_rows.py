@@ -13,17 +13,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fegear.formulas.iso6336.alignment import Alignment
+from fegear.base.units import registry
+from fegear.formulas.iso6336.conditions import Conditions, Replacement
 from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
-from fegear.formulas.iso6336.pair_rating import Replacement
+from fegear.formulas.iso6336.part1_face_load import Alignment
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
-from fegear.formulas.iso6336.safety import Conditions, rate_pair
-from fegear.units import registry
+from fegear.formulas.iso6336.safety import rate_pair
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fegear.formulas.iso6336.pair_rating import Factor
+    from fegear.formulas.iso6336.conditions import Factor
 
 DOCS = Path(__file__).resolve().parent
 FOLDER, PAGE = DOCS / "rating", DOCS / "rating-examples.md"

@@ -14,10 +14,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.contact.flank import FlankGaps, FlankPair
-from fegear.engine.figure import Axis, Curve, Figure, Panel
-from fegear.fem.solid import solid_settings, solve_slices, solve_solid, solve_thin_slices
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.loaded import FlankPair
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve
+from fegear.fem.solid.settings import solid_settings
+from fegear.fem.solid.slices import solve_slices, solve_thin_slices
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.output.draw_png import draw_pictures
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pint
 from source_runs import unit_of
 
-from fegear.unit_text import UnreadableError, split
+from fegear.base.unit_text import UnreadableError, split
 
 if TYPE_CHECKING:
     from source_runs import Found

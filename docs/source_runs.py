@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict
 
+from fegear.base.unit_text import canonical
+from fegear.base.units import registry
 from fegear.output.tables import table_text
-from fegear.unit_text import canonical
-from fegear.units import registry
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Set

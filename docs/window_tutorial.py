@@ -20,7 +20,7 @@ from film import MADE, Camera, named, opened, why_not
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 
-from fegear.plain import code_version, content_key
+from fegear.base.plain import code_version, content_key
 
 DOCS = Path(__file__).resolve().parent
 PAGE = DOCS / "tutorial-in-the-window.md"

@@ -12,11 +12,17 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from fegear.errors import FegearError, InputError
+    from fegear.base.errors import FegearError, InputError
     from fegear.workbench.gear import Gear
     from fegear.workbench.pair import Pair
-    from fegear.workbench.questions import dynamic_factor, relief, root_stress, stiffness_table, transmission_error
-    from fegear.workbench.rated import rating
+    from fegear.workbench.questions import (
+        dynamic_factor,
+        rating,
+        relief,
+        root_stress,
+        stiffness_table,
+        transmission_error,
+    )
     from fegear.workbench.results import Results
     from fegear.workbench.run import run
 
@@ -29,13 +35,13 @@ __all__ = [
 
 #: Modules of the names above, besides the version.
 _HOMES = {
-    "FegearError": "errors",
+    "FegearError": "base.errors",
     "Gear": "workbench.gear",
-    "InputError": "errors",
+    "InputError": "base.errors",
     "Pair": "workbench.pair",
     "Results": "workbench.results",
     "dynamic_factor": "workbench.questions",
-    "rating": "workbench.rated",
+    "rating": "workbench.questions",
     "relief": "workbench.questions",
     "root_stress": "workbench.questions",
     "run": "workbench.run",

@@ -11,14 +11,14 @@ def main() -> None:
     """Load the command line and run it; an interrupt while it is still loading is reported like any other."""
     gc.set_threshold(_YOUNG)
     try:
-        from fegear.streams import open_streams
+        from fegear.base.streams import open_streams
 
         open_streams()
         from fegear.cli import main as run
 
         run()
     except KeyboardInterrupt:
-        from fegear.streams import complain
+        from fegear.base.streams import complain
 
         complain("fegear: interrupted; results of earlier runs are as they were.")
         raise SystemExit(130) from None

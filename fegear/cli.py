@@ -11,21 +11,15 @@ from typing import Annotated
 import typer
 
 import fegear
-from fegear.commands.common import INTERRUPTED, leave
-from fegear.commands.compare import compare
-from fegear.commands.cost import cost
-from fegear.commands.effects import effects
+from fegear.base.errors import NO_ROOM, FegearError, lacks_memory
+from fegear.base.streams import give_up
+from fegear.commands.common import INTERRUPTED, Command, Group, context_settings, leave
 from fegear.commands.export import export
-from fegear.commands.help import Command, Group, context_settings
 from fegear.commands.new import new
 from fegear.commands.open import open  # noqa: A004  (the name of the command)
-from fegear.commands.plan import plan
-from fegear.commands.results import results
-from fegear.commands.run import run
-from fegear.commands.schema import schema
-from fegear.commands.sweep import sweep
-from fegear.errors import NO_ROOM, FegearError, lacks_memory
-from fegear.streams import give_up
+from fegear.commands.run import plan, run
+from fegear.commands.schema import results, schema
+from fegear.commands.studies import compare, cost, effects, sweep
 
 app = typer.Typer(
     help="Finite-element workbench for gear teeth.",

@@ -8,8 +8,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from fegear.case.deviations import DeviationsPart
-from fegear.case.flank import BiasPart, LeadPart, TopographyPart
+from fegear.base.errors import InputError
 from fegear.case.part import (
     Angle,
     LengthOrZero,
@@ -23,13 +22,14 @@ from fegear.case.part import (
     refuse,
     spelt_also,
 )
-from fegear.case.relief import ReliefPart, SpacingErrorsPart
-from fegear.case.strength import StrengthPart
+from fegear.case.relief import BiasPart, LeadPart, ReliefPart, SpacingErrorsPart, TopographyPart
+from fegear.case.strength import DeviationsPart, StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
-from fegear.errors import InputError
-from fegear.geometry import BasicRack, Gear, Material, Tooth
-from fegear.geometry.over_balls import over_balls
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.inspection import over_balls
 from fegear.geometry.plausible import refuse_material
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 #: Names of the geometry layer that a case file calls otherwise.
 _KEYS = {

@@ -10,8 +10,9 @@ from pydantic import Field, model_validator
 from fegear.case.part import Angle, InverseLength, Length, LengthOrZero, Part, PositiveForce, PositiveLength, refuse
 
 if TYPE_CHECKING:
-    from fegear.geometry import Gear, GearPair
-    from fegear.helical.pair import HelicalPair, Misalignment
+    from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair
 
 
 class ShaftPart(Part):
@@ -79,13 +80,13 @@ class MisalignmentPart(Part):
 
     def angle_of_lead(self, pinion: Gear) -> float:
         """Error of the lead angle [rad], as given or as that of the lead."""
-        from fegear.helical.lead_error import lead_angle_error
+        from fegear.contact.unloaded.manufacture import lead_angle_error
 
         return self.lead_angle if self.lead is None else lead_angle_error(pinion, self.lead)
 
     def build(self, pair: GearPair) -> Misalignment:
         """Make the errors that rigid tooth contact analysis knows."""
-        from fegear.helical.pair import Misalignment
+        from fegear.contact.unloaded.pair import Misalignment
 
         _, across = self.deviation(pair)
         return Misalignment(across, self.angle_of_lead(pair.driver), self.profile_angle, self.centre_distance)
@@ -131,7 +132,7 @@ def build_pair(
     axial_offset: float,
 ) -> HelicalPair:
     """The flanks of a pair with their errors and modification; the driver is the pinion."""
-    from fegear.helical.pair import HelicalPair, Misalignment
+    from fegear.contact.unloaded.pair import HelicalPair, Misalignment
 
     change = change or ModificationPart()
     return HelicalPair(

@@ -1,4 +1,9 @@
-"""``[loading]``: tooth loading functions to look at, on a gear pair or on any teeth of a contact ratio."""
+"""``[loading]``: tooth loading functions to look at, on a gear pair or on any teeth of a contact ratio.
+
+``[load_distribution]``, and ``line_error`` of a pair: what keeps flanks apart over the face.
+
+``[transmission_error]``: whether a method from the literature is computed beside the exact one.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +12,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from fegear.case.part import (
+    Length,
+    LengthOrZero,
     Number,
     Part,
     PositiveForce,
@@ -89,4 +96,65 @@ class LoadingPart(Part):
             )  # fmt: skip
         counts = [len(values) for values in (self.slopes, self.exponents, self.peaks) if values]
         refuse_more(_MOST_CURVES, "loading functions", *counts)
+        return self
+
+
+class LoadDistributionPart(Part):
+    """Roll positions over a base pitch, and panels over the face; without ``panels`` one to a quarter of a module.
+
+    ``base_pitch`` says which teeth meet, where they have spacing errors: pair 0 is on the teeth of that number.
+    """
+
+    positions: Annotated[int, Field(ge=2, le=256)] = Field(
+        default=16, description="Roll positions over one base pitch."
+    )
+    panels: Annotated[int, Field(ge=2, le=200)] | None = Field(
+        default=None,
+        description="Parts into which the common face is divided; without it one to a quarter of a module.",
+    )
+    coat: PositiveLength = Field(default=6e-6, description="Thickness of the marking compound in the contact pattern.")
+    base_pitch: Annotated[int, Field(ge=0, le=1_000_000)] = Field(
+        default=0,
+        description="Which teeth meet where they have spacing errors: pair 0 is on the teeth of that number, counted "
+        "round and round.",
+    )
+
+
+class LineErrorPart(Part):
+    """``line_error = { over_face, crowning, file }``: gap along the line of action over the face, removal positive.
+
+    ``over_face`` opens from the end at -b/2 to the end at +b/2 along the driver's axis; ``crowning`` from the middle
+    to both ends as a parabola; ``file`` has the columns ``z`` and ``gap``. They add up.
+    """
+
+    over_face: Length = Field(
+        default=0.0, description="Gap that opens from the face end at -b/2 to that at +b/2 along the driver's axis."
+    )
+    crowning: LengthOrZero = Field(
+        default=0.0, description="Gap that opens from the middle of the face to both ends, as a parabola."
+    )
+    file: str | None = Field(default=None, description="CSV file with `z` and `gap`, such as that of deflected shafts.")
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if not self.model_fields_set:
+            raise refuse("is empty", 'write line_error = { over_face = "10 um" }')
+        return self
+
+
+class TransmissionErrorPart(Part):
+    """``method = "mark-series"`` adds Mark's series with so many terms."""
+
+    method: Literal["quadrature", "mark-series"] = Field(
+        default="quadrature",
+        description="The exact quadrature alone, or Mark's series and closed forms as well, with what they miss.",
+    )
+    terms: Annotated[int, Field(ge=0, le=200)] = Field(
+        default=3, description="M of Mark's series, 0 to 200; the report advises 3 at least."
+    )
+
+    @model_validator(mode="after")
+    def _terms_of_a_series(self) -> Self:
+        if "terms" in self.model_fields_set and self.method != "mark-series":
+            raise refuse('has a meaning only with method = "mark-series"', key="terms")
         return self

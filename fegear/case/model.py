@@ -7,24 +7,19 @@ from typing import Annotated
 from pydantic import Field
 
 from fegear.case.accuracy import AccuracyPart
-from fegear.case.cost import CostPart
-from fegear.case.design import DesignPart
+from fegear.case.design import DesignPart, FlankDesignPart
 from fegear.case.dynamics import DynamicsPart
 from fegear.case.effects import EffectsPart
-from fegear.case.flank_design import FlankDesignPart
 from fegear.case.gear import GearPart
 from fegear.case.helical import ToothContactPart
-from fegear.case.load_distribution import LoadDistributionPart
-from fegear.case.loading import LoadingPart
+from fegear.case.loading import LoadDistributionPart, LoadingPart, TransmissionErrorPart
+from fegear.case.operation import RatingPart
 from fegear.case.pair import PairPart
 from fegear.case.part import Part
-from fegear.case.rating import RatingPart
-from fegear.case.robustness import TolerancePart
 from fegear.case.stiffness import StiffnessPart
-from fegear.case.study import StudyPart
+from fegear.case.studies import CostPart, StudyPart, TolerancePart
 from fegear.case.train import TrainPart
 from fegear.case.transmissibility import TransmissibilityPart
-from fegear.case.transmission_error import TransmissionErrorPart
 
 
 class Case(Part):

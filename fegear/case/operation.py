@@ -1,10 +1,13 @@
-"""``operation`` and ``shafts`` of a pair: what it has to bear, for how long, and what carries it."""
+"""``operation`` and ``shafts`` of a pair: what it has to bear, for how long, and what carries it.
+
+``[rating]``: what stands beside the rating by ISO 6336.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from fegear.case.part import (
     LengthOrZero,
@@ -20,13 +23,21 @@ from fegear.case.part import (
 )
 
 NumberOrZero = Annotated[Number, Field(ge=0.0)]
+
+
 Factor = Annotated[Number, Field(ge=1.0)]
+
+
 #: What is done to the flanks along the face: rows of ISO 6336-1's table of B_1 and B_2.
 HelixModification = Literal[
     "none", "crowned", "crowned for manufacture", "helix corrected", "helix corrected and crowned", "end relief"
 ]
+
+
 #: Shares of a spectrum may miss their sum of 1 by so much: they are often given in percent of one decimal.
 _SHARES = 2e-3
+
+
 #: Factors K_A and K_gamma above this are slips of the pen.
 _LARGEST = 10.0
 
@@ -198,3 +209,30 @@ class ShaftsPart(Part):
             key = next(key for key in shaft if key not in missing)
             raise refuse("contradicts deformation", "give either the shaft or f_sh", key=key)
         return self
+
+
+Beside = Literal["computed", "agma-2101"]
+
+
+def _several(value: Any) -> Any:
+    """Let one name stand for a list of it."""
+    return (value,) if isinstance(value, str) else tuple(value) if isinstance(value, list) else value
+
+
+class RatingPart(Part):
+    """``[rating]``: ``beside = ["computed", "agma-2101"]``, ``reliability``.
+
+    Formulas take milliseconds; what is computed (finite elements, load distribution) takes seconds to minutes, and is
+    done where a case asks for it.
+    """
+
+    beside: Annotated[tuple[Beside, ...], BeforeValidator(_several, json_schema_input_type=Beside | list[Beside])] = (
+        Field(
+            default=("agma-2101",),
+            description="What is evaluated in addition to ISO 6336: computed load distribution and root stress, which "
+            "take seconds to minutes, and those of ANSI/AGMA 2101-D04.",
+        )
+    )
+    reliability: Annotated[float, Field(ge=0.5, le=0.9999)] = Field(
+        default=0.99, description="Reliability that ANSI/AGMA 2101 rates for; ISO 6336's stress numbers are for 0.99."
+    )

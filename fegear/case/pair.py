@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from fegear.base.errors import InputError
 from fegear.case.helical import MisalignmentPart, ModificationPart, build_pair
-from fegear.case.load_distribution import LineErrorPart
+from fegear.case.loading import LineErrorPart
 from fegear.case.operation import OperationPart, ShaftsPart
 from fegear.case.part import (
     Length,
@@ -23,12 +24,11 @@ from fegear.case.part import (
     refuse,
 )
 from fegear.case.surface import LubricantPart, PairFrictionPart
-from fegear.errors import InputError
-from fegear.geometry import GearPair
+from fegear.geometry.pair import GearPair
 
 if TYPE_CHECKING:
-    from fegear.geometry import Gear
-    from fegear.helical.pair import HelicalPair
+    from fegear.contact.unloaded.pair import HelicalPair
+    from fegear.geometry.gear import Gear
 
 
 def _several(value: Any) -> Any:

@@ -1,4 +1,7 @@
-"""From a case file and ``--set`` options to a checked scene; every error is one sentence with key, value and remedy."""
+"""From a case file and ``--set`` options to a checked scene; every error is one sentence with key, value and remedy.
+
+What pydantic finds wrong in a case, as one of fegear's own sentences: key, value, rule, remedy.
+"""
 
 from __future__ import annotations
 
@@ -10,21 +13,21 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
-from fegear.case import Case
-from fegear.case.keys import keys_at
-from fegear.case.names import nearest
-from fegear.case.part import BARE_SI
-from fegear.case.references import check_references
-from fegear.case.refusals import refusal
+from fegear.base.errors import PATH, InputError, shown
+from fegear.case.model import Case
+from fegear.case.part import BARE_SI, check_references, nearest
+from fegear.case.schema import keys_at
 from fegear.case.text_file import read_text
-from fegear.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from pydantic_core import ErrorDetails
+
     from fegear.case.pair import Width
-    from fegear.geometry import Gear, GearPair
-    from fegear.helical.pair import HelicalPair
+    from fegear.contact.unloaded.pair import HelicalPair
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True)
@@ -258,3 +261,83 @@ def set_key(document: dict[str, Any], path: str, value: object, option: str = "-
     if known and steps[-1] not in known and steps[-1] not in table:
         raise InputError(option, f'"{path}"', f'"{steps[-1]}" is an unknown key', nearest(steps[-1], known))
     table[steps[-1]] = value
+
+
+_KINDS = {
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "float_type": "must be a number",
+    "string_type": "must be a text in quotes",
+    "bool_type": "must be true or false",
+    "list_type": "must be a list in square brackets",
+    "tuple_type": "must be a text in quotes or a list of them",
+    "dict_type": "must be a table",
+    "model_type": "must be a table of keys and values",
+    "finite_number": "must be finite",
+    "too_short": "must not be empty",
+}
+
+
+def refusal(error: ValidationError) -> InputError:
+    """Return the sentence about the first thing that is wrong."""
+    found = error.errors(include_url=False)
+    # A misspelt key comes first: what is said to be missing is often its right spelling.
+    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
+    told = _sentence(first)
+    if first["type"] in _KINDS:  # the other things that the value may be, where there are several kinds
+        others = [
+            one["ctx"]["expected"] for one in found if one["type"] == "literal_error" and _place(one) == _place(first)
+        ]
+        return InputError(told.key, told.value, " or ".join([told.rule, *others]), told.remedy)
+    return told
+
+
+def _place(error: ErrorDetails) -> list[str]:
+    """Keys down to the one that is wrong, without pydantic's own names of the kinds that a value may have."""
+    steps: list[str] = []
+    for step in map(str, error["loc"]):
+        known = keys_at(steps)
+        if step.isdigit() or not known or step in known or error["type"] == "extra_forbidden":
+            steps.append(step)
+    return steps
+
+
+def _sentence(error: ErrorDetails) -> InputError:
+    """Turn one of pydantic's errors into fegear's."""
+    kind, context, value = error["type"], error.get("ctx", {}), error.get("input")
+    loc = _place(error)
+    if kind == "fegear" and context["key"]:
+        loc.append(context["key"])
+    key = _dotted(loc)
+    if kind == "fegear":
+        shown = context["shown"]
+        if shown is None:
+            shown = value.get(loc[-1], "(not given)") if isinstance(value, dict) and context["key"] else _show(value)
+        return InputError(key, shown, context["rule"], context["remedy"])
+    if kind == "extra_forbidden":
+        known = keys_at(loc[:-1])
+        return InputError(key, _show(value), "is an unknown key", nearest(loc[-1], known))
+    if kind == "missing":
+        return InputError(key, "(not given)", "is required")
+    if kind == "literal_error":
+        return InputError(key, _show(value), f"must be {context['expected']}")
+    rule = _KINDS.get(kind) or error["msg"].replace("Input should", "must").replace("List should", "the list must")
+    return InputError(key, _show(value), rule[0].lower() + rule[1:])
+
+
+def _dotted(loc: list[str]) -> str:
+    text = ""
+    for step in loc:
+        text += f"[{step}]" if step.isdigit() else f".{step}"
+    return text.removeprefix(".") or "case"
+
+
+def _show(value: object) -> str:
+    if isinstance(value, str):
+        return shown(value, PATH)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (dict, list)) and len(str(value)) > 60:
+        return "(a table)" if isinstance(value, dict) else "(a list)"
+    text = str(value)
+    return text if len(text) <= PATH else f"{text[:PATH]}..."

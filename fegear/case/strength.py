@@ -1,4 +1,7 @@
-"""``strength`` of a gear: what its material bears, by ISO 6336-5 or in own numbers."""
+"""``strength`` of a gear: what its material bears, by ISO 6336-5 or in own numbers.
+
+``deviations`` of a gear: own ones, measured or agreed, in the place of those of a tolerance class.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +11,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from fegear.base.errors import InputError
+from fegear.base.unit_text import UnreadableError, split
 from fegear.case.part import LengthOrZero, Part, PositiveLength, PositivePressure, quantity, refuse
-from fegear.errors import InputError
-from fegear.unit_text import UnreadableError, split
 
 #: Materials of ISO 6336-5 by the words that a case writes; `fegear.formulas.iso6336.part5_materials` knows their laws.
 MaterialName = Literal[
@@ -31,8 +34,11 @@ MaterialName = Literal[
     "nitrocarburized-steel",
 ]
 
+
 #: How materials with a hard case begin.
 _WITH_A_CORE = ("case-hardened", "induction-hardened", "nitrided", "nitrocarburized")
+
+
 #: Rockwell C and Vickers hardness of unalloyed and low-alloy steel: ISO 18265:2013, table A.1.
 _HRC = (
     20.3, 22.2, 24.0, 25.6, 27.1, 28.5, 29.8, 31.0, 32.2, 33.3, 34.4, 35.5, 36.6, 37.7, 38.8, 39.8, 40.8, 41.8, 42.7,
@@ -40,6 +46,8 @@ _HRC = (
     56.3, 56.8, 57.3, 57.8, 58.3, 58.8, 59.2, 59.7, 60.1, 61.0, 61.8, 62.5, 63.3, 64.0, 64.7, 65.3, 65.9, 66.4, 67.0,
     67.5, 68.0,
 )  # fmt: skip
+
+
 _HV = (*range(240, 700, 10), *range(700, 941, 20))
 
 
@@ -69,8 +77,14 @@ _WEAKEST, _STRONGEST = 1e6, 10e9
 
 
 Stress = Annotated[float, quantity("pressure")]
+
+
 Hardnesses = Annotated[list[Hardness], Field(min_length=2, max_length=500)]
+
+
 Depths = Annotated[list[LengthOrZero], Field(min_length=2, max_length=500)]
+
+
 #: Residual stresses beyond this are those of no steel [Pa].
 _LARGEST_RESIDUAL = 3e9
 
@@ -202,4 +216,38 @@ class StrengthPart(Part):
             raise refuse(
                 "has a meaning only for cast iron", "remove it, or give yield_strength", key="tensile_strength"
             )
+        return self
+
+
+#: Twice what class 11 of ISO 1328-1 allows its largest gears; beyond it a unit is mistaken [m].
+_LARGEST = 1e-3
+
+
+class DeviationsPart(Part):
+    """``deviations = { base_pitch = "5 um", profile_form = "4 um", helix_slope = "6 um" }``: magnitudes."""
+
+    base_pitch: LengthOrZero | None = Field(
+        default=None,
+        description="Transverse base pitch deviation f_pb, along the line of action; by class f_pT cos(alpha_t).",
+    )
+    profile_form: LengthOrZero | None = Field(default=None, description="Profile form deviation f_falpha.")
+    helix_slope: LengthOrZero | None = Field(
+        default=None, description="Helix slope deviation f_Hbeta over the face width."
+    )
+    profile_slope: LengthOrZero | None = Field(
+        default=None, description="Profile slope deviation f_Halpha, for `robustness` alone: no rating asks for it."
+    )
+
+    @property
+    def enough_to_rate(self) -> bool:
+        """Whether no tolerance class is needed for a rating."""
+        return None not in (self.base_pitch, self.profile_form, self.helix_slope)
+
+    @model_validator(mode="after")
+    def _of_gears(self) -> Self:
+        for key in ("base_pitch", "profile_form", "helix_slope", "profile_slope"):
+            value = getattr(self, key)
+            if value is not None and value > _LARGEST:
+                rule = f"is larger than that of any gear, {_LARGEST * 1e3:g} mm"
+                raise refuse(rule, "check the unit", key=key, value=f"{value * 1e3:.6g} mm")
         return self

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from fegear.base.errors import InputError
 from fegear.case.follow import FollowPart
 from fegear.case.pair_excitation import ExcitationPart
 from fegear.case.part import (
@@ -26,15 +27,14 @@ from fegear.case.part import (
     at,
     refuse,
 )
-from fegear.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel, RigidGear
-    from fegear.dynamics.mesh_parameters import MeshParameters
+    from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+    from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel, RigidGear
 
 Row = Annotated[list[Number], Field(min_length=5, max_length=5)]
 Matrix = Annotated[list[Row], Field(min_length=5, max_length=5)]
@@ -80,7 +80,7 @@ class MeshStiffnessPart(Part):
 
     def build(self) -> MeshParameters:
         """Make the parameters from the numbers (a distribution is read by the stage, which knows the folder)."""
-        from fegear.dynamics.mesh_parameters import MeshParameters, partial_face_mu
+        from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, partial_face_mu
 
         mu = partial_face_mu(self.kappa) if self.mu is None else self.mu
         return MeshParameters(self.stiffness or math.nan, self.kappa, mu, self.base_helix_angle)
@@ -134,7 +134,7 @@ class RigidGearPart(Part):
 
     def build(self) -> RigidGear:
         """Make the gear."""
-        from fegear.dynamics.helical_pair import RigidGear
+        from fegear.dynamics.helical_pair.model import RigidGear
 
         damping = np.zeros((5, 5)) if self.damping is None else np.array(self.damping)
         mass, *inertia, radius, half = (getattr(self, key) for key in OF_THE_GEAR)
@@ -240,7 +240,7 @@ class TransmissibilityPart(Part):
 
     def build(self, mesh: MeshParameters, prefix: str) -> HelicalPairModel | ReducedPairModel:
         """Make the model."""
-        from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel
+        from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel
 
         try:
             if self.unity_ratio is not None:

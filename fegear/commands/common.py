@@ -1,25 +1,33 @@
-"""What the commands share: arguments that mean the same everywhere, what they print, and how one is left early."""
+"""What the commands share: arguments that mean the same everywhere, what they print, and how one is left early.
+
+Help texts and lists that stay readable in narrow terminals and in logs.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
+import shutil
 import sys
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
+import typer.core
 
-from fegear.streams import complain
+from fegear.base.streams import complain
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from contextlib import AbstractContextManager
 
     from typer.models import OptionInfo
 
     from fegear.engine.run import Watcher
+
 
 INTERRUPTED = "interrupted; results of earlier runs are as they were."
 
@@ -40,10 +48,14 @@ def complete_effects(incomplete: str) -> list[str]:
 
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
+
+
 Overrides = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key of the case, e.g. --set gear.a.teeth=30."),
 ]
+
+
 Wanted = Annotated[
     str | None,
     typer.Option(
@@ -68,12 +80,20 @@ def out_option(about: str) -> OptionInfo:
 
 
 Out = Annotated[Path | None, out_option("Output folder; default results/<case>.")]
+
+
 NoPlots = Annotated[bool, typer.Option("--no-plots", help="Draw nothing: tables, dataset and report alone.")]
+
+
 Scheduler = Annotated[
     str | None,
     typer.Option("--scheduler", metavar="ADDRESS", help="A running Dask scheduler, e.g. tcp://10.0.0.5:8786."),
 ]
+
+
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print notes and errors alone, on stderr.")]
+
+
 AsJson = Annotated[bool, typer.Option("--json", help="Print what was found as JSON on stdout, nothing else.")]
 
 
@@ -126,7 +146,7 @@ class Voice:
     def watcher(self, *, remaining: bool = False) -> AbstractContextManager[Watcher]:
         """Who shows the progress: a bar or lines on stderr, or nobody."""
         from fegear.engine.run import Silence
-        from fegear.terminal import watcher
+        from fegear.output.terminal import watcher
 
         return contextlib.nullcontext(Silence()) if self.quiet else watcher(sys.stderr, remaining=remaining)
 
@@ -135,3 +155,64 @@ def leave(message: str, code: int) -> NoReturn:
     """End the program with a sentence on stderr and an exit code."""
     complain(f"fegear: {message}")
     raise SystemExit(code)
+
+
+#: Columns below which an option stands on a line of its own, with its meaning below it.
+_NARROW = 60
+
+
+#: Columns beyond which lines are tiring to read.
+_WIDE = 100
+
+
+def context_settings() -> dict[str, Any]:
+    """What every command answers to, and how wide its help is."""
+    # The full width of the terminal: left to itself the library takes at least fifty columns and lets lines break.
+    return {"help_option_names": ["-h", "--help"], "terminal_width": _width()}
+
+
+def _width() -> int:
+    return min(shutil.get_terminal_size().columns, _WIDE)
+
+
+def two_columns(rows: Sequence[tuple[str, str]], column: int) -> list[str]:
+    """Lines of names with their meanings: beside each other, or below each other in a narrow terminal.
+
+    Parameters
+    ----------
+    rows : sequence of (name, meaning)
+    column : int
+        Width of the column of names.
+    """
+    stacked = _width() < _NARROW
+    indent = " " * (6 if stacked else column + 4)
+    lines: list[str] = []
+    for name, meaning in rows:
+        told = textwrap.wrap(meaning, max(_width() - len(indent), 20), break_on_hyphens=False)
+        lines += [f"  {name}"] if stacked else [f"  {name:<{column}}  {told.pop(0)}"]
+        lines += [indent + line for line in told]
+    return lines
+
+
+def _stacked(formatter: Any) -> None:
+    if formatter.width < _NARROW:
+        write: Callable[..., None] = formatter.write_dl
+        formatter.write_dl = functools.partial(write, col_max=4)
+
+
+class Command(typer.core.TyperCommand):
+    """A command whose help fits into any terminal."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help."""
+        _stacked(formatter)
+        super().format_help(ctx, formatter)
+
+
+class Group(typer.core.TyperGroup):
+    """The program itself."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help."""
+        _stacked(formatter)
+        super().format_help(ctx, formatter)

@@ -11,20 +11,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fegear.commands.common import Quiet, Voice, leave
-from fegear.commands.help import two_columns
+from fegear.base.errors import PATH, InputError, shown
+from fegear.commands.common import Quiet, Voice, leave, two_columns
 from fegear.commands.schema import SCHEMA_FILE, write_schema
-from fegear.errors import PATH, InputError, shown
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.drafts import Answers
+    from fegear.case.drafts.answers import Answers
 
 
 def complete_kinds(incomplete: str) -> list[str]:
     """What a kind that is being typed may become."""
-    from fegear.drafts import KINDS
+    from fegear.case.drafts.answers import KINDS
 
     return [name for name in KINDS if name.startswith(incomplete)]
 
@@ -60,8 +59,9 @@ def new(
 
     For example: fegear new drive --teeth 21 53 --module 3mm --torque "260 N m"
     """
+    from fegear.case.drafts.answers import Answers
+    from fegear.case.drafts.text import draft
     from fegear.case.text_file import write_file
-    from fegear.drafts import Answers, draft
 
     voice = Voice(quiet)
     # `--teeth 21 53` leaves its second number among the names.
@@ -125,7 +125,7 @@ def _case_file(name: str, *, force: bool) -> Path:
 
 def _asked() -> Answers:
     """Ask on the terminal; every answer is checked before the next question."""
-    from fegear.drafts import KINDS, Answers, check, questions
+    from fegear.case.drafts.answers import KINDS, Answers, check, questions
 
     def ask(prompt: str, default: str, judge: Callable[[str], object]) -> str:
         while text := input(f"{prompt} [{default}]: ").strip():

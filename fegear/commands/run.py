@@ -1,4 +1,7 @@
-"""``fegear run``: compute what a case asks for."""
+"""``fegear run``: compute what a case asks for.
+
+``fegear plan``: what a case would compute, before it does.
+"""
 
 from __future__ import annotations
 
@@ -41,18 +44,16 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Compute what a case asks for and write tables, pictures and a report."""
+    from fegear.base.solution_cache import SolutionCache, cache_on_disk
     from fegear.case.reading import read_scene
     from fegear.engine.executor import Executor
     from fegear.engine.plan import make_plan
     from fegear.engine.run import run_plan
-    from fegear.output.figures import Drawing
-    from fegear.output.folder import default_folder, whole_or_nothing
-    from fegear.output.picture_process import PictureProcess
+    from fegear.output.figures import Drawing, PictureProcess
+    from fegear.output.folder import STEPS, default_folder, whole_or_nothing, write_results
     from fegear.output.report.page import begin_page
     from fegear.output.tables import sheet_lines
-    from fegear.output.write import STEPS, write_results
     from fegear.results.catalogue import STAGES
-    from fegear.solution_cache import SolutionCache, cache_on_disk
 
     voice = Voice(quiet, as_json)
     start = time.perf_counter()
@@ -84,3 +85,17 @@ def run(
         voice.note(remark)
     voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
     voice.tell_folder(target)
+
+
+def plan(case: CaseFile, overrides: Overrides = None, wanted: Wanted = None, as_json: AsJson = False) -> None:
+    """Show what a case would compute and why, with which settings, in about how long, and what it would not."""
+    from fegear.case.reading import read_scene
+    from fegear.engine.plan import make_plan, plan_content, plan_lines
+    from fegear.results.catalogue import STAGES
+
+    voice = Voice(as_json=as_json)
+    scene = read_scene(case, changes(overrides, wanted))
+    planned = make_plan(scene, STAGES)
+    for line in plan_lines(scene, planned):
+        voice.say(line)
+    voice.tell(plan_content(scene, planned))

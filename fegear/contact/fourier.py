@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
+from fegear.base.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

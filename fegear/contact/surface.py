@@ -17,9 +17,9 @@ from fegear.formulas.iso6336 import part20_flash, part22_micropitting
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.arrays import Array
-    from fegear.formulas.flank_speeds import FlankSpeeds
-    from fegear.formulas.iso6336.rated_surface import RatedSurface
+    from fegear.base.arrays import Array
+    from fegear.formulas.flash_temperature import FlankSpeeds
+    from fegear.formulas.iso6336.rated import RatedSurface
 
     #: Friction coefficient from speeds and line loads [N/m] of one shape.
     FrictionLaw = Callable[[FlankSpeeds, Array], Array]

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.formulas.flank_speeds import flank_speeds
-from fegear.formulas.loss_factor import computed
+from fegear.formulas.flash_temperature import flank_speeds
+from fegear.formulas.friction import computed
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
-    from fegear.contact.flank.loaded import LoadedFlanks
-    from fegear.contact.pair_history import PairHistory
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.pair_history import PairHistory
     from fegear.contact.surface import FrictionLaw
-    from fegear.geometry import GearPair
+    from fegear.contact.wide.loaded import LoadedFlanks
+    from fegear.geometry.pair import GearPair
 
 
 @dataclass(frozen=True)

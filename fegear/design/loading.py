@@ -4,6 +4,14 @@ A pair's load is W(x) = W_d sum_k w_k (rect_kA * p_k)(x): a plateau of k base pi
 Since plateaus of k base pitches, repeated every base pitch, add up to k, the loads of all pairs add up to W_d exactly
 whatever the ramps. For a contact ratio between n and n + 1 there are two such terms, k = n with ramps as wide as
 a = L - n A and k = n - 1 with ramps as wide as A - a (Fig. 8 for n = 2; for n = 1 the second is empty).
+
+Closed-form spectra of the loading ramps (Mark, braces of Eqs. 4.15b and 4.16), safe at every argument.
+
+How a tooth that vibrates by itself answers the load that it takes up and hands on (Mark, sections 4.15 to 4.22).
+
+A tooth of natural frequency f under a load W(t) that moves it slowly by W/k is an oscillator under one pulse; it has
+come to rest when it meets the mating gear again. What vibration the pulse leaves is the load's spectrum at f: its
+amplitude over the deflection under the design load is 2 pi f |F(f)| / W_d, which falls like the envelope of (4.22).
 """
 
 from __future__ import annotations
@@ -14,15 +22,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.design.spectra import polynomial_factor, sinusoidal_factor
-from fegear.errors import InputError, RangeError
+from fegear.base.errors import InputError, RangeError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,3 +264,97 @@ def slope_trade_off(functions: Sequence[LoadingFunction], above: float) -> Slope
     content = [np.abs(f.spectrum(orders / f.base_pitch)) / f.base_pitch for f in functions]
     with np.errstate(divide="ignore"):
         return SlopeTradeOff(initial, 2.0 / initial, np.array([math.sqrt(float(np.mean(c**2))) for c in content]))
+
+
+def sinusoidal_factor(q: ArrayLike, slope: float) -> Array:
+    """sinc(q) (1 - s q^2) / (1 - q^2), with sinc(q) = sin(pi q)/(pi q); (1 - s)/2 at q = 1 (Mark 4.15b).
+
+    Beyond q = 1/2 the zero of sin(pi q) at q = 1 is written out, sin(pi q) = sin(pi (1 - q)), so nothing cancels.
+    """
+    a = np.abs(np.asarray(q, dtype=float))
+    near = a < 0.5
+    inner, outer = np.where(near, a, 0.0), np.where(near, 1.0, a)
+    kernel = np.where(near, np.sinc(inner) / (1.0 - inner * inner), np.sinc(1.0 - outer) / (outer * (1.0 + outer)))
+    return np.asarray(kernel * (1.0 - slope * a * a))
+
+
+def polynomial_factor(q: ArrayLike, slope: float, exponent: int) -> Array:
+    """(r - s)/(r - 1) sinc(q) + r (s - 1)/(r - 1) J_{r-1}(pi q) (Mark 4.16)."""
+    r, s = exponent, slope
+    q = np.asarray(q, dtype=float)
+    return np.asarray(((r - s) * np.sinc(q) + r * (s - 1.0) * cosine_moment(math.pi * q, r - 1)) / (r - 1.0))
+
+
+def cosine_moment(a: ArrayLike, p: int) -> Array:
+    """J_p(a), the integral of t^p cos(a t) from 0 to 1, for even p.
+
+    The recurrence J_p = sin a / a + p cos a / a^2 - p (p - 1)/a^2 J_{p-2} shrinks errors when a > p and multiplies them
+    when a is smaller; there the integrand is a polynomial times few waves, which Gauss quadrature integrates to
+    round-off.
+    """
+    x = np.abs(np.asarray(a, dtype=float))
+    limit = max(40.0, 2.0 * p)
+    t, w = np.polynomial.legendre.leggauss(p + 40)
+    t, w = 0.5 * (t + 1.0), 0.5 * w
+    small, large = np.minimum(x, limit), np.maximum(x, limit)
+    quadrature = np.cos(np.multiply.outer(small, t)) @ (w * t**p)
+    sine, cosine = np.sin(large) / large, np.cos(large) / large**2
+    recurrence = sine
+    for k in range(2, p + 1, 2):
+        recurrence = sine + k * cosine - k * (k - 1) / large**2 * recurrence
+    return np.asarray(np.where(x < limit, quadrature, recurrence))
+
+
+#: Straight pieces of the load over the path, and orders looked at together.
+_PIECES, _TOGETHER = 2000, 64
+
+
+@dataclass(frozen=True, slots=True)
+class ToothResponse:
+    """Deflection of a tooth without damping, over that under the design load at rest; arrays of shape (G,).
+
+    Parameters
+    ----------
+    residual : ndarray
+        Amplitude (0-peak) of the vibration that is left when contact ends.
+    envelope : ndarray
+        What that does not exceed at high frequency (4.22).
+    largest : ndarray
+        Largest deflection during contact; 1 is that at rest for contact ratios up to 2.
+    """
+
+    residual: Array
+    envelope: Array
+    largest: Array
+
+
+def tooth_response(function: LoadingFunction, orders: ArrayLike) -> ToothResponse:
+    """Answer of a tooth whose natural frequency is `orders` times the tooth-mesh frequency.
+
+    Parameters
+    ----------
+    function : LoadingFunction
+    orders : array_like, shape (G,)
+        Positive.
+    """
+    order, pitch = np.asarray(orders, dtype=float), function.base_pitch
+    wave = 2.0 * math.pi * order
+    g = order / pitch
+    residual = wave * np.abs(function.spectrum(g)) / pitch
+    envelope = wave * function.envelope(g) / pitch
+    x = np.unique(np.concatenate([np.linspace(function.x_start, function.x_end, _PIECES + 1), function.kinks]))
+    load = function.fraction(x)
+    parts = [_largest(wave[i : i + _TOGETHER], x / pitch, load) for i in range(0, wave.size, _TOGETHER)]
+    return ToothResponse(residual, envelope, np.concatenate(parts))
+
+
+def _largest(wave: Array, at: Array, load: Array) -> Array:
+    """Largest deflection under a load of straight pieces, exact for those; shape of `wave`, per base pitch.
+
+    About W/k the tooth swings by minus the integral of W'(t) cos(w (T - t)): a jump starts it with its height.
+    """
+    slope = np.diff(load) / np.diff(at)
+    turned = np.exp(-1j * np.multiply.outer(wave, at))
+    started = np.cumsum(slope * np.diff(turned, axis=1), axis=1) * (1j / wave[:, None])
+    swing = load[0] * turned[:, :1] + np.concatenate([np.zeros((wave.size, 1)), started], axis=1)
+    return np.asarray((load - np.real(swing * turned.conj())).max(axis=1))

@@ -4,6 +4,11 @@ Each gear's tooth is relieved by the largest of its deflections less its deflect
 on its neighbours, so that the loaded flanks are perfect involutes: m(x) = const - sum_j' c_jj'(x) W_j'(x). Beyond the
 design zone, where the tooth carries nothing at the design load, the part from its own load goes on as a straight line
 (the paper's extrapolation) and the part from its neighbours' loads as it is.
+
+The layer of oil between loaded flanks, half of which each relief makes up for (Mark, after Eq. 4.6).
+
+A film that is equally thick everywhere only turns the gears a little; one that thins along the path is an error of the
+transmission, which the relief takes back where the film's thickness is known.
 """
 
 from __future__ import annotations
@@ -14,25 +19,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.errors import InputError, RangeError
 from fegear.design.relief_bound import refuse_deeper_than_the_tooth
-from fegear.errors import InputError, RangeError
 from fegear.geometry.relief import TabulatedRelief
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
-    from fegear.contact.engagement import Engagement
-    from fegear.contact.pair_compliance import PairCompliance
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.design.loading import LoadingFunction
-    from fegear.design.oil_film import OilFilm
-    from fegear.geometry.pair import Member
+    from fegear.geometry.pair import GearPair, Member
+    from fegear.geometry.relief import Relief
+
 
 #: The extrapolation takes its slope from the end of the design zone to this fraction of the ramp inside it: the slope
 #: at the very end is infinite with a load-dependent contact (W ln W).
 _SECANT = 0.05
+
+
 #: Largest distance of a tabulated relief from the designed one, over the pair's largest deflection.
 _CHORD = 1e-6
+
+
 #: Nodes no nearer than this fraction of the path: nearer ones would print as the same roll angle.
 _NEAREST = 1e-7
 
@@ -300,3 +310,59 @@ def relief_table(relief: MinimumExcitationRelief, positions: int | ArrayLike | N
         relief.at(x),
         relief.deflection(x),
     )
+
+
+@dataclass(frozen=True)
+class OilFilm:
+    """Thickness of the film at the design load over the path of contact: straight between places, level beyond.
+
+    Parameters
+    ----------
+    x : tuple of float
+        Places on the line of action, rising [m].
+    thickness : tuple of float
+        There, of the whole film [m].
+    """
+
+    x: tuple[float, ...]
+    thickness: tuple[float, ...]
+
+    def half(self, x: ArrayLike) -> Array:
+        """What each flank's relief makes up for at x [m]."""
+        return np.asarray(0.5 * np.interp(np.asarray(x, dtype=float), self.x, self.thickness))
+
+    def between(self, engagement: Engagement) -> Engagement:
+        """The pair with the film between its flanks, which it holds apart as if they were so much thicker."""
+        pair, e = engagement.pair, engagement
+        return replace(
+            e, driver_relief=Coated(e.driver_relief, self, pair, "driver"),
+            driven_relief=Coated(e.driven_relief, self, pair, "driven"),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Coated:
+    """A flank's relief less its half of the film, as contact meets it.
+
+    Parameters
+    ----------
+    relief : Relief
+    film : OilFilm
+    pair : GearPair
+    member : {"driver", "driven"}
+    """
+
+    relief: Relief
+    film: OilFilm
+    pair: GearPair
+    member: Member
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Roll angles of the relief's and of the film's places."""
+        places = (float(self.pair.roll_angle(x, self.member)) for x in self.film.x)
+        return tuple(sorted({*self.relief.kinks, *places}))
+
+    def removal(self, roll: ArrayLike) -> Array:
+        """Removal less half the film at roll angles [m]."""
+        return np.asarray(self.relief.removal(roll) - self.film.half(self.pair.x_of_roll(roll, self.member)))

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from fegear.arrays import Floats
-    from fegear.contact.roll_grids import RollGrid
+    from fegear.base.arrays import Floats
+    from fegear.contact.plane.roll_grids import RollGrid
 
 
 @dataclass(frozen=True)

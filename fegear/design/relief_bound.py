@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 from fegear.geometry.plausible import DEEPEST_RELIEF, deepest_relief
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.design.minimum_excitation import MinimumExcitationRelief
 
 

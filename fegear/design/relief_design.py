@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from fegear.contact import transmission_error
-from fegear.contact.mesh_curve import roll_positions
+from fegear.contact.plane.transmission_error import roll_positions, transmission_error
 from fegear.design.minimum_excitation import minimum_excitation, relief_nodes, relief_table
-from fegear.design.optimise import grindable
 from fegear.design.root_stress_loading import design_stress, least_root_stress
+from fegear.design.tip_relief.grindable import grindable
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.relief import UNMODIFIED
 
@@ -20,14 +19,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
-    from fegear.contact import Engagement, Loaded, TransmissionError
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.engagement import Engagement, Loaded
+    from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.design.charts import Metric
     from fegear.design.loading import LoadingFunction
-    from fegear.design.minimum_excitation import MinimumExcitationRelief, ReliefTable
-    from fegear.design.oil_film import OilFilm
-    from fegear.design.optimise import TipReliefPair
+    from fegear.design.minimum_excitation import MinimumExcitationRelief, OilFilm, ReliefTable
     from fegear.design.root_stress_loading import Allowed, StressOptimum
+    from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.geometry.pair import Member
     from fegear.geometry.relief import Shape
 

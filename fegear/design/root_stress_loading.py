@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.errors import InputError
 from fegear.design.loading import LoadingFunction, Ramp
-from fegear.errors import InputError
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fegear.arrays import Array
-    from fegear.contact.pair_compliance import PairCompliance
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.geometry.pair import Member
 
 

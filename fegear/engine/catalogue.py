@@ -21,7 +21,7 @@ class Entry(NamedTuple):
     name : str
         Unique; also the first half of its tasks' names.
     home : str
-        Module and name of the `Stage` that computes it: ``"load_sharing.LOAD_SHARING"``.
+        Module and name of the `Stage` that computes it: ``"pair.load_sharing.LOAD_SHARING"``.
     title : str
         What it does, for the plan and the progress bar.
     results : tuple of str
@@ -72,7 +72,7 @@ class Catalogue(Sequence[Stage]):
         """
         if name not in self._loaded:
             entry = self._by_name[name]
-            module, _, attribute = entry.home.partition(".")
+            module, _, attribute = entry.home.rpartition(".")
             found: Stage = getattr(import_module(f"{self._package}.{module}"), attribute)
             named = replace(found, name=name, title=entry.title, results=entry.results, about=entry.about)
             # Of two threads that get here at once, both go on with the same stage.

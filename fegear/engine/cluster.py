@@ -9,8 +9,8 @@ import time
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import InputError, MissingLibraryError
 from fegear.engine.point_job import Reply, failed
-from fegear.errors import InputError, MissingLibraryError
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator, Mapping

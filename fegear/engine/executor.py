@@ -11,18 +11,18 @@ import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from fegear.base.errors import InputError
+from fegear.base.plain import code_version, content_key
+from fegear.base.solution_cache import SolutionCache
 from fegear.engine.cluster import on_cluster
 from fegear.engine.point_job import Job, Reply, here, opened
 from fegear.engine.processes import cores, on_cores
-from fegear.errors import InputError
-from fegear.plain import code_version, content_key
-from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping, Sequence
 
+    from fegear.base.store import Store
     from fegear.engine.stage import Progress
-    from fegear.store import Store
 
     Todo = Mapping[int, object]
 
@@ -78,9 +78,10 @@ def map_points(
     Parameters
     ----------
     function : callable
-        Of a module (or `functools.partial` of one); takes a point and returns plain data (see `fegear.plain.pack`).
+        Of a module (or `functools.partial` of one); takes a point and returns plain data (see
+        `fegear.base.plain.pack`).
     points : sequence
-        Anything that can be pickled; with a cache on disk, what `fegear.plain.content_key` takes, unless `key` is
+        Anything that can be pickled; with a cache on disk, what `fegear.base.plain.content_key` takes, unless `key` is
         given.
     executor : Executor, optional
         By default processes on this machine.

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from fegear.errors import FegearError, MissingLibraryError
-from fegear.one_thread import one_thread
-from fegear.plain import code_version, pack, unpack
-from fegear.solution_cache import SolutionCache, cache_on_disk
+from fegear.base.errors import FegearError, MissingLibraryError
+from fegear.base.one_thread import one_thread
+from fegear.base.plain import code_version, pack, unpack
+from fegear.base.solution_cache import SolutionCache, cache_on_disk
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,7 +41,7 @@ class Failure:
 class Reply:
     """What comes back for a point: packed result or failure, whether it will always be so, and the shapes used.
 
-    The shapes count as in `fegear.solution_cache.Account`.
+    The shapes count as in `fegear.base.solution_cache.Account`.
     """
 
     payload: bytes

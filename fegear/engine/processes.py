@@ -14,8 +14,8 @@ import time
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import FegearError
 from fegear.engine.point_job import Reply, failed
-from fegear.errors import FegearError
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator, Mapping

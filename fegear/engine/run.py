@@ -7,22 +7,23 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from fegear.base.arrays import Alike
+from fegear.base.errors import InputError
+from fegear.base.plain import content_key
+from fegear.base.solution_cache import SolutionCache
 from fegear.engine.executor import Executor
-from fegear.engine.named import Named
+from fegear.engine.outcome import Named
 from fegear.engine.stage import Work
-from fegear.errors import InputError
-from fegear.frozen import Alike
-from fegear.plain import content_key
-from fegear.solution_cache import SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from fegear.case.reading import Scene
-    from fegear.engine.figure import DeferredFigure, Figure
-    from fegear.engine.outcome import Outcome, Table, Value
+    from fegear.engine.figure.figure import DeferredFigure, Figure
+    from fegear.engine.outcome import Outcome, Value
     from fegear.engine.plan import Plan, Step
     from fegear.engine.stage import Task
+    from fegear.engine.table import Table
 
 
 class Watcher(Protocol):

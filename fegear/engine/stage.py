@@ -8,11 +8,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 if TYPE_CHECKING:
+    from fegear.base.solution_cache import SolutionCache
     from fegear.case.reading import Scene
     from fegear.engine.citation import Citation, Cites
     from fegear.engine.executor import Executor
     from fegear.engine.outcome import Outcome
-    from fegear.solution_cache import SolutionCache
 
 
 class Task(NamedTuple):

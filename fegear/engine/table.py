@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.case.names import nearest
-from fegear.engine.shown import ROWS, html_table, short
-from fegear.errors import NOTEBOOK_EXTRA, MissingLibraryError, UnknownNameError
-from fegear.frozen import Alike
-from fegear.units import from_si, quantity
+from fegear.base.arrays import Alike
+from fegear.base.errors import NOTEBOOK_EXTRA, MissingLibraryError, UnknownNameError
+from fegear.base.units import from_si, quantity
+from fegear.case.part import nearest
+from fegear.engine.outcome import ROWS, html_table, short
 
 if TYPE_CHECKING:
     import pandas as pd

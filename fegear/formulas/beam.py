@@ -17,10 +17,10 @@ import numpy as np
 from fegear.geometry.involute import roll_of_polar_angle
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
-    from fegear.formulas.load_line import LoadLine
-    from fegear.geometry import Tooth
+    from fegear.base.arrays import Array
+    from fegear.formulas.root_section import LoadLine
     from fegear.geometry.curves import Curve
+    from fegear.geometry.tooth import Tooth
 
 #: Nodes per smooth piece; 32 leave 1e-12 of every integral even under sharp fillets (tests hold it to that).
 NODES = 32

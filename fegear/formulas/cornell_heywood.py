@@ -17,16 +17,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import ConvergenceError, RangeError
-from fegear.formulas.fillet_section import fillet_parameter, fillet_point, sharpest_fillet_radius, tangent_range
-from fegear.formulas.load_line import load_line, refuse_helix
-from fegear.formulas.root_stress import RootStress, RootStressSource
+from fegear.base.errors import ConvergenceError, RangeError
+from fegear.formulas.outcome import RootStress, RootStressSource
+from fegear.formulas.root_section import (
+    fillet_parameter,
+    fillet_point,
+    load_line,
+    refuse_helix,
+    sharpest_fillet_radius,
+    tangent_range,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
-    from fegear.geometry import Tooth
+    from fegear.base.arrays import Array
+    from fegear.geometry.tooth import Tooth
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,16 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
-from fegear.formulas.fillet_section import sharpest_fillet_radius
-from fegear.formulas.lewis import lewis_section
-from fegear.formulas.root_stress import RootStress, RootStressSource
+from fegear.base.errors import RangeError
+from fegear.formulas.outcome import RootStress, RootStressSource
+from fegear.formulas.root_section import lewis_section, sharpest_fillet_radius
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
-    from fegear.geometry import Tooth
+    from fegear.base.arrays import Array
+    from fegear.geometry.tooth import Tooth
 
 #: Pressure angle [deg]: constant, exponent of t/r, exponent of t/h.
 CONSTANTS = {14.5: (0.22, 0.20, 0.40), 20.0: (0.18, 0.15, 0.45)}

@@ -3,24 +3,31 @@
 Sources: H. Blok, Theoretical study of temperature rise at surfaces of actual contact under oiliness lubricating
 conditions, General Discussion on Lubrication, IMechE 2 (1937) 222-235; ISO/TR 13989-1:2000 (now ISO/TS 6336-20),
 Eq. 3 and Annex A: 0.62 w^0.75 (E_r / rho)^0.25 |sqrt v_1 - sqrt v_2| / B_M with equal materials.
+
+Curvature and speeds of both flanks along the path of contact, as the formulas of the surface take them.
 """
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
-    from fegear.formulas.flank_speeds import FlankSpeeds
+    from fegear.base.arrays import Array
+    from fegear.geometry.pair import GearPair
+
 
 #: Constant of the standard. Blok's integral over a semi-elliptical source gives 0.623 (tests hold it).
 _BLOK = 0.62
+
+
 #: Thermal contact coefficient B_M = sqrt(lambda rho c) of steel [N/(m s^0.5 K)], of scuffing and micropitting alike:
 #: 13.780 N/(mm s^0.5 K), as a printed report has it for 18CrNiMo7-6 (docs/rating/kisssoft_stage_3.toml). ISO/TR
 #: 13989-1, A.3, has 435 N/(mm^0.5 m^0.5 s^0.5 K) for martensitic steels, .2 % less.
@@ -68,3 +75,73 @@ def flash_temperature(
     through = heat[0] * np.sqrt(speeds.rolling_driver) + heat[1] * np.sqrt(speeds.rolling_driven)
     taken = np.abs(speeds.sliding) / np.maximum(through, np.finfo(float).tiny)
     return np.asarray(_BLOK * np.asarray(friction) * w**0.75 * (modulus / radius) ** 0.25 * taken)
+
+
+@dataclass(frozen=True)
+class FlankSpeeds:
+    """Flanks at places on the path of contact, in the section across the axes; arrays of one shape.
+
+    Parameters
+    ----------
+    x : ndarray
+        Place on the line of action from the pitch point, toward the driver's tip [m].
+    radius_driver, radius_driven : ndarray
+        Transverse radii of curvature [m].
+    relative_radius : ndarray
+        rho_n, relative radius of curvature in the normal section [m]: the transverse one over cos(beta_b).
+    rolling_driver, rolling_driven : ndarray
+        Tangential speeds of the flanks through the contact [m/s].
+    """
+
+    x: Array
+    radius_driver: Array
+    radius_driven: Array
+    relative_radius: Array
+    rolling_driver: Array
+    rolling_driven: Array
+
+    @property
+    def sliding(self) -> Array:
+        """Speed of the driver's flank less that of the driven one [m/s]; negative before the pitch point."""
+        return np.asarray(self.rolling_driver - self.rolling_driven)
+
+    @property
+    def sum(self) -> Array:
+        """v_Sigma, sum of both speeds [m/s]."""
+        return np.asarray(self.rolling_driver + self.rolling_driven)
+
+
+def flank_speeds(pair: GearPair, x: ArrayLike, speed: float) -> FlankSpeeds:
+    """Radii of curvature and speeds on the path of contact.
+
+    Parameters
+    ----------
+    pair : GearPair
+    x : array_like
+        Places [m].
+    speed : float
+        Of the driver [rad/s].
+
+    Raises
+    ------
+    RangeError
+        If the gears stand still: without speed there is neither film nor flash temperature.
+    """
+    if not (math.isfinite(speed) and speed > 0.0):
+        raise RangeError(
+            "speed",
+            f"{speed:.6g} rad/s",
+            "must be above zero: flanks that stand still have no film and no friction heat",
+        )
+    place = np.asarray(x, dtype=float)
+    one, other = (np.asarray(pair.flank_curvature_radius(place, member)) for member in ("driver", "driven"))
+    # Beyond the base circle there is no flank; on it the radius is zero, and so is the flank's speed.
+    one, other = np.maximum(one, 0.0), np.maximum(other, 0.0)
+    relative = one * other / (one + other) / math.cos(pair.driver.base_helix_angle)
+    slow = speed * pair.driver.teeth / pair.driven.teeth
+    return FlankSpeeds(place, one, other, np.asarray(relative), speed * one, slow * other)
+
+
+def contact_ratios(pair: GearPair) -> tuple[float, float]:
+    """epsilon_1 and epsilon_2: contact ratio from the pitch point to the tips of driver and driven gear."""
+    return pair.x_end / pair.base_pitch, -pair.x_start / pair.base_pitch

@@ -19,16 +19,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from fegear.errors import RangeError
-from fegear.formulas.fillet_section import fillet_point, fillet_radii
-from fegear.formulas.load_line import load_line
-from fegear.formulas.root_stress import RootStress, RootStressSource
+from fegear.base.errors import RangeError
+from fegear.formulas.outcome import RootStress, RootStressSource
+from fegear.formulas.root_section import fillet_point, fillet_radii, load_line
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
-    from fegear.geometry import Tooth
+    from fegear.base.arrays import Array
+    from fegear.geometry.tooth import Tooth
 
 #: Of the polynomial through the stress beside its largest value, over a 64th of the fillet.
 _DEGREE = 8

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
 
 OilKind = Literal[
     "mineral", "polyalphaolefin", "polyglycol", "water-soluble-polyglycol", "traction-fluid", "phosphate-ester"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

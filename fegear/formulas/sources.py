@@ -1,15 +1,38 @@
-"""The closed-form compliance sources by the names that case files use."""
+"""The closed-form compliance sources by the names that case files use.
+
+Two closed-form teeth in contact: what one tooth pair gives way, and how stiff it is.
+
+The pair's deflection along the line of action is the sum of both teeth, both foundations and both contact approaches,
+the contact's half-width being Hertz's. One tooth pair on its own: no neighbours, no load sharing.
+
+The root-stress formulas by name, and their table over load positions.
+"""
 
 from __future__ import annotations
 
 import difflib
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
-from fegear.errors import InputError
-from fegear.formulas import cornell_compliance, potential_energy, weber_banaschek
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.errors import InputError, RangeError
+from fegear.formulas import cornell as cornell_compliance
+from fegear.formulas import cornell_heywood, dolan_broghamer, hertz, heywood, potential_energy, weber_banaschek
+from fegear.formulas.agma import agma908
+from fegear.formulas.iso6336 import part3_root_stress
+from fegear.formulas.outcome import Outcome, attempt
 
 if TYPE_CHECKING:
-    from fegear.formulas.compliance import ComplianceSource
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.formulas.outcome import ComplianceSource, RootStress, RootStressSource
+    from fegear.geometry.pair import GearPair
+    from fegear.geometry.tooth import Tooth
+
 
 SOURCES: dict[str, ComplianceSource] = {
     s.name: s for s in (cornell_compliance.SOURCE, weber_banaschek.SOURCE, potential_energy.SOURCE)
@@ -27,3 +50,84 @@ def source(name: str) -> ComplianceSource:
             f'did you mean "{near[0]}"?' if near else "",
         )
     return SOURCES[name]
+
+
+@dataclass(frozen=True, slots=True)
+class PairCompliance(ReadOnlyArrays):
+    """Deflection of one tooth pair over contact positions, shape (N,), per unit face width.
+
+    Parameters
+    ----------
+    x : ndarray
+        Distance from the pitch point along the line of action [m], positive toward the driver's tip.
+    line_load : ndarray
+        w [N/m].
+    driver, driven : ndarray
+        Tooth and foundation of each gear per unit line load [m^2/N].
+    contact : ndarray
+        Contact approach of both bodies divided by the load [m^2/N] (secant; it depends on the load).
+    half_width : ndarray
+        Hertzian half-width [m].
+    """
+
+    x: Array
+    line_load: Array
+    driver: Array
+    driven: Array
+    contact: Array
+    half_width: Array
+
+    @property
+    def total(self) -> Array:
+        """Deflection of the pair per unit line load [m^2/N]."""
+        return self.driver + self.driven + self.contact
+
+    @property
+    def stiffness(self) -> Array:
+        """Secant stiffness of the pair per unit face width [Pa]; 1e9 Pa is 1 N/(mm um)."""
+        return 1.0 / self.total
+
+
+def pair_compliance(source: ComplianceSource, pair: GearPair, x: ArrayLike, line_load: ArrayLike) -> PairCompliance:
+    """Compliance of one tooth pair at contact positions x [m] under `line_load` > 0 [N/m] along the line of action.
+
+    Raises
+    ------
+    RangeError
+        If a position is off a flank, a load is not positive, or the source's range does not cover a gear.
+    """
+    position, w = np.broadcast_arrays(np.atleast_1d(np.asarray(x, dtype=float)), np.asarray(line_load, dtype=float))
+    a, b = pair.driver, pair.driven
+    radii = pair.radius(position, "driver"), pair.radius(position, "driven")
+    curvature = hertz.relative_curvature(
+        pair.flank_curvature_radius(position, "driver"), pair.flank_curvature_radius(position, "driven")
+    )
+    if not np.all(w > 0.0):
+        raise RangeError("line load", f"{np.min(w):.6g} N/m", "must be positive: no load has no secant")
+    modulus = 1.0 / (1.0 / a.plane_modulus + 1.0 / b.plane_modulus)
+    half_width = hertz.line_contact(w, curvature, modulus).half_width
+    contact = (source.contact(a, radii[0], w, half_width) + source.contact(b, radii[1], w, half_width)) / w
+    driver, driven = (np.array(source.tooth(g, r).total) for g, r in zip((a, b), radii, strict=True))
+    return PairCompliance(position.copy(), w.copy(), driver, driven, contact, half_width)
+
+
+ROOT_STRESS_SOURCES: dict[str, RootStressSource] = {
+    s.name: s
+    for s in (
+        cornell_heywood.SOURCE,
+        cornell_heywood.TROCHOID_SOURCE,
+        heywood.SOURCE,
+        part3_root_stress.SOURCE,
+        agma908.SOURCE,
+        dolan_broghamer.SOURCE,
+    )
+}
+
+
+def root_stress_table(tooth: Tooth, radii: ArrayLike) -> dict[str, tuple[Outcome[RootStress], ...]]:
+    """Every root-stress formula at every load radius [modules]; a point out of range carries its reason in words."""
+    points = [float(r) for r in np.atleast_1d(np.asarray(radii, dtype=float))]
+    return {
+        name: tuple(attempt(partial(source.formula, tooth, r)) for r in points)
+        for name, source in ROOT_STRESS_SOURCES.items()
+    }

@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.formulas import beam
-from fegear.formulas.cornell_compliance import FOUNDATION_TANGENT, foundation_compliance
-from fegear.formulas.fillet_section import fillet_parameter, tangent_range
-from fegear.formulas.load_line import load_line
+from fegear.formulas.cornell import FOUNDATION_TANGENT, foundation_compliance
+from fegear.formulas.root_section import fillet_parameter, load_line, tangent_range
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
-    from fegear.geometry import Gear
+    from fegear.base.arrays import Array
+    from fegear.geometry.gear import Gear
 
 #: Gauss nodes on fillet and involute; 48 leave 2e-5 of the frequency.
 _NODES = 48

@@ -21,15 +21,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.formulas import beam, hertz
-from fegear.formulas.compliance import ComplianceSource, ToothCompliance
-from fegear.formulas.load_line import load_line
+from fegear.formulas.outcome import ComplianceSource, ToothCompliance
+from fegear.formulas.root_section import load_line
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.formulas.hertz import Plane
-    from fegear.geometry import Gear
+    from fegear.geometry.gear import Gear
 
 
 def coefficients(poisson_ratio: float, plane: Plane) -> dict[str, float]:

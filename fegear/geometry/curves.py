@@ -19,7 +19,7 @@ from fegear.geometry.involute import polar_angle
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
 
 
 class Curve(Protocol):

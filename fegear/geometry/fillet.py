@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import GeometryError
+from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Involute, Trochoid
 from fegear.geometry.involute import inv, polar_angle
 from fegear.geometry.rack import transverse_angle
@@ -24,7 +24,7 @@ from fegear.geometry.rack import transverse_angle
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.geometry.rack import BasicRack
 
 #: Roll angle by which the rack cuts past the base circle [rad] below which the cut's place is found in closed form.

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.frozen import ReadOnlyArrays
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
 
 FaceEnd = Literal["I", "II", "both"]
 

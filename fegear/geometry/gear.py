@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from fegear.errors import GeometryError, InputError
+from fegear.base.errors import GeometryError, InputError
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
 
 if TYPE_CHECKING:

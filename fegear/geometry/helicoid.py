@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 from fegear.geometry.involute import polar_angle
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.geometry.gear import Gear
 
 

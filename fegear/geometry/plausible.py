@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import GeometryError, InputError
+from fegear.base.errors import GeometryError, InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.geometry.gear import Gear, Material
     from fegear.geometry.pair import GearPair
     from fegear.geometry.relief import Crowning, EndRelief, Relief, TabulatedRelief

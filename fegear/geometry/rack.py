@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fegear.errors import GeometryError
+from fegear.base.errors import GeometryError
 
 #: ISO 53:1998, Table 1: addendum, dedendum, root fillet radius (in modules) of the profiles A to D.
 ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.30), "C": (1.0, 1.25, 0.25), "D": (1.0, 1.40, 0.39)}

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.geometry.pair import GearPair
 
 #: Largest deviation for which the gap is linear in it [rad].

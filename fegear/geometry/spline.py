@@ -11,8 +11,8 @@ from fegear.geometry.fillet import ProtuberanceFillet
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from fegear.arrays import Array
-    from fegear.geometry.relieved_outline import Drawn
+    from fegear.base.arrays import Array
+    from fegear.geometry.outline import Drawn
 
 DEGREE = 5
 _FEWEST, _MOST = 9, 4096

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import GeometryError
+from fegear.base.errors import GeometryError
 from fegear.geometry.curves import Arc, Curve, Involute, Line, Trochoid
 from fegear.geometry.fillet import ProtuberanceFillet, RackFlankLine, meeting, protuberance_fillet
 from fegear.geometry.involute import inv, polar_angle, roll_of_polar_angle
@@ -18,7 +18,7 @@ from fegear.geometry.rack import BasicRack, transverse_angle
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
 
 #: Largest helix angle on the pitch cylinder [rad].
 LARGEST_HELIX_ANGLE = math.radians(60.0)

@@ -10,23 +10,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import fegear
-from fegear.engine.outcome import Table, Value
-from fegear.engine.table import Column
-from fegear.errors import InputError
+from fegear.base.errors import InputError
+from fegear.base.units import PER_SI
+from fegear.engine.outcome import Value
+from fegear.engine.table import Column, Table
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.blocks import DataTable, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
-from fegear.output.summary import write_json
-from fegear.output.tables import write_table
-from fegear.studies.comparison import Side, comparison_figures
-from fegear.units import PER_SI
+from fegear.output.tables import write_json, write_table
+from fegear.studies.comparison.compare import Side
+from fegear.studies.comparison.tables import comparison_figures
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from fegear.studies.comparison import Comparison
+    from fegear.studies.comparison.compare import Comparison
 
 _HEAD = re.compile(r"(.*?)(?: \[(.*)\])?")
 

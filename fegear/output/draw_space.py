@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.engine.figure import Skin, Spot, Surface
-from fegear.errors import MissingLibraryError
-from fegear.output.shades import SEQUENTIAL, shade
+from fegear.base.errors import MissingLibraryError
+from fegear.engine.figure.items import Skin, Spot, Surface
+from fegear.output.numbers import SEQUENTIAL, shade
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fegear.geometry.curves import Arc, Line
-from fegear.geometry.outline import gear_outline, tooth_outline, turned
-from fegear.geometry.relieved_outline import relieved_outline
+from fegear.geometry.outline import gear_outline, relieved_outline, tooth_outline, turned
 from fegear.geometry.spline import DEGREE, Spline, smooth_pieces, spline_of
 
 if TYPE_CHECKING:
@@ -17,9 +16,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fegear.geometry import Gear
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.outline import Drawn
     from fegear.geometry.relief import Relief
-    from fegear.geometry.relieved_outline import Drawn
 
     Array = NDArray[np.float64]
 

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import fegear
-from fegear.engine.outcome import Column, Table
+from fegear.engine.table import Column, Table
 from fegear.output.folder import SUMMARY, files_in
 from fegear.output.report.effects import effects_page, stated_errors
 from fegear.output.report.page import write_page
-from fegear.output.summary import write_json
-from fegear.output.tables import write_table
-from fegear.studies.effect_figures import clearest_curve, effect_figure
+from fegear.output.tables import write_json, write_table
+from fegear.studies.effects import clearest_curve, effect_figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.case.reading import Scene
-    from fegear.studies.effect_study import Fixed, Switched
+    from fegear.studies.effects import Fixed, Switched
 
     Array = NDArray[np.float64]
     Curve = tuple[Table, Table, str, str]

@@ -1,31 +1,48 @@
-"""``fegear export``: drawings, reliefs to grind and meshes of the gears of a case."""
+"""``fegear export``: drawings, reliefs to grind and meshes of the gears of a case.
+
+The relief of a gear for who grinds it: a fine table over the profile, and the points of its profile chart.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fegear.case.names import nearest
-from fegear.errors import InputError
-from fegear.geometry.relieved_outline import relieved_outline
-from fegear.models.described_relief import described_relief
-from fegear.models.settings import mesh_settings
-from fegear.models.tooth_mesh import own_sector_mesh
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.case.built.flank_modifications import described_relief
+from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.tooth_influence import mesh_settings, own_sector_mesh
+from fegear.case.part import nearest
+from fegear.engine.table import Column, Table
+from fegear.geometry.outline import relieved_outline
+from fegear.geometry.pair import MEMBERS, active_profile
+from fegear.geometry.relief import chart_points, roll_of_radius
 from fegear.output.dxf import AS_GENERATED, write_dxf
 from fegear.output.file_names import file_name
-from fegear.output.grinding import write_relief
+from fegear.output.tables import write_table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.geometry.relief import Relief
+
 
 FORMATS = ("dxf", "step", "relief", "msh", "vtu", "inp", "solid-inp", "solid-vtu")
+
+
 #: Those that hold the flanks with their relief, not a mesh.
 _EXACT = frozenset({"dxf", "step", "relief"})
+
+
 #: Those that hold a mesh of the solid gear.
 _SOLID = frozenset({"solid-inp", "solid-vtu"})
+
+
 #: Those that hold the plane mesh of a spur gear.
 _PLANE = frozenset({"msh", "vtu", "inp"})
 
@@ -120,7 +137,7 @@ def _export_gear(scene: Scene, folder: Path, name: str, wanted: set[str]) -> tup
             remarks.append(f"Gear {name}, DXF: the section across the axis.")
         written += write_dxf(gear, folder, file_name(name), found.relief, flanks)
     if "step" in wanted:
-        from fegear.fem.solid_model import write_step
+        from fegear.fem.solid.step_model import write_step
 
         written.append(folder / f"{file_name(name)}.step")
         write_step(written[-1], gear, None if found.relief is None else relieved_outline(gear, found.relief))
@@ -165,3 +182,60 @@ def _left_out(scene: Scene, name: str) -> list[str]:
     if part.spacing_errors is not None:
         remarks.append(f"Gear {name}: teeth evenly spaced, without the spacing errors of the case.")
     return remarks
+
+
+#: Places of the fine table, and how far the relief may lie from the lines between points of the chart [m].
+_PLACES, _WITHIN = 101, 1e-7
+
+
+def write_relief(scene: Scene, folder: Path, name: str, relief: Relief) -> list[Path]:
+    """Write the relief of a gear as two CSV files, its profile from the start to the end of the involute.
+
+    Parameters
+    ----------
+    scene : Scene
+    folder : Path
+    name : str
+        Of the gear.
+    relief : Relief
+
+    Returns
+    -------
+    list of Path
+        ``<gear>_relief.csv`` at even roll angles and kinks, ``<gear>_k_chart.csv`` with the chart's points.
+    """
+    return [write_table(folder, table) for table in relief_tables_of(scene, name, relief)]
+
+
+def relief_tables_of(scene: Scene, name: str, relief: Relief) -> tuple[Table, Table]:
+    """The fine table and that of the profile chart."""
+    gear = scene.gears[name]
+    low, high = (float(roll_of_radius(gear, r)) for r in (gear.form_radius, gear.involute_tip_radius))
+    named = {low: "start of involute", high: "end of involute"}
+    for pair_name, pair in scene.pairs.items():
+        for member in MEMBERS:
+            if gear_name(scene, pair_name, member) == name:
+                alone = active_profile(pair, member)
+                for end, radius in (("start", alone.start), ("end", alone.end)):
+                    roll = float(roll_of_radius(gear, radius))
+                    if low + 1e-9 < roll < high - 1e-9:
+                        named.setdefault(roll, f"{end} of active profile, pair {pair_name}")
+    chart = chart_points(relief, low, high, _WITHIN, tuple(named))
+    words = [next((word for at, word in named.items() if abs(at - roll) < 1e-12), "") for roll in chart]
+    kinks = [kink for kink in relief.kinks if low < kink < high]
+    fine = np.unique(np.concatenate([np.linspace(low, high, _PLACES), kinks]))
+    stem, base = file_name(name), gear.base_radius
+    point = Column("point", np.array(words), "", "end of the involute or of an active profile; empty: the relief bends")
+    return (
+        Table(f"{stem}_relief", _columns(base, fine, relief), f"Relief of gear {name}"),
+        Table(f"{stem}_k_chart", (point, *_columns(base, chart, relief)), f"Profile chart of gear {name}"),
+    )
+
+
+def _columns(base: float, roll: Array, relief: Relief) -> tuple[Column, ...]:
+    return (
+        Column("diameter", 2.0 * base * np.hypot(1.0, roll), "mm", "of the flank point"),
+        Column("roll_angle", roll, "deg", "of the gear"),
+        Column("roll_length", base * roll, "mm", "along the line of action, from the base circle"),
+        Column("removal", relief.removal(roll), "um", "along the normal of the involute, from the involute"),
+    )

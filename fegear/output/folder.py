@@ -1,26 +1,38 @@
-"""An output folder that is whole at any moment: files are made elsewhere and moved in when all of them exist."""
+"""An output folder that is whole at any moment: files are made elsewhere and moved in when all of them exist.
+
+Write everything that a run makes into one folder.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import os
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import NO_ROOM, PATH, InputError, shown
+from fegear.base.streams import complain
 from fegear.case.text_file import named_path
-from fegear.errors import NO_ROOM, PATH, InputError, shown
-from fegear.output.claim import HeldError, claimed, clear_abandoned, folder_for
+from fegear.output.claim import HeldError, claimed, clear_abandoned, folder_for, undisturbed
+from fegear.output.dataset import write_dataset
 from fegear.output.exchange import JOURNAL, RECORD, check_room, exchange, put_back
+from fegear.output.figures import Drawing, described
 from fegear.output.file_names import file_name
-from fegear.output.undisturbed import undisturbed
-from fegear.streams import complain
+from fegear.output.report.run import write_report
+from fegear.output.tables import write_summary, write_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from fegear.engine.run import Results, Watcher
+
+
 #: The file that lists all others; with it, a folder's earlier files are replaced as a whole.
 SUMMARY = "summary.json"
+
+
 #: What every command writes into, held against the folder before anything is computed.
 _KNOWN = (SUMMARY, RECORD, "report.html", "results.nc", "sweep.nc", "tables/*", "plots/*", "fields/*")
 
@@ -161,3 +173,48 @@ def _remove_empty(folders: list[Path]) -> None:
 def files_in(folder: Path) -> list[str]:
     """Relative names of all files below a folder, sorted."""
     return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+
+
+#: Steps of writing that a watcher sees after those of the plan.
+STEPS = 1
+
+
+def write_results(
+    results: Results, folder: Path, watcher: Watcher, *, plots: bool = True, begun: Drawing | None = None
+) -> list[str]:
+    """Write tables, dataset, pictures, report and summary.
+
+    Parameters
+    ----------
+    results : Results
+    folder : Path
+        An empty folder.
+    watcher : Watcher
+    plots : bool
+        Whether to draw; without, neither matplotlib nor pyvista is imported.
+    begun : Drawing, optional
+        Pictures that were begun while the run computed; by default they are begun now.
+
+    Returns
+    -------
+    list of str
+        Remarks of the run and of its drawing.
+    """
+    started = time.perf_counter()
+    count = len(results.plan.steps) + STEPS
+    watcher.begin("Tables, pictures, report" if plots else "Tables and report", count, count)
+    tables = folder / "tables"
+    tables.mkdir()
+    for table in results.tables:
+        write_table(tables, table)
+    write_dataset(folder / "results.nc", results)
+    if plots and begun is None:
+        begun = Drawing(folder / "plots", case=results.scene.name)
+        for task, outcome in results.outcomes.items():
+            begun.begin(task, outcome)
+    drawn, missing = begun.finish(watcher.advance) if begun else (described(results), [])
+    remarks = [*results.remarks, *results.cache_remarks, *missing]
+    write_report(folder / "report.html", results, drawn, remarks)
+    write_summary(folder / SUMMARY, results, remarks, [*files_in(folder), SUMMARY])
+    watcher.end(time.perf_counter() - started)
+    return remarks

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.loaded_gear import loaded_gear, nodal_fields
-from fegear.fem.mesh_files import write_mesh_file
+from fegear.fem.plane.imported_mesh import write_mesh_file
+from fegear.fem.plane.whole_gear import loaded_gear, nodal_fields
 from fegear.output.dxf import AS_GENERATED
 
 if TYPE_CHECKING:
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fegear.fem import MeshSettings
-    from fegear.fem.mesh import SectorMesh
-    from fegear.fem.whole_gear import WholeGear
-    from fegear.geometry import Gear
+    from fegear.fem.plane.mesh import SectorMesh
+    from fegear.fem.plane.settings import MeshSettings
+    from fegear.fem.plane.whole_gear import WholeGear
+    from fegear.geometry.gear import Gear
 
     Array = NDArray[np.float64]
     Index = NDArray[np.int64]

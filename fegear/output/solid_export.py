@@ -6,20 +6,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.fem.extruded import extruded, graded_stations, pressed_band
-from fegear.fem.gear_section import gear_section, uneven_section
-from fegear.fem.mesh_files import write_solid_file
+from fegear.base.errors import InputError
+from fegear.fem.plane.gear_section import gear_section, uneven_section
+from fegear.fem.plane.imported_mesh import write_solid_file
+from fegear.fem.solid.extruded import extruded, graded_stations, pressed_band
 from fegear.output.dxf import AS_GENERATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from fegear.arrays import Array, Index
-    from fegear.fem.extruded import SolidMesh
-    from fegear.fem.mesh import SectorMesh
-    from fegear.geometry import Gear
+    from fegear.base.arrays import Array, Index
+    from fegear.fem.plane.mesh import SectorMesh
+    from fegear.fem.solid.extruded import SolidMesh
+    from fegear.geometry.gear import Gear
 
 _MM = 1e3
 #: Abaqus' names of the elements.

@@ -1,24 +1,35 @@
-"""Tables as CSV: the first line holds the column heads with their units."""
+"""Tables as CSV: the first line holds the column heads with their units.
+
+``summary.json``: single values with their errors, settings, seconds, version.
+"""
 
 from __future__ import annotations
 
 import csv
 import io
+import json
+import math
 import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+import fegear
 from fegear.output.file_names import file_name
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from fegear.engine.run import Results
+    from fegear.engine.table import Table
+
 
 #: What begins a formula in a spreadsheet.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
 _QUANTITY = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?( ?[A-Za-zµ°%]+)?|inf|nan)?")
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from fegear.engine.outcome import Table
 
 
 def cell(value: np.generic) -> str:
@@ -74,3 +85,65 @@ def write_table(folder: Path, table: Table) -> Path:
     path = folder / table_file(table)
     path.write_text(table_text(table), encoding="utf-8", newline="")
     return path
+
+
+def _finite(number: float | None) -> float | None:
+    """JSON knows no infinity; a value that is not finite is written as null."""
+    return number if number is not None and math.isfinite(number) else None
+
+
+def summary(results: Results, remarks: list[str], files: list[str]) -> dict[str, object]:
+    """Collect what the summary holds.
+
+    Parameters
+    ----------
+    results : Results
+    remarks : list of str
+    files : list of str
+        Names of all files of the run.
+    """
+    case = results.scene.case
+    return {
+        "title": case.title,
+        "case": results.scene.name,
+        "results": {
+            value.name: {"value": _finite(value.value), "unit": value.unit, "error": _finite(value.error)}
+            for value in results.values
+        },
+        "inputs": inputs(results.scene.document),
+        "settings": {
+            "tolerance": case.accuracy.tolerance,
+            "effects": list(case.effects.on()),
+            "stages": {str(task): dict(outcome.settings) for task, outcome in results.outcomes.items()},
+        },
+        "timings": {str(task): round(seconds, 6) for task, seconds in results.seconds.items()}
+        | {"total": round(sum(results.seconds.values()), 6)},
+        "origin": {str(task): timing.origin for task, timing in results.timings.items()},
+        "recalled": {
+            str(task): {
+                "shapes": timing.shapes,
+                "seconds_when_computed": round(timing.when_computed + timing.spared, 6),
+            }
+            for task, timing in results.timings.items()
+            if timing.recalled or timing.shapes
+        },
+        "remarks": remarks,
+        "files": files,
+        "version": fegear.__version__,
+    }
+
+
+def inputs(document: Mapping[str, object]) -> dict[str, object]:
+    """The case as JSON has it; what is no plain value (a quantity of a library) as its text."""
+    plain: dict[str, object] = json.loads(json.dumps(document, default=str))
+    return plain
+
+
+def write_summary(path: Path, results: Results, remarks: list[str], files: list[str]) -> None:
+    """Write the summary as JSON."""
+    write_json(path, summary(results, remarks, files))
+
+
+def write_json(path: Path, content: Mapping[str, object]) -> None:
+    """Write a JSON file that people can read."""
+    path.write_text(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")

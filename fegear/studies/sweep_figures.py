@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.engine.figure import Axis, Curve, Figure, HeatMap, Mark, Panel, Points, View, few, ramp
+from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.items import Curve, HeatMap, Mark, Points, few, ramp
 from fegear.studies.swept import failures, is_geometric
 
 if TYPE_CHECKING:
@@ -15,8 +16,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fegear.arrays import Array
-    from fegear.studies.axis import Axis as SweepAxis
+    from fegear.base.arrays import Array
+    from fegear.studies.sweep import Axis as SweepAxis
     from fegear.studies.sweep import SweepResults
     from fegear.studies.swept import Swept
 

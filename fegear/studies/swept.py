@@ -14,8 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fegear.studies.axis import Axis
-    from fegear.studies.sweep import SweepResults
+    from fegear.studies.sweep import Axis, SweepResults
 
     Array = NDArray[np.generic]
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
 
+from fegear.base.errors import FegearError, InputError
 from fegear.case.text_file import named_path
-from fegear.errors import FegearError, InputError
 from fegear.output.folder import default_folder
 from fegear.window.bench import LEVELS
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.window.bench import Bench
-    from fegear.window.desk import Desk
+    from fegear.window.document import Desk
 
 
 #: What can be written: words of the menu, the job's name for it, ending of the folder that is offered.

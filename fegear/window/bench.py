@@ -7,18 +7,19 @@ import itertools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fegear.drafts import KINDS, Answers, draft
-from fegear.errors import InputError
+from fegear.base.errors import InputError
+from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.text import draft
 from fegear.window.case_text import literal, with_value
-from fegear.window.desk import Desk
-from fegear.window.jobs import Asked, Compare, Compute, Design, Export, Said
-from fegear.window.reliefs import moved_relief, own_name, without_relief
-from fegear.window.sent import whole
+from fegear.window.computing import whole
+from fegear.window.document import Desk
+from fegear.window.drag_handles import moved_relief, own_name, without_relief
+from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Said
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fegear.results.relief_for_case import How
+    from fegear.results.relief.relief import How
     from fegear.window.computing import Computing
 
 #: Accuracy against time: factor of the case's own tolerance.

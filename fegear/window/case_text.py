@@ -11,7 +11,7 @@ import tomllib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from fegear.errors import InputError
+from fegear.base.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

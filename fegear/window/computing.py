@@ -1,27 +1,36 @@
-"""The computing process seen from the page: asked, listened to, stopped where it does not listen, started again."""
+"""The computing process seen from the page: asked, listened to, stopped where it does not listen, started again.
+
+What a page has been told already, so that it is told again only what has become different.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import json
 import threading
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fegear.engine.processes import start_process
-from fegear.window.jobs import Compute, Said
-from fegear.window.scratch import Scratch
+from fegear.window.job_queue import Compute, Said
+from fegear.window.journal import Scratch
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
 
-    from fegear.window.jobs import Job
+    from fegear.window.job_queue import Job
+
 
 #: What the process runs; loaded there, not here.
 _WORKER = "fegear.window.worker"
+
+
 #: A computation that is no longer wanted is stopped with its process if it has not noticed after this time [s].
 PATIENCE = 5.0
+
+
 #: A process that is asked to end is killed after this [s].
 _GRACE = 2.0
 
@@ -148,3 +157,47 @@ def end(process: BaseProcess) -> None:
     if process.is_alive():
         process.kill()
         process.join(_GRACE)
+
+
+_Content = dict[str, Any]
+
+
+class Sent:
+    """What was sent last, by task; a figure that is the same again travels as its key alone."""
+
+    def __init__(self) -> None:
+        self._figures: dict[tuple[str, str], str] = {}
+        self._empty: set[str] = set()
+
+    def news(self, content: _Content) -> _Content | None:
+        """What of a task's results is different from what was sent last; None where it has nothing to show, again.
+
+        Parameters
+        ----------
+        content : dict
+            Of ``found``; `whole` is the reverse.
+        """
+        if not (content["figures"] or content["values"] or content["loads"]):
+            if content["task"] in self._empty:
+                return None
+            self._empty.add(content["task"])
+        else:
+            self._empty.discard(content["task"])
+        figures = []
+        for one in content["figures"]:
+            place, text = (content["task"], one["key"]), json.dumps(one)
+            figures.append({"key": one["key"], "same": True} if self._figures.get(place) == text else one)
+            self._figures[place] = text
+        return {**content, "figures": figures}
+
+    def forget_others(self, tasks: list[str]) -> None:
+        """Forget what is on the page no longer."""
+        self._figures = {place: text for place, text in self._figures.items() if place[0] in tasks}
+        self._empty &= set(tasks)
+
+
+def whole(content: _Content, before: _Content | None) -> _Content:
+    """Results of a task with all figures, the same ones from what was known before."""
+    known = {one["key"]: one for one in (before or {}).get("figures", ())}
+    figures = [known[one["key"]] if one.get("same") else one for one in content["figures"]]
+    return {**content, "figures": figures}

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
-from fegear.case.schema import case_schema
-from fegear.case.schema_nodes import SchemaNodes, help_of
+from fegear.case.schema import SchemaNodes, case_schema, help_of
 from fegear.results.catalogue import STAGES
 from fegear.window.case_text import as_typed, literal, value_at
 

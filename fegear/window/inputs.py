@@ -1,21 +1,26 @@
-"""The case as a form and as its text; each changes the other, and a refusal stands at its field."""
+"""The case as a form and as its text; each changes the other, and a refusal stands at its field.
+
+A typed quantity one step up or down, as the arrow keys change it.
+"""
 
 from __future__ import annotations
 
+import re
+from decimal import Decimal
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
 
-from fegear.errors import InputError
+from fegear.base.errors import InputError
 from fegear.window.form import Field, Section, fields, fields_told, form, tables_to_add
-from fegear.window.stepped import stepped
 
 if TYPE_CHECKING:
     from nicegui.element import Element
 
     from fegear.window.bench import Bench
     from fegear.window.case_text import Path
+
 
 #: How long nobody types before a text is read [ms].
 _PAUSE = 500
@@ -269,3 +274,32 @@ def _escaped(text: str) -> str:
     from html import escape
 
     return escape(text)
+
+
+_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)", re.DOTALL)
+
+
+def stepped(text: str, steps: int) -> str | None:
+    """The text with its leading number changed by so many units of its last digit; None where there is no number.
+
+    Parameters
+    ----------
+    text : str
+        ``23``, ``0.30``, ``20 deg``.
+    steps : int
+
+    Returns
+    -------
+    str or None
+        As many decimals as before; the unit stays.
+    """
+    found = _NUMBER.fullmatch(text)
+    if found is None:
+        return None
+    number = Decimal(found[1])
+    exponent = number.as_tuple().exponent
+    if not isinstance(exponent, int):
+        return None
+    unit = Decimal(1).scaleb(exponent)
+    made = number + steps * unit
+    return f"{made:f}{found[2]}" if "e" not in found[1].lower() else f"{made}{found[2]}"

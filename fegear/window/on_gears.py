@@ -1,25 +1,44 @@
-"""What is shown on the gears in mesh, small enough to be sent: colours of fillets, deformed teeth, pressed flanks."""
+"""What is shown on the gears in mesh, small enough to be sent: colours of fillets, deformed teeth, pressed flanks.
+
+The gears in mesh for the page: outlines and how they turn, and what is switched on at them.
+"""
 
 from __future__ import annotations
 
 import base64
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fegear.base.errors import FegearError
+from fegear.engine.plan import make_plan
+from fegear.engine.stage import Task
+from fegear.results.catalogue import STAGES
+from fegear.results.gear.drawing import moving_pair, tool_envelope
+
 if TYPE_CHECKING:
-    from fegear.arrays import Array
-    from fegear.engine.stage import Task
-    from fegear.results.deformed_in_mesh import DeformedInMeshData
-    from fegear.results.loaded_flanks import LoadedFlanksData
-    from fegear.results.stress_in_mesh import StressInMeshData
+    from collections.abc import Iterable
+
+    from fegear.base.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.results.pair.deformed_in_mesh import DeformedInMeshData
+    from fegear.results.pair.loaded_flanks import LoadedFlanksData
+    from fegear.results.pair.stress_in_mesh import StressInMeshData
+
 
 #: Points along a fillet that are coloured.
 _POINTS = 25
+
+
 #: Largest number of sixteen bits.
 _MOST = 32767
+
+
 #: What stands for no number.
 _NONE = -32768
+
+
 #: The largest displacement is drawn so large, about, where nobody says otherwise [modules].
 _DRAWN = 0.1
 
@@ -140,3 +159,78 @@ def _round_factor(value: float) -> float:
     """1, 2 or 5 times a power of ten, no larger than a value, within 1 and 1000."""
     power = 10.0 ** np.floor(np.log10(max(value, 1.0)))
     return float(min(1000.0, power * max(step for step in (1.0, 2.0, 5.0) if step * power <= max(value, 1.0))))
+
+
+#: What is switched on at the gears, and the stage that computes it for plane teeth, and for those with a width.
+_PLANE = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
+
+
+_WIDE = {"stress": "flank-stress-in-mesh"}
+
+
+#: Why deformed teeth are not shown of gears with a width.
+_NOT_PLANE = (
+    "It is shown only of pairs of plane teeth: of gears with a width flanks and fillets are known, not how tips and "
+    "the flanks behind move."
+)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return np.round(value, 9).tolist()  # to a nanometre
+    return value
+
+
+def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
+    """Outlines of both gears and how they turn, for the page to draw, and what can be switched on in vain.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Of the pair.
+    """
+    found = {key: _plain(value) for key, value in asdict(moving_pair(scene.pairs[name])).items()}
+    return found | {"refused": {kind: _NOT_PLANE for kind in _PLANE if kind not in _stages(scene, name)}}
+
+
+def _stages(scene: Scene, name: str) -> dict[str, str]:
+    """The stages that compute what is switched on at the gears of a pair."""
+    return _PLANE if name in scene.plane_pairs else _WIDE
+
+
+def wanted_on_gears(scene: Scene, shows: Iterable[tuple[str, str]]) -> tuple[list[Task], list[dict[str, Any]]]:
+    """What is switched on at the gears: tasks that compute it, and what can be told of it at once.
+
+    Parameters
+    ----------
+    scene : Scene
+    shows : iterable of (str, str)
+        Pair and kind: ``stress``, ``deformed`` or ``tool``.
+
+    Returns
+    -------
+    tasks : list of Task
+    told : list of dict
+        For the page: the tool's positions, and why a kind cannot be had.
+    """
+    tasks: list[Task] = []
+    told: list[dict[str, Any]] = []
+    for pair, kind in shows:
+        if pair not in scene.pairs:
+            continue
+        if kind == "tool":
+            gears = scene.pairs[pair]
+            lines = {member: millimetres(at) for member, at in tool_envelope(gears).items()}
+            tips = {member: gears.gear(member).tip_radius * 1e3 for member in lines}
+            told.append({"pair": pair, "kind": kind, "lines": lines, "tips": tips})
+        elif kind not in (stages := _stages(scene, pair)):
+            told.append({"pair": pair, "kind": kind, "refused": _NOT_PLANE})
+        else:
+            task = Task(stages[kind], pair)
+            try:
+                make_plan(scene, STAGES, [task])
+                tasks.append(task)
+            except FegearError as error:
+                told.append({"pair": pair, "kind": kind, "refused": str(error)})
+    return tasks, told

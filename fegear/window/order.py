@@ -1,22 +1,36 @@
-"""In which order the results of a case are found for somebody who watches: what a value is moved for, what is seen."""
+"""In which order the results of a case are found for somebody who watches: what a value is moved for, what is seen.
+
+The Harris map beside the load slider: made when the case is at rest, its present load followed while it moves.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from fegear.output.draw_plotly.layout import darker, plotly_json
+from fegear.results.pair.loaded_flanks import LoadedFlanksData
+from fegear.results.pair.loaded_pair import LoadedPairData
+from fegear.results.relief.harris_map import NOW, load_now, nominal_load, slider_map
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
     from fegear.case.reading import Scene
     from fegear.engine.plan import Plan
+    from fegear.engine.run import Results
     from fegear.engine.stage import Task
+
 
 #: What a relief, a load or a tooth is changed for: the stages whose results come first, and come while it is changed.
 ANSWERS = (
     "load-sharing", "transmission-error", "root-stress-history",
     "flank-load-sharing", "flank-transmission-error", "flank-root-stress",
 )  # fmt: skip
+
+
 #: What is in sight is found with them if that took no longer than this before [s].
 _QUICK = 0.03
 
@@ -70,3 +84,41 @@ def in_order(plan: Plan, scene: Scene, sight: Collection[str], seconds: Mapping[
     add(seen)
     add(steps)
     return Ordered(replace(plan, steps=tuple(steps[task] for task in order)), at_once)
+
+
+#: A slider goes to so many times the load that it began with, and stands there until the load is beyond or below.
+_MOST, _LEAST = 2.0, 0.02
+
+
+#: What a pair under load is told as: plane teeth, and those with a width.
+LOADED = (LoadedPairData, LoadedFlanksData)
+
+
+class HarrisMaps:
+    """Maps of the pairs of one case, over the range of their sliders."""
+
+    def __init__(self) -> None:
+        self._begun: dict[str, float] = {}
+
+    def at_rest(self, results: Results) -> dict[str, dict[str, Any]]:
+        """The map of every pair that is loaded, by the pair's name."""
+        found = {}
+        for task, outcome in results.outcomes.items():
+            data = outcome.data
+            if not isinstance(data, LOADED):
+                continue
+            load = nominal_load(data)
+            begun = self._begun.get(task.subject, load)
+            if not _LEAST * begun <= load <= _MOST * begun:
+                begun = load
+            self._begun[task.subject] = begun
+            figure = slider_map(task.subject, data, _MOST * begun)
+            drawn = {"key": figure.key, "heading": figure.heading, "caption": figure.caption, **plotly_json(figure)}
+            found[task.subject] = {"figure": drawn, "darker": darker([figure]), "now": NOW}
+        return found
+
+
+def load_now_of(pair: str, data: LoadedPairData | LoadedFlanksData) -> dict[str, Any]:
+    """The curve of the present load of a pair, for a map that is there."""
+    load, x, te = load_now(data)
+    return {"pair": pair, "load": load, "x": np.round(x, 6).tolist(), "te": np.round(te, 6).tolist()}

@@ -11,10 +11,10 @@ import threading
 import webbrowser
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import InputError, MissingLibraryError
 from fegear.engine.processes import end_tracker, loading
-from fegear.errors import InputError, MissingLibraryError
+from fegear.window.access import Doorkeeper
 from fegear.window.computing import Computing
-from fegear.window.doorkeeper import Doorkeeper
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -10,20 +10,16 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fegear.base.errors import FegearError, InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.base.store import Store
 from fegear.engine.processes import loading
-from fegear.errors import FegearError, InputError
-from fegear.solution_cache import SolutionCache
-from fegear.store import Store
-from fegear.window.designs import design_asked, designed
-from fegear.window.drafted import draft_of
-from fegear.window.gears import wanted_on_gears
-from fegear.window.hands import hands_of
-from fegear.window.harris import LOADED, HarrisMaps, load_now_of
-from fegear.window.inbox import Inbox, Unwanted
-from fegear.window.jobs import Compare, Compute, Design, Export, Said
-from fegear.window.on_gears import on_the_gears
-from fegear.window.order import in_order
-from fegear.window.sent import Sent
+from fegear.window.computing import Sent
+from fegear.window.designs import design_asked, designed, draft_of
+from fegear.window.drag_handles import hands_of
+from fegear.window.job_queue import Compare, Compute, Design, Export, Inbox, Said, Unwanted
+from fegear.window.on_gears import on_the_gears, wanted_on_gears
+from fegear.window.order import LOADED, HarrisMaps, in_order, load_now_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,7 +30,7 @@ if TYPE_CHECKING:
     from fegear.engine.plan import Plan
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
-from fegear.window.jobs import Asked, Job
+from fegear.window.job_queue import Asked, Job
 
 #: For so long a computation goes on while a value is being moved [s].
 _STROKE = 1.5
@@ -242,10 +238,10 @@ class Worker:
             self._pictures(results)
 
     def _found(self, scene: Scene, plan: Plan, task: Task, outcome: Outcome, draft: str = "") -> None:
-        from fegear.engine.figure import Figure
-        from fegear.output.draw_plotly import darker, plotly_json
+        from fegear.engine.figure.figure import Figure
+        from fegear.output.draw_plotly.layout import darker, plotly_json
         from fegear.output.report.blocks import Values
-        from fegear.output.report.rendering import fragment
+        from fegear.output.report.page import fragment
 
         data = outcome.data
         if isinstance(data, LOADED) and self._asked is not None and self._asked.moving:
@@ -297,9 +293,8 @@ class Worker:
     def _export(self, job: Export) -> None:
         from fegear.engine.run import Silence
         from fegear.output.export import export_gears
-        from fegear.output.folder import whole_or_nothing
+        from fegear.output.folder import whole_or_nothing, write_results
         from fegear.output.tables import write_table
-        from fegear.output.write import write_results
 
         target = Path(job.target)
         with whole_or_nothing(target) as scratch:
@@ -317,10 +312,11 @@ class Worker:
 
     def _compare(self, job: Compare) -> None:
         from fegear.output.comparison import comparison_page
-        from fegear.output.draw_plotly import darker, plotly_json
+        from fegear.output.draw_plotly.layout import darker, plotly_json
         from fegear.output.report.blocks import DataTable, Plot
-        from fegear.output.report.rendering import fragment
-        from fegear.studies.comparison import compare, comparison_figures, side_of
+        from fegear.output.report.page import fragment
+        from fegear.studies.comparison.compare import compare, side_of
+        from fegear.studies.comparison.tables import comparison_figures
 
         found = compare(side_of(self._results(job.first), "pinned"), side_of(self._results(job.second), "now"), 1e-9)
         figures = comparison_figures(found)
@@ -377,16 +373,17 @@ def _give_back() -> None:
 
 def _load() -> None:
     """Load what every case needs, while the page opens."""
+    import fegear.case.built.tooth_influence
     import fegear.engine.run
-    import fegear.models.settings
     import fegear.output.draw_plotly
     import fegear.results.catalogue
-    from fegear.output.report.rendering import templates
+    from fegear.output.report.page import templates
 
     templates()
-    import fegear.contact
-    import fegear.design
-    import fegear.fem  # noqa: F401
+    import fegear.contact.plane.root_stress_history
+    import fegear.contact.plane.transmission_error
+    import fegear.design.relief_design
+    import fegear.fem.plane.table  # noqa: F401
 
     gc.freeze()  # what is loaded stays: the collector need not look through it again and again
 

@@ -6,11 +6,10 @@ import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Unpack
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
-from fegear.errors import InputError
-from fegear.solution_cache import SolutionCache
-from fegear.workbench.given import name_of, table, taken, working_folder
-from fegear.workbench.keys import brief
+from fegear.workbench.given import brief, name_of, table, taken, working_folder
 from fegear.workbench.run import run_scene
 
 if TYPE_CHECKING:
@@ -18,9 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from fegear import geometry
     from fegear.case.reading import Scene
-    from fegear.workbench.keys import GearKeys, Length
+    from fegear.geometry import gear as geometry
+    from fegear.workbench.given import GearKeys, Length
     from fegear.workbench.results import Results
 
 
@@ -130,6 +129,6 @@ class Gear:
 
     def _repr_html_(self) -> str:
         """Show the drawing and its data in a notebook."""
-        from fegear.workbench.drawn import gear_html
+        from fegear.workbench.plots import gear_html
 
         return gear_html(self)

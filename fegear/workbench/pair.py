@@ -6,13 +6,12 @@ import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
+from fegear.base.errors import InputError, shown
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
-from fegear.errors import InputError, shown
-from fegear.results.root_stress_history import table_names
-from fegear.solution_cache import SolutionCache
+from fegear.results.pair.root_stress_history import table_names
 from fegear.workbench.gear import Gear
-from fegear.workbench.given import name_of, table, taken, working_folder
-from fegear.workbench.keys import brief
+from fegear.workbench.given import brief, name_of, table, taken, working_folder
 from fegear.workbench.run import run_scene
 
 if TYPE_CHECKING:
@@ -21,10 +20,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fegear.case.reading import Scene
-    from fegear.geometry import GearPair
-    from fegear.geometry.pair import Member
-    from fegear.helical.pair import HelicalPair
-    from fegear.workbench.keys import Length, PairKeys
+    from fegear.contact.unloaded.pair import HelicalPair
+    from fegear.geometry.pair import GearPair, Member
+    from fegear.workbench.given import Length, PairKeys
     from fegear.workbench.results import Results
 
 _MEMBERS: tuple[Member, ...] = ("driver", "driven")
@@ -197,7 +195,7 @@ class Pair:
 
     def _repr_html_(self) -> str:
         """Show the gears and the pair's data in a notebook."""
-        from fegear.workbench.drawn import pair_html
+        from fegear.workbench.plots import pair_html
 
         return pair_html(self)
 

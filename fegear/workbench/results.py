@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.engine.named import Named
-from fegear.engine.outcome import Column, Table
+from fegear.base.errors import NOTEBOOK_EXTRA, MissingLibraryError
+from fegear.engine.outcome import Named, html_table
 from fegear.engine.run import Results as Found
 from fegear.engine.run import Silence
-from fegear.engine.shown import html_table
-from fegear.errors import NOTEBOOK_EXTRA, MissingLibraryError
+from fegear.engine.table import Column, Table
 from fegear.output.numbers import pretty_unit
 from fegear.output.report.blocks import value_cells
 from fegear.workbench.given import folder_of
@@ -194,8 +193,7 @@ class Results(Found):
         InputError
             If the folder cannot be made or written to.
         """
-        from fegear.output.folder import whole_or_nothing
-        from fegear.output.write import write_results
+        from fegear.output.folder import whole_or_nothing, write_results
 
         target = folder_of(folder)
         with whole_or_nothing(target, "folder") as scratch:

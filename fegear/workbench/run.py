@@ -9,16 +9,16 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from fegear.base.errors import InputError, shown
+from fegear.base.one_thread import one_thread
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene, case_text, parse_document, read_document, set_key
 from fegear.case.text_file import named_path
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
-from fegear.errors import InputError, shown
-from fegear.one_thread import one_thread
+from fegear.output.terminal import watcher
 from fegear.results.catalogue import STAGES
-from fegear.solution_cache import SolutionCache
-from fegear.terminal import watcher
 from fegear.workbench.given import cache_of, table, taken, texts, working_folder
 from fegear.workbench.results import Results
 
@@ -54,7 +54,7 @@ def run(
         Address of a running Dask scheduler; by default points are computed on this machine.
     cache : SolutionCache, optional
         Where results are recalled from and kept. By default nothing is recalled, so that the seconds of a run are its
-        own; give the same cache to several runs, or ``fegear.solution_cache.cache_on_disk()``.
+        own; give the same cache to several runs, or ``fegear.base.solution_cache.cache_on_disk()``.
 
     Returns
     -------

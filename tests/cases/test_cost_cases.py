@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from fegear.case.reading import read_scene
-from fegear.studies.cost import asked, study_cost
+from fegear.studies.cost.asked import asked
+from fegear.studies.cost.study import study_cost
 
 CASE = Path(__file__).parents[2] / "cases" / "nasa_four_square.toml"
 NAMES = ("c_0", "c_1", "root-stress", "te-peak-to-peak", "tooth-force")

@@ -9,17 +9,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.solid_influence import solid_settings_of
 from fegear.case.reading import build_scene, read_scene
-from fegear.errors import InputError
-from fegear.models.loaded_flanks import flanks_to_load
-from fegear.models.solid_influence import solid_settings_of
 from fegear.output.cost import write_cost
-from fegear.results.loaded_flanks import load_flanks
-from fegear.solution_cache import SolutionCache
-from fegear.studies.cost import asked, study_cost
-from fegear.studies.cost.flank_ladder import ALONE, BODIES, FlankConfiguration, flank_ladder
-from fegear.studies.cost.flank_measure import solve_bodies
-from fegear.studies.cost.quantities import OF_FLANKS
+from fegear.results.pair.loaded_flanks import load_flanks
+from fegear.studies.cost.answers import OF_FLANKS
+from fegear.studies.cost.asked import asked
+from fegear.studies.cost.ladder import ALONE, BODIES, FlankConfiguration, flank_ladder
+from fegear.studies.cost.measure import solve_bodies
+from fegear.studies.cost.study import study_cost
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
 FOUR_SQUARE = CASE.with_name("nasa_four_square.toml")
@@ -32,8 +33,8 @@ NARROW = (
 @pytest.fixture(scope="module")
 def results():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("fegear.studies.cost.flank_ladder._QUICK_REFERENCE", 6e-2)
-        patch.setattr("fegear.studies.cost.flank_ladder._QUICK_TOLERANCES", (1e-1,))
+        patch.setattr("fegear.studies.cost.ladder._QUICK_REFERENCE", 6e-2)
+        patch.setattr("fegear.studies.cost.ladder._QUICK_TOLERANCES", (1e-1,))
         return study_cost(asked(read_scene(CASE, NARROW)), quick=True)
 
 

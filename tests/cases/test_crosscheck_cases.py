@@ -12,21 +12,23 @@ import pytest
 from helical_gears import helical_gear
 from solved_once import CACHE
 
+from fegear.base.errors import InputError
+from fegear.case.built.tooth_influence import mesh_settings
 from fegear.case.reading import read_scene
 from fegear.cli import app
-from fegear.contact.crosscheck import pair_compliance_answers, root_stress_answers
-from fegear.contact.root_stress_study import root_stress_study, variants, verdict
-from fegear.contact.virtual_gears import virtual_root_stress
+from fegear.contact.compared.crosscheck import pair_compliance_answers, root_stress_answers
+from fegear.contact.compared.iso_check import virtual_root_stress
+from fegear.contact.compared.root_stress_study import root_stress_study, variants, verdict
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError
-from fegear.fem.settings import MeshSettings
+from fegear.fem.plane.settings import MeshSettings
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas.iso6336.part3_pair import RatingChoice, ToothLoad, rate_helical, rate_spur
-from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
-from fegear.formulas.sources import SOURCES
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
-from fegear.models.settings import mesh_settings
+from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 ROOT = Path(__file__).parents[2]

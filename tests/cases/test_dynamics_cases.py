@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from solved_once import CACHE
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import cache_on_disk
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
-from fegear.solution_cache import cache_on_disk
 
 CASES = Path(__file__).parents[2] / "cases"
 POUND = 4.4482216152605

@@ -14,14 +14,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from fegear.base.errors import InputError
+from fegear.base.tally import KERNELS, note, tallied, tallying
 from fegear.case.effects import EffectsPart
 from fegear.case.reading import read_scene
 from fegear.cli import app
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
-from fegear.studies.effect_facts import FACTS, kernel_table, stage_table
-from fegear.studies.effect_study import Switched, effect_study
-from fegear.tally import KERNELS, note, tallied, tallying
+from fegear.studies.effects import FACTS, Switched, effect_study, kernel_table, stage_table
 
 ROOT = Path(__file__).parents[2]
 CASES = ROOT / "cases"
@@ -88,7 +87,7 @@ def test_the_linearised_train_moves_nothing_in_time():
 
 
 def test_without_coupling_no_neighbours_of_neighbours_are_solved():
-    from fegear.models.tooth_influence import needed_reach
+    from fegear.case.built.tooth_influence import needed_reach
 
     with_it = read_scene(CASES / "calculix_pair.toml")
     without = read_scene(CASES / "calculix_pair.toml", ("effects.neighbour_coupling=false",))

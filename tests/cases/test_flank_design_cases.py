@@ -6,19 +6,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import read_scene
-from fegear.contact.flank import flank_compliance
-from fegear.design.flank_scatter import Scatter
-from fegear.design.flank_topography import lines_at
-from fegear.design.flank_trials import FlankTrials
+from fegear.contact.wide.compliance import flank_compliance
+from fegear.design.flanks.topography import lines_at
+from fegear.design.flanks.trials import FlankTrials, Scatter
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.errors import InputError
 from fegear.output.tables import write_table
 from fegear.results.catalogue import STAGES
-from fegear.results.flank_design_tables import keys_of, topography_table
-from fegear.solution_cache import SolutionCache
+from fegear.results.relief.flank_design_tables import keys_of, topography_table
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_flank_design.toml"
 COARSE = (

@@ -9,11 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
-from fegear.engine.plan import make_plan
-from fegear.engine.plan_text import forecast_seconds, plan_lines
+from fegear.engine.plan import forecast_seconds, make_plan, plan_lines
 from fegear.engine.stage import Stage, Task
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
 
 ROOT = Path(__file__).parents[2]

@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.fem import stiffness_table
+from fegear.fem.plane.table import stiffness_table
 from fegear.formulas import cornell_heywood as cornell
 from fegear.formulas import hertz
-from fegear.formulas.load_line import load_line
-from fegear.formulas.root_stress_sources import root_stress_table
-from fegear.formulas.sources import SOURCES
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.formulas.root_section import load_line
+from fegear.formulas.sources import SOURCES, root_stress_table
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 M = 3.175e-3
 PAPER_TOOTH = Tooth(28, BasicRack(1.0, 1.34225, 0.22972), thickness_allowance=0.04203926)

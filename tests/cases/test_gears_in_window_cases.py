@@ -15,8 +15,7 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.results.catalogue import STAGES
-from fegear.window.gears import gears_in_mesh, wanted_on_gears
-from fegear.window.on_gears import on_the_gears
+from fegear.window.on_gears import gears_in_mesh, on_the_gears, wanted_on_gears
 
 pytestmark = pytest.mark.long
 

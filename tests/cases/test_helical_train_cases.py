@@ -6,17 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import read_scene
-from fegear.contact.flank.complementarity import hat_averages
-from fegear.contact.flank.mesh_matrix import tilt_lever
-from fegear.contact.flank.transmission_error import series_over_pitch
-from fegear.dynamics.spectra import mesh_force_spectrum
+from fegear.contact.wide.complementarity import hat_averages
+from fegear.contact.wide.mesh_matrix import tilt_lever
+from fegear.contact.wide.transmission_error import series_over_pitch
+from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
-from fegear.solution_cache import SolutionCache
 from fegear.studies.cost.asked import asked
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_stage_train.toml"

@@ -10,7 +10,7 @@ from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.results.catalogue import STAGES
-from fegear.results.tooth_contact import TOOTH_CONTACT
+from fegear.results.helical.tooth_contact import TOOTH_CONTACT
 
 ARCSEC = math.pi / 648000.0
 CASE = Path(__file__).parents[2] / "cases" / "litvin_under_load.toml"

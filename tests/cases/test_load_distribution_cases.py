@@ -7,19 +7,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.solid_influence import solid_gear_to_solve
 from fegear.case.reading import read_scene
-from fegear.contact.flank import FlankGaps, contact_lines
-from fegear.engine.figure import Figure
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import contact_lines
+from fegear.engine.figure.figure import Figure
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.errors import InputError
-from fegear.models.loaded_flanks import flanks_to_load
-from fegear.models.solid_influence import solid_gear_to_solve
 from fegear.output.draw_png import draw_pictures
 from fegear.results.catalogue import STAGES
-from fegear.results.loaded_flanks import LOADED_FLANKS
-from fegear.solution_cache import SolutionCache
+from fegear.results.pair.loaded_flanks import LOADED_FLANKS
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
 COARSE = (

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import FegearError
 from fegear.case.reading import build_scene, read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import FegearError
 from fegear.results.catalogue import STAGES
 
 SOURCES = Path(__file__).parents[2] / "cases" / "sources"

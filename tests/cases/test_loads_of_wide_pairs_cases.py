@@ -6,29 +6,29 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
-from fegear.contact.flank import FlankGaps
-from fegear.contact.flank.complementarity import hat_averages
-from fegear.contact.flank.load_factors import (
+from fegear.contact.fourier import fourier_series, panels
+from fegear.contact.wide.complementarity import hat_averages
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import roll_points
+from fegear.contact.wide.load_factors import (
     even_along_the_lines,
     iso_face_load_factor,
     root_factors,
     straight_gap,
     transverse_load_factor,
 )
-from fegear.contact.flank.pattern import separation
-from fegear.contact.flank.positions import roll_points
-from fegear.contact.flank.root_stress import rooted_lines
-from fegear.contact.flank.transmission_error import curve_through, flank_transmission_errors, from_half
-from fegear.contact.fourier import fourier_series, panels
+from fegear.contact.wide.pair_history import separation
+from fegear.contact.wide.root_stress import rooted_lines
+from fegear.contact.wide.transmission_error import curve_through, flank_transmission_errors, from_half
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.errors import InputError
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
-from fegear.results.flank_transmission_error import FLANK_TRANSMISSION_ERROR
+from fegear.results.pair.flank_transmission_error import FLANK_TRANSMISSION_ERROR
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
 COARSE = (

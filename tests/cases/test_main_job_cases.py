@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
 from fegear.cli import app
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -16,9 +16,9 @@ import pytest
 from solved_once import CACHE
 
 import fegear
+from fegear.base.units import quantity, registry
 from fegear.case.part import _number
 from fegear.case.reading import build_scene
-from fegear.units import quantity, registry
 
 CASES = Path(__file__).parents[2] / "cases"
 EVERY = sorted(path.stem for path in CASES.glob("*.toml"))

@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from solved_once import CACHE
 
+from fegear.case.built.neglected_effects import neglected_effects, neglected_remarks
+from fegear.case.built.pair_inputs import pair_inputs
 from fegear.case.reading import build_scene, read_scene
-from fegear.contact import pair_history
-from fegear.contact.root_stress_history import root_stress_history
+from fegear.contact.plane.pair_history import pair_history
+from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.models.neglected_effects import neglected_effects, neglected_remarks
-from fegear.models.pair_inputs import pair_inputs
 from fegear.results.catalogue import STAGES
-from fegear.results.loaded_pair import LOADED_PAIR
+from fegear.results.pair.loaded_pair import LOADED_PAIR
 
 CASES = Path(__file__).parents[2] / "cases"
 COARSE = "accuracy.tolerance=1e-2"

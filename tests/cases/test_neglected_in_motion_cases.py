@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from solved_once import CACHE
 
+from fegear.case.built.neglected_effects import contact_loss_changes, friction_changes
+from fegear.case.built.train import motion_inputs
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.models.motion import motion_inputs
-from fegear.models.neglected_in_motion import contact_loss_changes, friction_changes
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
-from fegear.solution_cache import SolutionCache
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -13,16 +13,15 @@ from pathlib import Path
 
 import pytest
 
+from fegear.base.errors import MissingLibraryError
 from fegear.case.reading import read_scene
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
-from fegear.errors import MissingLibraryError
+from fegear.output.folder import write_results
 from fegear.output.sweep import write_sweep
-from fegear.output.write import write_results
 from fegear.results.catalogue import STAGES
-from fegear.studies.axis import read_axis
-from fegear.studies.sweep import sweep_case
+from fegear.studies.sweep import read_axis, sweep_case
 
 _spec = importlib.util.spec_from_file_location("chromium", Path(__file__).with_name("chromium.py"))
 assert _spec is not None

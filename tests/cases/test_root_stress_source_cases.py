@@ -8,16 +8,17 @@ import numpy as np
 import pytest
 from solved_once import CACHE
 
+from fegear.base.errors import InputError, RangeError
 from fegear.case.pair import RootStressName
 from fegear.case.reading import read_scene
-from fegear.contact.formula_root_stress import formula_root_stress
+from fegear.contact.plane.closed_form_compliance import formula_root_stress
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError, RangeError
-from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
-from fegear.geometry import Gear, Tooth
+from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.geometry.gear import Gear
+from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
-from fegear.results.sources import ROOT_STRESS_CITATIONS
+from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 
 CASES = Path(__file__).parents[2] / "cases"
 HISTORY = 'results=["root-stress-history"]'

@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 
 import fegear
+from fegear.base.errors import FegearError
+from fegear.base.one_thread import one_thread
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.errors import FegearError
-from fegear.fem.solid import bands
+from fegear.fem.solid.bands import bands
 from fegear.fem.solid.table import solid_table
-from fegear.geometry import Gear
-from fegear.one_thread import one_thread
+from fegear.geometry.gear import Gear
 from fegear.output.draw_png import draw_pictures
 from fegear.output.figures import _write_field
 from fegear.results.catalogue import STAGES
-from fegear.solution_cache import SolutionCache
 from fegear.studies.cost.asked import asked
-from fegear.studies.cost.solid_knobs import solid_knobs
+from fegear.studies.cost.knobs import solid_knobs
 
 CASE = Path(__file__).parents[2] / "cases" / "spur_over_the_face.toml"
 COARSE = ("accuracy.tolerance=5e-2",)

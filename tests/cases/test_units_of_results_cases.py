@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import fegear
-from fegear.output.summary import summary
-from fegear.output.tables import table_text
+from fegear.output.tables import summary, table_text
 
 CASES = Path(__file__).parents[2] / "cases"
 COARSE = {"accuracy.tolerance": 0.05}

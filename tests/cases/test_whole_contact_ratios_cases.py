@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from scipy.optimize import brentq
 
+from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
 
 

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from fegear.fem import settings_at, stiffness_table
-from fegear.fem.influence import solve_influence
-from fegear.fem.sector import mesh_sector
-from fegear.fem.trace import lagrange
-from fegear.geometry import Gear, Material, Tooth
+from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.table import stiffness_table
+from fegear.fem.plane.trace import lagrange
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.tooth import Tooth
 
 #: Parts of an edge on which the pressure is linear: fewer than its nodes, so that each is felt by itself.
 _PARTS = 2

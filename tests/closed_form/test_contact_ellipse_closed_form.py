@@ -9,10 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import ellipe, ellipk
 
-from fegear.errors import InputError
-from fegear.helical import HelicalPair, Misalignment, pair_contact
-from fegear.helical.curvature import contact_ellipse, parting
-from fegear.helical.separation import Placement
+from fegear.base.errors import InputError
+from fegear.contact.unloaded.contact_ellipse import contact_ellipse, parting
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.separation import Placement
+from fegear.contact.unloaded.tooth_contact import pair_contact
 
 
 def test_circle_is_the_ball_on_a_plane():

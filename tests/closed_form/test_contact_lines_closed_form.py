@@ -9,10 +9,11 @@ from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.errors import InputError
+from fegear.base.errors import InputError
+from fegear.contact.unloaded.contact_lines import aligned, contact_lines, line_contact, line_ends, line_length
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.tooth_contact import pair_contact
 from fegear.geometry.helicoid import InvoluteHelicoid
-from fegear.helical import HelicalPair, Misalignment, pair_contact
-from fegear.helical.contact_lines import aligned, contact_lines, line_contact, line_ends, line_length
 
 DEG = math.pi / 180.0
 

@@ -8,10 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from fegear.errors import RangeError
-from fegear.fem import MeshSettings, solve_gear, stiffness_table
-from fegear.fem.corner import corner_angles, wedge_slope
-from fegear.geometry import Gear, Material, Tooth
+from fegear.base.errors import RangeError
+from fegear.fem.plane.contact_width import corner_angles, wedge_slope
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.tooth import Tooth
 
 
 @given(st.floats(0.3, 3.1))

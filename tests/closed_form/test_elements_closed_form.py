@@ -11,14 +11,15 @@ import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
-from fegear.errors import InputError
-from fegear.fem.elasticity import assemble
-from fegear.fem.field import _nodal_stress
-from fegear.fem.mesh import SectorMesh, with_middle_nodes
-from fegear.fem.ring import close_ring
-from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import LEVEL_RATIO, MeshSettings
-from fegear.geometry import BasicRack, Tooth
+from fegear.base.errors import InputError
+from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
+from fegear.fem.plane.ring import close_ring
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import LEVEL_RATIO, MeshSettings
+from fegear.fem.plane.whole_gear import _nodal_stress
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 _spec = importlib.util.spec_from_file_location(
     "textbook_elements", Path(__file__).parents[1] / "other_codes" / "textbook_elements.py"

@@ -9,18 +9,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from smooth_tooth import SmoothTooth
 
-from fegear.contact.engagement import Engagement
-from fegear.contact.meshing import Meshing
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.transmission_error import (
-    contact_changes,
-    pair_stiffness,
-    revolution,
-    transmission_error,
-)
-from fegear.errors import InputError, RangeError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.base.errors import InputError, RangeError
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.meshing import Meshing
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import contact_changes, pair_stiffness, revolution, transmission_error
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief, roll_of_radius, tip_relief
+from fegear.geometry.tooth import Tooth
 
 
 def gear(z, x=0.0, addendum=1.0, **tooth):

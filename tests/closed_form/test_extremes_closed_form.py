@@ -8,9 +8,10 @@ from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.errors import GeometryError
-from fegear.helical import HelicalPair, Misalignment, pair_contact, tooth_contact
-from fegear.helical.extremes import extremes
+from fegear.base.errors import GeometryError
+from fegear.contact.unloaded.extremes import extremes
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.tooth_contact import pair_contact, tooth_contact
 
 DEG, ARCMIN = math.pi / 180.0, math.pi / 10800.0
 

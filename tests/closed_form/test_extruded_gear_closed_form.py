@@ -6,12 +6,14 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from fegear.errors import InputError, RangeError
-from fegear.fem.extruded import extruded, graded_stations, pressed_band, serendipity
-from fegear.fem.gear_section import gear_section, paired, uneven_section
-from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.base.errors import InputError, RangeError
+from fegear.fem.plane.gear_section import gear_section, paired, uneven_section
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.solid.extruded import extruded, graded_stations, pressed_band, serendipity
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.output.solid_export import write_solid
 
 TOOTH = Tooth(10, BasicRack(1.0, 1.25, 0.25), 0.55)

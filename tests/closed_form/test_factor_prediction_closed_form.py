@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fegear.dynamics.factor_prediction import factor_between, factor_line
+from fegear.dynamics.train.dynamic_factor import factor_between, factor_line
 
 ERROR = np.array([[1e-6, 4e-6], [9e-6, 15e-6]])
 

@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 from fegear.formulas.hardened_case import HardenedCase, depth_of, lang_hardness, lang_residual_stress
 from fegear.formulas.hertz import stresses_below
 from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, exposure, half_width, mean_shear
 from fegear.formulas.iso6336.part5_case_depth import crushing_depth, recommended
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 
 def flamant(x, z, steps=20000):
@@ -147,7 +150,7 @@ def test_crushing_depth_is_a_multiple_of_the_depth_of_the_largest_shear():
         Gear(Tooth(z, rack, helix_angle=0.25), 4e-3, 0.01, 0.02, hand=hand) for z, hand in ((23, "right"), (58, "left"))
     )
     pair = GearPair(one, two)
-    from fegear.formulas.flank_speeds import flank_speeds
+    from fegear.formulas.flash_temperature import flank_speeds
 
     radius = float(flank_speeds(pair, 0.0, 1.0).relative_radius)
     assert crushing_depth(pair, 1.3e9, 66e9) == pytest.approx(2.0 * 1.3e9 * radius / 66e9, rel=1e-12)

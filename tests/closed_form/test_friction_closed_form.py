@@ -6,17 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.friction import benedict_kelley, buckingham, with_friction
-from fegear.dynamics.friction_over_path import friction_over_path
-from fegear.dynamics.lin_model import FourInertia
-from fegear.dynamics.motion_model import MotionModel, friction_loss_torque
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.steady_state import steady_state
-from fegear.dynamics.train import Mesh
-from fegear.dynamics.train_mesh import TrainMesh, a_drives
-from fegear.errors import InputError, RangeError
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.base.errors import InputError, RangeError
+from fegear.dynamics.motion.motion_model import MotionModel, friction_loss_torque
+from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train.charts import FourInertia
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.friction import benedict_kelley, buckingham, friction_over_path, with_friction
+from fegear.dynamics.train.gear_train import TrainMesh, a_drives
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.train import Mesh
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 INCH, POUND = 0.0254, 4.4482216152605
 BASE, ANGLE = 0.04177, math.radians(20.0)

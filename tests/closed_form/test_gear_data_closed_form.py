@@ -8,15 +8,16 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from matplotlib.path import Path
 
+from fegear.base.errors import GeometryError, InputError
 from fegear.case.reading import build_scene
-from fegear.errors import GeometryError, InputError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.inspection import over_balls, span, touching_ball, usual_ball
 from fegear.geometry.outline import gear_outline
-from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
-from fegear.geometry.path_of_contact import active_profile, path_points, specific_sliding
-from fegear.geometry.span import span
-from fegear.results.drawn_pair import in_mesh
-from fegear.results.gear_data import drawing_of, measured, pair_table, unmeasured_remarks
+from fegear.geometry.pair import GearPair, active_profile, path_points, specific_sliding
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+from fegear.results.gear.drawing import in_mesh
+from fegear.results.gear.geometry import drawing_of, measured, pair_table, unmeasured_remarks
 
 
 def gear(z, shift=0.0, module=1e-3, **more):
@@ -83,7 +84,7 @@ def test_a_gear_without_balls_is_named(tmp_path, monkeypatch):
     def never(*_given):
         raise GeometryError("ball_diameter", 1.0, "fits no space")
 
-    monkeypatch.setattr("fegear.results.gear_data.over_balls", never)
+    monkeypatch.setattr("fegear.results.gear.geometry.over_balls", never)
     assert measured(drawing.gears["a"]) is None
     assert "Gear a" in unmeasured_remarks(drawing)[0]
 

@@ -9,12 +9,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from fegear.errors import GeometryError
-from fegear.geometry import Gear, GearPair
+from fegear.base.errors import GeometryError
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.tooth_contact import mesh_cycle
+from fegear.geometry.gear import Gear
 from fegear.geometry.helicoid import InvoluteHelicoid
-from fegear.geometry.over_balls import over_balls, touching_ball, usual_ball
-from fegear.geometry.span import span, span_teeth, usual_span
-from fegear.helical import HelicalPair, Misalignment, mesh_cycle
+from fegear.geometry.inspection import over_balls, span, span_teeth, touching_ball, usual_ball, usual_span
+from fegear.geometry.pair import GearPair
 
 DEG = math.pi / 180.0
 

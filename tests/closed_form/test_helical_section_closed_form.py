@@ -8,8 +8,10 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from fegear.errors import GeometryError
-from fegear.geometry import BasicRack, Gear, Material, Tooth
+from fegear.base.errors import GeometryError
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 DEG = math.pi / 180.0
 

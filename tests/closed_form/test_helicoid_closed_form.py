@@ -8,9 +8,9 @@ from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fegear.contact.unloaded.manufacture import as_cut
 from fegear.geometry.helicoid import InvoluteHelicoid
-from fegear.geometry.rack_flank import RackFlank
-from fegear.helical.as_cut import as_cut
+from fegear.geometry.rack_cutter import RackFlank
 
 DEG = math.pi / 180.0
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 from fegear.formulas import hertz, palmgren
 
 E, NU = 206.8e9, 0.3

@@ -10,11 +10,15 @@ import numpy as np
 import pytest
 from exact_increments import exact_increments
 
-from fegear.dynamics.asymptotes import high_frequency_increments, low_frequency_increments, low_frequency_terms
-from fegear.dynamics.increments import dynamic_increments
-from fegear.dynamics.matrices import static_forces
-from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
+from fegear.dynamics.train.increments import (
+    dynamic_increments,
+    high_frequency_increments,
+    low_frequency_increments,
+    low_frequency_terms,
+)
+from fegear.dynamics.train.matrices import static_forces
+from fegear.dynamics.train.train import Body, Damper, Mesh, Shaft, Torque, Train
 
 R, C1, C2 = 0.0417693, 1.26312e-8, 2.10520e-9
 I1, I2, I3 = 0.004112, 0.0008010, 0.002994

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 from fegear.formulas.iso6336.part1_face_load import face_load_factor, root_exponent
 
 STIFFNESS, LOAD = 15e9, 300e3

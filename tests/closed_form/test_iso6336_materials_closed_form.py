@@ -6,8 +6,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from fegear.base.errors import RangeError
 from fegear.case.strength import MaterialName
-from fegear.errors import RangeError
 from fegear.formulas.iso6336.part5_materials import (
     HRC_25,
     HRC_28,

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from fegear.errors import RangeError
-from fegear.formulas.iso6336 import part2_permissible, part3_strength
+from fegear.base.errors import RangeError
+from fegear.formulas.iso6336 import part2_pitting as part2_permissible
+from fegear.formulas.iso6336 import part3_strength
 from fegear.formulas.iso6336.life import Knots
 from fegear.formulas.iso6336.part6_spectrum import (
     Bin,

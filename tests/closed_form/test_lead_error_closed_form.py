@@ -7,9 +7,8 @@ from helical_gears import helical_gear
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.errors import InputError, RangeError
-from fegear.helical.as_cut import as_cut
-from fegear.helical.lead_error import lead_angle_error, lead_angle_error_of_cut, lead_error_as_cut
+from fegear.base.errors import InputError, RangeError
+from fegear.contact.unloaded.manufacture import as_cut, lead_angle_error, lead_angle_error_of_cut, lead_error_as_cut
 
 DEG = math.pi / 180.0
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from fegear.contact.load_sharing import share_load
-from fegear.errors import InputError, RangeError
+from fegear.base.errors import InputError, RangeError
+from fegear.contact.plane.load_sharing import share_load
 
 
 def own(w, c, kappa, ref):

@@ -1,6 +1,6 @@
 """Loaded flanks by brute force: compliances line by line from influence functions, non-negative least squares.
 
-Nothing of `fegear.contact.flank` is used but what is tried: the lines are the equation of the plane of action, the
+Nothing of `fegear.contact.wide` is used but what is tried: the lines are the equation of the plane of action, the
 approach is found by bisection on the load that non-negative least squares give for it (scipy).
 """
 
@@ -11,15 +11,18 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, nnls
 
-from fegear.contact.flank import FlankGaps, FlankPair
-from fegear.contact.flank.complementarity import solve_contact
-from fegear.contact.flank.compliance import flank_compliance
-from fegear.contact.flank.lines import contact_lines
-from fegear.fem.solid import solid_influence, solid_settings
-from fegear.fem.solid.influence import contact_line
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
-from fegear.geometry.pair import MEMBERS
+from fegear.contact.wide.complementarity import solve_contact
+from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import contact_lines
+from fegear.contact.wide.loaded import FlankPair
+from fegear.fem.solid.influence import contact_line, solid_influence
+from fegear.fem.solid.settings import solid_settings
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.shaft_tilt import ShaftTilt
+from fegear.geometry.tooth import Tooth
 
 MODULE = 2e-3
 

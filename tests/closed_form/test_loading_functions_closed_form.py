@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.design.loading import LoadingFunction, Ramp, slope_trade_off
-from fegear.design.spectra import cosine_moment, sinusoidal_factor
-from fegear.errors import InputError, RangeError
+from fegear.base.errors import InputError, RangeError
+from fegear.design.loading import LoadingFunction, Ramp, cosine_moment, sinusoidal_factor, slope_trade_off
 
 A = 9.3730e-3
 

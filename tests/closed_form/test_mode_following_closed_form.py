@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.dynamics.helical_pair import HelicalPairModel, ReducedPairModel, RigidGear
-from fegear.dynamics.mesh_parameters import MeshParameters
-from fegear.dynamics.modal_indices import mode_table
-from fegear.dynamics.mode_following import SAME, follow_modes
-from fegear.dynamics.natural_modes import undamped_modes
-from fegear.errors import InputError
+from fegear.base.errors import InputError
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+from fegear.dynamics.helical_pair.modal_indices import mode_table
+from fegear.dynamics.helical_pair.mode_following import SAME, follow_modes
+from fegear.dynamics.helical_pair.model import HelicalPairModel, ReducedPairModel, RigidGear
+from fegear.dynamics.train.modes import undamped_modes
 
 PSI = math.radians(30.0)
 BENDING = 2  # number of the bending mode at alpha_z = 0.5, from 0

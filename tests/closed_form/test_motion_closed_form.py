@@ -6,17 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.dynamics.charts import speed_chart
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.lin_model import FourInertia
-from fegear.dynamics.matrices import damping_matrix, stiffness_matrix
-from fegear.dynamics.motion import propagate, simulate, static_state
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.packing import pack
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.steady_state import speed_sweep, steady_state
-from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train, mesh_damping
-from fegear.errors import InputError, RangeError
+from fegear.base.errors import InputError, RangeError
+from fegear.dynamics.motion.motion import propagate, simulate, static_state
+from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.steady_state import speed_sweep, steady_state
+from fegear.dynamics.train.charts import FourInertia, speed_chart
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.matrices import damping_matrix, stiffness_matrix
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.train import Body, Damper, Mesh, Shaft, Torque, Train, mesh_damping
 
 R, J, K = 0.05, 2e-3, 2e8
 NATURAL = math.sqrt(2 * K * R * R / J)
@@ -283,7 +281,7 @@ def test_ground_damping_keeps_the_rigid_motion_in():
         (Damper("1", None, 2.0), Damper("3", None, 1.0)),
         (Torque("1", 50.0), Torque("3", 50.0)),
     )
-    from fegear.dynamics.tooth_force import dynamic_error
+    from fegear.dynamics.train.tooth_force import dynamic_error
 
     speed, e = 0.7 * NATURAL / 30, cosine(1e-7, 3)
     state = steady_state(

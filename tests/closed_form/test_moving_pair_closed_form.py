@@ -7,8 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
-from fegear.results.moving_pair import moving_pair
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+from fegear.results.gear.drawing import moving_pair
 
 
 def turned(points, angle, centre):

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.motion import simulate
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.steady_state import steady_state
-from fegear.dynamics.train import Body, Mesh, Torque, Train, mesh_damping
+from fegear.dynamics.motion.motion import simulate
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.train import Body, Mesh, Torque, Train, mesh_damping
 
 R, J, K, FORCE = 0.05, 2e-3, 2e8, 500.0
 NATURAL = math.sqrt(2 * K * R * R / J)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fegear.dynamics.helical_pair import HelicalPairModel, P, ReducedPairModel, RigidGear
-from fegear.dynamics.mesh_parameters import MeshParameters, partial_face_mu
-from fegear.dynamics.pair_forces import Line, joined_lines, pair_forces, resonant_speeds
-from fegear.dynamics.transmissibility import compliance, reduced_transmissibility
-from fegear.errors import InputError, RangeError
+from fegear.base.errors import InputError, RangeError
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, partial_face_mu
+from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel, RigidGear
+from fegear.dynamics.helical_pair.pair_forces import Line, joined_lines, pair_forces, resonant_speeds
+from fegear.dynamics.helical_pair.transmissibility import compliance, reduced_transmissibility
 
 
 def gear(mass, a, b, torsion=0.0):

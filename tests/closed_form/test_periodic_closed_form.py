@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.dynamics.excitation import MeshExcitation, effective_error
-from fegear.dynamics.periodic import Periodic, combine
-from fegear.errors import ConvergenceError, InputError, RangeError
+from fegear.base.errors import ConvergenceError, InputError, RangeError
+from fegear.dynamics.train.excitation import MeshExcitation, effective_error
+from fegear.dynamics.train.periodic import Periodic, combine
 
 SQUARE = Periodic.through_points([0, 0.25, 0.25, 0.75, 0.75, 1], [1, 1, -1, -1, 1, 1])
 

@@ -7,14 +7,15 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from fegear.base.errors import GeometryError
 from fegear.case.gear import RackPart
-from fegear.errors import GeometryError
-from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings
-from fegear.formulas.fillet_section import section_at_tangent
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
 from fegear.formulas.iso6336 import part3_root_stress as iso
-from fegear.geometry import BasicRack, Tooth
+from fegear.formulas.root_section import section_at_tangent
 from fegear.geometry.fillet import ProtuberanceFillet
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 DEG = math.pi / 180.0
 

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fegear.geometry.helicoid import InvoluteHelicoid
-from fegear.geometry.rack_cutter import RackCutter
-from fegear.geometry.rack_flank import RackFlank
+from fegear.geometry.rack_cutter import RackCutter, RackFlank
 
 DEG, MODULE = math.pi / 180.0, 5.08e-3
 

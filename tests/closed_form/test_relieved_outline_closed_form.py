@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
+from fegear.base.errors import InputError
 from fegear.case.reading import read_scene
-from fegear.errors import InputError
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.outline import relieved_outline
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import CombinedRelief, EndRelief, TabulatedRelief
-from fegear.geometry.relieved_outline import relieved_outline
+from fegear.geometry.tooth import Tooth
 from fegear.output.dxf import write_dxf
 from fegear.output.export import export_gears
 

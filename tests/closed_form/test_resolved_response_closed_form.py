@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.dynamics.resolved_response import BEND, broken, resolved_grid
+from fegear.dynamics.train.resolved_response import BEND, broken, resolved_grid
 
 
 def oscillator(x, natural, zeta):

@@ -7,15 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.errors import FegearError
-from fegear.fem.condensation import condense
-from fegear.fem.elasticity import assemble
-from fegear.fem.influence import curvature_slope, log_slope, solve_influence
-from fegear.fem.mesh import SectorMesh, with_middle_nodes
-from fegear.fem.ring import close_ring, coupling_by_doubling, coupling_by_harmonics
-from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings
-from fegear.geometry import BasicRack, Tooth
+from fegear.base.errors import FegearError
+from fegear.fem.plane.condensation import condense
+from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.influence import curvature_slope, log_slope, solve_influence
+from fegear.fem.plane.mesh import SectorMesh, with_middle_nodes
+from fegear.fem.plane.ring import close_ring, coupling_by_doubling, coupling_by_harmonics
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 INNER, OUTER = 3.0, 5.0
 
@@ -49,7 +50,7 @@ def rim_motion(teeth, radial, around, order, direction, nu=0.3):
     ring = close_ring(mesh, elasticity, np.unique(dofs), teeth // 2, expandable=True)
     x, w = np.polynomial.legendre.leggauss(6)
     xi = 0.5 + 0.5 * x
-    from fegear.fem.trace import lagrange, quadratic_edge
+    from fegear.fem.plane.trace import lagrange, quadratic_edge
 
     position, tangent = quadratic_edge(mesh.points[:, mesh.edges["flank"]], xi)
     out = position / np.hypot(*position)

@@ -7,13 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from fegear.errors import RangeError
-from fegear.fem.solid import SolidSettings, bands, solid_influence, solve_solid
+from fegear.base.errors import RangeError
+from fegear.fem.solid.bands import bands
 from fegear.fem.solid.contact import line_compliance
-from fegear.fem.solid.influence import contact_line
+from fegear.fem.solid.influence import contact_line, solid_influence
+from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slice_laws import LAWS, SliceLaws
 from fegear.fem.solid.slices import plane_compliance, plane_section, solve_slices
-from fegear.geometry import BasicRack, Tooth
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(23, BasicRack(1.0, 1.25, 0.25))
 BORE = 0.6 * TOOTH.root_radius

@@ -9,14 +9,24 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import j1
 
-from fegear.fem.settings import settings_at
-from fegear.fem.solid import SolidSettings, bands, hats, solve_solid
-from fegear.fem.solid.bands import overlap, profile_moments, profiles_at
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import influence_of_shape
+from fegear.fem.solid.bands import (
+    band_cosines,
+    band_spectrum,
+    bands,
+    function_cosines,
+    hats,
+    overlap,
+    profile_moments,
+    profiles_at,
+)
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.face import face_functions
-from fegear.fem.solid.half_space import band_cosines, band_spectrum, function_cosines
-from fegear.fem.solution import influence_of_shape
-from fegear.geometry import BasicRack, Tooth
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 BORE = 0.7 * TOOTH.root_radius

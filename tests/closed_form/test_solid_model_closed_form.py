@@ -8,14 +8,16 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from fegear.errors import FegearError
-from fegear.fem.sector import gmsh_session
-from fegear.fem.solid_model import write_step
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.base.errors import FegearError
+from fegear.fem.plane.sector import gmsh_session
+from fegear.fem.solid.step_model import write_step
+from fegear.geometry.gear import Gear
 from fegear.geometry.helicoid import InvoluteHelicoid
+from fegear.geometry.outline import relieved_outline
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
-from fegear.geometry.relieved_outline import relieved_outline
 from fegear.geometry.spline import enclosed_area, smooth_pieces, spline_of
+from fegear.geometry.tooth import Tooth
 
 DEG = math.pi / 180.0
 PROTUBERANCE = BasicRack(1.0, 1.4, 0.3, 20 * DEG, 0.1, 0.02, 8 * DEG)

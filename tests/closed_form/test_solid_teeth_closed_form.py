@@ -9,17 +9,19 @@ import pytest
 import scipy.sparse as sparse
 from scipy.sparse.linalg import splu
 
-from fegear.errors import RangeError
-from fegear.fem.influence import solve_influence
-from fegear.fem.sector import mesh_sector
-from fegear.fem.solid import SolidSettings, bands, hats, solid_influence, solve_solid
-from fegear.fem.solid.bands import loads_of
+from fegear.base.errors import RangeError
+from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.trace import lagrange
+from fegear.fem.solid.bands import bands, hats, loads_of
 from fegear.fem.solid.dissection import _smallest
 from fegear.fem.solid.face import face_functions
+from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.section import make_section
-from fegear.fem.solid.solution import flank_nodes
-from fegear.fem.trace import lagrange
-from fegear.geometry import BasicRack, Tooth
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import flank_nodes, solve_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 BORE = 0.7 * TOOTH.root_radius

@@ -6,16 +6,26 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fegear.errors import RangeError
-from fegear.formulas.flank_speeds import FlankSpeeds, flank_speeds
-from fegear.formulas.flash_temperature import STEEL_HEAT, flash_temperature, reduced_modulus
-from fegear.formulas.friction_mean import MEAN_LAWS, Surface, helical_load_factor, mean_friction
+from fegear.base.errors import RangeError
+from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds, flank_speeds, flash_temperature, reduced_modulus
+from fegear.formulas.friction import (
+    MEAN_LAWS,
+    Surface,
+    computed,
+    helical_load_factor,
+    mean_friction,
+    ohlendorf,
+    overlapping,
+    wimmer,
+)
 from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_micropitting
 from fegear.formulas.iso6336.fzg_test_gears import fzg_type_a, fzg_type_c
-from fegear.formulas.iso6336.rated_surface import LoadFactors, RatedSurface
-from fegear.formulas.loss_factor import computed, ohlendorf, overlapping, wimmer
+from fegear.formulas.iso6336.rated import LoadFactors, RatedSurface
 from fegear.formulas.lubricant import Oil
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = reduced_modulus((206e9, 206e9), (0.3, 0.3))
 OIL = Oil(220e-6, 19e-6)

@@ -5,11 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact import Engagement, PairCompliance, finite_element_compliance
-from fegear.contact.flank import FlankGaps, FlankPair
-from fegear.fem import solve_gear
-from fegear.fem.solid import SolidSettings, bands, solve_thin_slices
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.loaded import FlankPair
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.solid.bands import bands
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.slices import solve_thin_slices
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH, LOAD = 3e-3, 24e-3, 4000.0

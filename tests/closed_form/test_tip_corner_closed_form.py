@@ -9,9 +9,12 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from fegear.contact.corner import CornerContact
-from fegear.contact.load_sharing import edge_law
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.contact.plane.corner import CornerContact
+from fegear.contact.plane.load_sharing import edge_law
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 
 def pair_of(z1, z2, x1=0.0, x2=0.0, rounding=0.0):

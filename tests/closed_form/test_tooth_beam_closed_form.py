@@ -11,11 +11,15 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from fegear.errors import InputError, RangeError
-from fegear.formulas import beam, cornell_compliance, potential_energy, sainsot, weber_banaschek
-from fegear.formulas.load_line import load_line
+from fegear.base.errors import InputError, RangeError
+from fegear.formulas import beam, potential_energy, weber_banaschek
+from fegear.formulas import cornell as cornell_compliance
+from fegear.formulas import potential_energy as sainsot
+from fegear.formulas.root_section import load_line
 from fegear.formulas.sources import SOURCES, source
-from fegear.geometry import BasicRack, Gear, Material, Tooth
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 RACK = BasicRack(1.0, 1.25, 0.25)
 
@@ -166,7 +170,7 @@ def test_cornell_beam_is_the_limit_of_the_papers_element_sum():
     radius = 14.5
     load = load_line(tooth, radius)
     b, y_half, y_load = float(load.angle[0]), float(load.x[0]), float(load.y[0])
-    from fegear.formulas.fillet_section import fillet_parameter, fillet_point
+    from fegear.formulas.root_section import fillet_parameter, fillet_point
 
     foot = fillet_point(tooth, fillet_parameter(tooth, math.radians(75.0))).height
     exact = cornell_compliance.tooth_compliance(g, radius * g.module)

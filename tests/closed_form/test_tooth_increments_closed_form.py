@@ -15,19 +15,23 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from smooth_tooth import SmoothTooth
 
-from fegear.contact.engagement import Engagement, Loaded, RollGrid
-from fegear.contact.load_sharing import share_load
-from fegear.contact.neglected_effects import corners_bear
-from fegear.contact.pair_compliance import PairCompliance, PairMatrices
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.mesh_excitation import mesh_excitation, tooth_pair_at
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.steady_state import steady_state
-from fegear.dynamics.tooth_force import dynamic_error, tooth_force
-from fegear.dynamics.train import Body, Damper, Mesh, Torque, Train, mesh_damping
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.contact.plane.engagement import Engagement, Loaded
+from fegear.contact.plane.load_sharing import share_load
+from fegear.contact.plane.neglected_effects import corners_bear
+from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+from fegear.contact.plane.roll_grids import RollGrid
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.mesh_excitation import mesh_excitation, tooth_pair_at
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.tooth_force import dynamic_error, tooth_force
+from fegear.dynamics.train.train import Body, Damper, Mesh, Torque, Train, mesh_damping
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
+from fegear.geometry.tooth import Tooth
 
 
 # ---- the tangent of load sharing -------------------------------------------------------------------------------------

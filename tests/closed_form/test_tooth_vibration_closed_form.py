@@ -10,12 +10,13 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from fegear.case.reading import build_scene
-from fegear.design.loading import LoadingFunction, Ramp
-from fegear.design.tooth_response import tooth_response
+from fegear.design.loading import LoadingFunction, Ramp, tooth_response
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.formulas.tooth_vibration import lowest_frequency, tooth_frequency
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 

@@ -7,13 +7,18 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fegear.dynamics.helical_pair import HelicalPairModel, P, ReducedPairModel, RigidGear
-from fegear.dynamics.mesh_parameters import MeshParameters, mesh_parameters, partial_face_mu
-from fegear.dynamics.modal_indices import mode_table, rank_modes
-from fegear.dynamics.mode_following import follow_modes
-from fegear.dynamics.natural_modes import undamped_modes
-from fegear.dynamics.transmissibility import complex_modes, compliance, reduced_transmissibility, transmissibility
-from fegear.errors import ConvergenceError, GeometryError, InputError, RangeError
+from fegear.base.errors import ConvergenceError, GeometryError, InputError, RangeError
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, mesh_parameters, partial_face_mu
+from fegear.dynamics.helical_pair.modal_indices import mode_table, rank_modes
+from fegear.dynamics.helical_pair.mode_following import follow_modes
+from fegear.dynamics.helical_pair.model import HelicalPairModel, P, ReducedPairModel, RigidGear
+from fegear.dynamics.helical_pair.transmissibility import (
+    complex_modes,
+    compliance,
+    reduced_transmissibility,
+    transmissibility,
+)
+from fegear.dynamics.train.modes import undamped_modes
 
 DEG = math.pi / 180.0
 

@@ -6,21 +6,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.contact.engagement import Engagement
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.transmission_error import revolution
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.mesh_excitation import mesh_excitation, tooth_pair_at
-from fegear.dynamics.modes import modes
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.spectra import mesh_force_spectrum
-from fegear.dynamics.steady_state import steady_state
-from fegear.dynamics.tooth_force import dynamic_error
-from fegear.dynamics.train import Body, Damper, Mesh, Torque, Train
-from fegear.errors import InputError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.base.errors import InputError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import revolution
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.mesh_excitation import mesh_excitation, tooth_pair_at
+from fegear.dynamics.train.modes import modes
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.spectra import mesh_force_spectrum
+from fegear.dynamics.train.tooth_force import dynamic_error
+from fegear.dynamics.train.train import Body, Damper, Mesh, Torque, Train
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3, 25.4e-3)
 PAIR = GearPair(GEAR, GEAR)

@@ -7,16 +7,19 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from fegear.contact.flank import FlankGaps, contact_lines
-from fegear.contact.flank.touching import beside_the_lines, touching_gaps, unloaded_error
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.contact.unloaded.manufacture import CutRemoval
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.tooth_contact import mesh_cycle
+from fegear.contact.wide.gaps import FlankGaps, beside_the_lines, touching_gaps, unloaded_error
+from fegear.contact.wide.lines import contact_lines
 from fegear.geometry.flank_modification import LeadCrowning
+from fegear.geometry.gear import Gear, Material
 from fegear.geometry.helicoid import InvoluteHelicoid
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.helical.contact import mesh_cycle
-from fegear.helical.cut_removal import CutRemoval
-from fegear.helical.pair import HelicalPair, Misalignment
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH = 3e-3, 20e-3

@@ -1,4 +1,4 @@
-"""How much deeper bands sink beside free end faces than their mirrors say: the table of `fegear.fem.solid.end_slope`.
+"""How much deeper bands sink beside free end faces than their mirrors say: the table of `fegear.fem.solid.bands`.
 
 An even load over a whole face of two modules is pressed on wider and narrower bands. Half the face on either side of
 its middle is watched, and what the change of width does far from the faces is taken off. Takes some minutes.
@@ -9,8 +9,11 @@ import math
 import sys
 from dataclasses import replace
 
-from fegear.fem.solid import SolidSettings, bands, solve_solid
-from fegear.geometry import BasicRack, Tooth
+from fegear.fem.solid.bands import bands
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 WIDTH, RADIUS = 2.0, 13.9

@@ -12,11 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fegear.errors import FegearError
-from fegear.fem.influence import solve_influence
-from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings
-from fegear.geometry import BasicRack, Tooth
+from fegear.base.errors import FegearError
+from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 #: Fourth order on edges a third to a sixth of the default's; narrow pressures, so that nothing is extrapolated far.
 FINE = MeshSettings(

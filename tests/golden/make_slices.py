@@ -11,12 +11,14 @@ import sys
 import numpy as np
 from scipy.optimize import least_squares
 
-from fegear.fem.solid import SolidSettings, bands, hats, solve_solid
-from fegear.fem.solid.bands import profile_moments
+from fegear.fem.solid.bands import bands, hats, profile_moments
 from fegear.fem.solid.contact import line_compliance
+from fegear.fem.solid.settings import SolidSettings
 from fegear.fem.solid.slice_laws import LAWS, Spread
 from fegear.fem.solid.slices import flank_shapes, plane_compliance, plane_section, solve_slices
-from fegear.geometry import BasicRack, Tooth
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 NU, SHAPES, STATIONS = 0.3, 5, 9
 #: Teeth, helix angle [deg], width [modules], bore over root radius, profile shift.

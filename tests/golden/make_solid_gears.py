@@ -19,11 +19,14 @@ from pathlib import Path
 
 import numpy as np
 
-from fegear.fem.settings import MeshSettings
-from fegear.fem.solid import SolidSettings, bands, hats, solve_solid
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.solid.bands import bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.influence import contact_line
-from fegear.geometry import BasicRack, Tooth
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 OUT = Path(__file__).parent / "solid_gears.json"
 USUAL = {"x": 0.0, "beta": 0.0, "nu": 0.3}

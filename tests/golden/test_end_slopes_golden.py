@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fegear.fem.solid.end_slope import end_slope
+from fegear.fem.solid.bands import end_slope
 
 _spec = importlib.util.spec_from_file_location("make_end_slopes", Path(__file__).parent / "make_end_slopes.py")
 generator = importlib.util.module_from_spec(_spec)

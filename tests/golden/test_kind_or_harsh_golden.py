@@ -39,8 +39,8 @@ def test_the_population_is_the_one_that_the_script_draws(study):
     gear, at = drawn.gears[0].gear, drawn.gears[0].load_position
     answers = study.of_population(drawn)[0]
     assert answers.load_position == at
-    from fegear.contact.crosscheck import root_stress_answers
-    from fegear.contact.root_stress_study import load_radii
+    from fegear.contact.compared.crosscheck import root_stress_answers
+    from fegear.contact.compared.root_stress_study import load_radii
 
     found = root_stress_answers(gear.tooth, load_radii(gear, at) / gear.module)["iso-6336-3"].stress
     kept = (table["ratio_to_fe"] * table["stress_fe"])[first][:8]

@@ -19,8 +19,9 @@ from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.fem import settings_at, solve_gear
-from fegear.geometry import Gear, Material
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear, Material
 from fegear.results.catalogue import STAGES
 
 HERE = Path(__file__).parent

@@ -6,11 +6,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fegear.errors import InputError
-from fegear.fem import MeshSettings, solve_gear, stiffness_table
-from fegear.fem.influence import solve_influence
-from fegear.fem.sector import mesh_sector
-from fegear.geometry import BasicRack, Gear, Material, Tooth
+from fegear.base.errors import InputError
+from fegear.fem.plane.influence import solve_influence
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 MODULE = 3.175e-3
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from fegear.fem.solid import solid_influence
+from fegear.fem.solid.influence import solid_influence
 from fegear.fem.solid.table import solid_table
-from fegear.geometry import Gear, Material
+from fegear.geometry.gear import Gear, Material
 
 HERE = Path(__file__).parent
 KNOWN = json.loads((HERE / "solid_gears.json").read_text())

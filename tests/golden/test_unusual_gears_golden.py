@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.fem import settings_at, solve_gear, solve_to_tolerance, stiffness_table
-from fegear.geometry import Gear, Material
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
+from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.gear import Gear, Material
 
 HERE = Path(__file__).parent
 KNOWN = json.loads((HERE / "unusual_gears.json").read_text())

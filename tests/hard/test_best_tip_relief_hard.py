@@ -13,19 +13,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import differential_evolution, minimize
 
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.contact.engagement import Engagement
-from fegear.contact.fe_compliance import finite_element_compliance
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.transmission_error import contact_changes, transmission_error
-from fegear.design.optimise import grindable, optimise_tip_relief
-from fegear.design.relief_trials import Trials
-from fegear.design.tip_relief_search import _even
-from fegear.errors import InputError
-from fegear.fem import MeshSettings, solve_gear
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.base.errors import InputError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import contact_changes, transmission_error
+from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief
+from fegear.design.tip_relief.search import _even
+from fegear.design.tip_relief.trials import Trials
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
 from fegear.geometry.plausible import deepest_relief
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import roll_of_radius
+from fegear.geometry.tooth import Tooth
 
 
 def engaged(z1, z2, module=3e-3, addendum=1.0, shift=0.0, hertz="linear", line_load=3e5):

@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 
 from fegear.contact.fourier import panels
-from fegear.contact.mark_series import reciprocal_series
-from fegear.fem import MeshSettings, solve_gear
-from fegear.geometry import Gear, GearPair, Material, Tooth
+from fegear.contact.plane.mark_series import reciprocal_series
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.tooth import Tooth
 
 FAST = MeshSettings().scaled(2.0)
 

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.solid_influence import solid_gear_to_solve, solve_solid_influence
 from fegear.case.reading import read_scene
-from fegear.contact.flank import FlankPair
-from fegear.contact.flank.error import flank_error
-from fegear.contact.flank.over_pitch import over_pitch
+from fegear.contact.wide.error import flank_error
+from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.over_pitch import over_pitch
 from fegear.geometry.pair import MEMBERS
-from fegear.models.loaded_flanks import flanks_to_load
-from fegear.models.solid_influence import solid_gear_to_solve, solve_solid_influence
-from fegear.results.loaded_flanks import load_flanks
-from fegear.solution_cache import SolutionCache
+from fegear.results.pair.loaded_flanks import load_flanks
 from tests.helpers.solved_once import CACHE
 
 CASES = Path(__file__).parents[2] / "cases"

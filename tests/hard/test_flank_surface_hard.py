@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fegear.errors import FegearError, InputError
+from fegear.base.errors import FegearError, InputError
 from fegear.formulas.lubricant import Oil
 from fegear.workbench.run import run
 

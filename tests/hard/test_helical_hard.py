@@ -9,12 +9,13 @@ from helical_gears import helical_gear
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fegear.dynamics.helical_pair import ReducedPairModel
-from fegear.dynamics.mesh_parameters import MeshParameters
-from fegear.dynamics.modal_indices import mode_table
-from fegear.dynamics.transmissibility import reduced_transmissibility
-from fegear.helical import HelicalPair, Misalignment, mesh_cycle, tooth_contact
-from fegear.helical.curvature import contact_ellipse
+from fegear.contact.unloaded.contact_ellipse import contact_ellipse
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.tooth_contact import mesh_cycle, tooth_contact
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
+from fegear.dynamics.helical_pair.modal_indices import mode_table
+from fegear.dynamics.helical_pair.model import ReducedPairModel
+from fegear.dynamics.helical_pair.transmissibility import reduced_transmissibility
 
 DEG, ARCMIN = math.pi / 180.0, math.pi / 10800.0
 

@@ -15,10 +15,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fegear.base.errors import FegearError, InputError
 from fegear.case.reading import apply_override, build_scene, read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import FegearError, InputError
 from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -292,7 +292,7 @@ def test_meshing_leaves_signals_to_whoever_handles_them(tmp_path):
         "for name in ('SIGTERM', 'SIGHUP'):\n"
         "    signal.signal(getattr(signal, name), lambda number, _frame: print('heeded', number, flush=True))\n"
         "from fegear.fem import MeshSettings\n"
-        "from fegear.fem.sector import mesh_sector\n"
+        "from fegear.fem.plane.sector import mesh_sector\n"
         "from fegear.geometry import BasicRack, Tooth\n"
         "mesh_sector(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 6.0, MeshSettings())\n"
         "for name in ('SIGTERM', 'SIGHUP'):\n"

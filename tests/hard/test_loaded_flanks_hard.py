@@ -5,10 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.flank import FlankGaps, FlankPair
-from fegear.contact.flank.complementarity import solve_contact
-from fegear.fem.solid import SolidSettings, solve_thin_slices
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.contact.wide.complementarity import solve_contact
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.loaded import FlankPair
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.slices import solve_thin_slices
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH = 3e-3, 18e-3

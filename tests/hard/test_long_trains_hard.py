@@ -11,21 +11,21 @@ from exact_increments import exact_increments
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.dynamics import branches, increments, packing
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.increments import dynamic_increments
-from fegear.dynamics.matrices import damping_matrix, elements, projected, stiffness_matrix
-from fegear.dynamics.motion import simulate
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.network import Network
-from fegear.dynamics.packing import pack
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.rounded import in_series
-from fegear.dynamics.segments import segment_shapes
-from fegear.dynamics.shooting import has_fixed_direction
-from fegear.dynamics.steady_state import steady_state
-from fegear.dynamics.train import Body, Damper, Mesh, Shaft, Torque, Train
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
+from fegear.dynamics.motion import motion_model as packing
+from fegear.dynamics.motion.motion import simulate
+from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.shooting import has_fixed_direction
+from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train import branches, increments
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.matrices import damping_matrix, elements, projected, stiffness_matrix
+from fegear.dynamics.train.network import Network
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.rounded import in_series
+from fegear.dynamics.train.segments import segment_shapes
+from fegear.dynamics.train.train import Body, Damper, Mesh, Shaft, Torque, Train
 
 
 def row_of_bodies(count, meshes, *, zeta=0.01, seed=0, spread=0.5, powers=(4.0, 6.0)):

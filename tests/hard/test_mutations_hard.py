@@ -23,12 +23,12 @@ import pint
 import pytest
 
 import fegear
+from fegear.base.errors import FegearError, shown
+from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, parse_document
-from fegear.drafts import KINDS, Answers, draft
-from fegear.engine.plan import make_plan
-from fegear.engine.plan_text import plan_lines
+from fegear.engine.plan import make_plan, plan_lines
 from fegear.engine.run import Results, run_plan
-from fegear.errors import FegearError, shown
 from fegear.results.catalogue import STAGES
 from fegear.workbench import run as workbench_run
 

@@ -7,16 +7,19 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fegear.contact import Engagement, PairCompliance, revolution, transmission_error
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.contact.load_sharing import edge_law
-from fegear.contact.meshing import Meshing
-from fegear.contact.transmission_error import pair_stiffness
-from fegear.design.loading import LoadingFunction, Ramp
-from fegear.design.spectra import sinusoidal_factor
-from fegear.errors import InputError, RangeError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.base.errors import InputError, RangeError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.load_sharing import edge_law
+from fegear.contact.plane.meshing import Meshing
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import pair_stiffness, revolution, transmission_error
+from fegear.design.loading import LoadingFunction, Ramp, sinusoidal_factor
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief, tip_relief
+from fegear.geometry.tooth import Tooth
 
 FACE = 0.01
 

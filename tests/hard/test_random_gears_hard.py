@@ -9,10 +9,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fegear.errors import GeometryError, RangeError
-from fegear.fem import MeshSettings, solve_gear
+from fegear.base.errors import GeometryError, RangeError
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
 from fegear.formulas.sources import source
-from fegear.geometry import BasicRack, Gear, Material, Tooth
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 #: Coarse, for laws that hold on any mesh.
 COARSE = MeshSettings().scaled(3.0)

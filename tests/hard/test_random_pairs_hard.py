@@ -8,11 +8,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fegear.contact import Engagement, PairCompliance, transmission_error
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.errors import GeometryError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.base.errors import GeometryError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import transmission_error
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import CombinedRelief, crowning, root_relief, tip_relief
+from fegear.geometry.tooth import Tooth
 
 FACE = 0.02
 

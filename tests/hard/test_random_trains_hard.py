@@ -7,10 +7,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fegear.dynamics.increments import dynamic_increments
-from fegear.dynamics.matrices import damping_matrix, mass_matrix, static_forces, stiffness_matrix
-from fegear.dynamics.modes import damped_eigenvalues, modes
-from fegear.dynamics.train import (
+from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.matrices import damping_matrix, mass_matrix, static_forces, stiffness_matrix
+from fegear.dynamics.train.modes import damped_eigenvalues, modes
+from fegear.dynamics.train.train import (
     Body,
     Damper,
     Mesh,

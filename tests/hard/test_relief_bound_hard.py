@@ -9,14 +9,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.contact.engagement import Engagement
-from fegear.contact.pair_compliance import PairCompliance
+from fegear.base.errors import InputError, RangeError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.loading import LoadingFunction, Ramp
 from fegear.design.minimum_excitation import minimum_excitation
-from fegear.errors import InputError, RangeError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
 from fegear.geometry.plausible import deepest_relief
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 
 def engaged(z1=28, z2=28, module=3.175e-3, rack=None, shift=0.0, face=6.35e-3):

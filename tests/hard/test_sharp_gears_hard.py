@@ -10,8 +10,11 @@ import numpy as np
 import pytest
 
 import fegear
-from fegear.fem import settings_at, solve_gear
-from fegear.geometry import BasicRack, Gear, Material, Tooth
+from fegear.fem.plane.settings import settings_at
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 HALF_WIDTH = 0.02
 TOLERANCES = (1e-2, 1e-3, 1e-2, 1e-3, 1e-4)

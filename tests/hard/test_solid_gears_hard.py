@@ -6,9 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.fem.solid import SolidInfluence, SolidSettings, bands, solid_influence, solid_settings, solve_solid
+from fegear.fem.solid.bands import bands
 from fegear.fem.solid.influence import _SHARES as SHARES
-from fegear.geometry import BasicRack, Tooth
+from fegear.fem.solid.influence import SolidInfluence, solid_influence
+from fegear.fem.solid.settings import SolidSettings, solid_settings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 #: Teeth, helix angle [deg], width [modules], bore over root radius, profile shift.
 GEARS = [

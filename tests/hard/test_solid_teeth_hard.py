@@ -8,9 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fegear.errors import InputError, RangeError
-from fegear.fem.solid import SolidSettings, hats, solid_influence, solve_solid
-from fegear.geometry import BasicRack, Tooth
+from fegear.base.errors import InputError, RangeError
+from fegear.fem.solid.bands import hats
+from fegear.fem.solid.influence import solid_influence
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 RACK = BasicRack(1.0, 1.25, 0.25)
 ROUGH = replace(

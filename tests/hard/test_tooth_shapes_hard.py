@@ -6,9 +6,13 @@ import mpmath
 import numpy as np
 import pytest
 
-from fegear.errors import FegearError, GeometryError, InputError, RangeError
-from fegear.fem import MeshSettings, settings_at, solve_gear, stiffness_table
-from fegear.geometry import BasicRack, Gear, Material, Tooth
+from fegear.base.errors import FegearError, GeometryError, InputError, RangeError
+from fegear.fem.plane.settings import MeshSettings, settings_at
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 #: Twice the default edges: what is compared here is shapes, not meshes.
 FAST = MeshSettings().scaled(2.0)

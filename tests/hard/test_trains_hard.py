@@ -6,15 +6,15 @@ import mpmath
 import numpy as np
 import pytest
 
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.increments import dynamic_increments
-from fegear.dynamics.matrices import static_forces
-from fegear.dynamics.modes import modes
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.steady_state import steady_state
-from fegear.dynamics.train import Body, Mesh, Shaft, Torque, Train, mesh_damping
-from fegear.errors import InputError, RangeError
+from fegear.base.errors import InputError, RangeError
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.matrices import static_forces
+from fegear.dynamics.train.modes import modes
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.train import Body, Mesh, Shaft, Torque, Train, mesh_damping
 
 R, J, K, FORCE = 0.05, 2e-3, 2e8, 500.0
 NATURAL = math.sqrt(2.0 * K * R * R / J)

@@ -20,11 +20,11 @@ from pathlib import Path
 import pytest
 
 from fegear.__main__ import main
+from fegear.base.errors import FegearError
 from fegear.case.reading import build_scene, read_scene, set_key
 from fegear.engine.plan import make_plan
-from fegear.errors import FegearError
 from fegear.results.catalogue import STAGES
-from fegear.studies.axis import read_axis
+from fegear.studies.sweep import read_axis
 
 CASES = Path(__file__).parents[2] / "cases"
 #: Every text of a unit that the strict reader takes, by dimension, with its size in SI.

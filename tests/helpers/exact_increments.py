@@ -3,7 +3,7 @@
 import mpmath
 import numpy as np
 
-from fegear.dynamics.matrices import elements
+from fegear.dynamics.train.matrices import elements
 
 
 def exact_increments(train, omega, digits=40):

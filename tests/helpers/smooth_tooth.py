@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fegear.geometry import Gear
+from fegear.geometry.gear import Gear
 
 
 @dataclass(frozen=True)

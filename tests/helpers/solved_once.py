@@ -3,6 +3,6 @@
 Not for tests that count what is computed, or that change how it is.
 """
 
-from fegear.solution_cache import SolutionCache
+from fegear.base.solution_cache import SolutionCache
 
 CACHE = SolutionCache(most=48)

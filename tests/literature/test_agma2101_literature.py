@@ -12,17 +12,20 @@ import math
 
 import pytest
 
-from fegear.errors import RangeError
-from fegear.formulas import agma2101, agma2101_factors
-from fegear.formulas.agma908 import pair_geometry_factor
-from fegear.formulas.agma908_pair import (
+from fegear.base.errors import RangeError
+from fegear.formulas.agma import agma2101, agma2101_factors
+from fegear.formulas.agma.agma908 import (
     bending_factor,
     jump_of_bending_factor,
+    pair_geometry_factor,
     pitting_factor,
     shortest_contact_lines,
 )
-from fegear.formulas.agma2101_materials import AllowableStress, allowable_stress
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.formulas.agma.agma2101 import AllowableStress, allowable_stress
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 INCH, PSI, LBF, FPM = 0.0254, 6894.757, 4.4482216, 0.00508
 SPEED = 1800 * math.pi / 30

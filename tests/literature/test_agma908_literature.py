@@ -5,9 +5,13 @@ from itertools import pairwise
 
 import pytest
 
-from fegear.errors import RangeError
-from fegear.formulas import agma908, dolan_broghamer, heywood
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.base.errors import RangeError
+from fegear.formulas import dolan_broghamer, heywood
+from fegear.formulas.agma import agma908
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 RACK = BasicRack(1.0, 1.25, 0.25)
 
@@ -91,7 +95,7 @@ def test_heywoods_factor_at_two_known_points():
 def test_heywoods_place_is_a_maximum_along_the_fillet():
     import numpy as np
 
-    from fegear.formulas.load_line import load_line
+    from fegear.formulas.root_section import load_line
 
     tooth, radius = Tooth(28, RACK), 14.5
     best = heywood.tooth_root_stress(tooth, radius)

@@ -13,14 +13,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.motion import propagate
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.periodic import Periodic, combine
-from fegear.dynamics.spectra import mesh_force_spectrum
-from fegear.dynamics.steady_state import steady_state
-from fegear.dynamics.tooth_force import dynamic_error, root_stress, tooth_force
-from fegear.dynamics.train import Body, Damper, Mesh, Torque, Train
+from fegear.dynamics.motion.motion import propagate
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.periodic import Periodic, combine
+from fegear.dynamics.train.spectra import mesh_force_spectrum
+from fegear.dynamics.train.tooth_force import dynamic_error, root_stress, tooth_force
+from fegear.dynamics.train.train import Body, Damper, Mesh, Torque, Train
 
 DATA = Path(__file__).parents[1] / "data"
 POUND = 4.4482216152605

@@ -5,9 +5,11 @@ from itertools import pairwise
 
 import pytest
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 from fegear.formulas.iso1328 import flank_tolerances, rounded, tolerances_of
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 UM = 1e-6
 NAMES = (

@@ -10,14 +10,14 @@ import pytest
 
 from fegear.formulas.iso6336 import part1_dynamic as dynamic
 from fegear.formulas.iso6336 import part1_face_load as face_load
-from fegear.formulas.iso6336 import part1_misalignment as misalignment
-from fegear.formulas.iso6336 import part1_running_in as running_in
-from fegear.formulas.iso6336 import part2_contact as contact
-from fegear.formulas.iso6336 import part2_permissible as flank
+from fegear.formulas.iso6336 import part1_face_load as misalignment
+from fegear.formulas.iso6336 import part1_transverse as running_in
+from fegear.formulas.iso6336 import part2_pitting as contact
+from fegear.formulas.iso6336 import part2_pitting as flank
 from fegear.formulas.iso6336 import part3_root_stress as tooth_root
 from fegear.formulas.iso6336 import part3_strength as root
-from fegear.formulas.iso6336.alignment import Alignment, PinionShaft
 from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
+from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
 from fegear.formulas.iso6336.rated import Strength
 
 HARD = Strength("Eh", 1500e6, 430e6)

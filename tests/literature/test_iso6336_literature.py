@@ -4,11 +4,14 @@ import math
 
 import pytest
 
-from fegear.errors import ConvergenceError, RangeError
-from fegear.formulas.fillet_section import section_at_tangent
+from fegear.base.errors import ConvergenceError, RangeError
 from fegear.formulas.iso6336 import part1_stiffness as stiff
 from fegear.formulas.iso6336 import part3_root_stress as root
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.formulas.root_section import section_at_tangent
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 
 def contact_ratio_of_tr_30() -> float:

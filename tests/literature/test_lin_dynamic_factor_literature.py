@@ -13,14 +13,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fegear.dynamics.charts import chart_point, speed_chart
-from fegear.dynamics.excitation import MeshExcitation, effective_error
-from fegear.dynamics.lin_model import FourInertia, linear_tip_relief, relief_start
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.train import disc_inertia
-from fegear.formulas.pair_compliance import pair_compliance
-from fegear.formulas.sources import source
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.train.charts import FourInertia, chart_point, linear_tip_relief, relief_start, speed_chart
+from fegear.dynamics.train.excitation import MeshExcitation, effective_error
+from fegear.dynamics.train.train import disc_inertia
+from fegear.formulas.sources import pair_compliance, source
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 FORCE, FACE, RPM = 8890.0, 0.0254, math.pi / 30
 SPEEDS = np.arange(2000.0, 16001.0, 250.0) * RPM

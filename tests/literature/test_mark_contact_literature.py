@@ -11,20 +11,21 @@ import numpy as np
 import pytest
 
 import fegear
-from fegear.contact.engagement import Engagement
+from fegear.base.errors import InputError
 from fegear.contact.fourier import effective_error, fourier_series, panels
-from fegear.contact.mark_series import reciprocal_series, static_error_series
-from fegear.contact.mark_spacing import spacing_series, spacing_transfer
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.table_compliance import table_sources
-from fegear.contact.transmission_error import pair_stiffness, revolution, transmission_error
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.mark_series import reciprocal_series, spacing_series, spacing_transfer, static_error_series
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.table_compliance import table_sources
+from fegear.contact.plane.transmission_error import pair_stiffness, revolution, transmission_error
 from fegear.design.loading import LoadingFunction
 from fegear.design.minimum_excitation import minimum_excitation
-from fegear.errors import InputError
-from fegear.formulas.pair_compliance import pair_compliance
-from fegear.formulas.sources import source
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.formulas.sources import pair_compliance, source
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import normalised_tip_relief
+from fegear.geometry.tooth import Tooth
 
 DATA, CASES = Path(__file__).parents[1] / "data", Path(__file__).parents[2] / "cases"
 ALPHA = math.radians(20.0)

@@ -15,9 +15,9 @@ from numpy.polynomial.legendre import leggauss
 from solved_once import CACHE
 
 from fegear.case.reading import read_scene
-from fegear.dynamics.increments import dynamic_increments
-from fegear.dynamics.mesh_excitation import tooth_pair_at
-from fegear.dynamics.spectra import mesh_force_spectrum
+from fegear.dynamics.train.increments import dynamic_increments
+from fegear.dynamics.train.mesh_excitation import tooth_pair_at
+from fegear.dynamics.train.spectra import mesh_force_spectrum
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task

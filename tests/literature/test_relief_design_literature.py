@@ -6,21 +6,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.contact.engagement import Engagement
-from fegear.contact.fe_compliance import finite_element_compliance
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.transmission_error import transmission_error
-from fegear.design.charts import harris_map, relief_chart
+from fegear.base.errors import InputError, RangeError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.transmission_error import transmission_error
+from fegear.design.charts import harris_map, relief_chart, robustness
 from fegear.design.loading import LoadingFunction, Ramp
-from fegear.design.minimum_excitation import minimum_excitation, relief_table
-from fegear.design.oil_film import OilFilm
-from fegear.design.optimise import grindable, optimise_tip_relief
-from fegear.design.robustness import robustness
+from fegear.design.minimum_excitation import OilFilm, minimum_excitation, relief_table
 from fegear.design.root_stress_loading import Allowed, design_stress, least_root_stress
-from fegear.errors import InputError, RangeError
-from fegear.fem import MeshSettings, solve_gear
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.design.tip_relief.grindable import grindable, optimise_tip_relief
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 LOAD = 1615.0
 

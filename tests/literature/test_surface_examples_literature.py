@@ -10,14 +10,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fegear.case.built.pair_surface import pair_surface
 from fegear.case.reading import build_scene
 from fegear.formulas.flash_temperature import STEEL_HEAT
-from fegear.formulas.friction_mean import Surface
+from fegear.formulas.friction import Surface
 from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_micropitting
-from fegear.formulas.iso6336.rated_surface import LoadFactors, RatedSurface
+from fegear.formulas.iso6336.rated import LoadFactors, RatedSurface
 from fegear.formulas.lubricant import Oil
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
-from fegear.models.pair_surface import pair_surface
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.workbench.run import run
 
 OIL = Oil(220e-6, 19e-6, 890.0)

@@ -8,11 +8,13 @@ import math
 
 import pytest
 
-from fegear.formulas.flank_speeds import flank_speeds
-from fegear.formulas.flash_temperature import reduced_modulus
+from fegear.formulas.flash_temperature import flank_speeds, reduced_modulus
+from fegear.formulas.friction import ohlendorf, wimmer
 from fegear.formulas.iso6336.part22_micropitting import pressure
-from fegear.formulas.loss_factor import ohlendorf, wimmer
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 
 def printed(teeth, module, shifts, tips, helix=0.0, face=14e-3):

@@ -9,11 +9,11 @@ import math
 import numpy as np
 import pytest
 
-from fegear.dynamics.helical_pair import ReducedPairModel
-from fegear.dynamics.mesh_parameters import MeshParameters, partial_face_mu
-from fegear.dynamics.modal_indices import mode_table, rank_modes
-from fegear.dynamics.mode_following import follow_modes
-from fegear.dynamics.transmissibility import reduced_transmissibility
+from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters, partial_face_mu
+from fegear.dynamics.helical_pair.modal_indices import mode_table, rank_modes
+from fegear.dynamics.helical_pair.mode_following import follow_modes
+from fegear.dynamics.helical_pair.model import ReducedPairModel
+from fegear.dynamics.helical_pair.transmissibility import reduced_transmissibility
 
 DEG = math.pi / 180.0
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fegear.fem.root_stress import extreme
+from fegear.fem.plane.root_stress import extreme
 
 sys.path.insert(0, str(Path(__file__).parent))
 from pair_meshed import FACE, MM, MODULE, flank_edges

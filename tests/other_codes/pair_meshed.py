@@ -11,12 +11,15 @@ import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix
 from scipy.sparse.linalg import splu
 
-from fegear.fem.boundary import Chain, sector_boundary
-from fegear.fem.extruded import extruded, planes_of
-from fegear.fem.gear_section import gear_section
-from fegear.fem.sector import mesh_inside
-from fegear.fem.settings import MeshSettings
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.fem.plane.boundary import Chain, sector_boundary
+from fegear.fem.plane.gear_section import gear_section
+from fegear.fem.plane.sector import mesh_inside
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.solid.extruded import extruded, planes_of
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 MM = 1e3
 TEETH, HELIX, FACE, MODULE = 18, math.radians(12.0), 3e-3, 1e-3

@@ -12,10 +12,12 @@ import subprocess
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fegear.fem.extruded import extruded, pressed_band
-from fegear.fem.gear_section import uneven_section
-from fegear.fem.root_stress import extreme
-from fegear.geometry import BasicRack, Gear, Material, Tooth
+from fegear.fem.plane.gear_section import uneven_section
+from fegear.fem.plane.root_stress import extreme
+from fegear.fem.solid.extruded import extruded, pressed_band
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.output.solid_export import write_solid_inp
 
 TEETH, SHIFT, BORE, FACE = 10, 0.55, 2.5, 4.0

@@ -7,13 +7,12 @@ import math
 
 import pytest
 
-from fegear.formulas.iso6336 import part1_misalignment as misalignment
-from fegear.formulas.iso6336 import part1_running_in as running_in
-from fegear.formulas.iso6336 import part2_contact as contact
+from fegear.formulas.iso6336 import part1_face_load as misalignment
+from fegear.formulas.iso6336 import part1_transverse as running_in
+from fegear.formulas.iso6336 import part2_pitting as contact
 from fegear.formulas.iso6336 import part3_strength as root
-from fegear.formulas.iso6336.alignment import PinionShaft
 from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
-from fegear.formulas.iso6336.part1_face_load import face_load_factor, root_exponent
+from fegear.formulas.iso6336.part1_face_load import PinionShaft, face_load_factor, root_exponent
 from fegear.formulas.iso6336.rated import Strength
 
 MM = 1e-3

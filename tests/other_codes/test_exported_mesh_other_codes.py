@@ -11,13 +11,13 @@ import meshio
 import numpy as np
 import pytest
 
-from fegear.fem import MeshSettings
-from fegear.fem.field import gear_field
-from fegear.fem.loaded_gear import loaded_gear, nodal_fields
-from fegear.fem.sector import mesh_sector
-from fegear.fem.solution import solve_gear
-from fegear.fem.whole_gear import whole_gear
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.whole_gear import gear_field, loaded_gear, nodal_fields, whole_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.output.mesh_export import write_meshes
 
 GEAR = Gear(Tooth(17, BasicRack(1.0, 1.25, 0.25), profile_shift=0.2), 3.175e-3, 9e-3, 25.4e-3)

@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.contact.flank import FlankGaps
-from fegear.contact.flank.complementarity import solve_contact
-from fegear.contact.flank.compliance import flank_compliance
-from fegear.contact.flank.lines import base_twist, contact_lines
-from fegear.contact.flank.root_stress import rooted_lines
-from fegear.contact.flank.swept import load_below
-from fegear.contact.flank.tip_edges import usual_gap
-from fegear.fem.solid import solid_settings, solve_solid
+from fegear.contact.wide.complementarity import solve_contact
+from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import base_twist, contact_lines, usual_gap
+from fegear.contact.wide.load_factors import load_below
+from fegear.contact.wide.root_stress import rooted_lines
+from fegear.fem.solid.settings import solid_settings
+from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.shaft_tilt import ShaftTilt
 

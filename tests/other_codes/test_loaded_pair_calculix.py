@@ -9,12 +9,15 @@ patch exchange (1e-3 in c_0) and the local treatment of the corner are good for;
 import numpy as np
 import pytest
 
-from fegear.contact.engagement import Engagement
-from fegear.contact.fe_compliance import finite_element_compliance
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.root_stress_history import root_stress_history
-from fegear.fem import solve_gear
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 LOAD = 350.0  # N on 1 mm of face
 

@@ -11,11 +11,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.lin_model import FourInertia
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.steady_state import steady_state
+from fegear.dynamics.motion.motion_model import MotionModel
+from fegear.dynamics.motion.steady_state import steady_state
+from fegear.dynamics.train.charts import FourInertia
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.periodic import Periodic
 
 R = 0.04177
 JUMPS = (0.32, 0.68, 1.0)

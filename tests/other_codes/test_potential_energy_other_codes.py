@@ -8,9 +8,11 @@ double contact 396622921 N/m.
 import numpy as np
 import pytest
 
-from fegear.formulas.pair_compliance import pair_compliance
-from fegear.formulas.sources import source
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.formulas.sources import pair_compliance, source
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 WIDTH = 20e-3
 

@@ -15,13 +15,16 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from fegear.fem.extruded import extruded, pressed_band
-from fegear.fem.gear_section import gear_section
-from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import MeshSettings
-from fegear.fem.solid import SolidSettings, bands, solid_influence, solve_solid
+from fegear.fem.plane.gear_section import gear_section
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.solid.bands import bands
+from fegear.fem.solid.extruded import extruded, pressed_band
+from fegear.fem.solid.influence import solid_influence
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
 from fegear.fem.solid.table import solid_table
-from fegear.geometry import Gear, Material
+from fegear.geometry.gear import Gear, Material
 
 _spec = importlib.util.spec_from_file_location("solid_by_calculix", Path(__file__).with_name("solid_by_calculix.py"))
 calculix = importlib.util.module_from_spec(_spec)

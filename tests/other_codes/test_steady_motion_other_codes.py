@@ -12,17 +12,15 @@ import numba
 import numpy as np
 import pytest
 
-from fegear.dynamics import kernel
-from fegear.dynamics.charts import speed_chart
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.lin_model import FourInertia
-from fegear.dynamics.motion import propagate, starting_state
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.packing import pack
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.steady_state import speed_sweep, steady_state
-from fegear.dynamics.train import Body, Mesh, Torque, Train, disc_inertia, mesh_damping
-from fegear.dynamics.wandering import follow
+from fegear.dynamics.motion import kernel
+from fegear.dynamics.motion.coexisting import follow
+from fegear.dynamics.motion.motion import propagate, starting_state
+from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.steady_state import speed_sweep, steady_state
+from fegear.dynamics.train.charts import FourInertia, speed_chart
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.train import Body, Mesh, Torque, Train, disc_inertia, mesh_damping
 
 R, TEETH, J = 0.04177, 28, 1.22e-3
 PITCH = 2.0 * math.pi * R / TEETH
@@ -374,9 +372,11 @@ def test_one_growing_speed_is_a_row_of_a_sweep():
 @pytest.fixture(scope="module")
 def cornell_discs():
     """Two 28-tooth gears as discs with bores, Cornell's compliances, 2000 N: damping ratio 0.02, no shafts."""
-    from fegear.formulas.pair_compliance import pair_compliance
-    from fegear.formulas.sources import source
-    from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+    from fegear.formulas.sources import pair_compliance, source
+    from fegear.geometry.gear import Gear, Material
+    from fegear.geometry.pair import GearPair
+    from fegear.geometry.rack import BasicRack
+    from fegear.geometry.tooth import Tooth
 
     material = Material(206.8e9, 0.3, 7850.0)
     gear = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.3, math.radians(20.0))), 3.175e-3, 0.0111, 0.0254, material, "strain")

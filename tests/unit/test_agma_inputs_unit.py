@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from fegear.case.built.agma_pair import agma_inputs
+from fegear.case.built.rated_pair import pair_to_rate
 from fegear.case.reading import read_scene
-from fegear.models.agma_pair import agma_inputs
-from fegear.models.rated_pair import pair_to_rate
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -6,8 +6,8 @@ import copy
 
 import pytest
 
+from fegear.case.built.pair_inputs import effect_remarks
 from fegear.case.reading import build_scene
-from fegear.models.pair_inputs import effect_remarks
 
 CASE = {
     "results": ["transmission-error"],

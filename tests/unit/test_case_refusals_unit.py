@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from fegear.base.errors import GeometryError, InputError
 from fegear.case.reading import apply_override, build_scene, parse_document, read_scene
-from fegear.errors import GeometryError, InputError
 
 CASE = {
     "title": "One gear",

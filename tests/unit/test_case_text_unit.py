@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from fegear.errors import InputError
+from fegear.base.errors import InputError
 from fegear.window.case_text import as_typed, literal, statements, value_at, with_value
-from fegear.window.stepped import stepped
+from fegear.window.inputs import stepped
 
 CASES = sorted((Path(__file__).parents[2] / "cases").rglob("*.toml"))
 HARD = '''# head "quoted" [brackets] = no key

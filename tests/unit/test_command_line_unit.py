@@ -13,8 +13,8 @@ import time
 import in_process
 import pytest
 
+from fegear.base.errors import lacks_memory
 from fegear.cli import _NO_MEMORY
-from fegear.errors import lacks_memory
 
 CASE = """
 title = "One gear"
@@ -125,7 +125,7 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
     slow = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # background jobs ignore it
-        "import time, fegear.results.geometry as g\n"
+        "import time, fegear.results.gear.geometry as g\n"
         "g.interference = lambda *a: (print('working', flush=True), time.sleep(600))\n"
         "from fegear.cli import main; main()"
     )
@@ -147,7 +147,7 @@ def test_an_interrupt_keeps_earlier_results_and_exits_with_130(case, tmp_path):
     assert [path.name for path in out.parent.iterdir()] == ["one"]
 
 
-@pytest.mark.parametrize("module", ["fegear.streams", "fegear.cli", "typer"])
+@pytest.mark.parametrize("module", ["fegear.base.streams", "fegear.cli", "typer"])
 def test_ctrl_c_while_the_program_loads_is_one_line(module, case, tmp_path):
     program = (
         "import sys\n"

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import fegear.cli
-from fegear.engine.outcome import Column, Table, Value
+from fegear.engine.outcome import Value
+from fegear.engine.table import Column, Table
 from fegear.output.comparison import read_side
-from fegear.studies.comparison import compare, comparison_figures, different_inputs, join
-from fegear.studies.comparison.side import Side
-from fegear.studies.comparison.values import paired
+from fegear.studies.comparison.compare import Side, compare, different_inputs, paired
+from fegear.studies.comparison.tables import comparison_figures, join
 
 CASE = """
 results = ["geometry", "load-sharing"]

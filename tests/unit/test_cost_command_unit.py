@@ -14,10 +14,11 @@ import numpy as np
 import pytest
 
 import fegear.studies.cost.ladder as ladders
+from fegear.base.errors import InputError
 from fegear.case.reading import build_scene, read_scene
 from fegear.cli import app
-from fegear.errors import InputError
-from fegear.studies.cost import asked, forecast, ladder_of
+from fegear.studies.cost.asked import asked
+from fegear.studies.cost.study import forecast, ladder_of
 
 CASE = """
 title = "A pair"
@@ -151,7 +152,7 @@ def test_all_quantities_at_once_are_cheapest_for_a_configuration(short):
 def test_what_is_cheapest_can_be_pasted_into_a_case(short, case):
     import tomllib
 
-    from fegear.models.settings import mesh_settings
+    from fegear.case.built.tooth_influence import mesh_settings
 
     for row in rows(short, "cost_cheapest"):
         if row["case_line"].startswith("accuracy"):
@@ -189,9 +190,9 @@ def test_summary_and_pictures(short):
 def test_no_configuration_profits_from_an_earlier_one(case, monkeypatch):
     """Every finite-element configuration is meshed and solved in its own time, past all caches."""
     import fegear.studies.cost.measure as measure
-    from fegear.studies.cost import timing
-    from fegear.studies.cost.configuration import Configuration
-    from fegear.studies.cost.sources import FiniteElements
+    from fegear.studies.cost import result as timing
+    from fegear.studies.cost.answers import FiniteElements
+    from fegear.studies.cost.ladder import Configuration
 
     monkeypatch.setattr(timing, "_SHORT", np.inf)  # a busy machine may take longer
     solved = []

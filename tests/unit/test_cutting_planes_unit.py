@@ -4,11 +4,15 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, minimize
 
-from fegear.contact import Engagement, PairCompliance, closed_form_compliance
-from fegear.design.cutting_planes import least_in_box
-from fegear.design.evaluation import bench
-from fegear.design.relief_trials import Trials
-from fegear.geometry import Gear, GearPair, Tooth
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.design.charts import bench
+from fegear.design.tip_relief.cutting_planes import least_in_box
+from fegear.design.tip_relief.trials import Trials
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.tooth import Tooth
 
 RNG = np.random.default_rng(7)
 BASE, SLOPE = RNG.normal(size=(6, 50)), RNG.normal(size=(6, 4, 50)) * np.array([0.1, 0.5, 1.0, 2.0])[:, None]

@@ -9,19 +9,23 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.dynamics.charts import SpeedChart
-from fegear.dynamics.modes import Campbell
-from fegear.dynamics.spectra import MeshForceSpectrum
-from fegear.engine.figure import Axis, Curve, Figure, Mark, Panel, Points, Stems
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
-from fegear.output.draw_plotly import plotly_json
+from fegear.dynamics.train.charts import SpeedChart
+from fegear.dynamics.train.modes import Campbell
+from fegear.dynamics.train.spectra import MeshForceSpectrum
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve, Mark, Points, Stems
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+from fegear.output.draw_plotly.layout import plotly_json
 from fegear.output.draw_png.sheet import Sheet
-from fegear.results.drawn_pair import pair_figure, path_marks, roll_marks
-from fegear.results.dynamic_factor import _figure as _factor_figure
-from fegear.results.gear_data import Drawing
-from fegear.results.loaded_pair import pitch_marks
-from fegear.results.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
-from fegear.results.natural_modes import _campbell_figure
+from fegear.results.gear.drawing import pair_figure, path_marks, roll_marks
+from fegear.results.gear.geometry import Drawing
+from fegear.results.pair.loaded_pair import pitch_marks
+from fegear.results.train.dynamic_factor import _figure as _factor_figure
+from fegear.results.train.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
+from fegear.results.train.natural_modes import _campbell_figure
 from fegear.studies.swept import Swept, varying
 
 GEAR = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 3.175e-3, 20e-3)
@@ -153,7 +157,7 @@ def test_teeth_in_space_are_whole_and_mirror_their_flank():
     from helical_gears import helical_gear
 
     from fegear.geometry.helicoid import InvoluteHelicoid
-    from fegear.results.drawn_flanks import solid_tooth
+    from fegear.results.helical.drawn_tooth_contact import solid_tooth
 
     gear = helical_gear(20, 5e-3, math.radians(20.0), math.radians(25.0), 40e-3, "right")
     flank = InvoluteHelicoid.of(gear, "tooth")

@@ -4,11 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from fegear.engine.named import Named
-from fegear.engine.outcome import Value
+from fegear.engine.outcome import Named, Value
 from fegear.output.effects import effects_table, sentence
 from fegear.output.report.effects import effects_page
-from fegear.studies.effect_study import Measured, Switched
+from fegear.studies.effects import Measured, Switched
 
 
 def run(*values: Value) -> Measured:

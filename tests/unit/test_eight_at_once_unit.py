@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fegear
-from fegear.solution_cache import SolutionCache
+from fegear.base.solution_cache import SolutionCache
 
 
 def document(teeth):

@@ -18,11 +18,11 @@ import time
 import pytest
 from distributed.comm import CommClosedError
 
+from fegear.base.errors import FegearError, InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.base.store import Store
 from fegear.engine.executor import Executor, count_kept, map_points
 from fegear.engine.point_job import Failure
-from fegear.errors import FegearError, InputError
-from fegear.solution_cache import SolutionCache
-from fegear.store import Store
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
 
@@ -88,7 +88,7 @@ def test_an_address_of_no_scheduler_is_one_sentence():
     program = (
         "import math, sys\n"
         "from fegear.engine.executor import Executor, map_points\n"
-        "from fegear.errors import InputError\n"
+        "from fegear.base.errors import InputError\n"
         "for address in sys.argv[1:]:\n"
         "    try:\n"
         "        map_points(math.sqrt, [1.0], Executor(address))\n"

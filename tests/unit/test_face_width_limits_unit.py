@@ -5,11 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.errors import RangeError
-from fegear.fem.solid import SolidSettings
-from fegear.fem.solid.plausible import check_solid
-from fegear.geometry import BasicRack, Tooth
-from fegear.results.load_distribution import limit_remarks
+from fegear.base.errors import RangeError
+from fegear.fem.solid.settings import SolidSettings, check_solid
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+from fegear.results.pair.load_distribution import limit_remarks
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 

@@ -11,32 +11,27 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fegear.base.errors import MissingLibraryError
 from fegear.engine.colours import ROLES
-from fegear.engine.figure import (
-    Axis,
+from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale, View, round_numbers
+from fegear.engine.figure.items import (
     Bars,
     Curve,
-    DeferredFigure,
-    Figure,
     HeatMap,
     Mark,
-    Panel,
     Points,
-    Scale,
     Spot,
     Stems,
     Surface,
     TriangleField,
-    View,
     Zone,
     few,
 )
-from fegear.engine.figure.axes import round_numbers
-from fegear.errors import MissingLibraryError
-from fegear.output.draw_plotly import darker, notebook_bundle, page_html, plotly_json, template
+from fegear.output.draw_plotly.layout import darker, plotly_json, template
+from fegear.output.draw_plotly.notebook import notebook_bundle, page_html
 from fegear.output.draw_png import draw_pictures
 from fegear.output.draw_png.sheet import Sheet
-from fegear.output.shades import shade
+from fegear.output.numbers import shade
 
 
 def array(spec: dict) -> np.ndarray:

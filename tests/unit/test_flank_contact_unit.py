@@ -7,28 +7,33 @@ from itertools import product
 import numpy as np
 import pytest
 
-from fegear.contact import Engagement, PairCompliance, finite_element_compliance
-from fegear.contact.flank import FlankGaps, FlankPair, compliance, contact_lines, flank_compliance
-from fegear.contact.flank.averages import GAUSS, averages
-from fegear.contact.flank.complementarity import hat_averages, solve_contact
-from fegear.contact.flank.compliance import FlankCompliance
-from fegear.contact.flank.error import flank_error
-from fegear.contact.flank.lines import ContactLines
-from fegear.contact.flank.over_pitch import over_pitch
-from fegear.contact.flank.root_stress import rooted_lines
-from fegear.contact.flank.touching import unloaded_error
-from fegear.contact.tooth_stress import loaded_states, tooth_stress
-from fegear.errors import InputError
-from fegear.fem import solve_gear
-from fegear.fem.root_stress import extreme
-from fegear.fem.solid import SolidSettings, solve_solid
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache, cache_on_disk
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress
+from fegear.contact.wide import compliance
+from fegear.contact.wide.complementarity import GAUSS, averages, hat_averages, solve_contact
+from fegear.contact.wide.compliance import FlankCompliance, flank_compliance
+from fegear.contact.wide.error import flank_error
+from fegear.contact.wide.gaps import FlankGaps, unloaded_error
+from fegear.contact.wide.lines import ContactLines, contact_lines
+from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.over_pitch import over_pitch
+from fegear.contact.wide.root_stress import rooted_lines
+from fegear.fem.plane.root_stress import extreme
+from fegear.fem.plane.solution import solve_gear
 from fegear.fem.solid.bands import hats
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.flank_modification import LeadCrowning
-from fegear.geometry.pair import MEMBERS
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import tip_relief
 from fegear.geometry.shaft_tilt import ShaftTilt
-from fegear.solution_cache import SolutionCache, cache_on_disk
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 COARSE = SolidSettings().scaled(1.7)

@@ -6,23 +6,33 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.contact import Engagement, PairCompliance, finite_element_compliance
-from fegear.contact.flank import FlankPair, flank_compliance
-from fegear.contact.flank.complementarity import approach_by_gap, hat_averages, solve_contact
-from fegear.design import LoadingFunction, Ramp
-from fegear.design.flank_forms import LENGTHS, NUMBERS, FormsAt, GroundRelief
-from fegear.design.flank_grid import FAMILIES, ReliefGrid, held_by
-from fegear.design.flank_loading import FlankLoading
-from fegear.design.flank_quick import quick_flanks
-from fegear.design.flank_scatter import NOMINAL, normal_scatter
-from fegear.design.flank_search import best_of_family, quick_values
-from fegear.design.flank_topography import design_lines, station_relief, table_nodes, tabulated, topography
-from fegear.design.flank_trials import FlankTrials
+from fegear.base.errors import RangeError
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.wide.complementarity import approach_by_gap, hat_averages, solve_contact
+from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.loaded import FlankPair
+from fegear.design.flanks.forms import FAMILIES, LENGTHS, NUMBERS, FormsAt, GroundRelief, ReliefGrid, held_by
+from fegear.design.flanks.search import best_of_family, quick_values
+from fegear.design.flanks.topography import (
+    FlankLoading,
+    design_lines,
+    station_relief,
+    table_nodes,
+    tabulated,
+    topography,
+)
+from fegear.design.flanks.trials import NOMINAL, FlankTrials, normal_scatter, quick_flanks
+from fegear.design.loading import LoadingFunction, Ramp
 from fegear.design.minimum_excitation import minimum_excitation
-from fegear.errors import RangeError
-from fegear.fem import solve_gear
-from fegear.fem.solid import SolidSettings, solve_solid
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 COARSE = SolidSettings().scaled(2.0)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fegear.errors import InputError
+from fegear.base.errors import InputError
 from fegear.workbench.run import run
 
 CASE = {"material": "case-hardened-steel", "hardness": "60 HRC", "core_hardness": "32 HRC", "case_depth": "0.8 mm"}

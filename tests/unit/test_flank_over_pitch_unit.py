@@ -8,17 +8,22 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from fegear.contact.flank import FlankGaps, FlankPair
-from fegear.contact.flank.complementarity import solve_contact
-from fegear.contact.flank.error import flank_error
-from fegear.contact.flank.over_pitch import likely_peaks, over_pitch
-from fegear.contact.flank.spots import missed_of_spots
-from fegear.contact.flank.tip_edges import usual_gap
-from fegear.errors import ConvergenceError
-from fegear.fem.solid import SolidSettings, solve_solid
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.base.errors import ConvergenceError
+from fegear.base.solution_cache import SolutionCache
+from fegear.contact.wide.complementarity import solve_contact
+from fegear.contact.wide.error import flank_error
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import usual_gap
+from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.over_pitch import likely_peaks, over_pitch
+from fegear.contact.wide.spots import missed_of_spots
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
 from fegear.geometry.plausible import heavy_load
-from fegear.solution_cache import SolutionCache
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 COARSE = SolidSettings().scaled(1.7)

@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.flank import contact_lines
-from fegear.contact.flank.lines import shortest_line
-from fegear.contact.flank.positions import line_breaks, roll_points
-from fegear.contact.flank.swept import load_below, swept_mean
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.contact.wide.lines import contact_lines, line_breaks, roll_points, shortest_line
+from fegear.contact.wide.load_factors import load_below, swept_mean
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 

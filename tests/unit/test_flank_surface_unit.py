@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from fegear.dynamics.friction import buckingham
-from fegear.errors import InputError
-from fegear.formulas.flank_speeds import flank_speeds
+from fegear.base.errors import InputError
+from fegear.dynamics.train.friction import buckingham
+from fegear.formulas.flash_temperature import flank_speeds
+from fegear.formulas.friction import ohlendorf
 from fegear.formulas.hertz import contact_modulus
-from fegear.formulas.loss_factor import ohlendorf
 from fegear.workbench.run import run
 
 GEAR = {"module": "3 mm", "face_width": "20 mm", "roughness": {"flank": "0.5 um"}}

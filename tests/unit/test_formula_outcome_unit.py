@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from fegear.errors import InputError, RangeError
+from fegear.base.errors import InputError, RangeError
 from fegear.formulas.outcome import Outcome, attempt
-from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES, root_stress_table
-from fegear.geometry import BasicRack, Tooth
+from fegear.formulas.sources import ROOT_STRESS_SOURCES, root_stress_table
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 
 def fail() -> float:

@@ -5,11 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.formula_reach import NEAR, reach, sentence
-from fegear.contact.gear_population import LOADS, drawn_gears, share_error, unevenness
-from fegear.errors import InputError
-from fegear.geometry import BasicRack, Gear, Tooth
-from fegear.results.drawn_formula_spread import WORDS, spread_curve
+from fegear.base.errors import InputError
+from fegear.contact.compared.formula_reach import NEAR, reach, sentence
+from fegear.contact.compared.root_stress_study import LOADS, drawn_gears, share_error, unevenness
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+from fegear.results.gear.root_stress_study import WORDS, spread_curve
 
 BASE = Gear(Tooth(28, BasicRack(1.0, 1.25, 0.25)), 1e-3, 6e-3)
 BOX = {"teeth": (20.0, 100.0), "profile_shift": (-0.2, 0.5), "rack_tip_radius": (0.1, 0.35)}
@@ -130,7 +132,7 @@ def test_a_curve_ends_at_all_of_its_points_and_tells_what_lies_beyond():
 
 
 def test_stress_across_the_root_of_a_surface_that_is_pulled_across_its_helix():
-    from fegear.contact.flank.root_stress import _across
+    from fegear.contact.wide.root_stress import _across
     from fegear.fem.solid.fillet import SolidFillet
 
     rng, tau = np.random.default_rng(4), 0.07

@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError, RangeError
+from fegear.case.built.train import build_train, train_inputs
 from fegear.case.reading import build_scene
-from fegear.dynamics.matrices import damping_matrix, mass_matrix, static_forces, stiffness_matrix
-from fegear.dynamics.modes import campbell, damped_eigenvalues, modes
-from fegear.dynamics.train import (
+from fegear.dynamics.train.matrices import damping_matrix, mass_matrix, static_forces, stiffness_matrix
+from fegear.dynamics.train.modes import campbell, damped_eigenvalues, modes
+from fegear.dynamics.train.train import (
     Body,
     Damper,
     Mesh,
@@ -23,8 +25,6 @@ from fegear.dynamics.train import (
     shaft_damping,
     shaft_stiffness,
 )
-from fegear.errors import InputError, RangeError
-from fegear.models.train import build_train, train_inputs
 
 
 def mesh(name="m", a="a", b="b", ra=0.05, rb=0.1, za=20, zb=40, k=1e8, **more):

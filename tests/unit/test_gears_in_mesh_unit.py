@@ -7,21 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.errors import InputError
-from fegear.fem.imported import read_sector_mesh
-from fegear.fem.outline_motion import _outline, half_plane_dent
-from fegear.geometry import BasicRack, Tooth
+from fegear.fem.plane.imported_mesh import read_sector_mesh
+from fegear.fem.plane.outline_motion import _outline, half_plane_dent
 from fegear.geometry.outline import tool_in_space, tooth_outline
 from fegear.geometry.pair import MEMBERS
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
-from fegear.results.drawn_pair import placed_in_mesh
-from fegear.solution_cache import SolutionCache
-from fegear.window.gears import gears_in_mesh, wanted_on_gears
-from fegear.window.on_gears import on_the_gears
+from fegear.results.gear.drawing import placed_in_mesh
+from fegear.window.on_gears import gears_in_mesh, on_the_gears, wanted_on_gears
 
 CASE = {
     "results": ["root-stress-history"],

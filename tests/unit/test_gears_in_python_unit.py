@@ -9,7 +9,7 @@ import pint
 import pytest
 
 import fegear
-from fegear.errors import FegearError, InputError
+from fegear.base.errors import FegearError, InputError
 
 PINION = {"teeth": 23, "module": "3 mm", "profile_shift": 0.3, "bore_radius": "15 mm", "face_width": "10 mm"}
 WHEEL = {"teeth": 57, "module": "3 mm", "profile_shift": -0.1, "bore_radius": "40 mm", "face_width": "10 mm"}
@@ -202,7 +202,7 @@ def test_a_helical_pair_is_described_and_refused_where_it_cannot_be_loaded():
 def test_type_checkers_know_the_keys_of_the_case():
     from fegear.case.gear import GearPart
     from fegear.case.pair import PairPart
-    from fegear.workbench.keys import GearKeys, PairKeys
+    from fegear.workbench.given import GearKeys, PairKeys
 
     assert set(GearKeys.__annotations__) | {"teeth", "module"} == set(GearPart.model_fields)
     own = {"driver", "driven", "centre_distance", "compliance", "load", "loads", "torque"}

@@ -8,10 +8,9 @@ import math
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
-from fegear.errors import InputError
-from fegear.geometry.profile_chart import chart_points
-from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, TabulatedRelief
+from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief, TabulatedRelief, chart_points
 from fegear.output.export import export_gears
 
 

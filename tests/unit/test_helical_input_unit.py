@@ -5,15 +5,16 @@ import math
 import pytest
 from helical_gears import helical_gear
 
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.errors import GeometryError, InputError, RangeError
+from fegear.base.errors import GeometryError, InputError, RangeError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.unloaded.pair import HelicalPair, Misalignment
+from fegear.contact.unloaded.tooth_contact import pair_contact, tooth_contact
 from fegear.formulas.iso6336.part1_stiffness import pair_stiffness, theoretical_stiffness
 from fegear.formulas.iso6336.part3_pair import RatingChoice, rate_spur
 from fegear.formulas.iso6336.part3_root_stress import virtual_teeth
-from fegear.formulas.root_stress_sources import root_stress_table
-from fegear.geometry import GearPair
-from fegear.helical import HelicalPair, Misalignment, pair_contact, tooth_contact
+from fegear.formulas.sources import root_stress_table
+from fegear.geometry.pair import GearPair
 
 DEG = math.pi / 180.0
 

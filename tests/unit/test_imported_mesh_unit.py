@@ -9,11 +9,13 @@ import meshio
 import numpy as np
 import pytest
 
-from fegear.errors import InputError
-from fegear.fem import solve_gear, stiffness_table
-from fegear.fem.imported import read_sector_mesh
-from fegear.fem.sound_mesh import check_triangles
-from fegear.geometry import BasicRack, Gear, Tooth
+from fegear.base.errors import InputError
+from fegear.fem.plane.imported_mesh import check_triangles, read_sector_mesh
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 MESHES = Path(__file__).parents[2] / "meshes"
 

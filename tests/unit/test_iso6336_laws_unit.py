@@ -7,19 +7,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.errors import ConvergenceError, RangeError
-from fegear.formulas.iso6336 import groups
+from fegear.base.errors import ConvergenceError, RangeError
 from fegear.formulas.iso6336 import part1_dynamic as dynamic
-from fegear.formulas.iso6336 import part1_misalignment as misalignment
-from fegear.formulas.iso6336 import part1_running_in as running_in
+from fegear.formulas.iso6336 import part1_face_load as misalignment
+from fegear.formulas.iso6336 import part1_transverse as running_in
 from fegear.formulas.iso6336 import part1_transverse as transverse
-from fegear.formulas.iso6336 import part2_contact as contact
-from fegear.formulas.iso6336 import part2_permissible as flank
+from fegear.formulas.iso6336 import part2_pitting as contact
+from fegear.formulas.iso6336 import part2_pitting as flank
 from fegear.formulas.iso6336 import part3_strength as root
-from fegear.formulas.iso6336.alignment import Alignment, PinionShaft
+from fegear.formulas.iso6336 import part5_materials as groups
+from fegear.formulas.iso6336.conditions import Conditions
 from fegear.formulas.iso6336.pair_geometry import GearShape, PairGeometry
+from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
-from fegear.formulas.iso6336.safety import Conditions, rate_pair
+from fegear.formulas.iso6336.safety import rate_pair
 
 FACTORS = st.tuples(*[st.floats(0.0, 3.0)] * 3)
 CONTACT_RATIO = st.floats(1.05, 4.0)

@@ -5,13 +5,16 @@ from dataclasses import replace
 
 import pytest
 
-from fegear.errors import RangeError
-from fegear.formulas.iso6336.alignment import Alignment, PinionShaft
+from fegear.base.errors import RangeError
+from fegear.formulas.iso6336.conditions import Conditions, Replacement
 from fegear.formulas.iso6336.pair_geometry import PairGeometry, of_pair
-from fegear.formulas.iso6336.pair_rating import Replacement
+from fegear.formulas.iso6336.part1_face_load import Alignment, PinionShaft
 from fegear.formulas.iso6336.rated import Duty, Quality, Strength
-from fegear.formulas.iso6336.safety import Conditions, rate_pair
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.formulas.iso6336.safety import rate_pair
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = Strength("Eh", 1500e6, 500e6)
 FINE = Quality(5, 7e-6, 8e-6, 8e-6, 4e-6, 16e-6)

@@ -13,15 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from fegear.dynamics import kernel
-from fegear.dynamics.excitation import MeshExcitation
-from fegear.dynamics.machine_code import machine_code
-from fegear.dynamics.motion import propagate, static_state
-from fegear.dynamics.motion_model import MotionModel
-from fegear.dynamics.packing import pack
-from fegear.dynamics.periodic import Periodic
-from fegear.dynamics.prepare import prepare
-from fegear.dynamics.train import Body, Mesh, Shaft, Torque, Train
+from fegear.dynamics.motion import kernel
+from fegear.dynamics.motion.machine_code import machine_code
+from fegear.dynamics.motion.motion import propagate, static_state
+from fegear.dynamics.motion.motion_model import MotionModel, pack
+from fegear.dynamics.motion.prepare import prepare
+from fegear.dynamics.train.excitation import MeshExcitation
+from fegear.dynamics.train.periodic import Periodic
+from fegear.dynamics.train.train import Body, Mesh, Shaft, Torque, Train
 
 _number = itertools.count()
 
@@ -95,7 +94,8 @@ def test_machine_code_of_functions_in_several_files_is_made_anew_when_one_of_the
     (tmp_path / "caller.py").write_text("from helper import part\ndef whole(x):\n    return 1.0 + part(x)\n")
     program = (
         "import sys, caller, helper; from pathlib import Path; sys.dont_write_bytecode = True;"
-        "from fegear.dynamics.kernel import source_digest; from fegear.dynamics.machine_code import machine_code;"
+        "from fegear.dynamics.motion.kernel import source_digest;"
+        "from fegear.dynamics.motion.machine_code import machine_code;"
         "digest = source_digest(Path(caller.__file__).parent); caller.part = machine_code(helper.part, digest);"
         "fast = machine_code(caller.whole, digest); print(fast(3.0), sum(fast.stats.cache_hits.values()))"
     )

@@ -5,21 +5,24 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact.flank import FlankGaps, FlankPair
-from fegear.contact.flank.complementarity import hat_averages, solve_contact
-from fegear.contact.flank.compliance import FlankCompliance
-from fegear.contact.flank.lines import contact_lines
-from fegear.contact.flank.loaded import LoadedFlanks
-from fegear.contact.flank.mesh_matrix import (
+from fegear.contact.wide.complementarity import hat_averages, solve_contact
+from fegear.contact.wide.compliance import FlankCompliance
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import contact_lines, roll_points
+from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+from fegear.contact.wide.mesh_matrix import (
     even_moments,
     mesh_parameters_of,
     mesh_stiffness,
     rigid_motion_rows,
     tilt_lever,
 )
-from fegear.contact.flank.positions import roll_points
-from fegear.fem.solid import SolidSettings, solve_solid
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE, WIDTH, LOAD = 3e-3, 9e-3, 2000.0
@@ -212,7 +215,7 @@ def test_a_wide_spur_face_nears_even_springs():
 
 def test_parameters_are_those_of_the_paper(known):
     """Eq. 6 with the parameters is the matrix where both gears tilt about the pitch axis."""
-    from fegear.dynamics.mesh_parameters import MeshParameters
+    from fegear.dynamics.helical_pair.mesh_parameters import MeshParameters
 
     flanks, matrix = known
     ms = mesh_stiffness(flanks.solve([LOAD], MISALIGNED, matrix), flanks.points)

@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fegear.case.csv_columns import read_columns
+from fegear.base.errors import InputError
+from fegear.case.built.pair_inputs import pair_inputs
 from fegear.case.reading import read_scene
-from fegear.case.text_file import read_file, write_file
-from fegear.errors import InputError
-from fegear.models.pair_inputs import pair_inputs
+from fegear.case.text_file import read_columns, read_file, write_file
 
 CASE = """
 title = "Zähne"

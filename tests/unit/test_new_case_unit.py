@@ -12,10 +12,11 @@ from pathlib import Path
 import pytest
 
 import fegear.cli
+from fegear.base.errors import InputError
+from fegear.case.drafts.answers import KINDS, Answers, questions
+from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene, read_scene
-from fegear.drafts import KINDS, Answers, draft, questions
 from fegear.engine.plan import make_plan
-from fegear.errors import InputError
 from fegear.results.catalogue import STAGES
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from fegear.errors import InputError
+from fegear.base.errors import InputError
 from fegear.output.claim import HOLDER, claimed, folder_for
 from fegear.output.exchange import JOURNAL, RECORD
 from fegear.output.folder import default_folder, whole_or_nothing
@@ -223,7 +223,7 @@ def test_a_stop_request_clears_the_scratch_folder_away(tmp_path):
 def test_work_begun_ahead_holds_no_stopped_program_back():
     """A stop in the middle of an import can leave its lock taken; what still imports must not be waited for."""
     program = (
-        "import _imp\nfrom fegear.output.report.ahead import begun\n"
+        "import _imp\nfrom fegear.output.report.page import begun\n"
         "_imp.acquire_lock()\nbegun(lambda: __import__('wave'))\nraise SystemExit(143)\n"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False, env=ENVIRONMENT, timeout=60).returncode == 143

@@ -5,14 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fegear.errors import GeometryError, RangeError
-from fegear.formulas import cornell_compliance, potential_energy, weber_banaschek
+from fegear.base.errors import GeometryError, RangeError
+from fegear.formulas import cornell as cornell_compliance
+from fegear.formulas import potential_energy, weber_banaschek
 from fegear.formulas.beam import NODES
 from fegear.formulas.outcome import attempt
-from fegear.formulas.pair_compliance import pair_compliance
-from fegear.formulas.root_stress_sources import root_stress_table
-from fegear.formulas.sources import SOURCES
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.formulas.sources import SOURCES, pair_compliance, root_stress_table
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 NODES_FREE = {m.SOURCE.name: m.tooth_compliance for m in (cornell_compliance, weber_banaschek, potential_energy)}
 RACK = BasicRack(1.0, 1.25, 0.25)

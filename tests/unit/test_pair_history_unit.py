@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.contact.engagement import Engagement
-from fegear.contact.pair_compliance import PairCompliance
-from fegear.contact.pair_history import pair_history
+from fegear.base.errors import InputError
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.pair_history import pair_history
 from fegear.design.charts import welbourn_amount
-from fegear.errors import InputError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief
+from fegear.geometry.tooth import Tooth
 
 
 def pair(addendum=1.0, z=28):

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from fegear.engine.figure import Axis, Panel, Surface
+from fegear.engine.figure.figure import Axis, Panel
+from fegear.engine.figure.items import Surface
 from fegear.output.draw_png.sheet import Sheet
 
 

@@ -8,14 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.case.reading import build_scene
-from fegear.engine.outcome import Column, Outcome, Table, Value
+from fegear.engine.outcome import Outcome, Value
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Need, Stage, Task
-from fegear.errors import InputError
-from fegear.fem.settings import MeshSettings
-from fegear.models.settings import seconds_of_gear
+from fegear.engine.table import Column, Table
+from fegear.fem.plane.settings import MeshSettings
 
 GEARS = {"a": {"teeth": 28, "module": "1 mm"}, "b": {"teeth": 35, "module": "1 mm"}}
 
@@ -132,7 +133,7 @@ def test_a_number_and_its_unit_belong_together():
 
 
 def test_every_unit_of_the_tables_is_pint_s_too():
-    from fegear.units import PER_SI, quantity
+    from fegear.base.units import PER_SI, quantity
 
     for unit, size in PER_SI.items():
         if unit == "degC":  # has an offset

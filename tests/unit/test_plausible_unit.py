@@ -11,14 +11,17 @@ import numpy as np
 import pytest
 from helical_gears import helical_gear
 
+from fegear.base.errors import InputError
+from fegear.case.built.pair_inputs import pair_inputs
 from fegear.case.reading import apply_override, build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
 from fegear.geometry.plausible import deepest_relief, refuse_deep_relief
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import roll_of_radius, tip_relief
-from fegear.models.pair_inputs import pair_inputs
+from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
 
 CASE = {

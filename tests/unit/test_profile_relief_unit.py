@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from fegear.errors import InputError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.base.errors import InputError
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import (
     CombinedRelief,
     TabulatedRelief,
@@ -17,6 +19,7 @@ from fegear.geometry.relief import (
     root_relief,
     tip_relief,
 )
+from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(28, BasicRack(1.0, 1.25, 0.25))
 GEAR = Gear(TOOTH, 3.175e-3, 0.02, 6.35e-3)

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.pair_surface import pair_surface
 from fegear.case.reading import build_scene, read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
-from fegear.errors import InputError
-from fegear.models.pair_surface import pair_surface
 from fegear.results.catalogue import STAGES
-from fegear.solution_cache import SolutionCache
 
 CASES = Path(__file__).parents[2] / "cases"
 PLAIN = "pair.I.operation={life='20000 h'}"

@@ -2,8 +2,8 @@
 
 import pytest
 
+from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
-from fegear.errors import InputError
 
 
 def scene(gear=None, pair=None):

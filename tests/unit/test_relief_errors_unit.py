@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
-from fegear.contact.closed_form_compliance import closed_form_compliance
-from fegear.contact.engagement import Engagement
-from fegear.contact.pair_compliance import PairCompliance
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
 from fegear.design.loading import LoadingFunction
 from fegear.design.relief_design import DesignTask, design_relief
-from fegear.geometry import Gear, GearPair, Tooth
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.tooth import Tooth
 
 
 def test_compliances_without_an_error_still_leave_the_last_digits():

@@ -17,13 +17,14 @@ import pytest
 
 from fegear.case.reading import read_scene
 from fegear.engine.citation import bibliography
-from fegear.engine.figure import Axis, Figure, Panel, Points
-from fegear.engine.outcome import Column, Table, Value
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Points
+from fegear.engine.outcome import Value
 from fegear.engine.plan import make_plan
+from fegear.engine.table import Column, Table
 from fegear.output.draw_png import Picture
 from fegear.output.numbers import plain_number, pretty_unit, with_error
-from fegear.output.report import Page, Section, write_page
-from fegear.output.report.blocks import (
+from fegear.output.report.blocks import (  # fmt: skip
     Bars,
     Block,
     Code,
@@ -41,11 +42,10 @@ from fegear.output.report.blocks import (
     SheetGroup,
     Still,
     Values,
-)  # fmt: skip
-from fegear.output.report.page import page_text
-from fegear.output.report.rendering import render
+)
+from fegear.output.report.page import Page, Section, page_text, render, write_page
 from fegear.results.catalogue import STAGES
-from fegear.results.loaded_pair import LOADED_PAIR
+from fegear.results.pair.loaded_pair import LOADED_PAIR
 
 ROOT = Path(__file__).parents[2]
 CASES = sorted((ROOT / "cases").rglob("*.toml"))

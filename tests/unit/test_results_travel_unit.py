@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import fegear
+from fegear.base.arrays import same
+from fegear.base.errors import InputError
 from fegear.engine.stage import Stage
-from fegear.errors import InputError
-from fegear.frozen import same
 from fegear.results.catalogue import STAGES
 
 ROOT = Path(__file__).parents[2]

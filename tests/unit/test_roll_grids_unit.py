@@ -6,11 +6,16 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import pytest
 
-from fegear.contact import Engagement, PairCompliance, closed_form_compliance, root_stress_history
-from fegear.contact.roll_grids import RollGrids
-from fegear.contact.stress_rows import StressRows
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.roll_grids import RollGrids
+from fegear.contact.plane.root_stress_history import StressRows, root_stress_history
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import CombinedRelief, tip_relief
+from fegear.geometry.tooth import Tooth
 
 PAIR = GearPair(*(Gear(Tooth(z, BasicRack(1.0, 1.25, 0.2), 0.0), 2e-3, 4e-3, 1e-2) for z in (21, 34)))
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fegear.fem.root_stress import extreme, search_end
+from fegear.fem.plane.root_stress import extreme, search_end
 
 LENGTH = 0.9
 

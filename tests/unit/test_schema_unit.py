@@ -13,11 +13,12 @@ import jsonschema
 import pytest
 
 import fegear.cli
-from fegear.case.keys import flat
+from fegear.base.errors import FegearError
+from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.text import draft
 from fegear.case.reading import build_scene
+from fegear.case.schema import flat
 from fegear.commands.schema import schema_text
-from fegear.drafts import KINDS, Answers, draft
-from fegear.errors import FegearError
 from fegear.results.catalogue import RESULTS
 
 CASES = sorted((Path(__file__).parents[2] / "cases").rglob("*.toml"))

@@ -8,11 +8,12 @@ import gmsh
 import numpy as np
 import pytest
 
-from fegear.errors import InputError
-from fegear.fem import settings_at
-from fegear.fem.boundary import Chain, sector_boundary
-from fegear.fem.sector import mesh_inside, mesh_sector
-from fegear.geometry import BasicRack, Tooth
+from fegear.base.errors import InputError
+from fegear.fem.plane.boundary import Chain, sector_boundary
+from fegear.fem.plane.sector import mesh_inside, mesh_sector
+from fegear.fem.plane.settings import settings_at
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 USUAL = BasicRack(1.0, 1.25, 0.25, math.radians(20.0))
 SHARP = BasicRack(1.0, 1.25, 0.0, math.radians(20.0))

@@ -5,14 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
 from fegear.case.reading import build_scene
-from fegear.errors import InputError
-from fegear.fem import solve_gear, stiffness_table
-from fegear.fem.sector import mesh_sector
-from fegear.fem.settings import FINEST_LEVEL, MeshSettings, settings_at
-from fegear.geometry import BasicRack, Gear, Tooth
-from fegear.studies.axis import Axis
-from fegear.studies.sweep import sweep_case
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import FINEST_LEVEL, MeshSettings, settings_at
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.plane.table import stiffness_table
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+from fegear.studies.sweep import Axis, sweep_case
 
 CASE = {
     "results": ["geometry"],

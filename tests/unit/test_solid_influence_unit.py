@@ -6,11 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fegear.errors import InputError
-from fegear.fem.solid import SolidSettings, hats, solid_influence, solid_settings
-from fegear.fem.solid.settings import whole
-from fegear.geometry import BasicRack, Tooth
-from fegear.solution_cache import SolutionCache, cache_on_disk
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache, cache_on_disk
+from fegear.fem.solid.bands import hats
+from fegear.fem.solid.influence import solid_influence
+from fegear.fem.solid.settings import SolidSettings, solid_settings, whole
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 TOOTH = Tooth(19, BasicRack(1.0, 1.25, 0.25), profile_shift=0.1)
 TAU = math.tan(math.radians(15.0)) / 9.5

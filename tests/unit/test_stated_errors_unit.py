@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fegear.engine.outcome import Column, Outcome, Table, Value
-from fegear.engine.stated_errors import ROUND_OFF
+from fegear.engine.outcome import ROUND_OFF, Outcome, Value
+from fegear.engine.table import Column, Table
 
 
 def value(name, si, error, unit="um"):

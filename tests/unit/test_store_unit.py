@@ -12,12 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from fegear.fem import solve_gear
-from fegear.fem.settings import MeshSettings
-from fegear.geometry import BasicRack, Gear, Tooth
-from fegear.plain import content_key, pack, unpack
-from fegear.solution_cache import Account, Codec, SolutionCache, cache_on_disk
-from fegear.store import Store, cache_folder
+from fegear.base.plain import content_key, pack, unpack
+from fegear.base.solution_cache import Account, Codec, SolutionCache, cache_on_disk
+from fegear.base.store import Store, cache_folder
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 COARSE = MeshSettings().scaled(2.0)
 
@@ -228,8 +230,8 @@ def test_what_a_stretch_of_work_uses_again_itself_is_not_counted_as_recalled():
 def test_a_closed_pipe_is_an_error_after_meshing_too():
     program = (
         "import os\n"
-        "from fegear.fem.sector import mesh_sector\n"
-        "from fegear.fem.settings import MeshSettings\n"
+        "from fegear.fem.plane.sector import mesh_sector\n"
+        "from fegear.fem.plane.settings import MeshSettings\n"
         "from fegear.geometry import Tooth\n"
         "mesh_sector(Tooth(20), 5.0, MeshSettings().scaled(3.0))\n"
         "reader, writer = os.pipe()\n"
@@ -255,7 +257,7 @@ def test_a_cache_that_cannot_be_written_costs_time_only(tmp_path):
     [{"poisson_ratio": 0.31}, {"bore": 5.1e-3}, {"plane": "stress"}, {"shift": 0.1}, {"settings": COARSE.scaled(1.1)}],
 )
 def test_whatever_changes_the_solution_changes_the_key(change):
-    from fegear.geometry import Material
+    from fegear.geometry.gear import Material
 
     def solve(poisson_ratio=0.3, bore=5e-3, plane="strain", shift=0.0, settings=COARSE):
         gear = Gear(Tooth(20, BasicRack(), shift), 1e-3, bore, 1e-3, Material(2e11, poisson_ratio, 7850.0), plane)

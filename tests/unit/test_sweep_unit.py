@@ -14,11 +14,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from fegear.base.errors import InputError
 from fegear.cli import app
 from fegear.engine.executor import Executor
-from fegear.errors import InputError
-from fegear.studies.axis import read_axis
-from fegear.studies.sweep import point_content, sweep_case
+from fegear.studies.sweep import point_content, read_axis, sweep_case
 
 CASE = """
 title = "A pinion and its mate"

@@ -7,7 +7,7 @@ import csv
 import numpy as np
 import pytest
 
-from fegear.engine.outcome import Column, Table
+from fegear.engine.table import Column, Table
 from fegear.output.tables import table_text
 
 

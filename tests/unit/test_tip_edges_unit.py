@@ -5,16 +5,23 @@ import math
 import numpy as np
 import pytest
 
-from fegear.contact import Engagement, PairCompliance, finite_element_compliance
-from fegear.contact.flank import FlankGaps, FlankPair, contact_lines, flank_compliance
-from fegear.contact.flank.complementarity import solve_contact
-from fegear.contact.flank.error import flank_error
-from fegear.contact.flank.over_pitch import over_pitch
-from fegear.contact.flank.tip_edges import edge_reach, usual_gap
-from fegear.contact.flank.touching import touching_gaps
-from fegear.fem import solve_gear
-from fegear.fem.solid import SolidSettings, solve_solid
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.wide.complementarity import solve_contact
+from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.error import flank_error
+from fegear.contact.wide.gaps import FlankGaps, touching_gaps
+from fegear.contact.wide.lines import contact_lines, edge_reach, usual_gap
+from fegear.contact.wide.loaded import FlankPair
+from fegear.contact.wide.over_pitch import over_pitch
+from fegear.fem.plane.solution import solve_gear
+from fegear.fem.solid.settings import SolidSettings
+from fegear.fem.solid.solution import solve_solid
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 STEEL = Material(206.8e9, 0.3, 7850.0)
 MODULE = 3e-3

@@ -8,24 +8,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.flank_errors import limits_of, untold
 from fegear.case.reading import build_scene
-from fegear.contact import Engagement, PairCompliance, closed_form_compliance
-from fegear.contact.formula_root_stress import formula_root_stress
-from fegear.design.deviated_pair import OUTCOMES, bench, deviated, drawn_outcomes, loaded, quadrature
-from fegear.design.draw_statistics import influences, percentile, sure_of_less, together
-from fegear.design.robust_relief import _trials, robust_tip_relief
-from fegear.design.tolerance_draws import NO_LIMITS, Limits, ProfileDeviation, draw, unit_points
+from fegear.contact.plane.closed_form_compliance import closed_form_compliance, formula_root_stress
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.design.robustness.deviated_pair import OUTCOMES, bench, deviated, drawn_outcomes, loaded, quadrature
+from fegear.design.robustness.draw_statistics import influences, percentile, sure_of_less, together
+from fegear.design.robustness.tolerance_draws import NO_LIMITS, Limits, ProfileDeviation, draw, unit_points
+from fegear.design.tip_relief.robust import _trials, robust_tip_relief
 from fegear.engine.executor import Executor
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.errors import InputError
-from fegear.geometry import BasicRack, Gear, GearPair, Tooth
-from fegear.geometry.pair import MEMBERS
-from fegear.models.tolerances import limits_of, untold
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
-from fegear.results.tolerance_robustness import TOLERANCE_ROBUSTNESS, _bench
-from fegear.solution_cache import SolutionCache
+from fegear.results.relief.tolerance_robustness import TOLERANCE_ROBUSTNESS, _bench
 
 LIMITS = Limits(20e-6, (7e-6, 8e-6), (9e-6, 9e-6), (0.0, 0.0), (9e-6, 10e-6))
 LOAD = 2000.0
@@ -89,9 +92,9 @@ def test_draws_fill_their_distributions():
 
 
 def test_pitch_tolerances_are_those_along_the_line_of_action():
+    from fegear.case.built.flank_errors import limits_of
     from fegear.case.reading import read_scene
     from fegear.formulas.iso1328 import tolerances_of
-    from fegear.results.tolerance_robustness import limits_of
 
     cases = Path(__file__).parents[2] / "cases"
     scene = read_scene(cases / "robust_pair.toml", ["gear.wheel.tolerance_class=9"])
@@ -427,7 +430,7 @@ def test_processes_draw_the_same_bits_over_the_face():
 
 
 def test_draws_that_are_finished_are_not_drawn_again(tmp_path):
-    from fegear.solution_cache import cache_on_disk
+    from fegear.base.solution_cache import cache_on_disk
 
     few = run(CASE, cache_on_disk(tmp_path))
     done = sorted(tmp_path.rglob("*.entry"))

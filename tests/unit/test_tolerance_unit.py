@@ -5,15 +5,18 @@ from dataclasses import replace
 
 import pytest
 
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.tooth_influence import settings_for
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
-from fegear.fem import MeshSettings, level_for, settings_at, solution, solve_to_tolerance
-from fegear.geometry import Gear, Tooth
-from fegear.models.settings import settings_for
+from fegear.fem.plane import solution
+from fegear.fem.plane.settings import MeshSettings, settings_at
+from fegear.fem.plane.solution import level_for, solve_to_tolerance
+from fegear.geometry.gear import Gear
+from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
-from fegear.solution_cache import SolutionCache
 
 
 def steel_gear():

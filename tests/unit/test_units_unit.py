@@ -9,8 +9,8 @@ from pathlib import Path
 import pint
 import pytest
 
-from fegear.errors import InputError
-from fegear.units import DIMENSIONS, EVERYDAY, PER_SI, UNITS, as_text, registry, to_si, unit_size
+from fegear.base.errors import InputError
+from fegear.base.units import DIMENSIONS, EVERYDAY, PER_SI, UNITS, as_text, registry, to_si, unit_size
 
 EVERY = [
     (dimension, unit, size)

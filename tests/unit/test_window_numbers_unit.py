@@ -15,14 +15,14 @@ import pytest
 from fegear.case.reading import read_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import Silence, run_plan
-from fegear.output.write import write_results
+from fegear.output.folder import write_results
 from fegear.results.catalogue import STAGES
-from fegear.window.jobs import Asked, Compute, Export
-from fegear.window.sent import whole
+from fegear.window.computing import whole
+from fegear.window.job_queue import Asked, Compute, Export
 from fegear.window.worker import Worker
 
 if TYPE_CHECKING:
-    from fegear.window.jobs import Said
+    from fegear.window.job_queue import Said
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 PAIR = """results = ["load-sharing", "transmission-error", "root-stress-history"]

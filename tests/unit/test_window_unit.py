@@ -21,38 +21,35 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fegear.case.keys import flat
+from fegear.base.errors import InputError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.drafts.answers import KINDS, Answers
+from fegear.case.drafts.text import draft
 from fegear.case.reading import read_scene
+from fegear.case.schema import flat
 from fegear.case.text_file import named_path
-from fegear.drafts import KINDS, Answers, draft
 from fegear.engine.plan import make_plan
 from fegear.engine.processes import loading
 from fegear.engine.run import key_without_needs, run_plan
 from fegear.engine.stage import Task
-from fegear.errors import InputError
 from fegear.output.report.blocks import Values
-from fegear.output.report.rendering import fragment
+from fegear.output.report.page import fragment
 from fegear.results.catalogue import STAGES
-from fegear.results.harris_map import NOW, load_now, slider_map
-from fegear.results.loaded_pair import LoadedPairData
-from fegear.results.relief_handles import handled_relief
-from fegear.solution_cache import SolutionCache
-from fegear.window import inbox as inbox_module
+from fegear.results.pair.loaded_pair import LoadedPairData
+from fegear.results.relief.harris_map import NOW, load_now, slider_map
+from fegear.results.relief.relief_handles import handled_relief
+from fegear.window import job_queue as inbox_module
+from fegear.window.access import Doorkeeper
 from fegear.window.bench import Bench
 from fegear.window.case_text import value_at
-from fegear.window.computing import Computing
-from fegear.window.desk import Desk
-from fegear.window.doorkeeper import Doorkeeper
-from fegear.window.drafted import draft_of
+from fegear.window.computing import Computing, whole
+from fegear.window.designs import draft_of
+from fegear.window.document import Desk
+from fegear.window.drag_handles import hands_of
 from fegear.window.form import fields, fields_told, form, tables_to_add
-from fegear.window.hands import hands_of
-from fegear.window.harris import HarrisMaps
-from fegear.window.inbox import Inbox, Unwanted
-from fegear.window.jobs import Asked, Compute, Design, Export, Said
-from fegear.window.journal import journal_folder, left_behind
-from fegear.window.order import in_order
-from fegear.window.scratch import Scratch, sweep
-from fegear.window.sent import whole
+from fegear.window.job_queue import Asked, Compute, Design, Export, Inbox, Said, Unwanted
+from fegear.window.journal import Scratch, journal_folder, left_behind, sweep
+from fegear.window.order import HarrisMaps, in_order
 from fegear.window.server import free_port, serve
 from fegear.window.worker import scene_of
 
@@ -1058,7 +1055,7 @@ def test_a_process_whose_parent_is_killed_ends_and_clears_away_after_it(tmp_path
 def test_a_process_that_takes_long_to_load_is_not_replaced_by_one_that_takes_as_long(tmp_path, monkeypatch):
     (tmp_path / "slow.py").write_text(
         "import time\n"
-        "from fegear.window.jobs import Said\n"
+        "from fegear.window.job_queue import Said\n"
         "time.sleep(0.5)\n"
         "def serve(connection, scratch):\n"
         "    while True:\n"

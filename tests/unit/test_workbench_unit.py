@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 import fegear
-from fegear.errors import InputError, MissingLibraryError
-from fegear.units import from_si
+from fegear.base.errors import InputError, MissingLibraryError
+from fegear.base.units import from_si
 
 CASE = Path(__file__).parents[2] / "cases" / "pinion_and_wheel.toml"
 QUICK = {"pair.I.compliance": {"source": "weber-banaschek"}, "effects.neighbour_coupling": False}

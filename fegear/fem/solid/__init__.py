@@ -11,10 +11,10 @@
 
     solid_influence(..., settings=solid_settings(3e-3), held=(-1.0, 2.0), cache=SolutionCache(...))
 
-- `section` is the transverse section (`fegear.geometry.Tooth`), its lengths in its own modules, tooth 0 on the y axis,
-  loaded flank at x > 0, tooth k = +1 clockwise. z runs along the axis out of that drawing, 0 in the middle of the face;
-  `tau` = tan(beta) / r is the twist per module, positive for a right hand: the section at z is turned counterclockwise
-  by tau z.
+- `section` is the transverse section (`fegear.geometry.tooth.Tooth`), its lengths in its own modules, tooth 0 on the y
+  axis, loaded flank at x > 0, tooth k = +1 clockwise. z runs along the axis out of that drawing, 0 in the middle of the
+  face; `tau` = tan(beta) / r is the twist per module, positive for a right hand: the section at z is turned
+  counterclockwise by tau z.
 - A band (`Bands`) is a semi-elliptic pressure up the flank times a profile along the face, and carries a unit of
   transverse force. `hats` puts them on the stations of a contact line; `slope` is d(arc up the flank)/dz of that line.
   Deflections are -N . u with N = (n, tau t . x), the approach along the transverse line of action, weighted with the
@@ -29,27 +29,5 @@
 - Fillet stresses are of the free surface: up the fillet in the transverse section, across it, shear between both;
   `known.fine.fillets[side]` says where the points lie (`place` in the section at z = 0, `arc`, `tangent_angle`).
 - `solve_solid`, `solve_slices` (coupled along the face by laws) and `solve_thin_slices` (not coupled at all, to compare
-  with) take the same arguments; what each returns is a `flank_body.FlankBody`, ready for `fegear.contact.flank`.
+  with) take the same arguments; what each returns is a `flank_body.FlankBody`, ready for `fegear.contact.wide`.
 """
-
-from fegear.fem.solid.bands import Bands, bands, hats
-from fegear.fem.solid.influence import SolidInfluence, solid_influence
-from fegear.fem.solid.settings import SolidSettings, solid_settings
-from fegear.fem.solid.slices import solve_slices
-from fegear.fem.solid.solution import SolidSolution, solve_solid
-from fegear.fem.solid.thin_slices import ThinSlices, solve_thin_slices
-
-__all__ = [
-    "Bands",
-    "SolidInfluence",
-    "SolidSettings",
-    "SolidSolution",
-    "ThinSlices",
-    "bands",
-    "hats",
-    "solid_influence",
-    "solid_settings",
-    "solve_slices",
-    "solve_solid",
-    "solve_thin_slices",
-]

@@ -14,16 +14,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.solid.bands import check_half_width, loads_of, overlap, profile_moments, profiles_at
-from fegear.fem.solid.end_slope import end_slope
-from fegear.fem.solid.half_space import band_cosines, function_cosines, galerkin_compliance, quick_band_spectrum
+from fegear.fem.solid.bands import (
+    band_cosines,
+    check_half_width,
+    end_slope,
+    function_cosines,
+    galerkin_compliance,
+    loads_of,
+    overlap,
+    profile_moments,
+    profiles_at,
+    quick_band_spectrum,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.flank_body import TwistedFlank
     from fegear.fem.solid.solution import SolidSolution

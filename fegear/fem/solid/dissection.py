@@ -1,7 +1,7 @@
 """Static condensation of the solid sector onto its ports, by halving the section again and again.
 
-The section's unknowns are ordered by nested dissection as in the plane (`fegear.fem.condensation`); each stands for as
-many unknowns of the solid as it has functions along the face. The halves are worked off depth first, so that few
+The section's unknowns are ordered by nested dissection as in the plane (`fegear.fem.plane.condensation`); each stands
+for as many unknowns of the solid as it has functions along the face. The halves are worked off depth first, so that few
 matrices exist at a time, and a smallest part is formed when its turn comes: its section matrices are short sums over
 its elements, and the block between two functions along the face is a multiple of them.
 """
@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.condensation import Condensed, Eliminated, joined, numbered, reduced, symmetric
+from fegear.fem.plane.condensation import Condensed, Eliminated, joined, numbered, reduced, symmetric
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array, Index, Mask
+    from fegear.base.arrays import Array, Index, Mask
     from fegear.fem.solid.face import FaceFunctions
     from fegear.fem.solid.section import Section
 

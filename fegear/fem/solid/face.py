@@ -1,4 +1,7 @@
-"""Functions along the face: polynomials over the whole width, or over pieces where the hub holds only a part of it."""
+"""Functions along the face: polynomials over the whole width, or over pieces where the hub holds only a part of it.
+
+How many functions along the face each node of the section needs: short waves die out away from the loaded flank.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +11,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.elements import line_functions
+from fegear.fem.plane.elements import line_functions
+from fegear.fem.solid.dissection import Unknowns, unknowns
+from fegear.fem.solid.section import upward
 from fegear.fem.solid.settings import whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fegear.arrays import Array, Index
+    from fegear.base.arrays import Array, Index
+    from fegear.fem.solid.section import Section
+    from fegear.fem.solid.settings import SolidSettings
+
 
 #: Coefficients of a function's series that are smaller than this share of its largest are none.
 _NOISE = 1e-10
@@ -153,3 +161,66 @@ def face_functions(width: float, degree: int, held: tuple[float, float] | None =
     breaks = (-half, *between, half)
     share = np.sqrt(np.diff(breaks) / width)
     return FaceFunctions(breaks, tuple(max(4, whole(degree * float(s))) for s in share))
+
+
+def solid_unknowns(
+    section: Section,
+    face: FaceFunctions,
+    settings: SolidSettings,
+    held: tuple[float, float] | None = None,
+    *,
+    plane_strain: bool = False,
+) -> Unknowns:
+    """Unknowns of the solid sector, its bore held.
+
+    Parameters
+    ----------
+    section : Section
+    face : FaceFunctions
+    settings : SolidSettings
+    held : (float, float), optional
+        Part of the width on which the bore is held [modules]; by default all of it.
+    plane_strain : bool
+        Nothing moves along the axis.
+
+    Returns
+    -------
+    Unknowns
+    """
+    counts = function_counts(section, face, settings)
+    has = np.arange(face.count) < np.repeat(counts, 3)[:, None]
+    bore = 3 * section.nodes_of("bore")[:, None] + np.arange(3)
+    free = np.zeros(face.count, dtype=bool)
+    if held is not None:
+        free[face.vanishing_on(*held)] = True
+    has[bore.ravel()] &= free
+    if plane_strain:
+        has[2::3] = False
+    return unknowns(has)
+
+
+def function_counts(section: Section, face: FaceFunctions, settings: SolidSettings) -> Index:
+    """Functions along the face of each node, shape (N,).
+
+    What varies along the face with a wavelength l decays within about l from where it is loaded. A node at a distance
+    d from the flank has all functions of degree below `wave_reach` times (width / 2 d), and a few more.
+    """
+    distance = np.maximum(flank_distance(section), 1e-9 * face.width)
+    ends = len(face.breaks)
+    wanted = settings.wave_reach * 0.5 * face.width / distance + settings.fewest_waves * (ends - 1)
+    counts = np.minimum(np.ceil(np.minimum(wanted, face.count)).astype(np.int64), face.count)
+    # Sides meet those of the neighbours: both have the functions of the one that is nearer to its flank.
+    more = np.maximum(counts[section.side_a], counts[section.side_b])
+    counts[section.side_a] = counts[section.side_b] = more
+    return np.asarray(counts)
+
+
+def flank_distance(section: Section) -> Array:
+    """Distance of every node from the loaded flank, shape (N,) [modules]."""
+    line, _ = upward(section, "flank")
+    run = np.concatenate([line[:-1].T.ravel(), line[-1:, -1]])
+    start, end = section.places[:, run[:-1], None], section.places[:, run[1:], None]
+    chord = end - start
+    way = section.places[:, None, :] - start
+    share = np.clip((way * chord).sum(axis=0) / (chord * chord).sum(axis=0), 0.0, 1.0)
+    return np.asarray(np.hypot(*(way - share * chord)).min(axis=0))

@@ -7,26 +7,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.elements import sector_elements
-from fegear.fem.extruded import SolidMesh, extruded, planes_of
-from fegear.fem.gear_section import Section as PlaneSection
-from fegear.fem.ring import closed_ring
-from fegear.fem.sector import mesh_sector
+from fegear.base.one_thread import one_thread
+from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.gear_section import Section as PlaneSection
+from fegear.fem.plane.ring import closed_ring
+from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.solid.bands import loads_of
 from fegear.fem.solid.dissection import condense_solid
-from fegear.fem.solid.face import face_functions
-from fegear.fem.solid.section import make_section
+from fegear.fem.solid.extruded import SolidMesh, extruded, planes_of
+from fegear.fem.solid.face import face_functions, solid_unknowns
+from fegear.fem.solid.section import hooke, make_section, strain_functions
 from fegear.fem.solid.solution import flank_nodes, section_flank
-from fegear.fem.solid.strains import hooke, strain_functions
-from fegear.fem.solid.waves import solid_unknowns
-from fegear.one_thread import one_thread
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array, Index
-    from fegear.fem.elements import SectorElements
-    from fegear.fem.mesh import SectorMesh
+    from fegear.base.arrays import Array, Index
+    from fegear.fem.plane.elements import SectorElements
+    from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.settings import SolidSettings
     from fegear.geometry.tooth import Tooth

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.fem.plane.trace import lagrange, lagrange_slope
 from fegear.fem.solid.section import upward
-from fegear.fem.trace import lagrange, lagrange_slope
-from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array, Index
+    from fegear.base.arrays import Array, Index
     from fegear.fem.solid.section import Section
 
 

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from fegear.fem.influence import curvature_slope
+from fegear.fem.plane.influence import curvature_slope
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.trace import LoadedFlank
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.settings import SolidSettings
-    from fegear.fem.trace import LoadedFlank
     from fegear.geometry.tooth import Tooth
 
 #: A pressure is at least this share of the flank wide, however little room there is to its end.

@@ -9,31 +9,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.boundary import check_bore
-from fegear.fem.contact_width import REFERENCE_HALF_WIDTH
-from fegear.fem.root_stress import curves_apart
-from fegear.fem.settings import MeshSettings
-from fegear.fem.shape_cache import known_or_solved
+from fegear.base.plain import code_version, content_key, pack, read_only, unpack
+from fegear.base.solution_cache import Codec, SolutionCache
+from fegear.fem.plane.boundary import check_bore
+from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
+from fegear.fem.plane.root_stress import curves_apart
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import known_or_solved
+from fegear.fem.plane.trace import LoadedFlank
 from fegear.fem.solid.bands import Bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.face import FaceFunctions
 from fegear.fem.solid.fillet import SolidFillet
-from fegear.fem.solid.plausible import check_solid
-from fegear.fem.solid.settings import SolidSettings, whole
+from fegear.fem.solid.settings import SolidSettings, check_solid, whole
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.fem.solid.slices import solver_of
 from fegear.fem.solid.solution import SolidSolution
-from fegear.fem.trace import LoadedFlank
-from fegear.plain import code_version, content_key, pack, read_only, unpack
-from fegear.solution_cache import Codec, SolutionCache
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array, Mask
-    from fegear.fem.influence import Side
+    from fegear.base.arrays import Array, Mask
+    from fegear.fem.plane.influence import Side
     from fegear.geometry.tooth import Tooth
 
 #: What a solution consists of, for those that keep it.

@@ -1,13 +1,20 @@
-"""Every choice that trades accuracy against time for teeth with a width, in modules."""
+"""Every choice that trades accuracy against time for teeth with a width, in modules.
+
+Which solid gears make no sense or cannot be meshed.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from fegear.errors import InputError
-from fegear.fem.settings import MeshSettings
+from fegear.base.errors import InputError, RangeError
+from fegear.fem.plane.settings import MeshSettings
+
+if TYPE_CHECKING:
+    from fegear.geometry.tooth import Tooth
+
 
 #: A section as coarse as its order allows: some 200 triangles.
 _SECTION = MeshSettings(
@@ -16,10 +23,15 @@ _SECTION = MeshSettings(
     order=3,
 )  # fmt: skip
 
+
 #: By how much the solution that shows the error is coarser.
 _COARSER = 1.35
+
+
 #: How much less room its bands take beside the ends of the flank, where room alone decides how wide they are.
 _OTHER_ROOM = 0.7
+
+
 #: What the usual settings and the finer ones meet, and the power of the tolerance that edges go with.
 _USUAL, _FINE, _ORDER = 1e-2, 3e-3, 0.33
 
@@ -93,15 +105,17 @@ class SolidSettings:
 
 #: By how much what a count is made of may be off; no count hangs on so little.
 _ROUND_OFF = 1e-9
-#: Elements of order 4, more functions along the face, narrower bands.
-_THIRD = SolidSettings(
-    section=replace(_SECTION, order=4), waves_per_module=2.0, least_degree=11, wave_reach=3.0, band_half_width=0.2
-)
 
 
 def whole(number: float, *, up: bool = False) -> int:
     """Nearest whole number, or the next one above: round-off of a face of five modules makes no sixth part of it."""
     return math.ceil(number - _ROUND_OFF) if up else math.floor(number + 0.5 + _ROUND_OFF)
+
+
+#: Elements of order 4, more functions along the face, narrower bands.
+_THIRD = SolidSettings(
+    section=replace(_SECTION, order=4), waves_per_module=2.0, least_degree=11, wave_reach=3.0, band_half_width=0.2
+)
 
 
 def solid_settings(tolerance: float) -> SolidSettings:
@@ -119,3 +133,72 @@ def solid_settings(tolerance: float) -> SolidSettings:
     if tolerance >= _FINE:
         return _THIRD
     return _THIRD.scaled((tolerance / _FINE) ** _ORDER)
+
+
+#: Widest and narrowest face that is solved [modules]: wider ones take polynomials of a degree and matrices of a size
+#: beyond reason, on narrower ones no contact has room.
+_WIDEST, _NARROWEST = 60.0, 0.2
+
+
+#: Of a width that is a length over a module: .6 mm of 3 mm is .2 modules.
+_LIMIT_ROUND_OFF = 1e-9
+
+
+#: Steepest helix at the tip [rad]: the flank runs along the tooth no longer.
+_STEEPEST = math.radians(60.0)
+
+
+#: Highest degree along the face.
+_HIGHEST_DEGREE = 100
+
+
+#: The shortest part of the width on which a bore is held.
+_SHORTEST_HELD = 0.02
+
+
+def check_solid(
+    section: Tooth,
+    tau: float,
+    width: float,
+    poisson_ratio: float,
+    settings: SolidSettings,
+    held: tuple[float, float] | None,
+    reach: int,
+) -> None:
+    """Refuse widths, twists and held parts that cannot be meshed or make no sense; arguments as of `solid_influence`.
+
+    Raises
+    ------
+    RangeError
+    """
+    if not (1.0 - _LIMIT_ROUND_OFF) * _NARROWEST <= width <= (1.0 + _LIMIT_ROUND_OFF) * _WIDEST:
+        raise RangeError(
+            "face_width", f"{width:.12g} modules", f"must lie between {_NARROWEST:g} and {_WIDEST:g} modules",
+            "treat a narrower gear as plane, and shorten a wider one to the part that carries the load",
+        )  # fmt: skip
+    steepest = math.tan(_STEEPEST) / section.tip_radius
+    if not abs(tau) <= steepest:
+        angle = math.degrees(math.atan(tau * section.tip_radius)) if math.isfinite(tau) else tau
+        raise RangeError(
+            "helix_angle", f"{angle:.6g} degrees at the tip", f"must stay below {math.degrees(_STEEPEST):g} degrees"
+        )
+    if not -1.0 < poisson_ratio < 0.5:
+        raise RangeError("poisson_ratio", poisson_ratio, "must lie between -1 and 0.5")
+    if settings.degree(width) > _HIGHEST_DEGREE:
+        raise RangeError(
+            "accuracy.waves_per_module", settings.waves_per_module,
+            f"asks for polynomials of degree {settings.degree(width)} along a face of {width:.6g} modules; "
+            f"{_HIGHEST_DEGREE} is what can be solved", "lower it, or shorten the face",
+        )  # fmt: skip
+    if reach < 0:
+        raise RangeError("reach", reach, "must be at least 0: so many teeth to either side are known")
+    if held is None:
+        return
+    low, high = held
+    half = 0.5 * width * (1.0 + 1e-9)
+    if not -half <= low < high <= half or high - low < _SHORTEST_HELD * width:
+        raise RangeError(
+            "held", f"({low:.6g}, {high:.6g}) modules",
+            f"must be a part of the face, from {-0.5 * width:.6g} to {0.5 * width:.6g} modules, and at least "
+            f"{_SHORTEST_HELD:.0%} of it",
+        )  # fmt: skip

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.solid.half_space import function_cosines
+from fegear.fem.solid.bands import function_cosines
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.fem.solid.face import FaceFunctions
 
 #: Cosines along the face: for each function, and at least.

@@ -8,31 +8,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
-from fegear.fem.ring import closed_ring
-from fegear.fem.root_stress import extreme, search_end
-from fegear.fem.sector import mesh_sector
+from fegear.base.errors import RangeError
+from fegear.base.one_thread import one_thread
+from fegear.base.tally import tallied
+from fegear.fem.plane.ring import closed_ring
+from fegear.fem.plane.root_stress import extreme, search_end
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 from fegear.fem.solid.bands import Bands, loads_of
 from fegear.fem.solid.contact import PressedLines
 from fegear.fem.solid.dissection import condense_solid
-from fegear.fem.solid.face import FaceFunctions, face_functions
+from fegear.fem.solid.face import FaceFunctions, face_functions, solid_unknowns
 from fegear.fem.solid.fillet import SolidFillet, solid_fillet, surface_stress
 from fegear.fem.solid.flank_body import TwistedFlank
 from fegear.fem.solid.section import Section, make_section, upward
 from fegear.fem.solid.settings import SolidSettings
-from fegear.fem.solid.waves import solid_unknowns
-from fegear.fem.trace import LoadedFlank, loaded_flank
-from fegear.one_thread import one_thread
-from fegear.tally import tallied
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array, Index
-    from fegear.fem.influence import Side
-    from fegear.fem.mesh import SectorMesh
+    from fegear.base.arrays import Array, Index
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.tooth import Tooth
 
 #: How far below the edge of a pressed band root tension begins [modules].

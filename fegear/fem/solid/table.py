@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
-from fegear.fem.root_stress import curves_apart, extreme
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.errors import RangeError
+from fegear.fem.plane.root_stress import curves_apart, extreme
 from fegear.fem.solid.bands import bands, hats
 from fegear.fem.solid.contact import line_compliance
 from fegear.fem.solid.influence import ENTRY_SHARES
 from fegear.fem.solid.settings import whole
-from fegear.frozen import ReadOnlyArrays
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array, Mask
-    from fegear.fem.influence import Side
+    from fegear.base.arrays import Array, Mask
+    from fegear.fem.plane.influence import Side
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.influence import SolidInfluence
     from fegear.fem.solid.solution import SolidSolution

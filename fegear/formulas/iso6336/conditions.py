@@ -1,18 +1,22 @@
-"""A pair to be rated by ISO 6336: all that its formulas ask for, and the table in which they leave their factors."""
+"""A pair to be rated by ISO 6336: all that its formulas ask for, and the table in which they leave their factors.
+
+What a rating by ISO 6336 says: safety factors of pinion and wheel with every factor on the way, and stand-ins.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from fegear.formulas.iso6336.alignment import Alignment
-from fegear.formulas.iso6336.pair_rating import Factor
 from fegear.formulas.iso6336.part1_dynamic import running_in_relief
+from fegear.formulas.iso6336.part1_face_load import Alignment
 
 if TYPE_CHECKING:
     from fegear.formulas.iso6336.pair_geometry import PairGeometry
-    from fegear.formulas.iso6336.part2_contact import TipRelief
+    from fegear.formulas.iso6336.part2_pitting import TipRelief
     from fegear.formulas.iso6336.rated import Both, Duty, Edition, Quality, Strength
+    from fegear.geometry.pair import Member
+
 
 #: What a remark says of a value that stands in for a formula's.
 COMPUTED = "computed in place of the formula"
@@ -74,3 +78,91 @@ class FactorTable:
         """Append a factor; one value stands for both gears."""
         values = value if isinstance(value, tuple) else (value, value)
         self.rows.append(Factor(symbol, values, unit, clause, remark))
+
+
+@dataclass(frozen=True, slots=True)
+class Replacement:
+    """Values computed by other means that stand in for those of the formulas; None leaves a formula in place.
+
+    Parameters
+    ----------
+    K_v, K_Hbeta, K_Halpha : float, optional
+    K_Fbeta, K_Falpha : (float, float), optional
+    root_factor : (float, float), optional
+        sigma_F0 b m_n / F_t of each gear: stands for Y_F Y_S Y_beta Y_B Y_DT together.
+    """
+
+    K_v: float | None = None
+    K_Hbeta: float | None = None
+    K_Halpha: float | None = None
+    K_Fbeta: Both | None = None
+    K_Falpha: Both | None = None
+    root_factor: Both | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Factor:
+    """One number on the way to a safety factor.
+
+    Parameters
+    ----------
+    symbol : str
+        As the standard writes it, ASCII: "K_Hbeta", "Z_NT".
+    values : (float, float)
+        Of pinion and wheel; equal where the pair has one.
+    unit : str
+        SI; empty for a pure number.
+    clause : str
+        Where the standard gives it: part, edition, clause and, where it is known, the equation's number.
+    remark : str
+        What lies outside the stated range, or that the value was computed by other means; empty otherwise.
+    """
+
+    symbol: str
+    values: Both
+    unit: str
+    clause: str
+    remark: str = ""
+
+    @property
+    def value(self) -> float:
+        """The value of the pair, or the pinion's."""
+        return self.values[0]
+
+
+@dataclass(frozen=True, slots=True)
+class PairRating:
+    """A rating with every intermediate factor; pairs of values are those of pinion and wheel.
+
+    Parameters
+    ----------
+    factors : tuple of Factor
+        In the order in which the standard computes them.
+    members : (Member, Member)
+        Which of driver and driven is the pinion, which the wheel.
+    contact_stress, contact_permissible, contact_safety : (float, float)
+        sigma_H, sigma_HG (sigma_HP at a required safety of 1) [Pa], S_H.
+    bending_stress, bending_permissible, bending_safety : (float, float)
+        sigma_F, sigma_FG (sigma_FP at a required safety of 1) [Pa], S_F.
+    """
+
+    factors: tuple[Factor, ...]
+    members: tuple[Member, Member]
+    contact_stress: Both
+    contact_permissible: Both
+    contact_safety: Both
+    bending_stress: Both
+    bending_permissible: Both
+    bending_safety: Both
+
+    def __getitem__(self, symbol: str) -> Factor:
+        """Return a factor by its symbol; KeyError if there is none."""
+        for factor in self.factors:
+            if factor.symbol == symbol:
+                return factor
+        raise KeyError(symbol)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What the factors remark, each once."""
+        return tuple(dict.fromkeys(f.remark for f in self.factors if f.remark))

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import math
 
-from fegear.geometry import BasicRack, Gear, GearPair, Material, Tooth
+from fegear.geometry.gear import Gear, Material
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
 
 _MODULE, _DISTANCE = 4.5e-3, 91.5e-3
 

@@ -6,7 +6,7 @@ import itertools
 import math
 from dataclasses import dataclass
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 
 #: Load cycles at which the tables of both parts end.
 LONG = 1e10

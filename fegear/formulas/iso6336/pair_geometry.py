@@ -9,12 +9,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 
 if TYPE_CHECKING:
     from fegear.formulas.iso6336.rated import Both
-    from fegear.geometry import Gear, GearPair
-    from fegear.geometry.pair import Member
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True, slots=True)

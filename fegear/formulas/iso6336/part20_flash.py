@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.formulas.flash_temperature import flash_temperature
-from fegear.formulas.friction_mean import FASTEST, mean_friction
+from fegear.formulas.friction import FASTEST, mean_friction
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
-    from fegear.formulas.iso6336.rated_surface import RatedSurface
-    from fegear.geometry import GearPair
+    from fegear.base.arrays import Array
+    from fegear.formulas.iso6336.rated import RatedSurface
+    from fegear.geometry.pair import GearPair
 
 #: Share of the mean flash temperature by which the teeth are warmer than the oil (Eq. 22).
 _BULK = 0.47

@@ -15,19 +15,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
-from fegear.formulas.flank_speeds import FlankSpeeds, contact_ratios
-from fegear.formulas.flash_temperature import STEEL_HEAT
-from fegear.formulas.friction_mean import Surface, helical_load_factor, mean_friction
+from fegear.base.errors import RangeError
+from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds, contact_ratios
+from fegear.formulas.friction import Surface, helical_load_factor, mean_friction
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
-    from fegear.formulas.iso6336.rated_surface import RatedSurface
+    from fegear.base.arrays import Array
+    from fegear.formulas.iso6336.rated import RatedSurface
     from fegear.formulas.lubricant import Oil
-    from fegear.geometry import GearPair
+    from fegear.geometry.pair import GearPair
 
 #: B_M of the test gears: density, specific heat, conductivity of the steel of Table 2 (Formula 82) [N/(m s^0.5 K)].
 _TEST_HEAT = math.sqrt(7800.0 * 440.0 * 45.0)
@@ -224,7 +223,7 @@ def film_of_test(oil: Oil, load_stage: int, temperature: float = 90.0) -> float:
         If the load stage is none of 5 to 10.
     """
     from fegear.formulas.iso6336.fzg_test_gears import fzg_type_c
-    from fegear.formulas.iso6336.rated_surface import SUPPLY_FACTOR, LoadFactors, RatedSurface
+    from fegear.formulas.iso6336.rated import SUPPLY_FACTOR, LoadFactors, RatedSurface
 
     if load_stage not in _TEST_TORQUES:
         raise RangeError("load stage", load_stage, "must be 5 to 10")

@@ -10,13 +10,13 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 from fegear.formulas.iso6336 import part3_root_stress as root
-from fegear.formulas.load_line import refuse_helix
+from fegear.formulas.root_section import refuse_helix
 
 if TYPE_CHECKING:
-    from fegear.geometry import Gear, GearPair
-    from fegear.geometry.pair import Member
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair, Member
 
 
 @dataclass(frozen=True, slots=True)

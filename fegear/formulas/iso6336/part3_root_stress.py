@@ -12,13 +12,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from fegear.errors import ConvergenceError, RangeError
-from fegear.formulas.load_line import refuse_helix
-from fegear.formulas.root_stress import RootStress, RootStressSource
+from fegear.base.errors import ConvergenceError, RangeError
+from fegear.formulas.outcome import RootStress, RootStressSource
+from fegear.formulas.root_section import refuse_helix
 
 if TYPE_CHECKING:
-    from fegear.geometry import GearPair, Tooth
-    from fegear.geometry.pair import Member
+    from fegear.geometry.pair import GearPair, Member
+    from fegear.geometry.tooth import Tooth
 
 
 #: Editions of ISO 6336-3; that of 2019 shares the load of several teeth (f_epsilon) and has another Y_beta.

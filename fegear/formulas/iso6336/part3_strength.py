@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import RangeError
-from fegear.formulas.iso6336 import groups
+from fegear.base.errors import RangeError
+from fegear.formulas.iso6336 import part5_materials as groups
 from fegear.formulas.iso6336.life import LONG, Knots
 
 if TYPE_CHECKING:
-    from fegear.formulas.iso6336.groups import Group
+    from fegear.formulas.iso6336.part5_materials import Group
     from fegear.formulas.iso6336.rated import Strength
 
 #: Y_ST, stress correction factor of the reference gears.

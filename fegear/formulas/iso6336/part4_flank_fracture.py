@@ -21,7 +21,7 @@ from fegear.formulas.hertz import stresses_below
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
 
 #: K_tau,per: shear strength of the material over its Vickers hardness [Pa per HV].
 HARDNESS_FACTOR = 0.4e6

@@ -2,6 +2,8 @@
 
 Source: ISO 6336-5:2016, 5.5 and table 1: straight lines over the surface hardness, each for a range of it. The lines
 stand in ``part5_table1.csv``, each with its row of the table. Hardness is in HV here, HBW = 0.95 HV (ISO 18265).
+
+ISO 6336-5: the groups of materials, by the standard's own letters; parts 1, 2 and 3 choose their factors by them.
 """
 
 from __future__ import annotations
@@ -13,23 +15,31 @@ from importlib import resources
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.formulas.iso6336.groups import Group
 
 Quality = Literal["ML", "MQ", "ME"]
+
+
 Stress = Literal["contact", "bending"]
+
 
 #: HBW of one HV.
 BRINELL = 0.95
+
+
 #: A hardness may miss the end of a range by so much: the standard's 660 HV or 58 HRC and 600 HV or 55 HRC of
 #: case-hardened steel are 654 and 597 HV by the table of ISO 18265.
 _CONVERSION = 0.01
+
+
 #: 25, 28 and 30 HRC in HV (ISO 18265, table A.1), by which case-hardened cores of quality MQ are told apart.
 HRC_25, HRC_28, HRC_30 = 266.25, 286.4285714285714, 301.6666666666667
+
+
 #: Letters of each material in the standard. Ferritic nodular iron has the laws of the pearlitic and bainitic one, and
 #: the life and notch factors of grey iron.
 MATERIALS: Mapping[str, Group] = MappingProxyType(
@@ -51,6 +61,8 @@ MATERIALS: Mapping[str, Group] = MappingProxyType(
         "nitrocarburized-steel": "NV (nitrocar.)",
     }
 )
+
+
 #: Materials that share the laws of another one.
 _LAWS_OF = {"ferritic-nodular-iron": "nodular-iron"}
 
@@ -204,3 +216,38 @@ def _core(core: float | None, jominy: float | None) -> tuple[int, str]:
     if core >= HRC_30 * (1.0 - 1e-9):
         return 2, ""
     return (1 if jominy is not None and jominy >= HRC_28 * (1.0 - 1e-9) else 0), ""
+
+
+#: St: normalized low carbon steels, wrought or cast. GTS: black malleable cast iron. GGG: nodular cast iron. GG: grey
+#: cast iron. V: through-hardened wrought or cast steels. Eh: case-hardened. IF: flame or induction hardened.
+#: NT (nitr.): nitriding steels, nitrided. NV (nitr.), NV (nitrocar.): through-hardening or case-hardening steels,
+#: nitrided or nitrocarburized (ISO 6336-5:2016, table 1).
+Group = Literal[
+    "St", "St (cast)", "GTS (perl.)", "GGG (perl.)", "GGG (bai.)", "GGG (ferr.)", "GG", "V", "V (cast)", "Eh", "IF",
+    "NT (nitr.)", "NV (nitr.)", "NV (nitrocar.)",
+]  # fmt: skip
+
+
+NORMALIZED: frozenset[Group] = frozenset({"St", "St (cast)"})
+
+
+THROUGH_HARDENED: frozenset[Group] = frozenset({"V", "V (cast)"})
+
+
+TOUGH_IRON: frozenset[Group] = frozenset({"GTS (perl.)", "GGG (perl.)", "GGG (bai.)"})
+
+
+SOFT_IRON: frozenset[Group] = frozenset({"GG", "GGG (ferr.)"})
+
+
+CASE_HARDENED: frozenset[Group] = frozenset({"Eh", "IF"})
+
+
+NITRIDED: frozenset[Group] = frozenset({"NT (nitr.)", "NV (nitr.)", "NV (nitrocar.)"})
+
+
+#: Steels whose flanks are harder than their core.
+SURFACE_HARDENED = CASE_HARDENED | NITRIDED
+
+
+GROUPS: frozenset[Group] = NORMALIZED | THROUGH_HARDENED | TOUGH_IRON | SOFT_IRON | SURFACE_HARDENED

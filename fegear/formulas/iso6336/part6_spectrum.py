@@ -12,13 +12,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fegear.errors import RangeError
+from fegear.base.errors import RangeError
 from fegear.formulas.iso6336.life import Knots
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
 
 #: Halvings of the interval of the safety: to round-off.
 _HALVINGS = 200

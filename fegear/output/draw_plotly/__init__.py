@@ -4,9 +4,8 @@ Arrays travel as plotly.js's own typed arrays (base64). Colours are those of lig
 stands for each on dark ground, so that a page changes between them by replacing one by the other.
 """
 
-from fegear.engine.figure import NOTEBOOK
-from fegear.output.draw_plotly.description import darker, plotly_json
-from fegear.output.draw_plotly.layout import template
+from fegear.engine.figure.figure import NOTEBOOK
+from fegear.output.draw_plotly.layout import darker, plotly_json, template
 from fegear.output.draw_plotly.notebook import notebook_bundle, page_html
 
 __all__ = ["darker", "notebook_bundle", "page_html", "plotly_json", "template"]

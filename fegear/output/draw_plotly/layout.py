@@ -1,23 +1,40 @@
-"""Panels placed above each other, their axes, marks and menus, as plotly's layout."""
+"""Panels placed above each other, their axes, marks and menus, as plotly's layout.
+
+A figure as plotly's data and layout.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.engine.figure import FEW_DECADES, Axis, Figure, HeatMap, Mark, Panel, Which
-from fegear.output.draw_plotly.traces import anchor, shared
-from fegear.output.draw_plotly.words import Spec, rich, titled
-from fegear.output.numbers import pretty_unit
-from fegear.output.shades import LIGHT
+from fegear.engine.figure.figure import FEW_DECADES, Axis, Figure, Panel
+from fegear.engine.figure.items import HeatMap, Mark, Which
+from fegear.output.draw_plotly.traces import Spec, anchor, one_entry_each, rich, shared, titled, traces
+from fegear.output.numbers import DARK, LIGHT, pretty_unit, shade
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 
 #: Pixels: a panel alone, panels above each other, the room between them and around them.
 _ALONE, _STACKED, _GAP, _TITLED = 350, 240, 78, 22
+
+
 _LEFT, _RIGHT, _BOTTOM, _TOP = 74, 24, 56, 34
+
+
 _SECOND, _LEGEND_LINE, _MENU = 44, 21, 46
+
+
 _BESIDE = 4
+
+
 _TILE = 26
+
+
 #: Numbers between these are read without powers of ten.
 _PLAIN = 1e-3, 1e5
 
@@ -198,3 +215,42 @@ def template() -> Spec:
                        "font": {"color": LIGHT["ink"], "size": 13}},
         "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": LIGHT["grey"], "activecolor": LIGHT["blue"]},
     }}  # fmt: skip
+
+
+def darker(figures: Sequence[Figure]) -> dict[str, str]:
+    """Which shade on dark ground stands for each on light ground in these figures."""
+    roles = {
+        role for figure in figures for panel in figure.all_panels for item in panel.items
+        if (role := getattr(item, "role", ""))
+    }  # fmt: skip
+    pairs = [shade(role) for role in sorted(roles)]
+    return {LIGHT[name]: DARK[name] for name in LIGHT} | {pair.light: pair.dark for pair in pairs}
+
+
+def plotly_json(figure: Figure) -> Spec:
+    """Describe a figure for plotly.
+
+    Parameters
+    ----------
+    figure : Figure
+        Of curves, points, bars, stems and heat maps.
+
+    Returns
+    -------
+    dict
+        ``data`` and ``layout``; ``layout.meta`` holds the names in the legend, for pages that fit their margins.
+    """
+    data: list[Spec] = []
+    members: list[list[int]] = []
+    for view in figure.views:
+        first = len(data)
+        for number, panel in enumerate(view.panels, start=1):
+            data += traces(panel, number, shared=shared(figure))
+        members.append(list(range(first, len(data))))
+        one_entry_each(data[first:])
+    for number, listed in enumerate(members):
+        if number:
+            for i in listed:
+                data[i]["visible"] = False
+    names = max((sum(bool(data[i]["showlegend"]) for i in listed) for listed in members), default=0)
+    return {"data": data, "layout": layout(figure, members, len(data), names)}

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.output.draw_plotly.description import plotly_json
-from fegear.output.draw_plotly.layout import template
-from fegear.output.shades import LIGHT
+from fegear.output.draw_plotly.layout import plotly_json, template
+from fegear.output.numbers import LIGHT
 
 if TYPE_CHECKING:
-    from fegear.engine.figure import Figure
+    from fegear.engine.figure.figure import Figure
 
 
 #: What JupyterLab, VS Code and others draw as an interactive plot; who does not takes the picture.

@@ -1,21 +1,28 @@
-"""What stands in a panel, as plotly's traces."""
+"""What stands in a panel, as plotly's traces.
+
+Texts and arrays as plotly.js reads them.
+"""
 
 from __future__ import annotations
 
+import base64
+import html
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fegear.engine.colours import look
-from fegear.engine.figure import Axis, Bars, Curve, Figure, HeatMap, Panel, Points, Stems
-from fegear.output.draw_plotly.words import Spec, along, rich, titled, typed
-from fegear.output.numbers import pretty_unit
-from fegear.output.shades import DIVERGING, SEQUENTIAL, shade
+from fegear.engine.figure.items import Bars, Curve, HeatMap, Points, Stems
+from fegear.output.numbers import DIVERGING, SEQUENTIAL, pretty_unit, shade
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike
+
+    from fegear.engine.figure.figure import Axis, Figure, Panel
+
 
 _DASHES = {"dashdot": "dashdot", "dot": "dot", "steps": "solid"}
 
@@ -170,3 +177,32 @@ def _heat(panel: Panel, item: HeatMap) -> list[Spec]:
 _DRAWN: dict[type, Callable[[Panel, Any], list[Spec]]] = {
     Curve: _curve, Points: _points, Stems: _stems, HeatMap: _heat,
 }  # fmt: skip
+
+
+Spec = dict[str, Any]
+
+
+def typed(values: ArrayLike) -> Spec:
+    """An array as plotly.js reads it."""
+    array = np.ascontiguousarray(values, dtype="<f8")
+    made: Spec = {"dtype": "f8", "bdata": base64.b64encode(array.tobytes()).decode()}
+    if array.ndim > 1:
+        made["shape"] = ", ".join(str(n) for n in array.shape)
+    return made
+
+
+def along(axis: Axis, values: ArrayLike) -> Spec | list[str | None]:
+    """Places on an axis: numbers, or the names of its categories."""
+    if not axis.categories:
+        return typed(values)
+    return [rich(axis.categories[round(v)]) if np.isfinite(v) else None for v in np.asarray(values).tolist()]
+
+
+def rich(text: str) -> str:
+    """Plain text for plotly, which takes names for HTML: escaped, with ``_{...}`` set lower."""
+    return re.sub(r"_\{([^{}]*)\}", r"<sub>\1</sub>", html.escape(text, quote=False).replace("\n", "<br>"))
+
+
+def titled(label: str, unit: str) -> str:
+    """Label with its unit in brackets."""
+    return rich(f"{label} [{pretty_unit(unit)}]" if unit else label)

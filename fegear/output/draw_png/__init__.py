@@ -6,13 +6,15 @@ import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from fegear.engine.figure import Figure, View, few
+from fegear.engine.figure.items import few
 from fegear.output.draw_png.sheet import Sheet
 from fegear.output.file_names import file_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+    from fegear.engine.figure.figure import Figure, View
 
 DPI = 150
 #: SVG without its date, so that equal figures are equal bytes; PNG packed in two thirds of the time, a tenth larger.

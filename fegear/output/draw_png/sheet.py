@@ -1,4 +1,7 @@
-"""Panels placed on a sheet in rows: margins in inches, legends above the panels, off the curves."""
+"""Panels placed on a sheet in rows: margins in inches, legends above the panels, off the curves.
+
+The legend above the panels.
+"""
 
 from __future__ import annotations
 
@@ -7,24 +10,51 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.engine.figure import Panel, TriangleField
-from fegear.output.draw_png.axes import draw_marks, dress, plain_numbers, set_scales
-from fegear.output.draw_png.items import draw_items
-from fegear.output.draw_png.legend import columns_that_fit, legend_entries
-from fegear.output.draw_png.words import bar_label, lines_of, longest_number, maps_of, words
+from fegear.engine.colours import look
+from fegear.engine.figure.items import Bars, Curve, Surface, TriangleField
+from fegear.output.draw_png.axes import (
+    DASHES,
+    SYMBOLS,
+    bar_label,
+    draw_items,
+    draw_marks,
+    dress,
+    lines_of,
+    longest_number,
+    maps_of,
+    plain_numbers,
+    set_scales,
+    words,
+)
+from fegear.output.numbers import shade
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from fegear.engine.figure.figure import Panel
+
+
 #: Inches: a panel alone, panels above each other, and around them.
 _WIDTHS = {1: 6.5, 2: 4.3, 3: 3.4}
+
+
 _ALONE, _STACKED = 3.4, 2.3
+
+
 _LEFT, _RIGHT, _BOTTOM, _NARROW = 0.45, 0.25, 0.55, 0.22
+
+
 _TITLE, _SECOND, _LINE, _BAR = 0.27, 0.5, 0.21, 1.0
+
+
 #: Inches of a line at the head of a picture, and of a letter in it.
 _HEAD, _HEAD_LETTER = 0.22, 0.1
+
+
 #: Inches of a letter of a title.
 _TITLE_LETTER = 0.083
+
+
 #: Inches of a letter at an axis.
 _LETTER = 0.078
 
@@ -175,3 +205,41 @@ def _span(which: str, drawn: Sequence[Any]) -> None:
     ends = np.array([getattr(axes, f"get_{which}lim")() for axes in drawn])
     for axes in drawn:
         getattr(axes, f"set_{which}lim")(ends.min(), ends.max())
+
+
+#: Inches of a letter in the legend, and of the line before its words.
+_SMALL_LETTER, _HANDLE = 0.069, 0.6
+
+
+def columns_that_fit(names: list[str], width: float) -> int:
+    """How many columns of a legend fit into a width."""
+    for count in range(len(names), 1, -1):
+        parts = np.array_split(np.array([len(name) for name in names]), count)
+        if sum(_HANDLE + _SMALL_LETTER * int(part.max()) for part in parts) <= width:
+            return count
+    return 1
+
+
+def legend_entries(panels: Sequence[Panel]) -> dict[str, Any]:
+    """A handle for each name, in the order of the items."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    found: dict[str, Any] = {}
+    for panel in panels:
+        for item in panel.items:
+            name = getattr(item, "name", "")
+            if not name or name in found:
+                continue
+            style, colour = look(item.role), shade(item.role).light  # type: ignore[union-attr]
+            if isinstance(item, (Bars, Surface)):
+                found[name] = Patch(color=colour)
+            elif isinstance(item, Curve):
+                found[name] = Line2D(
+                    [], [], color=colour, ls=DASHES[item.dash or style.dash], lw=item.width,
+                    marker=SYMBOLS[style.symbol] if item.marked else "", ms=4,
+                )  # fmt: skip
+            else:
+                symbol = getattr(item, "symbol", "") or style.symbol
+                found[name] = Line2D([], [], color=colour, ls="", marker=SYMBOLS[symbol], ms=5)
+    return found

@@ -21,8 +21,3 @@
 The page holds each table once, as the bytes of its CSV file; plots carry their own numbers, as plotly's JSON. Nothing
 is fetched from anywhere. plotly.js comes from plotly's wheel; plotly's Python is never imported.
 """
-
-from fegear.output.report.page import Page, Section, write_page
-from fegear.output.report.run import write_report
-
-__all__ = ["Page", "Section", "write_page", "write_report"]

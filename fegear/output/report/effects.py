@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fegear.engine.outcome import Table
+from fegear.engine.table import Table
 from fegear.output.file_names import file_name
 from fegear.output.numbers import plain_number, pretty_unit
 from fegear.output.report.blocks import DataTable, Facts, Folded, Grid, Paragraph, Plot
@@ -14,11 +14,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from fegear.case.reading import Scene
-    from fegear.engine.figure import Figure
+    from fegear.engine.figure.figure import Figure
     from fegear.output.report.blocks import Block
-    from fegear.studies.comparison.values import Pairing
-    from fegear.studies.effect_figures import EffectCurve
-    from fegear.studies.effect_study import Fixed, Switched
+    from fegear.studies.comparison.compare import Pairing
+    from fegear.studies.effects import EffectCurve, Fixed, Switched
 
 
 def _carried(effect: str, found: EffectCurve) -> tuple[Table, Table]:

@@ -1,14 +1,25 @@
-"""The page of a run: what was asked, the numbers and their errors, each stage's plots and tables, plan, cost."""
+"""The page of a run: what was asked, the numbers and their errors, each stage's plots and tables, plan, cost.
+
+Accuracy and its cost: seconds, errors beside the tolerance, settings.
+
+The head of a report: the data of the gears as on a drawing, and each pair drawn in mesh.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 import fegear
 from fegear.engine.citation import bibliography
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Mark, Points
+from fegear.geometry.pair import MEMBERS
 from fegear.output.file_names import file_name
-from fegear.output.report.accuracy import accuracy_blocks
+from fegear.output.numbers import plain_number
 from fegear.output.report.blocks import (
+    Bars,
     Code,
     DataTable,
     Download,
@@ -19,21 +30,32 @@ from fegear.output.report.blocks import (
     Notes,
     Paragraph,
     Plot,
+    Sheet,
+    SheetGroup,
     Still,
     Values,
+    relative_error,
+    value_cells,
 )
-from fegear.output.report.gear_data import gear_sections
 from fegear.output.report.page import Page, Section, write_page
+from fegear.output.tables import table_file
+from fegear.results.gear.drawing import pair_figure
+from fegear.results.gear.geometry import MEANINGS as MODIFICATIONS
+from fegear.results.gear.geometry import drawing_of, lone_table, pair_table, pair_values
+from fegear.results.rating.rating import rated_columns
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from fegear.engine.citation import Citation
+    from fegear.engine.outcome import Value
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
+    from fegear.engine.table import Table
     from fegear.output.figures import Drawn
     from fegear.output.report.blocks import Block
+
 
 #: More values than this are folded, task by task: forty numbers before the first plot are too many.
 _MOST_OPEN = 16
@@ -176,3 +198,116 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
 def write_report(path: Path, results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -> None:
     """Write the page of a run; see `run_page`."""
     write_page(path, run_page(results, drawn, remarks))
+
+
+def _errors(results: Results) -> list[tuple[str, float]]:
+    found = [(value.name, relative_error(value)) for value in results.values]
+    return [(name, share) for name, share in found if share is not None]
+
+
+def _figure(found: list[tuple[str, float]], tolerance: float) -> Figure:
+    found = sorted(found, key=lambda item: item[1])
+    names, share = tuple(name for name, _ in found), np.array([share for _, share in found])
+    rows = np.arange(len(found))
+    points = tuple(
+        Points(share[here], rows[here], label, role, symbol, 9.0)
+        for here, label, role, symbol in (
+            (share <= tolerance, "within the tolerance", "green", "circle"),
+            (share > tolerance, "over the tolerance", "red", "diamond"),
+        )
+        if here.any()
+    )
+    axes = Axis("estimated relative error", log=True), Axis(categories=names)
+    return Figure(
+        "estimated_errors", "Estimated errors and the tolerance",
+        "Estimated error of every value over the value; left of the line it is within the case's tolerance.",
+        (Panel(*axes, points, (Mark("x", tolerance, "tolerance"),)),),
+    )  # fmt: skip
+
+
+def accuracy_blocks(results: Results) -> tuple[Block, ...]:
+    """Blocks on accuracy and its cost, from whatever the stages say of their settings."""
+    tolerance = results.scene.case.accuracy.tolerance
+    found = _errors(results)
+    estimated = [value for value in results.values if value.error is not None]
+    over = [name for name, share in found if share > tolerance]
+    exact = sum(not value.error for value in estimated)
+    kinds = (
+        (len(estimated) - exact, "carry an estimated error"),
+        (exact, "are exact" if exact != 1 else "is exact"),
+        (len(results.values) - len(estimated), "have no estimate"),
+    )
+    summary = f"The case asks for a relative error of {plain_number(tolerance)}. Of its {len(results.values)} values "
+    summary += ", ".join(f"{count} {words}" for count, words in kinds if count) + "."
+    if over:
+        summary += f" Over the tolerance: {', '.join(over)}."
+    elif found:
+        summary += " None of the estimates exceeds the tolerance."
+    settings = tuple(
+        Folded(f"Settings: {task}", (Facts(outcome.settings),))
+        for task, outcome in results.outcomes.items()
+        if outcome.settings
+    )
+    return (
+        *((Paragraph(summary),) if results.values else ()),
+        *((Plot(_figure(found, tolerance)),) if len(found) > 1 else ()),
+        Paragraph("Seconds of each task:", "table-title"),
+        Bars({str(task): seconds for task, seconds in results.seconds.items()}, "s"),
+        *settings,
+    )
+
+
+#: Which columns of the gear data stand together, in the order of a drawing.
+_GROUPS = (
+    ("Teeth", (
+        "gear", "teeth", "module", "pressure_angle", "helix_angle", "hand", "lead", "transverse_module",
+        "transverse_pressure_angle", "base_helix_angle", "profile_shift", "face_width",
+    )),
+    ("Diameters", (
+        "reference_diameter", "base_diameter", "tip_diameter", "tip_form_diameter", "active_tip_diameter",
+        "hpstc_diameter", "lpstc_diameter", "active_root_diameter", "root_form_diameter", "root_diameter",
+    )),
+    ("Measurement", ("tooth_thickness", "tip_thickness", "span_teeth", "span", "ball_diameter", "over_balls")),
+    ("Modifications", tuple(MODIFICATIONS)),
+    ("In mesh", ("tip_clearance", "specific_sliding_start", "specific_sliding_end")),
+)  # fmt: skip
+
+
+def gear_sections(results: Results) -> tuple[Section, ...]:
+    """A section for each pair, that in question first, and one for gears in no pair; empty without gears."""
+    drawing = drawing_of(results.scene)
+    written = {table.name for table in results.tables}
+    case = results.scene.case
+    first = next(
+        (n for n in (case.stiffness.pair, case.design.pair if case.design else None) if n in drawing.pairs), None
+    )
+    names = sorted(drawing.pairs, key=lambda name: name != first)
+    sections = []
+    for name in names:
+        table, pair = pair_table(name, drawing), drawing.pairs[name]
+        blocks = _blocks(table, pair_values(name, pair), written, _loaded(results, name))
+        sections.append(Section(f"Gear data: pair {name}", (*blocks, Plot(pair_figure(name, drawing)))))
+    lone = lone_table(drawing)
+    if lone is not None:
+        sections.append(Section("Gear data", _blocks(lone, (), written)))
+    return tuple(sections)
+
+
+def _loaded(results: Results, name: str) -> tuple[SheetGroup, ...]:
+    """What the wanted results tell of a pair under load: a group for each."""
+    groups = (SheetGroup("Load capacity", rated_columns(results.values, name)),)
+    return tuple(group for group in groups if group.columns)
+
+
+def _blocks(
+    table: Table, values: Sequence[Value], written: set[str], more: Sequence[SheetGroup] = ()
+) -> tuple[Block, ...]:
+    columns = {column.name: column for column in table.columns}
+    heads = MEMBERS if values else tuple("" for _ in columns["gear"].values)
+    groups = [SheetGroup(title, tuple(columns[name] for name in names if name in columns)) for title, names in _GROUPS]
+    shared = tuple((value.meaning, value_cells(value)[0], value.unit) for value in values)
+    sheet = Sheet(heads, (*(group for group in groups if group.columns), *more), shared)
+    note = "" if table.name in written else 'The table itself is written with results = ["geometry"].'
+    if note:
+        return sheet, Paragraph(note, "note screen")
+    return sheet, Download(f"tables/{table_file(table)}")

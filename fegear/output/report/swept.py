@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fegear.engine.figure import Figure
-    from fegear.engine.outcome import Table
+    from fegear.engine.figure.figure import Figure
+    from fegear.engine.table import Table
     from fegear.studies.sweep import SweepResults
     from fegear.studies.swept import Swept
 

@@ -1,20 +1,33 @@
-"""The whole comparison of two runs, and what it says in words."""
+"""The whole comparison of two runs, and what it says in words.
+
+Where two cases differ: in what they mean, not in how it is written.
+
+Single values of two runs beside each other.
+
+One side of a comparison, from a run in memory; `fegear.output.comparison` reads one from a folder.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from fegear.studies.comparison.inputs import Input, different_inputs
+from fegear.case.schema import flat, meaning_of
 from fegear.studies.comparison.tables import Joined, join
-from fegear.studies.comparison.values import Pairing, paired
 
 if TYPE_CHECKING:
-    from fegear.studies.comparison.side import Side
+    from collections.abc import Mapping
+
+    from fegear.engine.outcome import Value
+    from fegear.engine.run import Results
+    from fegear.engine.table import Table
+
 
 #: Columns of a table on the terminal.
 _COLUMNS = 4
+
+
 #: Lines of each kind on the terminal.
 _LINES = 40
 
@@ -146,3 +159,136 @@ def table_lines(one: Joined, tolerance: float) -> list[str]:
         if names:
             lines.append(f"  {one.table.name}: only {label} has the column{'s' * (len(names) > 1)} {', '.join(names)}")
     return lines
+
+
+#: Numbers that differ by less than this share are the same: 3 mm and 0.003 m.
+_SAME = 1e-12
+
+
+class Input(NamedTuple):
+    """A key that differs, with what each case writes: None where it is not given."""
+
+    key: str
+    first: object
+    second: object
+
+
+def different_inputs(first: Mapping[str, object], second: Mapping[str, object]) -> tuple[Input, ...]:
+    """Return the keys whose meanings differ; a key at its default is the same as one not given.
+
+    Parameters
+    ----------
+    first, second : mapping
+        Cases as they are written.
+    """
+    written = flat(first), flat(second)
+    meant = meaning_of(first), meaning_of(second)
+    keys = dict.fromkeys([*meant[0], *meant[1]])
+    found = [key for key in keys if not _same(meant[0].get(key), meant[1].get(key))]
+    told = [Input(key, *(_written(key, text) for text in written)) for key in found]
+    # What neither writes are defaults within a table that one of them has, which its own keys tell.
+    return tuple(one for one in told if one.first is not None or one.second is not None)
+
+
+def _written(key: str, written: Mapping[str, object]) -> object:
+    """What a case writes for a key, or for the table that it stands in (``rack = "ISO 53 A"``)."""
+    while key:
+        for form in (key, key.replace("[0]", "")):  # one table stands for a list of one
+            if form in written:
+                return written[form]
+        key = key.rpartition(".")[0]
+    return None
+
+
+def _same(a: object, b: object) -> bool:
+    if isinstance(a, float) and isinstance(b, float):
+        return math.isclose(a, b, rel_tol=_SAME, abs_tol=0.0)
+    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(_same(x, y) for x, y in zip(a, b, strict=True))
+    return a == b
+
+
+#: Share that the last digits of a processor may change of a number without an estimated error.
+_ROUND_OFF = 1e-9
+
+
+class Pairing(NamedTuple):
+    """A value in both runs; None where a run has none."""
+
+    name: str
+    first: Value | None
+    second: Value | None
+
+    @property
+    def both(self) -> tuple[Value, Value]:
+        """The two values, where no run lacks it."""
+        if self.first is None or self.second is None:
+            raise LookupError(f"{self.name} is missing on one side")
+        return self.first, self.second
+
+    @property
+    def change(self) -> float:
+        """Second less first, in the first one's unit; not a number where one is missing."""
+        if self.first is None or self.second is None or self.first.unit != self.second.unit:
+            return math.nan
+        return self.second.value - self.first.value
+
+    @property
+    def share(self) -> float:
+        """The change over the larger of the two."""
+        if self.change == 0.0 or self.first is None or self.second is None:
+            return self.change
+        return self.change / max(abs(self.first.value), abs(self.second.value))
+
+    @property
+    def within_errors(self) -> bool:
+        """Whether the estimated errors of the two explain the change."""
+        errors = [value.error or 0.0 for value in (self.first, self.second) if value is not None]
+        return abs(self.change) <= sum(errors)
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the change exceeds the estimated errors of the two, and the round-off of numbers without one."""
+        return abs(self.share) > _ROUND_OFF and not self.within_errors
+
+    def differs(self, tolerance: float) -> bool:
+        """Whether it is missing on one side, or changes by more than a share; no number twice is no change."""
+        both = self.first is not None and self.second is not None
+        if both and math.isnan(self.first.si) and math.isnan(self.second.si):  # type: ignore[union-attr]
+            return False
+        return not abs(self.share) <= tolerance
+
+
+def paired(first: Mapping[str, Value], second: Mapping[str, Value]) -> tuple[Pairing, ...]:
+    """Every value of either run, in the order of the first."""
+    return tuple(Pairing(name, first.get(name), second.get(name)) for name in dict.fromkeys([*first, *second]))
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """What is known of a run.
+
+    Parameters
+    ----------
+    label : str
+        By which the reader knows it.
+    document : mapping
+        The case as it was written, ``--set`` options included; empty where it is not known.
+    values : mapping of str to Value
+    tables : mapping of str to Table
+    """
+
+    label: str
+    document: Mapping[str, object]
+    values: Mapping[str, Value]
+    tables: Mapping[str, Table]
+
+
+def side_of(results: Results, label: str) -> Side:
+    """A run as one side of a comparison."""
+    return Side(
+        label,
+        results.scene.document,
+        {value.name: value for value in results.values},
+        {table.name: table for table in results.tables},
+    )

@@ -1,38 +1,58 @@
-"""From a source to the value of a quantity, by the stages that a run uses."""
+"""From a source to the value of a quantity, by the stages that a run uses.
+
+Where a configuration's numbers come from: finite elements, a formula, or the case's table.
+
+The quantities of a cost study, and how far an answer is from the reference's.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from fegear.contact import transmission_error
-from fegear.dynamics.single_tooth import force_history
+from fegear.base.errors import RangeError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.loaded_pair import build_loaded_pair, engagement_at_rest
+from fegear.case.built.neglected_effects import Neglected
+from fegear.case.built.pair_inputs import gear_name, pair_compliance_table, pair_inputs
+from fegear.case.built.train import motion_inputs, motion_model, train_inputs
+from fegear.contact.plane.closed_form_compliance import ConstantCompliance, closed_form_compliance
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.table_compliance import table_sources
+from fegear.contact.plane.transmission_error import transmission_error
+from fegear.dynamics.train.single_tooth import force_history
 from fegear.engine.executor import Executor
 from fegear.engine.stage import Task, Work
-from fegear.errors import RangeError
-from fegear.geometry.pair import MEMBERS
-from fegear.models.loaded_pair import build_loaded_pair, engagement_at_rest
-from fegear.models.motion import motion_inputs, motion_model
-from fegear.models.neglected_effects import Neglected
-from fegear.models.pair_inputs import pair_inputs
-from fegear.models.train import train_inputs
-from fegear.results.gear_train import compute_train
-from fegear.results.loaded_pair import LoadedPairData
-from fegear.solution_cache import SolutionCache
+from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
+from fegear.formulas.outcome import attempt
+from fegear.formulas.sources import ROOT_STRESS_SOURCES
+from fegear.formulas.sources import source as formula_source
+from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.results.pair.loaded_pair import LoadedPairData
+from fegear.results.train.gear_train import compute_train
+from fegear.studies.cost.ladder import ISO_STIFFNESS
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
-    from fegear.contact import TransmissionError
-    from fegear.dynamics.gear_train import GearTrain
-    from fegear.models.loaded_pair import LoadedPair
+    from collections.abc import Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.case.built.loaded_pair import LoadedPair
+    from fegear.contact.plane.compliance import GearCompliance
+    from fegear.contact.plane.transmission_error import TransmissionError
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.geometry.pair import Member
     from fegear.studies.cost.asked import Asked
-    from fegear.studies.cost.quantities import Quantity
-    from fegear.studies.cost.sources import Source
 
 
 #: Places over the base pitch at which compliances of pairs are compared.
 _PLACES = 12
+
+
 #: Harmonics of the transmission error and of the forces that a run sums.
 HARMONICS, FORCE_HARMONICS = 64, 256
 
@@ -83,7 +103,7 @@ def largest_force(asked: Asked, data: GearTrain, harmonics: int = FORCE_HARMONIC
 
 def factor_at(asked: Asked, data: GearTrain, speed: float, tolerance: float) -> float:
     """Dynamic factor of steady motion at a speed of the reference body [rad/s], started from static deflection."""
-    from fegear.dynamics.steady_state import steady_state
+    from fegear.dynamics.motion.steady_state import steady_state
 
     i = data.train.mesh_index(asked.mesh)
     state = steady_state(
@@ -115,3 +135,188 @@ def answer(asked: Asked, quantity: Quantity, source: Source, order: int = 16) ->
     if asked.mesh and quantity.subject == asked.mesh:
         return np.array([largest_force(asked, train_of(asked, source))])
     return np.array([float(pair_error(asked, source, order).loaded.loads.max())])
+
+
+_PAIR = frozenset({"te-peak-to-peak", "tooth-force", "dynamic-factor"})
+
+
+class Source(Protocol):
+    """Answers of one configuration."""
+
+    @property
+    def answers(self) -> frozenset[str]:
+        """Quantities that it knows anything of."""
+
+    def of_gear(self, quantity: str, asked: Asked) -> Array:
+        """Values of c_0, c_1 or the root stress at the load positions, NaN where out of range."""
+
+    def compliance(self, pair: str, member: Member, asked: Asked) -> GearCompliance:
+        """Compliance of one gear of a pair, made anew at each call."""
+
+
+@dataclass(frozen=True)
+class FiniteElements:
+    """Solved gears.
+
+    Parameters
+    ----------
+    solved : mapping of str to GearInfluence
+    """
+
+    solved: Mapping[str, GearInfluence]
+
+    answers = frozenset({"c_0", "c_1", "root-stress"}) | _PAIR
+
+    def of_gear(self, quantity: str, asked: Asked) -> Array:
+        """At the case's load positions."""
+        known, r = self.solved[asked.gear], asked.radii
+        if quantity == "c_0":
+            return known.self_compliance(r, asked.half_width)
+        if quantity == "c_1":
+            return np.diagonal(known.neighbour(1, r, r))
+        return known.largest_root_stress(0, "tension", r)[0]
+
+    def compliance(self, pair: str, member: Member, asked: Asked) -> GearCompliance:
+        """Tabulated over the flank."""
+        return finite_element_compliance(self.solved[gear_name(asked.scene, pair, member)])
+
+
+@dataclass(frozen=True)
+class ComplianceFormula:
+    """A closed form for the compliance of one tooth."""
+
+    name: str
+
+    answers = frozenset({"c_0", "c_1"}) | _PAIR
+
+    def of_gear(self, quantity: str, asked: Asked) -> Array:
+        """No formula knows the neighbours: c_1 is zero."""
+        if quantity == "c_1":
+            return np.zeros(asked.radii.shape)
+        gear, w = asked.scene.gears[asked.gear], asked.line_load
+        if self.name == ISO_STIFFNESS:
+            return np.full(asked.radii.shape, self._constant(GearPair(gear, gear), w).compliance)
+        formula = formula_source(self.name)
+        tooth = formula.tooth(gear, asked.radii).total
+        return tooth + formula.contact(gear, asked.radii, w, asked.half_width) / w
+
+    def compliance(self, pair: str, member: Member, asked: Asked) -> GearCompliance:
+        """The same for both gears of a pair by ISO 6336, else of that gear."""
+        if self.name == ISO_STIFFNESS:
+            return self._constant(asked.scene.pairs[pair], asked.line_load)
+        return closed_form_compliance(asked.scene.pairs[pair].gear(member), self.name)
+
+    @staticmethod
+    def _constant(pair: GearPair, line_load: float) -> ConstantCompliance:
+        return ConstantCompliance(compliance=0.5 / pair_stiffness(pair, line_load).single, source="c' of ISO 6336-1")
+
+
+@dataclass(frozen=True)
+class StressFormula:
+    """A closed form for the root stress."""
+
+    name: str
+
+    answers = frozenset({"root-stress"})
+
+    def of_gear(self, quantity: str, asked: Asked) -> Array:
+        """NaN where the formula refuses or finds no tension."""
+        gear, formula = asked.scene.gears[asked.gear], ROOT_STRESS_SOURCES[self.name].formula
+        found = [attempt(partial(formula, gear.tooth, float(r))) for r in asked.radii / gear.module]
+        values = np.array([np.nan if one.value is None else one.value.stress for one in found]) / gear.module
+        if not np.isfinite(values).any():
+            raise RangeError(quantity, self.name, found[0].reason)
+        return np.where(values > 0.0, values, np.nan)
+
+    def compliance(self, pair: str, member: Member, asked: Asked) -> GearCompliance:  # noqa: ARG002  (the interface)
+        """None: it is a formula for stress."""
+        raise RangeError("compliance", f"{self.name}, {pair}, {member}", "is not known to a root-stress formula")
+
+
+@dataclass(frozen=True)
+class CaseTable:
+    """The compliances that the case reads from a file: nothing is more accurate than they are."""
+
+    answers = _PAIR
+
+    def of_gear(self, quantity: str, asked: Asked) -> Array:
+        """None: the table is of a pair."""
+        raise RangeError(quantity, asked.gear, "is not in the pair's table")
+
+    def compliance(self, pair: str, member: Member, asked: Asked) -> GearCompliance:
+        """Read and fitted."""
+        part = asked.scene.case.pair[pair].compliance
+        x, c = pair_compliance_table(asked.scene, pair)
+        driver, driven = table_sources(asked.scene.pairs[pair], x, c, part.of or "tooth", part.fit or "cubic")
+        return driver if member == "driver" else driven
+
+
+def without_neighbours(asked: Asked) -> Asked:
+    """The same for a source that knows one tooth alone: the effect that couples neighbours is off."""
+    effects = asked.scene.case.effects.model_copy(update={"neighbour_coupling": False})
+    return replace(asked, scene=replace(asked.scene, case=asked.scene.case.model_copy(update={"effects": effects})))
+
+
+#: Quantities of one gear, at many load positions; the others are numbers of a pair or a mesh.
+OF_GEAR = ("c_0", "c_1", "root-stress")
+
+
+#: Those of a pair that is loaded over its face.
+OF_FLANKS = ("te-mean", "te-peak-to-peak", "face-load-factor")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity of a cost study.
+
+    Parameters
+    ----------
+    name, subject : str
+        What, and of which gear, pair or mesh.
+    unit, meaning : str
+    """
+
+    name: str
+    subject: str
+    unit: str
+    meaning: str
+
+    @property
+    def of_gear(self) -> bool:
+        """Whether it belongs to one gear, at many load positions."""
+        return self.name in OF_GEAR
+
+
+@dataclass(frozen=True, slots=True)
+class Miss:
+    """How far an answer is from the reference, relative.
+
+    Parameters
+    ----------
+    largest, rms : float
+        Over the load positions that have an answer; alike for a single number. NaN without any.
+    answered : float
+        Share of the positions that have an answer.
+    """
+
+    largest: float
+    rms: float
+    answered: float
+
+
+def miss(quantity: str, values: Array, reference: Array) -> Miss:
+    """Hold an answer against the reference.
+
+    Parameters
+    ----------
+    quantity : str
+    values, reference : ndarray, shape (P,)
+        NaN where a formula is out of its range. Each position counts relative to its own reference, but c_1, which
+        may pass through zero, relative to the largest c_1.
+    """
+    scale = np.full(reference.shape, np.abs(reference).max()) if quantity == "c_1" else np.abs(reference)
+    found = np.isfinite(values)
+    if not found.any():
+        return Miss(math.nan, math.nan, 0.0)
+    relative = (np.abs(values - reference) / scale)[found]
+    return Miss(float(relative.max()), float(np.sqrt(np.mean(relative**2))), float(found.mean()))

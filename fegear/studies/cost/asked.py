@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.errors import InputError
-from fegear.models.loaded_flanks import check_flanks_to_load
-from fegear.models.motion import motion_inputs
-from fegear.models.solid_influence import flank_pairs
-from fegear.results.gear_contacts import contact_half_width, load_radii
-from fegear.results.loaded_pair import plane_pairs
-from fegear.studies.cost.quantities import OF_FLANKS, OF_GEAR, Quantity
+from fegear.base.errors import InputError
+from fegear.case.built.loaded_flanks import check_flanks_to_load
+from fegear.case.built.solid_influence import flank_pairs
+from fegear.case.built.train import motion_inputs
+from fegear.results.gear.stiffness import contact_half_width, load_radii
+from fegear.results.pair.loaded_pair import plane_pairs
+from fegear.studies.cost.answers import OF_FLANKS, OF_GEAR, Quantity
 
 if TYPE_CHECKING:
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.case.train import TrainPart
 

@@ -1,17 +1,26 @@
-"""The configurations that are tried: closed forms, sectors of a few teeth, the whole gear, tolerances."""
+"""The configurations that are tried: closed forms, sectors of a few teeth, the whole gear, tolerances.
+
+One way to compute: a formula, a sector with free sides, the whole ring with some settings, or a tolerance.
+
+The configurations of a pair that is loaded over its face: thin slices, coupled slices, solid gears.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+import math
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING, Literal, cast
 
-from fegear.fem.settings import MeshSettings
-from fegear.formulas.root_stress_sources import ROOT_STRESS_SOURCES
-from fegear.formulas.sources import SOURCES
-from fegear.studies.cost.configuration import ISO_STIFFNESS, Configuration
+from fegear.case.built.solid_influence import seconds_of_solid_gear
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.solid.settings import SolidSettings, solid_settings
+from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from fegear.studies.cost.asked import Asked
+
 
 #: Edge lengths over the usual ones, for each order of the elements.
 _FACTORS = {
@@ -19,23 +28,41 @@ _FACTORS = {
     3: (4.0, 2.8, 2.0, 1.4, 1.0, 0.7),
     4: (4.0, 2.8, 2.0, 1.4, 1.0, 0.7),
 }
+
+
 _QUICK_FACTORS = {2: (4.0, 2.0, 1.0), 3: (4.0, 2.0), 4: (2.8, 1.4)}
+
+
 #: Half-widths of the pressure that loads the mesh, over the usual one.
 _PATCHES, _QUICK_PATCHES = (2.0, 1.0, 0.5), (2.0, 1.0)
+
+
 #: A pressure narrower than this many edges of the flank is not worth a configuration.
 _NARROWEST = 0.75
+
+
 #: Teeth of the sectors with free sides; those that the picture names are 3, 5 and 9.
 _SECTORS, _QUICK_SECTORS = (3, 5, 7, 9, 13), (3, 5, 9)
+
+
 #: Mesh of the sectors: fine enough that what they miss is the sector.
 _SECTOR_ORDER, _SECTOR_FACTOR = 4, 1.4
+
+
 _TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
+
+
 #: The reference lies one step beyond the ladder: order 4, edges along flank and fillet finer than its finest, and the
 #: true contact's half-width for the pressure (within bounds that the mesh resolves).
 _REFERENCE_FACTOR, _QUICKER, _CHECK = 1.0, 2.0, 1.4
+
+
 _REFERENCE_EDGES = {
     "flank_edge_length": 0.0125, "root_edge_length": 0.02, "root_fraction": 0.1,
     "tip_edge_length": 0.008, "junction_edge_length": 0.008,
 }  # fmt: skip
+
+
 _NARROW, _WIDE = 0.04, 0.08
 
 
@@ -124,3 +151,195 @@ def _reference(patch: float, *, quick: bool) -> tuple[Configuration, Configurati
     both = (fine.scaled(_QUICKER), fine.scaled(_QUICKER * _CHECK)) if quick else (fine, fine.scaled(_CHECK))
     made = [Configuration("ring", s, s.flank_edge_length / MeshSettings().flank_edge_length) for s in both]
     return made[0], made[1]
+
+
+Family = Literal[
+    "compliance-formula", "stress-formula", "sector", "ring", "tolerance", "table",
+    "thin-slices", "thin-slices-alone", "coupled-slices", "coupled-slices-alone", "solid", "solid-alone",
+]  # fmt: skip
+
+
+#: The mean stiffness of the standard as a compliance of each tooth.
+ISO_STIFFNESS = "iso6336-stiffness"
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """One configuration of a cost study.
+
+    Parameters
+    ----------
+    family : str
+        ``compliance-formula``, ``stress-formula``, ``sector`` (teeth with free sides), ``ring`` (the whole gear),
+        ``tolerance`` (what a run picks for ``accuracy.tolerance``), ``table`` (the case's own compliances); of a pair
+        that is loaded over its face ``thin-slices``, ``coupled-slices`` and ``solid``, with ``-alone`` without
+        neighbouring teeth.
+    settings : MeshSettings or None
+        Of finite elements with given settings.
+    factor : float
+        Edge lengths over the usual ones.
+    teeth : int
+        Teeth of a sector.
+    formula : str
+        Name of a closed form.
+    tolerance : float
+    """
+
+    family: Family
+    settings: MeshSettings | None = None
+    factor: float = math.nan
+    teeth: int = 0
+    formula: str = ""
+    tolerance: float = math.nan
+
+    @property
+    def label(self) -> str:
+        """Short name, unlike that of any other configuration of a study."""
+        if self.family == "tolerance":
+            return f"tolerance = {self.tolerance:.0e}"
+        if self.family == "table":
+            return "the case's table"
+        if self.settings is None:
+            return f"{self.formula}, {'root stress' if self.family == 'stress-formula' else 'compliance'}"
+        s = self.settings
+        who = f"sector of {self.teeth} teeth" if self.family == "sector" else "whole gear"
+        return f"{who}, order {s.order}, edges x {self.factor:.3g}, patch {s.patch_half_width:.4g}"
+
+    def paste(self, pair: str) -> str:
+        """The configuration as lines of a case file; empty for what no case can ask for.
+
+        Parameters
+        ----------
+        pair : str
+            Name of the pair whose compliance source it may be; empty for none.
+        """
+        if self.family == "tolerance":
+            return f"accuracy = {{ tolerance = {self.tolerance:g} }}"
+        if self.family == "ring" and self.settings is not None:
+            usual = asdict(MeshSettings())
+            own = {k: v for k, v in asdict(self.settings).items() if v != usual[k]} or {"order": self.settings.order}
+            return "accuracy = { " + ", ".join(f"{k} = {v:.6g}" for k, v in own.items()) + " }"
+        if self.family == "compliance-formula" and pair and self.formula != ISO_STIFFNESS:
+            return f'pair.{pair}.compliance = {{ source = "{self.formula}" }}'
+        return ""
+
+
+#: What pairs without neighbouring teeth have at the end of their family.
+ALONE = "-alone"
+
+
+#: What bodies are called.
+BODIES = {"thin-slices": "thin slices", "coupled-slices": "coupled slices", "solid": "solid"}
+
+
+#: Tolerances whose settings are tried, the last without neighbours and slices with other panels, too; that of the
+#: reference, and by how much the check beside it is coarser.
+_WIDE_TOLERANCES, _REFERENCE, _WIDE_CHECK = (1e-1, 3e-2, 1e-2), 3e-3, 1.35
+
+
+_QUICK_TOLERANCES, _QUICK_REFERENCE = (1e-1, 3e-2), 1e-2
+
+
+#: Its bands take less room beside the ends of the flank.
+_ROOM = 0.7
+
+
+#: Panels along the face over the case's; of reference and check.
+_PANELS, _FINE_PANELS, _CHECK_PANELS = (0.5, 1.0, 2.0), 3.0, 2.0
+
+
+_FEWEST_PANELS = 2
+
+
+#: Seconds of the compliances and the contact of one configuration at a roll position, about.
+_POSITION = 0.012
+
+
+@dataclass(frozen=True, slots=True)
+class FlankConfiguration(Configuration):
+    """A pair that is loaded over its face in one way.
+
+    Parameters
+    ----------
+    solid : SolidSettings
+        Of its gears.
+    panels : int
+        Along the face.
+    """
+
+    solid: SolidSettings = field(default_factory=SolidSettings)
+    panels: int = 0
+
+    @property
+    def body(self) -> str:
+        """What its gears are: a key of `BODIES`."""
+        return self.family.removesuffix(ALONE)
+
+    @property
+    def neighbours(self) -> bool:
+        """Whether tooth pairs deflect each other."""
+        return not self.family.endswith(ALONE)
+
+    @property
+    def label(self) -> str:
+        """Short name, unlike that of any other configuration of a study."""
+        s = self.solid.section
+        alone = "" if self.neighbours else " without neighbours"
+        return f"{BODIES[self.body]}{alone}, order {s.order}, edges x {self.factor:.3g}, {self.panels} panels"
+
+    def paste(self, pair: str) -> str:
+        """Lines of a case file that ask for it; empty for what no case can ask for."""
+        if self.body == "thin-slices" or self.solid != SolidSettings() or not pair:
+            return ""
+        width = "slices" if self.body == "coupled-slices" else "solid"
+        return "\n".join((
+            f'pair.{pair}.width = "{width}"', f"accuracy.tolerance = {_WIDE_TOLERANCES[-1]:g}",
+            f"effects.neighbour_coupling = {str(self.neighbours).lower()}", f"load_distribution.panels = {self.panels}",
+        ))  # fmt: skip
+
+
+def flank_ladder(panels: int, *, quick: bool = False) -> Ladder:
+    """Make the ladder; groups of its `meshes` share their solved gears.
+
+    Parameters
+    ----------
+    panels : int
+        Along the face, as the case has them.
+    quick : bool
+        Coarser gears and reference.
+    """
+    tolerances = _QUICK_TOLERANCES if quick else _WIDE_TOLERANCES
+    best = solid_settings(_QUICK_REFERENCE if quick else _REFERENCE)
+    second = best.scaled(_WIDE_CHECK)
+    second = replace(second, room_share=_ROOM * best.room_share)
+    counts = {share: max(_FEWEST_PANELS, round(share * panels)) for share in (*_PANELS, _FINE_PANELS, _CHECK_PANELS)}
+    usual = solid_settings(tolerances[-1])
+
+    groups = [
+        tuple(dict.fromkeys((
+            *((_one(f"{body}{ALONE}", settings, counts[1.0]),) if settings == usual else ()),
+            *(_one(body, settings, counts[s]) for s in (_PANELS if body == "solid" or settings == usual else (1.0,))),
+        )))
+        for body in BODIES
+        for settings in map(solid_settings, tolerances)
+    ]  # fmt: skip
+    reference, check = _one("solid", best, counts[_FINE_PANELS]), _one("solid", second, counts[_CHECK_PANELS])
+    return Ladder(reference, check, tuple(groups), ())
+
+
+def _one(family: str, solid: SolidSettings, panels: int) -> FlankConfiguration:
+    section = replace(solid.section, patch_half_width=solid.band_half_width)
+    factor = section.root_edge_length / SolidSettings().section.root_edge_length
+    return FlankConfiguration(cast("Family", family), section, factor, solid=solid, panels=panels)
+
+
+def flank_seconds(asked: Asked, ladder: Ladder) -> float:
+    """About how long its study takes on one core [s]."""
+    pair = asked.scene.pairs[asked.pair]
+    width = pair.face_width / pair.driver.module
+    total = _POSITION * asked.scene.case.load_distribution.positions * (len(ladder.configurations) + 2)
+    for one in (ladder.reference, ladder.check, *(group[0] for group in ladder.meshes)):
+        if isinstance(one, FlankConfiguration):
+            source: Literal["solid", "slices"] = "solid" if one.body == "solid" else "slices"
+            total += 2.0 * seconds_of_solid_gear(replace(one.solid, source=source), width)
+    return total

@@ -1,32 +1,53 @@
-"""What a cost study found."""
+"""What a cost study found.
+
+Which configurations nothing beats in both time and error, and the cheapest for a tolerance.
+
+The order at which an error falls with a knob: a straight line through the asymptotic part of a log-log plot.
+
+Processor seconds of one core, honestly: one thread, repeated when short.
+"""
 
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from statistics import median
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from fegear.studies.cost.orders import Order, observed_order
-from fegear.studies.cost.pareto import cheapest, pareto_front
-from fegear.studies.cost.timing import NOTHING, Seconds
-
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
-    from fegear.arrays import Array
+    from fegear.base.arrays import Array
+    from fegear.studies.cost.answers import Miss, Quantity
     from fegear.studies.cost.asked import Asked
-    from fegear.studies.cost.configuration import Configuration
-    from fegear.studies.cost.quantities import Miss, Quantity
+    from fegear.studies.cost.ladder import Configuration
 
 
 #: Tolerances for which the cheapest settings are reported.
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
+
+
 #: Stands for every quantity at once.
 ALL = "all"
+
+
+class Seconds(NamedTuple):
+    """What some work took: processor seconds of this process, and seconds on the wall."""
+
+    cpu: float
+    wall: float
+
+    def plus(self, other: Seconds) -> Seconds:
+        """Both after one another."""
+        return Seconds(self.cpu + other.cpu, self.wall + other.wall)
+
+
+NOTHING = Seconds(0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -207,7 +228,7 @@ class CostResults:
 
     def at_once(self) -> tuple[Measured, ...]:
         """Configurations that answer every quantity: the worst error of any, the gears solved once."""
-        from fegear.studies.cost.quantities import Miss
+        from fegear.studies.cost.answers import Miss
 
         names, found = [q.name for q in self.quantities], []
         for configuration in dict.fromkeys(row.configuration for row in self.rows):
@@ -233,3 +254,147 @@ class CostResults:
         errors = np.maximum(front.error, [row.compliance_error for row in front.rows])
         i = cheapest(tolerance, [row.compared for row in front.rows], errors)
         return None if i is None else front.rows[i]
+
+
+def pareto_front(seconds: ArrayLike, error: ArrayLike) -> NDArray[np.intp]:
+    """Indices of the configurations that no other configuration beats, from quick and rough to slow and accurate.
+
+    Parameters
+    ----------
+    seconds, error : array_like, shape (n,)
+        NaN where a configuration has no answer; such configurations are never on the front.
+
+    Returns
+    -------
+    ndarray of int
+        Errors fall strictly along it, seconds rise strictly.
+    """
+    t, e = np.asarray(seconds, dtype=float), np.asarray(error, dtype=float)
+    front: list[int] = []
+    best = np.inf
+    for i in np.lexsort((e, t)):
+        if np.isfinite(t[i]) and e[i] < best:
+            front.append(int(i))
+            best = e[i]
+    return np.array(front, dtype=np.intp)
+
+
+def cheapest(tolerance: float, seconds: ArrayLike, error: ArrayLike) -> int | None:
+    """Index of the cheapest configuration whose error is within a tolerance, of equally cheap ones the best; or None.
+
+    Parameters
+    ----------
+    tolerance : float
+    seconds, error : array_like, shape (n,)
+        NaN where a configuration has no answer.
+    """
+    t, e = np.asarray(seconds, dtype=float), np.asarray(error, dtype=float)
+    good = np.flatnonzero(np.isfinite(t) & (e <= tolerance))
+    return int(good[np.lexsort((e[good], t[good]))[0]]) if good.size else None
+
+
+#: Errors below this many floors are too near to what the reference itself does not know.
+ABOVE_FLOOR = 3.0
+
+
+#: Configurations that lie farther than this factor off the line are not asymptotic yet.
+_SCATTER = 1.6
+
+
+#: A slope below this is none.
+_FLAT = 0.1
+
+
+#: A line through two points says nothing about itself.
+_FEWEST = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """Observed order of convergence.
+
+    Parameters
+    ----------
+    slope : float
+        p of error ~ step^p; NaN where none is observed.
+    used : int
+        Configurations on the line, counted from the finest that lies above the floor.
+    scatter : float
+        Largest factor between a used error and the line; NaN without a line.
+    words : str
+        What the slope rests on, or why there is none.
+    """
+
+    slope: float
+    used: int
+    scatter: float
+    words: str
+
+
+def observed_order(step: ArrayLike, error: ArrayLike, floor: float = 0.0) -> Order:
+    """Least-squares slope of log error over log step.
+
+    Starts with every configuration above the floor and drops the coarsest, one by one, until those that remain lie on a
+    line.
+
+    Parameters
+    ----------
+    step, error : array_like, shape (n,)
+        Positive steps and errors.
+    floor : float
+        Error of the reference: configurations below three times it say nothing.
+
+    Returns
+    -------
+    Order
+    """
+    h, e = np.asarray(step, dtype=float), np.asarray(error, dtype=float)
+    order = np.argsort(h)
+    h, e = h[order], e[order]
+    clear = np.isfinite(e) & (e > ABOVE_FLOOR * floor) & (e > 0.0)
+    count = int(clear.sum())
+    if count < _FEWEST:
+        at = "lie above the reference's own error" if floor > 0.0 else "have an error"
+        return Order(math.nan, 0, math.nan, f"none: only {count} of {h.size} configurations {at}")
+    x, y = np.log(h[clear]), np.log(e[clear])
+    for used in range(count, _FEWEST - 1, -1):
+        line = np.polyfit(x[:used], y[:used], 1)
+        scatter = float(np.exp(np.abs(np.polyval(line, x[:used]) - y[:used]).max()))
+        if scatter <= _SCATTER:
+            if line[0] < _FLAT:
+                return Order(math.nan, 0, math.nan, "none: the error does not fall with the knob")
+            basis = f"{used} of {h.size} configurations, within a factor of {scatter:.2f} of the line"
+            return Order(float(line[0]), used, scatter, basis)
+    return Order(
+        math.nan, 0, math.nan, f"none: no {_FEWEST} neighbouring configurations lie within {_SCATTER} of a line"
+    )
+
+
+T = TypeVar("T")
+
+
+#: What takes less than this is done again, three times in all, and the median counts [s].
+_SHORT = 0.1
+
+
+_TIMES = 3
+
+
+def timed(work: Callable[[], T], *, repeat: bool = True) -> tuple[T, Seconds]:
+    """Do some work and measure its seconds.
+
+    Parameters
+    ----------
+    work : callable
+        Must do everything anew each time it is called.
+    repeat : bool
+        Whether short work is done again for a median.
+    """
+    cpu, wall = [], []
+    while True:
+        started, clock = time.process_time(), time.perf_counter()
+        found = work()
+        cpu.append(time.process_time() - started)
+        wall.append(time.perf_counter() - clock)
+        if not repeat or cpu[0] > _SHORT or len(cpu) == _TIMES:
+            return found, Seconds(median(cpu), median(wall))

@@ -6,39 +6,36 @@ import time
 from functools import partial
 from typing import TYPE_CHECKING
 
+from fegear.base.one_thread import one_thread
+from fegear.case.built.loaded_flanks import flanks_to_load
+from fegear.case.built.solid_influence import seconds_of_solid_gear
+from fegear.case.built.tooth_influence import seconds_of_gear
 from fegear.engine.run import Silence
-from fegear.fem.solid import SolidSettings
-from fegear.models.loaded_flanks import flanks_to_load
-from fegear.models.settings import seconds_of_gear
-from fegear.models.solid_influence import seconds_of_solid_gear
-from fegear.one_thread import one_thread
-from fegear.studies.cost.answers import answer
-from fegear.studies.cost.flank_ladder import flank_ladder, flank_seconds
-from fegear.studies.cost.flank_measure import measure_flanks, refer_flanks
-from fegear.studies.cost.knobs import ladder_knobs
-from fegear.studies.cost.ladder import make_ladder
+from fegear.fem.solid.settings import SolidSettings
+from fegear.studies.cost.answers import CaseTable, answer
+from fegear.studies.cost.knobs import ladder_knobs, pair_knobs, solid_knobs
+from fegear.studies.cost.ladder import flank_ladder, flank_seconds, make_ladder
 from fegear.studies.cost.measure import (
     Found,
     answered,
     finite_elements,
     largest,
     measure_alone,
+    measure_flanks,
     measure_meshes,
     refer,
+    refer_flanks,
     solve_gears,
 )
-from fegear.studies.cost.pair_knobs import pair_knobs
 from fegear.studies.cost.result import CostResults
-from fegear.studies.cost.solid_knobs import solid_knobs
-from fegear.studies.cost.sources import CaseTable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from fegear.engine.run import Watcher
+    from fegear.studies.cost.answers import FiniteElements, Source
     from fegear.studies.cost.asked import Asked
     from fegear.studies.cost.ladder import Ladder
-    from fegear.studies.cost.sources import FiniteElements, Source
 
 #: What answering takes from a solved gear, about [s].
 _ANSWER_SECONDS = {"te-peak-to-peak": 0.15, "tooth-force": 1.1, "dynamic-factor": 2.0}

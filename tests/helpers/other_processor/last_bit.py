@@ -73,14 +73,14 @@ def _loads(place):
 
 #: Where noise enters: module, name in it, and what of a call is noisy.
 PLACES = {
-    "fegear.fem.sector": {"_fill": _first},
-    "fegear.fem.elasticity": {"_straight_stiffness": _result, "_curved_stiffness": _result},
+    "fegear.fem.plane.sector": {"_fill": _first},
+    "fegear.fem.plane.elasticity": {"_straight_stiffness": _result, "_curved_stiffness": _result},
     "fegear.fem.solid.dissection": {"_smallest": _results},
-    "fegear.contact.pair_compliance": {"PairCompliance.matrices": _field("compliance")},
-    "fegear.contact.flank.compliance": {"flank_compliance": _field("matrix")},
-    "fegear.contact.load_sharing": {"share_load": _loads(2)},
-    "fegear.contact.flank.complementarity": {"solve_contact": _loads(2)},
-    "fegear.dynamics.motion": {"starting_state": _results},
+    "fegear.contact.plane.pair_compliance": {"PairCompliance.matrices": _field("compliance")},
+    "fegear.contact.wide.compliance": {"flank_compliance": _field("matrix")},
+    "fegear.contact.plane.load_sharing": {"share_load": _loads(2)},
+    "fegear.contact.wide.complementarity": {"solve_contact": _loads(2)},
+    "fegear.dynamics.motion.motion": {"starting_state": _results},
 }
 
 

@@ -1,0 +1,1 @@
+"""What everything stands on: errors, units, frozen arrays, streams, the store of solved teeth."""

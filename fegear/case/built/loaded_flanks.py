@@ -1,0 +1,207 @@
+"""From a case's pair to its loaded flanks: what a case says of reliefs and of the gap over the face."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Literal
+
+from fegear.base.errors import InputError
+from fegear.case.built.flank_errors import cutter_modification, flank_errors
+from fegear.case.built.flank_modifications import gear_face
+from fegear.case.built.loaded_pair import build_relief
+from fegear.case.built.pair_inputs import gear_flanks, gear_name
+from fegear.case.built.solid_influence import check_solid_gear
+from fegear.case.effects import EffectsPart
+from fegear.case.part import at
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible import refuse_load
+
+if TYPE_CHECKING:
+    from fegear.case.built.flank_errors import FlankErrors
+    from fegear.case.built.flank_modifications import FaceModifications
+    from fegear.case.built.pair_inputs import Flanks
+    from fegear.case.reading import Scene
+    from fegear.contact.wide.gaps import FlankGaps
+    from fegear.geometry.flank_modification import FlankModification
+    from fegear.geometry.pair import GearPair
+
+#: Effects that loaded flanks know.
+FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact", "misalignment")
+#: Panels per module of face.
+_PANELS_PER_MODULE = 4.0
+
+
+@dataclass(frozen=True)
+class FlanksToLoad:
+    """All that loaded flanks depend on, besides the gears' influence functions.
+
+    Parameters
+    ----------
+    pair : GearPair
+    effects : EffectsPart
+        `FLANK_EFFECTS`; all others are off.
+    flanks : tuple of (Flanks, Flanks)
+        Of driver and driven.
+    faces : tuple of (FaceModifications, FaceModifications)
+        The same over the face.
+    cutter : tuple of FlankModification
+        `modification` of the pair, which its pinion's cutter leaves.
+    errors : FlankErrors
+    loads : tuple of float
+        [N], ascending.
+    nominal : float
+        [N].
+    positions, panels, base_pitch : int
+    width : {"solid", "slices"}
+        What the gears are solved as.
+    name : str
+        Of the pair.
+    """
+
+    pair: GearPair
+    effects: EffectsPart
+    flanks: tuple[Flanks, Flanks]
+    faces: tuple[FaceModifications, FaceModifications]
+    cutter: tuple[FlankModification, ...]
+    errors: FlankErrors
+    loads: tuple[float, ...]
+    nominal: float
+    positions: int
+    panels: int
+    width: Literal["solid", "slices"] = "solid"
+    base_pitch: int = 0
+    name: str = field(default="", compare=False)
+
+    @property
+    def gears(self) -> tuple[str, str]:
+        """Names of driver and driven."""
+        return self.flanks[0].gear, self.flanks[1].gear
+
+    @property
+    def panel(self) -> float:
+        """Length of a panel [modules]."""
+        return self.pair.face_width / self.panels / self.pair.driver.module
+
+    @property
+    def misaligned(self) -> GearPair:
+        """The pair at the centre distance that its error leaves, whether or not the effect is on."""
+        return self.pair if self.effects.misalignment else _placed(self.pair, self.errors.apart, self.name)
+
+    def has_data(self, effect: str) -> bool:
+        """Whether the case says what an effect needs; of others than these three it does."""
+        if effect == "relief":
+            relieved = any(flank.relief for flank in self.flanks) or any(face.given for face in self.faces)
+            relieved = relieved or bool(self.cutter)
+            return relieved and not any(flank.wants_delta for flank in self.flanks)
+        if effect == "spacing_errors":
+            return any(flank.spacing.size for flank in self.flanks)
+        return effect != "misalignment" or self.errors.given
+
+    def gaps(self, *, relief: bool, misalignment: bool, spacing_errors: bool = False) -> FlankGaps:
+        """What keeps the flanks apart."""
+        from fegear.contact.wide.gaps import FlankGaps
+
+        apart = FlankGaps()
+        if relief:
+            driver, driven = (
+                build_relief(self.pair, member, flank, math.nan)
+                for member, flank in zip(MEMBERS, self.flanks, strict=True)
+            )
+            first, second = (face.built(self.pair, m) for m, face in zip(MEMBERS, self.faces, strict=True))
+            apart = FlankGaps(driver, driven, driver_flank=(*first, *self.cutter), driven_flank=second)
+        if misalignment:
+            off = self.errors
+            apart = replace(
+                apart, face_position=off.face_position, line_gap=off.line_gap, tilt=off.tilt,
+                driver_flank=(*apart.driver_flank, *off.cutting),
+            )  # fmt: skip
+        if spacing_errors:
+            one, other = (flank.spacing for flank in self.flanks)
+            apart = replace(apart, driver_spacing=one, driven_spacing=other, base_pitch=self.base_pitch)
+        return apart
+
+
+def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
+    """Collect what a case says of the loaded flanks of a pair.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or has not what it is named for.
+    """
+    part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
+    first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
+    own = EffectsPart(**{effect: getattr(effects, effect) for effect in FLANK_EFFECTS})
+    faces = gear_face(scene, first.gear), gear_face(scene, second.gear)
+    errors = flank_errors(scene, name)
+    nominal = part.normal_load(pair) or math.nan
+    asked = scene.case.load_distribution
+    panels = asked.panels or max(4, math.ceil(_PANELS_PER_MODULE * pair.face_width / pair.driver.module - 1e-9))
+    width: Literal["solid", "slices"] = "slices" if part.width == "slices" else "solid"
+    if effects.misalignment:
+        pair = _placed(pair, errors.apart, name)
+    return FlanksToLoad(
+        pair, own, (first, second), faces, cutter_modification(scene, name), errors, part.all_loads(pair), nominal,
+        asked.positions, panels, width, asked.base_pitch, name,
+    )  # fmt: skip
+
+
+def _placed(pair: GearPair, apart: float, name: str) -> GearPair:
+    """The pair at a centre distance that is off by `apart` [m]."""
+    try:
+        return replace(pair, centre_distance=pair.centre_distance + apart) if apart else pair
+    except InputError as error:
+        raise at(f"pair.{name}.misalignment", error) from None
+
+
+def check_flanks_to_load(scene: Scene, name: str) -> None:
+    """Refuse pairs that cannot be loaded with their width, and effects without data.
+
+    Raises
+    ------
+    InputError
+    """
+    part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
+    for gear in (part.driver, part.driven):
+        check_solid_gear(scene, gear)
+    if part.normal_load(pair) is None:
+        raise InputError(f"pair.{name}.load", "(not given)", "is needed to load the flanks", "give load or torque")
+    try:
+        refuse_load(pair, max(part.all_loads(pair)))
+    except InputError as error:
+        raise at(f"pair.{name}", error) from None
+    if pair.contact_ratio < 1.0:
+        raise InputError(
+            f"pair.{name}", f"contact ratio {pair.contact_ratio:.4f}", "is below 1",
+            "lengthen the teeth or raise the number of teeth",
+        )  # fmt: skip
+    if effects.misalignment and part.line_error is None and part.misalignment is None:
+        raise InputError(
+            "effects.misalignment", "true", f"finds no misalignment and no gap over the face of pair {name}",
+            f'give pair.{name}.misalignment = {{ driven = {{ out_of_plane = "10 um" }} }}, or leave the effect out',
+        )  # fmt: skip
+    asked = flanks_to_load(scene, name)
+    gears = scene.case.gear.values()
+    if effects.relief and not (asked.cutter or any(gear.relief or gear.over_face for gear in gears)):
+        raise InputError(
+            "effects.relief", "true", "finds no gear with relief, lead, bias or topography in this case",
+            f"give gear.{part.driver}.relief or lead, or leave the effect out",
+        )  # fmt: skip
+    if effects.spacing_errors and all(gear.spacing_errors is None for gear in gears):
+        raise InputError(
+            "effects.spacing_errors", "true", "finds no gear with spacing_errors in this case",
+            f"give gear.{part.driver}.spacing_errors, or leave the effect out",
+        )  # fmt: skip
+    for member, flank in zip(MEMBERS, asked.flanks, strict=True):
+        if effects.relief and flank.wants_delta:
+            raise InputError(
+                f"gear.{flank.gear}.relief", "amount_over_delta", "counts in deflections of plane teeth",
+                "give the amount as a length for a pair with a width",
+            )  # fmt: skip
+        if effects.relief:
+            asked.faces[MEMBERS.index(member)].built(pair, member)
+        try:
+            build_relief(pair, member, flank, math.nan) if effects.relief else None
+        except InputError as error:
+            raise at(f"gear.{flank.gear}", error) from None

@@ -1,0 +1,389 @@
+"""What a case neglects: the size of each effect that is off, beside the case's tolerance, and the remedy.
+
+What a moving train neglects: contact loss and friction, from one motion with them at the speed where they matter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import FegearError, InputError
+from fegear.base.tally import tallying
+from fegear.case.built.loaded_pair import relieved, spaced
+from fegear.case.built.pair_inputs import LOAD_SHARING
+from fegear.case.built.train import motion_model
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from fegear.case.built.loaded_pair import LoadedPair
+    from fegear.case.built.pair_inputs import PairInputs
+    from fegear.case.built.train import MotionInputs
+    from fegear.case.effects import EffectsPart
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.neglected_effects import Answer, Change
+    from fegear.dynamics.motion.steady_state import SteadyState
+    from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.dynamics.train.gear_train import GearTrain
+
+
+_UNITS = {"transmission error": ("um", 1e6), "load on a tooth pair": ("N", 1.0), "root tension": ("MPa", 1e-6)}
+
+
+#: Contact ratios nearer to a whole number than this leave transmission error a spike of almost no width.
+_NEAR_WHOLE = 1e-3
+
+
+_SCALES = {"transmission error": "its mean", "load on a tooth pair": "the load", "root tension": "its largest value"}
+
+
+@dataclass(frozen=True)
+class Neglected:
+    """Effects of load sharing that are off.
+
+    Parameters
+    ----------
+    changes : mapping of str to tuple of Change
+        What each of them would change.
+    wrong : mapping of str to InputError
+        Those whose data are wrong, which stops nothing while they are off.
+    """
+
+    changes: Mapping[str, tuple[Change, ...]]
+    wrong: Mapping[str, InputError]
+
+
+def percent(share: float) -> str:
+    """A share with two or three figures."""
+    return f"{100.0 * share:.{0 if share >= 0.1 else 1 if share >= 0.01 else 2}f} %"
+
+
+def remark(who: str, effects: EffectsPart, tolerance: float, effect: str, sizes: Iterable[str]) -> str:
+    """Say which effect is off, how much it would change, beside what tolerance, and what to write to have it."""
+    now = 'is "linear"' if effects.is_on(effect) else "is off"
+    return (
+        f"{who}: {effect} {now}; it would change {', '.join(sizes)}. "
+        f"The tolerance is {tolerance:.2g}. {remedy(effects, effect)}"
+    )
+
+
+def remedy(effects: EffectsPart, effect: str) -> str:
+    """The line that switches an effect on, and what has to go for it."""
+    line = f"Write {effect} = {effects.example(effect)} under [effects]"
+    if effect in ("corner_contact", "neighbour_coupling") and effects.friction:
+        return f"{line}, without friction, which needs tooth pairs that stand alone."
+    return f"{line}."
+
+
+def with_effect(asked: PairInputs, engagement: Engagement, effect: str) -> Engagement | None:
+    """The engagement with one effect more; None where there is nothing that it could change.
+
+    Raises
+    ------
+    InputError
+        If the data of the effect are wrong.
+    """
+    for flank in asked.flanks:
+        if effect in flank.wrong:
+            raise flank.wrong[effect]
+    compliance = engagement.compliance
+    sources = (compliance.driver, compliance.driven)
+    if effect == "relief":
+        return relieved(asked, engagement) if any(flank.relief for flank in asked.flanks) else None
+    if effect == "corner_contact":
+        other = replace(engagement, corner_contact=True)
+        changes_something = any(corner.exists for corner in other.meshing.corners)
+    elif effect == "neighbour_coupling":
+        other = replace(engagement, compliance=replace(compliance, coupling=True))
+        changes_something = any(source.reach > 0 for source in sources)
+    elif effect == "hertz":
+        other = replace(engagement, compliance=replace(compliance, hertz="load-dependent"))
+        changes_something = any(source.log_slope > 0.0 or source.power > 0.0 for source in sources)
+    else:
+        changes_something = any(flank.spacing.size for flank in asked.flanks)
+        other = spaced(asked, engagement) if changes_something else engagement
+    if not changes_something:
+        return None
+    # An amount of relief that counts in deflections changes with them.
+    again = asked.effects.relief and any(flank.wants_delta for flank in asked.flanks)
+    return relieved(asked, other) if again else other
+
+
+def _off(effects: EffectsPart, known: Sequence[str]) -> list[str]:
+    """Effects that are off, and contacts whose stiffness is assumed to be that under the nominal load."""
+    found = [effect for effect in known if not effects.is_on(effect)]
+    return [*found, "hertz"] if effects.hertz == "linear" else found
+
+
+def neglected_effects(
+    asked: PairInputs, pair: LoadedPair, answers: Sequence[Answer], loads: Sequence[float]
+) -> Neglected:
+    """What each effect of load sharing that the case neglects would change.
+
+    Parameters
+    ----------
+    asked : PairInputs
+    pair : LoadedPair
+    answers : sequence of str
+        What is looked at.
+    loads : sequence of float
+        [N].
+    """
+    from fegear.contact.plane.neglected_effects import changes
+
+    if not answers:
+        return Neglected({}, {})
+    others: dict[str, Engagement] = {}
+    wrong: dict[str, InputError] = {}
+    with tallying():  # what the estimate runs is no part of the case's own work
+        for effect in _off(asked.effects, LOAD_SHARING):
+            try:
+                other = with_effect(asked, pair.engagement, effect)
+            except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size
+                wrong[effect] = error
+                continue
+            if other is not None:
+                others[effect] = other
+        if not others:
+            return Neglected({}, wrong)
+        cycle = _uneven(others["spacing_errors"]) if "spacing_errors" in others else 0
+        return Neglected(changes(pair.engagement, others, loads, answers, cycle), wrong)
+
+
+def neglected_remarks(
+    name: str, found: Neglected, effects: EffectsPart, tolerance: float, nominal: float
+) -> tuple[str, ...]:
+    """Effects of load sharing that are off and would change the wanted answers by more than the tolerance."""
+    said = [
+        f"Pair {name}: {effect} is off; its effect cannot be estimated from the data given: {error}"
+        for effect, error in found.wrong.items()
+    ]
+    for effect, parts in found.changes.items():
+        sizes = [_size(change, nominal) for change in parts if change.share > tolerance]
+        if sizes:
+            said.append(remark(f"Pair {name}", effects, tolerance, effect, sizes))
+    return tuple(said)
+
+
+def whole_ratio_remarks(name: str, engagement: Engagement, effects: EffectsPart) -> tuple[str, ...]:
+    """What a contact ratio next to a whole number does to the peak to peak where tip corners do not touch."""
+    ratio = engagement.pair.contact_ratio
+    off = ratio - round(ratio)
+    if engagement.corner_contact or abs(off) >= _NEAR_WHOLE:
+        return ()
+    said = (
+        f"Pair {name}: the contact ratio is {ratio:.9g}, within {_NEAR_WHOLE:g} of a whole number, and corner_contact "
+        f"is off: one tooth pair {'more' if off >= 0.0 else 'less'} is in contact over "
+        f"{abs(off) * engagement.pair.base_pitch * 1e6:.3g} um of the base pitch alone, a spike of transmission error "
+        "and stiffness of almost no width. Peak to peak jumps where the ratio passes the whole number, and with it all "
+        f"that is searched for by it. {remedy(effects, 'corner_contact')} With it both are continuous."
+    )
+    return (said,)
+
+
+def neglected_in_design(
+    asked: PairInputs, designed: Engagement, load: float, tolerance: float
+) -> dict[str, tuple[str, ...]]:
+    """What an effect that is off does to a designed relief, and to what it leaves, where that exceeds the tolerance.
+
+    Returns
+    -------
+    dict of str to tuple of str
+        By the effect, its sizes in words.
+    """
+    from fegear.contact.plane.neglected_effects import changes
+    from fegear.design.minimum_excitation import MinimumExcitationRelief
+
+    found: dict[str, tuple[str, ...]] = {}
+    with tallying():
+        for effect in _off(asked.effects, ("corner_contact", "neighbour_coupling", "hertz")):
+            other = with_effect(asked, designed, effect)
+            if other is None:
+                continue
+            sizes = []
+            if effect == "corner_contact":
+                change = changes(designed, {effect: other}, [load], ("transmission error",))[effect][0]
+                sizes = [_size(change, load)] if change.share > tolerance else []
+            for member in MEMBERS if effect != "corner_contact" else ():
+                relief = designed.driver_relief if member == "driver" else designed.driven_relief
+                if isinstance(relief, MinimumExcitationRelief):
+                    x = np.linspace(designed.pair.x_start, designed.pair.x_end, 25)
+                    now, then = relief.at(x), replace(relief, compliance=other.compliance).at(x)
+                    at, largest = int(np.argmax(np.abs(then - now))), float(now.max())
+                    size = float(then[at] - now[at])
+                    if abs(size) > tolerance * largest:
+                        share = percent(abs(size) / largest)
+                        where = f"{share} of its largest value, at x = {x[at] * 1e3:.4g} mm"
+                        sizes.append(f"the {member}'s relief by {size * 1e6:+.3g} um ({where})")
+            if sizes:
+                found[effect] = tuple(sizes)
+    return found
+
+
+def design_remarks(
+    name: str, found: Mapping[str, tuple[str, ...]], effects: EffectsPart, tolerance: float
+) -> tuple[str, ...]:
+    """Sentences on what `neglected_in_design` found."""
+    return tuple(
+        remark(f"Pair {name}, designed relief", effects, tolerance, effect, sizes) for effect, sizes in found.items()
+    )
+
+
+def _size(change: Change, nominal: float) -> str:
+    unit, factor = _UNITS[change.answer]
+    largest = "largest root tension" if change.answer == "root tension" else change.answer
+    where = "" if np.isnan(change.x) else f", at x = {change.x * 1e3:.4g} mm"
+    load = "" if change.load == nominal else f" under {change.load:.5g} N"
+    return (
+        f"the {largest} by {change.size * factor:+.3g} {unit} "
+        f"({percent(change.share)} of {_SCALES[change.answer]}{where}{load})"
+    )
+
+
+def _uneven(engagement: Engagement) -> int:
+    """The base pitch in which the pair that comes into contact has the largest spacing error."""
+    sizes = [errors.size for errors in (engagement.driver_spacing, engagement.driven_spacing) if errors.size]
+    cycles = np.arange(max(sizes))
+    total = np.zeros(cycles.size)
+    for errors in (engagement.driver_spacing, engagement.driven_spacing):
+        if errors.size:
+            total += errors[cycles % errors.size]
+    return int(np.argmax(np.abs(total - np.median(total))))
+
+
+#: Separations that differ by less are the same [m].
+_NOTHING = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class FactorChange:
+    """What one more effect does to the dynamic factor of a mesh at one speed.
+
+    Parameters
+    ----------
+    mesh : int
+    speed : float
+        Of the first body [rad/s].
+    factor, size : float
+        Dynamic factor without the effect, and how much it changes.
+    """
+
+    mesh: int
+    speed: float
+    factor: float
+    size: float
+
+    @property
+    def share(self) -> float:
+        """Size over factor, positive."""
+        return abs(self.size) / self.factor
+
+
+def _loaded(data: GearTrain) -> list[int]:
+    """Meshes that carry a mean force."""
+    least = 1e-9 * float(np.max(np.abs(data.forces)))
+    return [m for m, force in enumerate(data.forces) if force > least]
+
+
+def _changes(asked: MotionInputs, data: GearTrain, state: SteadyState) -> list[FactorChange]:
+    """One motion with one effect more, at the speed of a state without it."""
+    from fegear.dynamics.motion.steady_state import steady_state
+
+    speed = state.model.speed
+    other = steady_state(motion_model(asked, data, speed), start=asked.start, tolerance=max(asked.tolerance, 1e-3))
+    found = []
+    for m in _loaded(data):
+        before, after = (float(s.tooth_force[m] / data.forces[m]) for s in (state, other))
+        found.append(FactorChange(m, speed, before, after - before))
+    return found
+
+
+def _held_apart(excitation: MeshExcitation) -> bool:
+    """Whether a modification makes tooth pairs of one mesh touch at different approaches."""
+    s = (np.arange(64) + 0.5) / 64
+    pairs = zip(excitation.stiffness, excitation.separation, strict=True)
+    touch = np.array([np.where(k(s) > 0.0, m(s), np.nan) for k, m in pairs])
+    spread = np.nanmax(touch, axis=0) - np.nanmin(touch, axis=0)
+    return bool(spread.max() > _NOTHING)
+
+
+def contact_loss_changes(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
+    """What contact loss changes at the speed at which a mesh that may not part has the smallest force.
+
+    No change, and no work, where no mesh force falls below zero and all teeth of a mesh touch at one approach: none
+    would part then.
+    """
+    # a motion that grows has no size that an effect could change: its own remark names contact loss
+    states = [state for state in states if state.kind != "growing"]
+    if not states:
+        return []
+    least = [min(float(s.smallest[m] / data.forces[m]) for m in _loaded(data)) for s in states]
+    worst = int(np.argmin(least))
+    if least[worst] >= 0.0 and not (asked.parametric and any(_held_apart(m.excitation) for m in data.meshes)):
+        return []
+    return _changes(replace(asked, contact_loss=True), data, states[worst])
+
+
+def friction_changes(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> list[FactorChange]:
+    """What tooth friction changes at the speed of the largest dynamic factor."""
+    if not asked.parametric or not all(mesh.excitation.slotted for mesh in data.meshes):
+        return []  # lumped teeth have no place at which they slide
+    # A motion that does not repeat takes long to find, and friction would have to be seen in its wandering.
+    steady = [s for s in states if s.kind == "periodic"]
+    factors = [max(float(s.tooth_force[m] / data.forces[m]) for m in _loaded(data)) for s in steady]
+    return _changes(replace(asked, friction=True), data, steady[int(np.argmax(factors))]) if steady else []
+
+
+@dataclass(frozen=True)
+class NeglectedInMotion:
+    """Effects of a motion that are off.
+
+    Parameters
+    ----------
+    changes : mapping of str to tuple of FactorChange
+        What each of them would change.
+    failed : mapping of str to str
+        Why the size of an effect cannot be estimated.
+    """
+
+    changes: Mapping[str, tuple[FactorChange, ...]]
+    failed: Mapping[str, str]
+
+
+def neglected_in_motion(asked: MotionInputs, data: GearTrain, states: Sequence[SteadyState]) -> NeglectedInMotion:
+    """What contact loss and friction would change where they are off."""
+    changes: dict[str, tuple[FactorChange, ...]] = {}
+    failed: dict[str, str] = {}
+    off = {"contact_loss": not asked.contact_loss, "friction": not asked.friction}
+    for effect, estimate in (("contact_loss", contact_loss_changes), ("friction", friction_changes)):
+        if not off[effect] or not states:
+            continue
+        try:
+            with tallying():  # what the estimate runs is no part of the case's own work
+                changes[effect] = tuple(estimate(asked, data, states))
+        except FegearError as error:
+            failed[effect] = str(error)
+    return NeglectedInMotion(changes, failed)
+
+
+def motion_remarks(
+    found: NeglectedInMotion, data: GearTrain, effects: EffectsPart, tolerance: float
+) -> tuple[str, ...]:
+    """Contact loss and friction that are off and would change the dynamic factor by more than the tolerance."""
+    said = []
+    for effect in ("contact_loss", "friction"):
+        if effect in found.failed:
+            said.append(f"{effect} is off, and what it would change cannot be estimated: {found.failed[effect]}")
+        sizes = [
+            f"the dynamic factor of mesh {data.names[change.mesh]} by {change.size:+.3g} ({percent(change.share)}, at "
+            f"{change.speed * data.speed_ratio * 30.0 / np.pi:.5g} rpm of {data.speed_of})"
+            for change in found.changes.get(effect, ())
+            if change.share > tolerance
+        ]
+        if sizes:
+            said.append(remark("Motion", effects, tolerance, effect, sizes))
+    return tuple(said)

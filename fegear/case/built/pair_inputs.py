@@ -1,0 +1,373 @@
+"""From a case's pair to plain inputs: gears, loads, effects, and whatever its files hold.
+
+Where a pair's root stress comes from, as ``pair.NAME.root_stress`` says.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.base.errors import InputError, RangeError
+from fegear.case.built.rated_duty import bore_remarks, width_remarks
+from fegear.case.effects import EffectsPart
+from fegear.case.part import at
+from fegear.case.text_file import read_columns
+from fegear.geometry.interference import interference
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible import heavy_load, refuse_spacing_errors
+from fegear.geometry.relief import TabulatedRelief, roll_of_radius
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.case.pair import CompliancePart
+    from fegear.case.reading import Scene
+    from fegear.case.relief import ReliefPart, ReliefTablePart
+    from fegear.contact.plane.closed_form_compliance import FormulaRootStress
+    from fegear.contact.plane.compliance import RootStressInfluence
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair, Member
+
+
+#: The effects of load sharing, in the order in which they are reported.
+LOAD_SHARING = ("corner_contact", "neighbour_coupling", "hertz", "relief", "spacing_errors")
+
+
+#: Share of the active profile that a relief table may leave out unremarked: what rounding its radii takes.
+_UNCOVERED = 1e-3
+
+
+class ComplianceTable(NamedTuple):
+    """Positions on the line of action [m] and compliances [m/N] that a file of the case gives."""
+
+    x: Array
+    compliance: Array
+
+
+@dataclass(frozen=True)
+class Flanks:
+    """What a case says of the flanks of one gear of a pair.
+
+    Parameters
+    ----------
+    relief : ReliefPart or None
+    tables : tuple of TabulatedRelief
+        The tables of the relief, read.
+    spacing : ndarray, shape (teeth,)
+        Spacing error of each tooth [m]; empty for none.
+    gear : str
+        Name of the gear, for messages.
+    wrong : mapping of str to InputError
+        What is wrong with the data of an effect that is off, by its name: it stops nothing.
+    """
+
+    relief: ReliefPart | None
+    tables: tuple[TabulatedRelief, ...]
+    spacing: Array
+    gear: str = field(compare=False)
+    wrong: Mapping[str, InputError] = field(default_factory=dict, compare=False)
+
+    @property
+    def wants_delta(self) -> bool:
+        """Whether the relief's amount is given in Welbourn's Delta."""
+        part = self.relief
+        return part is not None and any(end.amount_over_delta is not None for end in (*part.tip, *part.root))
+
+
+@dataclass(frozen=True)
+class PairInputs:
+    """All that the loaded teeth of a pair depend on, besides the gears' influence functions.
+
+    Parameters
+    ----------
+    pair : GearPair
+    compliance : CompliancePart
+    table : ComplianceTable or None
+        Where the compliances come from a file.
+    effects : EffectsPart
+        Those of load sharing; all others are off.
+    flanks : tuple of (Flanks, Flanks)
+        Of driver and driven.
+    loads : tuple of float
+        Every load of the case [N], ascending.
+    nominal : float
+        The load that the contract's tables are for [N].
+    assumed : tuple of str
+        Sentences about data that the effects neglect and values that the case does not give.
+    name : str
+        Of the pair.
+    """
+
+    pair: GearPair
+    compliance: CompliancePart
+    table: ComplianceTable | None
+    effects: EffectsPart
+    flanks: tuple[Flanks, Flanks]
+    loads: tuple[float, ...]
+    nominal: float
+    assumed: tuple[str, ...] = field(default=(), compare=False)
+    name: str = field(default="", compare=False)
+
+    def flank(self, member: Member) -> Flanks:
+        """Those of driver or driven."""
+        return self.flanks[0] if member == "driver" else self.flanks[1]
+
+    @property
+    def gears(self) -> tuple[str, str]:
+        """Names of driver and driven."""
+        return self.flanks[0].gear, self.flanks[1].gear
+
+
+def gear_name(scene: Scene, pair: str, member: Member) -> str:
+    """Name of the driver or the driven gear of a pair."""
+    part = scene.case.pair[pair]
+    return part.driver if member == "driver" else part.driven
+
+
+def pair_inputs(scene: Scene, name: str) -> PairInputs:
+    """Collect what a case says of a loaded pair.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or has not what it is named for.
+    """
+    part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
+    first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
+    own = EffectsPart(**{effect: getattr(effects, effect) for effect in LOAD_SHARING})
+    table = pair_compliance_table(scene, name) if part.compliance.source == "table" else None
+    nominal = part.normal_load(pair) or math.nan
+    assumed = effect_remarks(scene, name)
+    if effects.relief:
+        assumed += table_remarks(pair, (first, second))
+    return PairInputs(
+        pair, part.compliance, table, own, (first, second), part.all_loads(pair), nominal, assumed, name
+    )  # fmt: skip
+
+
+def gear_flanks(scene: Scene, gear: str) -> Flanks:
+    """What a case says of the flanks of a gear; data of effects that are off may be wrong."""
+    part, effects = scene.case.gear[gear], scene.case.effects
+    tables: tuple[TabulatedRelief, ...] = ()
+    spacing, wrong = np.empty(0), {}
+    try:
+        tables = tuple(
+            _table_relief(scene, scene.gears[gear], table, f"gear.{gear}.relief.table[{i}]")
+            for i, table in enumerate(part.relief.table if part.relief else ())
+        )
+    except InputError as error:
+        if effects.relief:
+            raise
+        wrong["relief"] = error
+    try:
+        spacing = _spacing_errors(scene, gear)
+    except InputError as error:
+        if effects.spacing_errors:
+            raise
+        wrong["spacing_errors"] = error
+    return Flanks(part.relief, tables, spacing, gear, wrong)
+
+
+def effect_remarks(scene: Scene, name: str) -> tuple[str, ...]:
+    """Data of the pair that its effects neglect, values assumed for what is not given, corners that cannot touch."""
+    remarks, effects = [], scene.case.effects
+    for gear in dict.fromkeys(gear_name(scene, name, member) for member in MEMBERS):
+        part = scene.case.gear[gear]
+        if part.relief is not None and not effects.relief:
+            remarks.append(
+                f"Gear {gear} has a relief, but effects.relief is off: its flanks are assumed to be involutes."
+            )
+        if part.spacing_errors is not None and not effects.spacing_errors:
+            remarks.append(
+                f"Gear {gear} has spacing_errors, but the effect is off: its teeth are assumed to be evenly spaced."
+            )
+        if part.over_face:
+            remarks.append(
+                f"Gear {gear} has {' and '.join(part.over_face)}, which plane teeth do not know: they are the same all "
+                f'along the face. Write width = "solid" for pair {name}.'
+            )
+        remarks += width_remarks(scene, gear)
+        if scene.case.pair[name].compliance.source == "fe":
+            remarks += bore_remarks(scene, gear)
+    given = [key for key in ("misalignment", "line_error", "modification") if getattr(scene.case.pair[name], key)]
+    if given:
+        remarks.append(
+            f"Pair {name} has {' and '.join(given)}, which plane teeth do not know: they are the same all along the "
+            f'face. Write width = "solid" for it.'
+        )
+    pair = scene.pairs[name]
+    if sentence := heavy_load(pair, max(scene.case.pair[name].all_loads(pair), default=0.0)):
+        remarks.append(f"Pair {name}: {sentence}")
+    if effects.corner_contact:
+        remarks += [
+            f"Pair {name}: the tip of the {member} gear reaches below the form circle of its mate, where the path "
+            "ends: there is no corner contact at that end."
+            for member in MEMBERS
+            if interference(pair, member).below_form_circle
+        ]
+    return tuple(remarks)
+
+
+def table_remarks(pair: GearPair, flanks: tuple[Flanks, Flanks]) -> tuple[str, ...]:
+    """Where relief tables end before the active profile does."""
+    remarks = []
+    for member, flank in zip(MEMBERS, flanks, strict=True):
+        gear = pair.gear(member)
+        low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+        for table in flank.tables:
+            first, last = float(table.roll[0]), float(table.roll[-1])
+            least = _UNCOVERED * (high - low)
+            if first - low <= least and high - last <= least:
+                continue
+            radii = [float(gear.tooth.radius_of_roll(t)) * gear.module * 1e3 for t in (first, last, low, high)]
+            remarks.append(
+                f"Gear {flank.gear}: its relief table runs from radius {radii[0]:.6g} to {radii[1]:.6g} mm, the active "
+                f"profile from {radii[2]:.6g} to {radii[3]:.6g} mm; beyond its ends the table is held at "
+                f"{table.values[0] * 1e6:.4g} and {table.values[-1] * 1e6:.4g} um."
+            )
+    return tuple(dict.fromkeys(remarks))
+
+
+def pair_compliance_table(scene: Scene, name: str) -> ComplianceTable:
+    """Positions [m] and compliances [m/N] of the file that a pair names."""
+    part, pair = scene.case.pair[name].compliance, scene.pairs[name]
+    key = f"pair.{name}.compliance.file"
+    dimensions = {
+        "x": "length", "roll_angle": "angle", "compliance": "compliance", "load": "force", "deflection": "length"
+    }  # fmt: skip
+    columns = read_columns(scene.file(part.file or "", key), key, dimensions)
+    if "compliance" in columns:
+        c = columns["compliance"]
+    elif "load" in columns and "deflection" in columns:
+        if not (columns["load"] > 0.0).all():
+            raise InputError(key, f'"{part.file}"', "has a load that is not positive, which leaves no compliance")
+        c = columns["deflection"] / columns["load"]
+    else:
+        raise InputError(key, f'"{part.file}"', "has neither a column compliance nor load and deflection")
+    if "roll_angle" in columns:
+        rb = pair.driver.base_radius
+        return ComplianceTable(columns["roll_angle"] * rb - rb * math.tan(pair.working_pressure_angle), c)
+    if "x" not in columns:
+        raise InputError(key, f'"{part.file}"', "has neither a column x nor roll_angle")
+    return ComplianceTable(columns["x"], c)
+
+
+def _table_relief(scene: Scene, gear: Gear, part: ReliefTablePart, key: str) -> TabulatedRelief:
+    if part.file is not None:
+        columns = read_columns(
+            scene.file(part.file, f"{key}.file"), f"{key}.file",
+            {"roll_angle": "angle", "radius": "length", "relief": "length"},
+        )  # fmt: skip
+        if "relief" not in columns or not ("roll_angle" in columns or "radius" in columns):
+            raise InputError(f"{key}.file", f'"{part.file}"', "needs the columns relief and roll_angle or radius")
+        values = columns["relief"]
+        roll = columns["roll_angle"] if "roll_angle" in columns else _rolls(gear, columns["radius"], key)
+    else:
+        values = np.array(part.removals)
+        roll = np.array(part.roll_angles) if part.roll_angles else _rolls(gear, np.array(part.radii), key)
+    order = np.argsort(roll)
+    return TabulatedRelief(roll[order], values[order], part.interpolation)
+
+
+def _rolls(gear: Gear, radii: Array, key: str) -> Array:
+    if (radii < gear.base_radius).any():
+        raise InputError(f"{key}.radii", f"{radii.min() * 1e3:.6g} mm", "lies inside the base circle")
+    return roll_of_radius(gear, radii)
+
+
+def _spacing_errors(scene: Scene, gear: str) -> Array:
+    """Spacing error of each tooth of a gear [m]; empty for none."""
+    part, key = scene.case.gear[gear].spacing_errors, f"gear.{gear}.spacing_errors"
+    if part is None:
+        return np.empty(0)
+    if part.values is not None:
+        errors = np.array(part.values)
+    else:
+        columns = read_columns(scene.file(part.file or "", f"{key}.file"), f"{key}.file", {"spacing_error": "length"})
+        if "spacing_error" not in columns:
+            raise InputError(f"{key}.file", f'"{part.file}"', "has no column spacing_error")
+        errors = columns["spacing_error"]
+    teeth, module = scene.gears[gear].teeth, scene.gears[gear].module
+    if errors.size != teeth:
+        raise InputError(key, f"{errors.size} errors", f"must be one for each of the {teeth} teeth")
+    try:
+        refuse_spacing_errors(errors, module)
+    except InputError as error:
+        raise at(f"gear.{gear}", error) from None
+    return errors
+
+
+#: Name of the source that is no formula.
+FINITE_ELEMENTS = "fe"
+
+
+#: Loads at which a formula is tried before anything is computed.
+_TRIED = 4
+
+
+def root_stress_source(
+    source: str,
+    name: str,
+    gear: str,
+    pair: GearPair,
+    member: Member,
+    solved: Mapping[str, GearInfluence],
+    *,
+    tips: bool,
+) -> RootStressInfluence:
+    """One gear's root stress from finite elements or from a formula.
+
+    Parameters
+    ----------
+    source : str
+        ``"fe"`` or the name of a formula.
+    name, gear : str
+        Of the pair and of the gear in the case.
+    pair : GearPair
+    member : {"driver", "driven"}
+    solved : mapping of str to GearInfluence
+        Gears solved by finite elements, by name; needed for ``"fe"``.
+    tips : bool
+        Whether tip corners may touch the flank beyond the path of contact.
+
+    Raises
+    ------
+    RangeError
+        If the formula does not hold on the part of the flank where loads act, under its key in the case.
+    """
+    from fegear.contact.plane.fe_compliance import finite_element_compliance
+
+    if source == FINITE_ELEMENTS:
+        return finite_element_compliance(solved[gear])
+    return _formula(source, name, gear, pair, member, tips)
+
+
+def check_formulas(scene: Scene, name: str, *, tips: bool) -> None:
+    """Refuse a pair's root-stress formulas where they do not hold, from a few loads over each flank."""
+    part, pair = scene.case.pair[name], scene.pairs[name]
+    for source in part.root_stress.source:
+        if source != FINITE_ELEMENTS:
+            for member in MEMBERS:
+                _formula(source, name, gear_name(scene, name, member), pair, member, tips, _TRIED)
+
+
+def _formula(
+    source: str, name: str, gear: str, pair: GearPair, member: Member, tips: bool, *points: int
+) -> FormulaRootStress:
+    from fegear.contact.plane.closed_form_compliance import formula_root_stress
+
+    own = pair.gear(member)
+    low, high = sorted(float(pair.radius(x, member)) for x in (pair.x_start, pair.x_end))
+    if tips:
+        low, high = own.form_radius, own.involute_tip_radius
+    try:
+        return formula_root_stress(own, source, low, high, *points)
+    except RangeError as error:
+        told = RangeError(error.key, error.value, f"{error.rule} (gear {gear})", error.remedy)
+        raise at(f"pair.{name}.root_stress", told) from None

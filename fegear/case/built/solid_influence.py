@@ -1,0 +1,186 @@
+"""The solid solution of a gear with a width, once for every stage that needs it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING, Literal
+
+from fegear.base.errors import InputError, RangeError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.tooth_influence import given_settings
+from fegear.case.part import at
+
+if TYPE_CHECKING:
+    from fegear.case.accuracy import AccuracyPart
+    from fegear.case.reading import Scene
+    from fegear.fem.solid.influence import SolidInfluence
+    from fegear.fem.solid.settings import SolidSettings
+    from fegear.geometry.gear import Gear
+
+#: Tolerance that the usual settings are for, how edges and wavelengths follow another and how far; from the last on
+#: elements of order 4 are taken, as fine as a case asks for.
+_USUAL_TOLERANCE, _FOLLOWS, _COARSEST, _FINE_TOLERANCE = 1e-2, 0.25, 1.25, 3e-3
+#: Processor seconds of a solid gear with the usual settings and its error estimate: those of a narrow gear, what the
+#: third power of the width [modules] adds, and the power of one over the edge length, or of the elements' order, with
+#: which both grow.
+_SECONDS, _BY_WIDTH, _GROWTH = 2.5, 6e-3, 4.0
+#: Of one in slices.
+_SECONDS_OF_SLICES = 0.6
+
+
+@dataclass(frozen=True)
+class SolidGearToSolve:
+    """All that the solid influence functions of a gear depend on.
+
+    Parameters
+    ----------
+    gear : Gear
+    settings : SolidSettings
+    tolerance : float
+        What estimated errors are held against.
+    reach : int
+        K: neighbours -K..K.
+    name : str
+        Of the gear, for messages.
+    """
+
+    gear: Gear
+    settings: SolidSettings
+    tolerance: float
+    reach: int
+    name: str = field(default="", compare=False)
+
+
+def settings_of_case(accuracy: AccuracyPart) -> SolidSettings:
+    """Settings of a solid gear for a tolerance; edge lengths and order that the case gives hold for its section."""
+    from fegear.fem.solid.settings import SolidSettings, solid_settings
+
+    if accuracy.tolerance <= _FINE_TOLERANCE:
+        chosen = solid_settings(_FINE_TOLERANCE)
+    else:
+        factor = min((accuracy.tolerance / _USUAL_TOLERANCE) ** _FOLLOWS, _COARSEST)
+        chosen = SolidSettings().scaled(factor)
+    # The half-width of the bands is the solid's own.
+    given = {key: value for key, value in given_settings(accuracy).items() if key != "patch_half_width"}
+    return replace(chosen, section=replace(chosen.section, **given)) if given else chosen
+
+
+def solid_settings_of(scene: Scene, name: str) -> SolidSettings:
+    """Settings of a solid gear: those for the case's tolerance, as a solid or in slices."""
+    return replace(settings_of_case(scene.case.accuracy), source=_source(scene, name))
+
+
+def _source(scene: Scene, name: str) -> Literal["solid", "slices"]:
+    """Solid or slices, as the gear's pairs and the table over its face have it.
+
+    Raises
+    ------
+    InputError
+        If they want both.
+    """
+    wanted: dict[str, Literal["solid", "slices"]] = {}
+    for key in flank_pairs(scene):
+        part = scene.case.pair[key]
+        if name in (part.driver, part.driven):
+            wanted[f"pair.{key}.width"] = "slices" if part.width == "slices" else "solid"
+    table = scene.case.stiffness
+    if table.face_positions is not None and table.gear in (None, name) and "stiffness" in scene.case.results:
+        wanted["stiffness.source"] = table.source
+    if len(set(wanted.values())) > 1:
+        one = next(key for key, value in wanted.items() if value == "slices")
+        other = next(key for key, value in wanted.items() if value == "solid")
+        raise InputError(
+            one, '"slices"', f"contradicts {other}: gear {name} is solved once in a case, as a solid or in slices",
+            "write the same for both, or ask for one of them in a case of its own",
+        )  # fmt: skip
+    return next(iter(wanted.values()), table.source)
+
+
+def flank_pairs(scene: Scene) -> tuple[str, ...]:
+    """The pairs that the case's results load with their width, if they have a load.
+
+    ``load-distribution`` is for every pair that is not plane by its key, other results for those with a width.
+    """
+    if "load-distribution" in scene.case.results:
+        return tuple(key for key, part in scene.case.pair.items() if part.width != "plane")
+    return tuple(key for key in scene.wide_pairs if scene.case.pair[key].normal_load(scene.pairs[key]) is not None)
+
+
+def solid_gear_to_solve(scene: Scene, name: str) -> SolidGearToSolve:
+    """What the case asks of the solid influence functions of a gear."""
+    accuracy, reach = scene.case.accuracy, 1
+    for key in flank_pairs(scene):
+        if name in (scene.case.pair[key].driver, scene.case.pair[key].driven):
+            # As far as two pairs of one mesh can stand apart.
+            reach = max(reach, math.ceil(scene.pairs[key].total_contact_ratio))
+    return SolidGearToSolve(scene.gears[name], solid_settings_of(scene, name), accuracy.tolerance, reach, name)
+
+
+def check_solid_gear(scene: Scene, name: str) -> None:
+    """Refuse gears whose width is not given, or whose teeth are a mesh of the user's own.
+
+    Raises
+    ------
+    InputError
+    """
+    part = scene.case.gear[name]
+    _source(scene, name)
+    if part.face_width is None:
+        raise InputError(
+            f"gear.{name}.face_width", "(none)", "is needed for a gear that is solved with its width",
+            'write face_width = "20 mm", or leave face_positions out',
+        )  # fmt: skip
+    if part.tooth_mesh is not None:
+        raise InputError(
+            f"gear.{name}.tooth_mesh", f'"{part.tooth_mesh}"', "is a plane mesh, and solid teeth are meshed by fegear",
+            "leave tooth_mesh out, or leave face_positions out",
+        )  # fmt: skip
+
+
+def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None = None) -> SolidInfluence:
+    """Solve a gear with its width, or recall its shape from a cache.
+
+    Raises
+    ------
+    RangeError
+        If it cannot be meshed, under the key of the case.
+    """
+    from fegear.fem.solid.influence import solid_influence
+
+    gear, cache = asked.gear, cache or SolutionCache()
+    try:
+        found = solid_influence(
+            gear.tooth,
+            gear.twist * gear.module,
+            gear.face_width / gear.module,
+            gear.material.poisson_ratio,
+            gear.bore_radius / gear.module,
+            asked.settings,
+            reach=asked.reach,
+            cache=cache,
+        )
+    except RangeError as error:
+        raise at(f"gear.{asked.name}", error, {"poisson_ratio": "material.poisson_ratio"}) from None
+    return found.with_error(cache)
+
+
+def seconds_of_solid_gear(settings: SolidSettings, width: float) -> float:
+    """About how many seconds a solid gear takes, with its error estimate; `width` in modules."""
+    from fegear.fem.solid.settings import SolidSettings
+
+    usual, section = SolidSettings().section, settings.section
+    finer = usual.root_edge_length / section.root_edge_length * section.order / usual.order
+    alone = _SECONDS_OF_SLICES if settings.source == "slices" else _SECONDS + _BY_WIDTH * width**3
+    return alone * finer**_GROWTH
+
+
+def solid_solution_settings(influence: SolidInfluence) -> dict[str, object]:
+    """Settings of a solid solution and what they cost, for the summary."""
+    return {
+        **asdict(influence.settings),
+        "degree_along_the_face": influence.settings.degree(influence.width),
+        "unknowns": influence.fine.unknowns,
+        "estimated_error": {key: float(f"{error:.3g}") for key, error in influence.error.items()},
+        "seconds": {key: round(seconds, 6) for key, seconds in influence.seconds.items()},
+    }

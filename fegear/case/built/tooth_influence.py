@@ -1,0 +1,236 @@
+"""The finite-element solution of a gear, once for every stage that needs it.
+
+``gear.NAME.tooth_mesh``: a user's own mesh in place of the generated one.
+
+From ``[accuracy]`` to the settings of the finite-element part.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any
+
+from fegear.base.errors import RangeError
+from fegear.case.part import at
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.base.solution_cache import SolutionCache
+    from fegear.case.accuracy import AccuracyPart
+    from fegear.case.reading import Scene
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.mesh import SectorMesh
+    from fegear.fem.plane.settings import MeshSettings
+    from fegear.geometry.gear import Gear
+
+
+def needed_reach(scene: Scene, name: str) -> int:
+    """How many neighbours on either side a gear's solution must know: as many as share the load in any of its pairs.
+
+    All stages ask for the same number, so that they find the same solution. Without neighbour coupling it is one, which
+    comes with the solution: the size of what is neglected follows from it.
+    """
+    reach = 1
+    if not scene.case.effects.neighbour_coupling:
+        return reach
+    for key, part in scene.case.pair.items():
+        if key in scene.pairs and name in (part.driver, part.driven):
+            ratio = scene.pairs[key].contact_ratio
+            # A corner in contact before and after the path adds a pair at either end.
+            extra = 1 if scene.case.effects.corner_contact else 0
+            # A root's stress is followed from a base pitch before contact to one after it.
+            extra += 1 if "root-stress-history" in scene.case.results else 0
+            reach = max(reach, min(math.ceil(ratio * (1.0 - 1e-12)) - 1 + extra, scene.gears[name].teeth // 2 - 1))
+    return reach
+
+
+@dataclass(frozen=True)
+class GearToSolve:
+    """All that the influence functions of a gear depend on.
+
+    Parameters
+    ----------
+    gear : Gear
+    tolerance : float
+        Relative; met by finer settings while the error estimate misses it.
+    settings : MeshSettings or None
+        Given by the case, or for its own tooth mesh: taken as they are.
+    reach : int
+        K: neighbours -K..K.
+    mesh : SectorMesh or None
+        A user's own.
+    name : str
+        Of the gear, for messages.
+    draft : bool
+        Whether the first settings for the tolerance are enough, without an error estimate.
+    """
+
+    gear: Gear
+    tolerance: float
+    settings: MeshSettings | None
+    reach: int
+    mesh: SectorMesh | None = None
+    name: str = field(default="", compare=False)
+    draft: bool = False
+
+
+def gear_to_solve(scene: Scene, name: str) -> GearToSolve:
+    """What the case asks of the influence functions of a gear.
+
+    Raises
+    ------
+    InputError
+        If the gear's own mesh cannot be read.
+    """
+    mesh, accuracy = own_sector_mesh(scene, name), scene.case.accuracy
+    given = mesh is not None or bool(given_settings(accuracy))
+    settings = mesh_settings(accuracy) if given else None
+    draft, reach = None if given else scene.drafts.get(name), needed_reach(scene, name)
+    tolerance = draft or accuracy.tolerance
+    return GearToSolve(scene.gears[name], tolerance, settings, reach, mesh, name, draft is not None)
+
+
+def solve_influence_functions(
+    asked: GearToSolve, cache: SolutionCache | None = None, progress: Callable[[str], None] | None = None
+) -> GearInfluence:
+    """Solve a gear for its influence functions, or recall its shapes from a cache.
+
+    Parameters
+    ----------
+    asked : GearToSolve
+    cache : SolutionCache, optional
+    progress : callable, optional
+        Called with the name of each step as it starts.
+
+    Raises
+    ------
+    RangeError
+        If the gear's bore cannot be meshed, under its key in the case.
+    """
+    from fegear.fem.plane.solution import solve_gear, solve_to_tolerance
+
+    gear, reach = asked.gear, asked.reach
+    try:
+        if asked.draft:
+            return solve_gear(gear, settings_for(asked.tolerance), reach=reach, estimate_error=False, cache=cache)
+        if asked.settings is None:
+            return solve_to_tolerance(gear, asked.tolerance, reach=reach, progress=progress, cache=cache)
+        return solve_gear(gear, asked.settings, reach=reach, mesh=asked.mesh, progress=progress, cache=cache)
+    except RangeError as error:
+        raise at(f"gear.{asked.name}", error) from None
+
+
+def solution_settings(influence: GearInfluence) -> dict[str, object]:
+    """Settings of a gear's solution and what they cost, for the summary."""
+    found: dict[str, object] = {
+        **asdict(influence.settings),
+        "unknowns": influence.fine.unknowns,
+        "mesh": influence.fine.mesh.origin,
+        "plane": influence.gear.plane_assumption,
+        "seconds": {key: round(seconds, 6) for key, seconds in influence.seconds.items()},
+    }
+    if influence.rounds:
+        found["rounds"] = [
+            {
+                "root_edge_length": one.settings.root_edge_length,
+                "unknowns": one.unknowns,
+                "estimated_error": {key: float(f"{error:.3g}") for key, error in one.errors.items()},
+                "seconds": round(one.seconds, 6),
+            }
+            for one in influence.rounds
+        ]
+    return found
+
+
+def solution_remarks(name: str, influence: GearInfluence, tolerance: float) -> tuple[str, ...]:
+    """Say where a tolerance took more than one solution, and where the last of them still misses it."""
+    rounds = influence.rounds
+    if not rounds or (len(rounds) == 1 and rounds[0].error <= tolerance):
+        return ()
+    steps = ", ".join(f"{one.error:.1e} with {one.unknowns} unknowns a tooth" for one in rounds)
+    last = rounds[-1]
+    if last.error <= tolerance:
+        end = "the last is kept."
+    else:
+        worst = max(last.errors, key=lambda key: last.errors[key])
+        end = f"the last is kept, though {worst} misses the tolerance: it is the finest mesh, or the last one tried."
+    times = "once" if len(rounds) == 2 else f"{len(rounds) - 1} times"
+    how = f"was refined {times}" if len(rounds) > 1 else "was solved"
+    return (f"Gear {name} {how} for the tolerance {tolerance:.2g}; largest estimated errors: {steps}; {end}",)
+
+
+def own_sector_mesh(scene: Scene, name: str) -> SectorMesh | None:
+    """Read the tooth mesh that the case names for a gear, in millimetres; None if it names none.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Name of the gear.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or its mesh cannot be used.
+    """
+    part = scene.case.gear[name]
+    file = part.tooth_mesh
+    if file is None:
+        return None
+    from fegear.fem.plane.imported_mesh import read_sector_mesh
+
+    gear, key = scene.gears[name], f"gear.{name}.tooth_mesh"
+    own = part.tooth_mesh_fillet == "own"
+    return read_sector_mesh(scene.file(file, key), gear.tooth, gear.module, gear.bore_radius, key=key, own_fillet=own)
+
+
+#: Processor seconds of one gear with the default settings and its error estimate, and how they grow with 1 / edge
+#: length and with the order: one core of a server, 20 to 200 teeth, edges of 4 to 1 times the default.
+_SECONDS, _GROWTH, _ORDER_GROWTH = 0.55, 1.3, 2.2
+
+
+def settings_for(tolerance: float) -> MeshSettings:
+    """Return the settings with which a solution for a relative tolerance starts.
+
+    They are the cheapest of the levels of `fegear.fem.plane.settings.settings_at` whose true errors (c_0, c_1 over c_0,
+    largest root tension and compression, over the whole flank) usually meet the tolerance; docs/numerics.md has the
+    measurements.
+
+    Parameters
+    ----------
+    tolerance : float
+
+    Returns
+    -------
+    MeshSettings
+    """
+    from fegear.fem.plane.settings import settings_at
+    from fegear.fem.plane.solution import level_for
+
+    return settings_at(level_for(tolerance))
+
+
+def given_settings(accuracy: AccuracyPart) -> dict[str, Any]:
+    """Settings that the case gives itself; with any of them nothing is refined."""
+    from fegear.fem.plane.settings import MeshSettings
+
+    found = {field.name: getattr(accuracy, field.name) for field in fields(MeshSettings)}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def mesh_settings(accuracy: AccuracyPart) -> MeshSettings:
+    """Settings for a tolerance, with explicitly given ones taking their place."""
+    given = given_settings(accuracy)
+    settings = settings_for(accuracy.tolerance)
+    return replace(settings, **given) if given else settings
+
+
+def seconds_of_gear(settings: MeshSettings) -> float:
+    """About how many seconds the influence functions of one gear take, with their error estimate, from nothing."""
+    from fegear.fem.plane.settings import MeshSettings
+
+    usual = MeshSettings()
+    finer = usual.root_edge_length / settings.root_edge_length * usual.flank_edge_length / settings.flank_edge_length
+    return float(_SECONDS * finer ** (0.5 * _GROWTH) * (settings.order / usual.order) ** _ORDER_GROWTH)

@@ -1,0 +1,223 @@
+"""What is asked before a case is drafted: questions, their defaults, and answers that have been checked.
+
+The kinds of cases that can be drafted, and what has to be known for each.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+from fegear.base.errors import InputError
+from fegear.base.units import to_si
+from fegear.case.part import nearest
+from fegear.geometry.rack import BasicRack
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+#: Line load that is assumed where no torque is given [N/m]: what case-hardened gears carry for ever.
+_LINE_LOAD = 200e3
+
+
+#: Face width that is assumed, in modules.
+_FACE = 10.0
+
+
+class Question(NamedTuple):
+    """A question.
+
+    Attributes
+    ----------
+    name : str
+        Of the answer, and of the option that gives it.
+    prompt : str
+    default : str
+    dimension : str
+        Of the quantity; "teeth", "numbers" or "rack" for what is none.
+    """
+
+    name: str
+    prompt: str
+    default: str
+    dimension: str
+
+
+_ALL = {
+    "pressure_angle": ("Pressure angle", "20 deg", "angle"),
+    "profile_shift": ("Profile shift x", "0", "numbers"),
+    "rack": ("Basic rack, ISO 53 A to D", "C", "rack"),
+    "helix_angle": ("Helix angle", "20 deg", "angle"),
+    "speed": ("Speed of the pinion", "1500 rpm", "speed"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """Checked answers, as texts; what nobody gave is assumed, and said to be.
+
+    Parameters
+    ----------
+    kind : str
+    given : mapping of str to str
+        Answers by the name of their question.
+    """
+
+    kind: str
+    given: Mapping[str, str]
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be read, or has no meaning for this kind."""
+        if self.kind not in KINDS:
+            raise InputError("--kind", f'"{self.kind}"', "is no kind of case", nearest(self.kind, KINDS))
+        asked = {question.name: question for question in questions(self.kind, self.given)}
+        for name, text in self.given.items():
+            if name not in asked:
+                raise InputError(
+                    _option(name), f'"{text}"', f'has no meaning for a case of kind "{self.kind}"', "leave it out"
+                )
+            check(asked[name], len(KINDS[self.kind].gears), text)
+
+    def __getitem__(self, name: str) -> str:
+        """Return an answer, given or assumed."""
+        return self.given.get(name) or next(q.default for q in questions(self.kind, self.given) if q.name == name)
+
+    def assumed(self, name: str) -> bool:
+        """Whether nobody gave it."""
+        return not self.given.get(name)
+
+    def numbers(self, name: str) -> list[str]:
+        """The numbers of an answer, one for each gear: the last stands for those that are not given."""
+        found = _split(self[name])
+        return (found + found[-1:] * len(KINDS[self.kind].gears))[: len(KINDS[self.kind].gears)]
+
+    def si(self, name: str) -> float:
+        """An answer that is a quantity, in SI."""
+        question = next(q for q in questions(self.kind, self.given) if q.name == name)
+        return to_si(self[name], question.dimension, _option(name))
+
+
+def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
+    """Questions of a kind, in order; defaults follow what has been answered.
+
+    Parameters
+    ----------
+    kind : str
+        A name in `KINDS`.
+    given : mapping of str to str
+        Answers so far, all of them readable.
+
+    Returns
+    -------
+    list of Question
+    """
+    several = len(KINDS[kind].gears) > 1
+    found = [
+        Question("teeth", "Teeth of pinion and wheel" if several else "Teeth", "21 53" if several else "28", "teeth"),
+        Question("module", "Normal module" if kind == "helical" else "Module", "3 mm", "length"),
+    ]
+    module = _readable(given.get("module", found[1].default), "length")
+    face = f"{_FACE * module * 1e3:.3g} mm"
+    for name in KINDS[kind].asks:
+        if name == "face_width":
+            found.append(Question(name, "Face width", face, "length"))
+        elif name == "torque":
+            width = _readable(given.get("face_width", face), "length")
+            radius = 0.5 * module * float((_split(given.get("teeth", "21")) or ["21"])[0])
+            found.append(
+                Question(name, "Torque on the pinion", f"{float(f'{_LINE_LOAD * width * radius:.2g}'):g} N*m", "torque")
+            )
+        else:
+            prompt, default, dimension = _ALL[name]
+            plural = "s of pinion and wheel" if several and dimension == "numbers" else ""
+            found.append(Question(name, prompt + plural, default, dimension))
+    return found
+
+
+def check(question: Question, gears: int, text: str) -> None:
+    """Refuse an answer that cannot be read.
+
+    Parameters
+    ----------
+    question : Question
+    gears : int
+        How many gears the case has.
+    text : str
+
+    Raises
+    ------
+    InputError
+    """
+    key = _option(question.name)
+    if question.dimension == "teeth":
+        if not all(re.fullmatch(r"\d+", part) for part in _split(text)):
+            raise InputError(key, f'"{text}"', "must be whole numbers", "write for example 21 53")
+        if len(_split(text)) != gears:
+            raise InputError(key, f'"{text}"', f"must be {gears} number{'s' * (gears > 1)}, for so many gears")
+    elif question.dimension == "numbers":
+        if not 1 <= len(_split(text)) <= gears or not all(_number(part) for part in _split(text)):
+            raise InputError(key, f'"{text}"', f"must be at most {gears} numbers", "write for example 0.3")
+    elif question.dimension == "rack":
+        BasicRack.named(text)
+    elif to_si(text, question.dimension, key) <= 0.0:
+        raise InputError(key, f'"{text}"', "must be greater than zero")
+
+
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def _split(text: str) -> list[str]:
+    return [part for part in re.split(r"[\s;/]+", text.strip()) if part]
+
+
+def _number(text: str) -> bool:
+    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", text) is not None
+
+
+def _readable(text: str, dimension: str) -> float:
+    """A quantity in SI, or not a number where it cannot be read: `Answers` then says why."""
+    try:
+        return to_si(text, dimension)
+    except InputError:
+        return math.nan
+
+
+class Kind(NamedTuple):
+    """A kind of case.
+
+    Attributes
+    ----------
+    about : str
+        What it is for.
+    gears : tuple of str
+        Names of its gears.
+    asks : tuple of str
+        Names of the questions that it asks beside the numbers of teeth and the module.
+    """
+
+    about: str
+    gears: tuple[str, ...]
+    asks: tuple[str, ...]
+
+
+_TOOTH = ("pressure_angle", "profile_shift", "rack", "face_width")
+
+
+_LOADED = (*_TOOTH, "torque", "speed")
+
+
+#: Kinds by name.
+KINDS: Mapping[str, Kind] = MappingProxyType({
+    "gear": Kind("one gear: its tooth's stiffness and root stress, and the standards' formulas", ("gear",), _TOOTH),
+    "pair": Kind("a pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _LOADED),
+    "relief": Kind("a pair whose profile relief is to be designed", ("pinion", "wheel"), _LOADED),
+    "helical": Kind("a helical pair and the errors of its assembly", ("pinion", "wheel"),
+                    ("pressure_angle", "helix_angle", "profile_shift", "rack", "face_width")),
+    "train": Kind("motor, pair and machine in motion: resonances, dynamic factor", ("pinion", "wheel"), _LOADED),
+    "study": Kind("root-stress formulas against finite elements over many gears", ("gear",), _TOOTH),
+})  # fmt: skip

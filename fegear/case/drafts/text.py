@@ -1,0 +1,176 @@
+"""The text of a drafted case: its gears and its pair, and around them the template of its kind."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from functools import partial
+from importlib.resources import files
+from string import Template
+from typing import TYPE_CHECKING
+
+from fegear.base.units import from_si
+from fegear.case.drafts.answers import KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.drafts.answers import Answers
+
+_HEAD = """\
+# {about}.
+#   fegear run {file}      computes it; the report is results/{stem}/report.html
+#   fegear plan {file}     what would be computed, why, and how long it would take
+#   fegear results{pad}       what else can be asked for
+# Values marked "assumed" were not given: put those of your drawing.
+
+title = {title}
+# What is wanted; this and what it needs is computed, nothing else.\
+"""
+_SPUR = """\
+[gear.{name}]
+teeth = {teeth}
+module = {module}{module_note}
+pressure_angle = {pressure_angle}
+profile_shift = {profile_shift}{profile_shift_note}
+rack = {rack}{rack_note}
+face_width = {face_width}{face_width_note}
+# bore_radius = "20 mm"        # where the body is held fast; without it half the root radius
+# tip_diameter = "{tip_diameter}"     # without it: this, the reference circle + 2 (1 + x) modules
+# thickness_allowance = "75 um"     # thinner teeth, for backlash
+# material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # without it steel
+"""
+_HELICAL = """\
+[gear.{name}]
+teeth = {teeth}
+normal_module = {module}{module_note}
+pressure_angle = {pressure_angle}     # in the normal section
+helix_angle = {helix_angle}{helix_angle_note}
+hand = "{hand}"
+profile_shift = {profile_shift}{profile_shift_note}
+rack = {rack}{rack_note}
+face_width = {face_width}{face_width_note}
+"""
+_PAIR = """\
+[pair.I]
+driver = {first}
+driven = {second}
+torque = {torque}{torque_note}
+speed = {speed}{speed_note}
+# centre_distance = "{centre_distance}"     # without it: free of backlash
+# loads = ["2 kN", "4 kN"]     # further loads along the line of action
+"""
+#: Column of comments behind keys.
+_COMMENTS = 30
+_ASSUMED = "     # assumed"
+#: Speeds of a train's motion, as shares of the given one.
+_SLOWEST, _FASTEST = 0.5, 1.5
+#: Inertia of motor and machine over that of the gear beside them, assumed.
+_BODIES = 10.0
+_STEEL = 7850.0
+
+
+def draft(answers: Answers, stem: str, schema: str = "") -> str:
+    """Write a case file.
+
+    Parameters
+    ----------
+    answers : Answers
+    stem : str
+        Name of the file, without its ending.
+    schema : str
+        File beside it that tells editors what a case may hold; empty for none.
+
+    Returns
+    -------
+    str
+        TOML with comments.
+    """
+    kind = KINDS[answers.kind]
+    file = f"{stem}.toml"
+    teeth = "/".join(answers.numbers("teeth"))
+    head = _HEAD.format(
+        about=kind.about[0].upper() + kind.about[1:],
+        file=file,
+        stem=stem,
+        pad=" " * len(file),
+        title=json.dumps(f"{stem}: {teeth} teeth, module {answers['module']}", ensure_ascii=False),
+    )
+    values = {
+        "head": head,
+        "first": kind.gears[0],
+        "second": kind.gears[-1],
+        "gears": "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
+        "pair": _pair(answers) if "torque" in kind.asks else "",
+        **(_train(answers) if answers.kind == "train" else {}),
+        **(_study(answers) if answers.kind == "study" else {}),
+    }
+    template = files("fegear.case.drafts").joinpath("templates", f"{answers.kind}.toml").read_text("utf-8")
+    hint = f"#:schema ./{schema}\n" if schema else ""
+    return hint + "\n".join(map(_aligned, Template(template).substitute(values).splitlines())) + "\n"
+
+
+def _aligned(line: str) -> str:
+    """Put the comment behind a key below those of the other lines."""
+    found = re.fullmatch(r"(.*\S) {2,}(# .*)", line)
+    return f"{found[1]:<{_COMMENTS - 1}}  {found[2]}" if found and not line.startswith("#   ") else line
+
+
+def _texts(answers: Answers, names: tuple[str, ...]) -> dict[str, str]:
+    quoted = {name: json.dumps(answers[name], ensure_ascii=False) for name in names}
+    return quoted | {f"{name}_note": _ASSUMED if answers.assumed(name) else "" for name in names}
+
+
+def _gear(answers: Answers, number: int) -> str:
+    kind = KINDS[answers.kind]
+    texts = _texts(answers, ("module", *(name for name in kind.asks if name not in ("torque", "speed"))))
+    texts |= {"name": kind.gears[number], "teeth": answers.numbers("teeth")[number]}
+    shift = float(answers.numbers("profile_shift")[number])
+    texts["profile_shift"] = repr(shift)
+    texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
+    if answers.kind == "helical":
+        return _HELICAL.format(**texts, hand=("right", "left")[number])
+    texts["tip_diameter"] = _length(answers.si("module") * (int(texts["teeth"]) + 2.0 * (1.0 + shift)))
+    return _SPUR.format(**texts)
+
+
+def _pair(answers: Answers) -> str:
+    first, second = map(json.dumps, KINDS[answers.kind].gears)
+    teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
+    distance = _length(answers.si("module") * (0.5 * teeth + shifts))
+    return _PAIR.format(first=first, second=second, centre_distance=distance, **_texts(answers, ("torque", "speed")))
+
+
+def _length(value: float) -> str:
+    return f"{value * from_si('mm'):.6g} mm"
+
+
+def _amount(value: float, unit: str) -> str:
+    return f"{float(f'{value * from_si(unit):.2g}'):g} {unit}"
+
+
+def _train(answers: Answers) -> Mapping[str, str]:
+    """Motor, shafts and machine of a size that suits the gears."""
+    radii = [0.5 * answers.si("module") * int(teeth) for teeth in answers.numbers("teeth")]
+    inertia = [_BODIES * 0.5 * math.pi * _STEEL * answers.si("face_width") * radius**4 for radius in radii]
+    millimetres = partial(_amount, unit="mm")
+    speed = answers.si("speed")
+    return {
+        "torque": answers["torque"],
+        "motor_inertia": f"{inertia[0]:.3g} kg*m^2",
+        "load_inertia": f"{inertia[1]:.3g} kg*m^2",
+        "shaft_length": millimetres(8.0 * radii[0]),
+        "input_diameter": millimetres(1.2 * radii[0]),
+        "output_diameter": millimetres(1.2 * radii[0] * (radii[1] / radii[0]) ** (1.0 / 3.0)),
+        "slowest": _amount(_SLOWEST * speed, "rpm"),
+        "fastest": _amount(_FASTEST * speed, "rpm"),
+    }
+
+
+def _study(answers: Answers) -> Mapping[str, str]:
+    teeth, shift = int(answers.numbers("teeth")[0]), float(answers.numbers("profile_shift")[0])
+    return {
+        "study_teeth": str(sorted({17, 20, 28, 50, 100, teeth})),
+        "study_shift": str(sorted({0.0, 0.3, shift})),
+    }

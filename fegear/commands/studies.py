@@ -1,0 +1,263 @@
+"""``fegear cost``: what accuracy costs in time.
+
+``fegear effects``: a case with each effect switched.
+
+``fegear sweep``: a case over a grid of values.
+
+``fegear compare``: two runs held against each other.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fegear.base.errors import PATH, InputError, shown
+from fegear.commands.common import (
+    INTERRUPTED,
+    AsJson,
+    CaseFile,
+    NoPlots,
+    Overrides,
+    Quiet,
+    Scheduler,
+    Voice,
+    Wanted,
+    changes,
+    complete_effects,
+    leave,
+    out_option,
+)
+
+if TYPE_CHECKING:
+    from fegear.studies.comparison.compare import Side
+
+
+def cost(
+    case: CaseFile,
+    overrides: Overrides = None,
+    out: Annotated[Path | None, out_option("Output folder; default results/<case>_cost.")] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A few configurations instead of all, for a first look.")
+    ] = False,
+    no_plots: NoPlots = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> None:
+    """Show what accuracy costs in time: every closed form, sectors, whole gears from coarse to fine."""
+    from fegear.case.reading import read_scene
+    from fegear.output.cost import cheapest_lines, write_cost
+    from fegear.output.folder import default_folder, whole_or_nothing
+    from fegear.studies.cost.asked import asked
+    from fegear.studies.cost.study import forecast, ladder_of, study_cost
+
+    voice = Voice(quiet, as_json)
+    try:
+        studied = asked(read_scene(case, overrides or ()))
+        target = out or default_folder(case.stem, "_cost")
+        ladder = ladder_of(studied, quick=quick)
+        quantities = ", ".join(q.name for q in studied.quantities)
+        voice.say(f"Cost study: {len(ladder.configurations)} configurations for {quantities}.")
+        voice.say(f"Predicted: about {forecast(studied, ladder):.2g} s of one core, measured on a usual machine.")
+        with whole_or_nothing(target) as scratch:
+            with voice.watcher() as watching:
+                results = study_cost(studied, quick=quick, watcher=watching)
+            write_cost(results, scratch, plots=not no_plots)
+    except KeyboardInterrupt:
+        leave(INTERRUPTED, 130)
+    for line in cheapest_lines(results):
+        voice.say(line)
+    for remark in results.remarks:
+        voice.note(remark)
+    voice.say(f"Wrote {target} in {results.seconds:.1f} s.")
+    voice.tell_folder(target)
+    if not results.complete:
+        leave(f"interrupted; {results.finished} of {results.planned} configurations are in {target}.", 130)
+
+
+def effects(
+    case: CaseFile,
+    overrides: Overrides = None,
+    wanted: Wanted = None,
+    out: Annotated[Path | None, out_option("Output folder; default results/<case>_effects.")] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--effect",
+            metavar="NAME",
+            help="An effect to study; default all that influence the results.",
+            autocompletion=complete_effects,
+        ),
+    ] = None,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> None:
+    """Run a case with each effect switched, one at a time: what it changes, the time it costs, one picture for each."""
+    from fegear.output.effects import write_effects
+    from fegear.output.folder import default_folder, whole_or_nothing
+    from fegear.studies.effects import effect_study
+
+    voice = Voice(quiet, as_json)
+    start = time.perf_counter()
+    try:
+        target = out or default_folder(case.stem, "_effects")
+        with whole_or_nothing(target) as scratch:
+            with voice.watcher() as watching:
+                watching.begin("Each effect switched", 1, 1)
+                scene, switched, fixed = effect_study(
+                    case, changes(overrides, wanted), only or (), lambda _effect, fraction: watching.advance(fraction)
+                )
+                watching.end(time.perf_counter() - start)
+            sentences = write_effects(scene, switched, fixed, scratch)
+    except KeyboardInterrupt:
+        leave(INTERRUPTED, 130)
+    for line in sentences:
+        voice.say(line)
+    voice.say(f"Wrote {target} in {time.perf_counter() - start:.2f} s.")
+    voice.tell_folder(target)
+
+
+def sweep(
+    case: CaseFile,
+    over: Annotated[
+        list[str],
+        typer.Option(
+            "--over",
+            metavar="KEY=START:STOP:COUNT",
+            help="An axis, e.g. gear.a.profile_shift=-0.4:0.8:25, =10:20:6:mm, =1:1000:4:log or =0.1,0.2,0.5.",
+        ),
+    ],
+    overrides: Overrides = None,
+    wanted: Wanted = None,
+    out: Annotated[Path | None, out_option("Output folder; default results/<case>_sweep.")] = None,
+    scheduler: Scheduler = None,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, help="Processes on this machine; default one for each core.")
+    ] = None,
+    no_plots: NoPlots = False,
+    no_cache: Annotated[
+        bool,
+        typer.Option("--no-cache", help="Recompute everything and keep nothing: a killed sweep starts again."),
+    ] = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> None:
+    """Run a case over a grid of values; killed and started again, it resumes where it stopped."""
+    from fegear.base.solution_cache import SolutionCache, cache_on_disk
+    from fegear.engine.executor import Executor
+    from fegear.output.folder import default_folder, whole_or_nothing
+    from fegear.output.sweep import write_sweep
+    from fegear.studies.sweep import read_axis, sweep_case
+
+    voice = Voice(quiet, as_json)
+    try:
+        axes = [read_axis(text) for text in over]
+        target = out or default_folder(case.stem, "_sweep")
+        with contextlib.ExitStack() as stack:
+            scratch = stack.enter_context(whole_or_nothing(target))
+            watching = stack.enter_context(voice.watcher(remaining=True))
+            count = math.prod(len(axis) for axis in axes)
+            watching.begin(f"{count} points", 1, 1)
+            results = sweep_case(
+                case,
+                axes,
+                changes(overrides, wanted),
+                cache=SolutionCache() if no_cache else cache_on_disk(),
+                executor=Executor(scheduler, workers),
+                progress=watching.advance,
+            )
+            watching.end(results.seconds)
+            remarks = write_sweep(results, scratch, plots=not no_plots)
+    except KeyboardInterrupt:
+        leave("interrupted; started again, the sweep resumes where it stopped.", 130)
+    for remark in remarks:
+        voice.note(remark)
+    solved, read, spared = results.shapes
+    voice.say(f"{count - len(results.failures)} of {count} points have results.")
+    if results.kept:
+        voice.say(f"{results.kept} points were finished by an earlier sweep.")
+    if read:
+        voice.say(f"Tooth shapes: {solved} solved now; {read} recalled ({spared:.2f} s when solved).")
+    voice.say(f"Wrote {target} in {results.seconds:.2f} s.")
+    voice.tell_folder(target)
+    if len(results.failures) == count:
+        raise typer.Exit(1)
+
+
+Compared = Annotated[Path, typer.Argument(help="A folder that fegear run wrote, or a case file, which is run.")]
+
+
+def compare(
+    a: Compared,
+    b: Compared,
+    overrides: Overrides = None,
+    wanted: Wanted = None,
+    tolerance: Annotated[
+        float, typer.Option("--tolerance", metavar="SHARE", help="Changes up to this share of a value are none.")
+    ] = 1e-9,
+    out: Annotated[Path | None, out_option("Output folder; default results/<a>_<b>_compare.")] = None,
+    no_plots: NoPlots = False,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> None:
+    """Tell two runs or two cases apart: inputs, values, tables, curves over each other.
+
+    Exit code 0: the results are the same; 1: they differ; 2: they cannot be compared.
+    """
+    from fegear.output.comparison import write_comparison
+    from fegear.output.folder import default_folder, whole_or_nothing
+    from fegear.studies.comparison import compare as comparison
+
+    if not (math.isfinite(tolerance) and tolerance >= 0.0):
+        raise InputError("--tolerance", tolerance, "must be zero or greater", "write for example 1e-6")
+    voice = Voice(quiet, as_json)
+    asked = changes(overrides, wanted)
+    if asked and a.is_dir() and b.is_dir():
+        raise InputError("--set", ", ".join(asked), "changes cases, and both are folders", "give a case file")
+    try:
+        target = out or default_folder(f"{a.resolve().stem}_{b.resolve().stem}", "_compare")
+        _refuse_to_replace(target, a, b)
+        with whole_or_nothing(target) as scratch:
+            found = comparison.compare(_side(a, asked, voice), _side(b, asked, voice), tolerance)
+            write_comparison(found, scratch, plots=not no_plots)
+    except KeyboardInterrupt:
+        leave(INTERRUPTED, 130)
+    for line in found.lines():
+        voice.say(line)
+    voice.say(f"Wrote {target}")
+    voice.tell_folder(target)
+    if found.results_differ:
+        raise typer.Exit(1)
+
+
+def _refuse_to_replace(target: Path, *compared: Path) -> None:
+    """Refuse to write a comparison over a run that it compares."""
+    for path in compared:
+        if os.path.realpath(target) == os.path.realpath(path):
+            raise InputError(
+                "--out", shown(str(target), PATH), "is one of the runs that are compared, which it would replace",
+                "choose another folder with --out",
+            )  # fmt: skip
+
+
+def _side(path: Path, asked: list[str], voice: Voice) -> Side:
+    """Read a folder, or run a case."""
+    from fegear.output.comparison import read_side
+    from fegear.studies.comparison.compare import side_of
+
+    if path.is_dir():
+        return read_side(path)
+    from fegear.case.reading import read_scene
+    from fegear.engine.plan import make_plan
+    from fegear.engine.run import run_plan
+    from fegear.results.catalogue import STAGES
+
+    scene = read_scene(path, asked)
+    with voice.watcher() as watching:
+        return side_of(run_plan(scene, make_plan(scene, STAGES), watching), str(path))

@@ -1,0 +1,190 @@
+"""The closed forms of `fegear.formulas` held against the finite elements of the same gear.
+
+What is compared, in every function: one tooth of the whole ring under one load normal to its flank, no other tooth
+loaded, per unit line load (secant, not local slope). Formulas outside their range leave a reason in words.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.formulas import hertz
+from fegear.formulas.outcome import attempt
+from fegear.formulas.root_section import load_line
+from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES, pair_compliance
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.formulas.outcome import ComplianceSource
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair, Member
+    from fegear.geometry.tooth import Tooth
+
+
+@dataclass(frozen=True, slots=True)
+class RootStressAnswers:
+    """One root-stress formula over load positions, shape (N,), for a tooth of module 1.
+
+    Parameters
+    ----------
+    stress : ndarray
+        Stress x module / line load; NaN exactly where `reasons` has words.
+    radius, tangent_angle : ndarray
+        Place of the stress: distance from the gear's centre [modules], fillet tangent to tooth centre line [rad].
+    reasons : tuple of str
+        Why there is no value; empty where there is one.
+    """
+
+    stress: Array
+    radius: Array
+    tangent_angle: Array
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ComplianceAnswers:
+    """One compliance formula over load positions, shape (N,) [m^2/N].
+
+    Parameters
+    ----------
+    total : ndarray
+        NaN exactly where `reasons` has words.
+    parts : ndarray, shape (K, N)
+        What it is the sum of.
+    reasons : tuple of str
+    """
+
+    total: Array
+    parts: Array
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PairReference(ReadOnlyArrays):
+    """Finite elements of one tooth pair over contact positions, shape (N,).
+
+    Parameters
+    ----------
+    x : ndarray
+        Distance from the pitch point along the line of action [m].
+    driver, driven : ndarray
+        Compliance of each tooth with its body and its side of the contact [m^2/N].
+    half_width : ndarray
+        Hertzian half-width of the contact [m].
+    """
+
+    x: Array
+    driver: Array
+    driven: Array
+    half_width: Array
+
+    @property
+    def total(self) -> Array:
+        """Deflection of the pair per unit line load [m^2/N]."""
+        return self.driver + self.driven
+
+
+def root_stress_answers(tooth: Tooth, radii: ArrayLike) -> dict[str, RootStressAnswers]:
+    """Every root-stress formula under loads normal to the flank at `radii` [modules]."""
+    points = [float(r) for r in np.atleast_1d(np.asarray(radii, dtype=float))]
+    found = {}
+    for name, source in ROOT_STRESS_SOURCES.items():
+        outcomes = [attempt(partial(source.formula, tooth, r)) for r in points]
+        values = np.array(
+            [(o.value.stress, o.value.radius, o.value.tangent_angle) if o.value else (np.nan,) * 3 for o in outcomes]
+        ).reshape(-1, 3)
+        reasons = [o.reason for o in outcomes]
+        for i in np.flatnonzero(values[:, 0] <= 0.0):
+            # low loads on teeth with wide roots: there the radial compression outweighs the bending
+            reasons[i] = f"gives {values[i, 0]:.3g}, no tension: its compression outweighs its bending"
+            values[i] = np.nan
+        found[name] = RootStressAnswers(values[:, 0], values[:, 1], values[:, 2], tuple(reasons))
+    return found
+
+
+def contact_zone(gear: Gear, radii: ArrayLike, half_width: ArrayLike) -> Array:
+    """Approach of the contact zone per unit line load [m^2/N]: flank against the point on the tooth's centre line.
+
+    Exact half-plane solution (`hertz.approach`), with the depth counted along the line of action.
+    """
+    r = np.atleast_1d(np.asarray(radii, dtype=float))
+    depth = load_line(gear.tooth, r / gear.module).depth * gear.module
+    m = gear.material
+    return hertz.approach(1.0, half_width, depth, m.young_modulus, m.poisson_ratio, gear.plane_assumption)
+
+
+def _pointwise(parts: Callable[[Array], Array], points: Array) -> ComplianceAnswers:
+    """Evaluate a formula for all points at once; where it refuses, one by one, so that each keeps its own reason."""
+    whole = attempt(partial(parts, points))
+    if whole.value is not None:
+        return ComplianceAnswers(whole.value.sum(axis=0), whole.value, ("",) * points.size)
+    single = [attempt(partial(parts, points[i : i + 1])) for i in range(points.size)]
+    rows = next((len(o.value) for o in single if o.value is not None), 1)
+    columns = [o.value if o.value is not None else np.full((rows, 1), np.nan) for o in single]
+    values = np.concatenate(columns, axis=1)
+    return ComplianceAnswers(values.sum(axis=0), values, tuple(o.reason for o in single))
+
+
+def tooth_compliance_answers(gear: Gear, radii: ArrayLike) -> dict[str, ComplianceAnswers]:
+    """Every compliance formula, tooth and foundation without the contact; parts: bending, shear, axial, foundation."""
+
+    def parts(source: ComplianceSource, r: Array) -> Array:
+        c = source.tooth(gear, r)
+        return np.stack([c.bending, c.shear, c.axial, c.foundation])
+
+    r = np.atleast_1d(np.asarray(radii, dtype=float))
+    return {name: _pointwise(partial(parts, source), r) for name, source in SOURCES.items()}
+
+
+def pair_compliance_answers(pair: GearPair, x: ArrayLike, line_load: float) -> dict[str, ComplianceAnswers]:
+    """Every compliance formula for one tooth pair with its contact; parts: driver, driven, contact."""
+
+    def parts(source: ComplianceSource, at: Array) -> Array:
+        c = pair_compliance(source, pair, at, line_load)
+        return np.stack([c.driver, c.driven, c.contact])
+
+    points = np.atleast_1d(np.asarray(x, dtype=float))
+    return {name: _pointwise(partial(parts, source), points) for name, source in SOURCES.items()}
+
+
+def pair_reference(
+    pair: GearPair, driver: GearInfluence, driven: GearInfluence, x: ArrayLike, line_load: float
+) -> PairReference:
+    """Finite elements of one tooth pair under a Hertzian contact; positions off a meshed flank are skipped.
+
+    Parameters
+    ----------
+    pair : GearPair
+    driver, driven : GearInfluence
+    x : array_like
+        Contact positions [m].
+    line_load : float
+        w [N/m], > 0; it sets the contact's width.
+    """
+    at = np.atleast_1d(np.asarray(x, dtype=float))
+    members: Sequence[tuple[Member, GearInfluence]] = (("driver", driver), ("driven", driven))
+    on = np.ones(at.shape, dtype=bool)
+    for member, known in members:
+        r, slack = pair.radius(at, member), 1e-9 * known.gear.module
+        on &= (r >= known.lowest_radius - slack) & (r <= known.highest_radius + slack)
+    at = at[on]
+    curvature = hertz.relative_curvature(
+        pair.flank_curvature_radius(at, "driver"), pair.flank_curvature_radius(at, "driven")
+    )
+    modulus = 1.0 / sum(1.0 / known.gear.plane_modulus for _, known in members)
+    width = hertz.line_contact(line_load, curvature, modulus).half_width
+    c = [
+        known.self_compliance(np.clip(pair.radius(at, member), known.lowest_radius, known.highest_radius), width)
+        for member, known in members
+    ]
+    return PairReference(at, c[0], c[1], np.array(width))

@@ -1,0 +1,112 @@
+"""What a source of tooth compliance must answer, whether finite elements, a closed form or a measured table.
+
+Every quantity belongs to one gear, per unit face width, in SI. The Hertzian contact is left to the pair: a source
+states the compliance under the load at a reference half-width b_ref and the slope kappa of its logarithm, so that with
+the pair's Hertzian half-width b(W)
+
+    c_0(W) = own(radius) + kappa ln(b_ref / b(W)).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+
+Side = Literal["tension", "compression"]
+
+
+class RootStressInfluence(Protocol):
+    """Root stress of one gear's teeth per unit line load, whether from finite elements or from a formula."""
+
+    @property
+    def reach(self) -> int:
+        """K: neighbours k = -K..K are coupled; 0 when the source knows only the loaded tooth."""
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What the source says of its own values; empty when nothing."""
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Stress along a fillet of tooth k per unit line load at q of tooth 0, (points, Q) [1/m]; None if unknown."""
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """Estimated error of the largest root tension under the tooth's own load, (Q,) [1/m]; NaN if unknown."""
+
+
+class GearCompliance(RootStressInfluence, Protocol):
+    """Influence functions of one gear's teeth; their reach serves deflections and root stress."""
+
+    @property
+    def log_slope(self) -> float:
+        """kappa = 2 (1 - nu^2)/(pi E) in plane strain [m^2/N]; 0 when the source has a fixed contact compliance."""
+
+    @property
+    def power(self) -> float:
+        """q of a further contact deflection q w^0.9 under a line load w (Palmgren) [m (m/N)^0.9]; 0 in general."""
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii [m] at which `own` has a kink (knots of a linear table); empty for smooth sources."""
+
+    def own(self, radius: ArrayLike) -> Array:
+        """Deflection under the load's own centre per unit line load at the reference half-width, shape (P,) [m^2/N]."""
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """b_ref, shape (P,) [m]."""
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k(p, q) [m^2/N]: deflection at p of tooth k per unit line load at q of tooth 0; radii are broadcast.
+
+        Tooth k = +1 is the one on the side that the load comes from: ahead of a driving tooth, behind a driven one.
+        """
+
+    def describe(self) -> str:
+        """Return one sentence: what this source includes and what not."""
+
+
+class OneTooth:
+    """Base of compliance sources that know one tooth: neither its neighbours nor its root stress."""
+
+    __slots__ = ()
+    remarks = ()
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:  # noqa: ARG002  (the interface)
+        """Zero."""
+        return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
+        """Unknown."""
+        return None
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """Unknown."""
+        return np.full(np.shape(radius_q), np.nan)
+
+
+@dataclass(frozen=True, slots=True)
+class Rigid(OneTooth):
+    """A gear that does not deflect: for pairs whose whole compliance is given on the other gear."""
+
+    reach: int = 0
+    log_slope: float = 0.0
+    power: float = 0.0
+    kinks: tuple[float, ...] = ()
+
+    def own(self, radius: ArrayLike) -> Array:
+        """Zero."""
+        return np.zeros(np.shape(radius))
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """One: it never matters, since the logarithm's slope is zero."""
+        return np.ones(np.shape(radius))
+
+    def describe(self) -> str:
+        """Return what it is."""
+        return "no deflection"

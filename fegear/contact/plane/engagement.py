@@ -1,0 +1,215 @@
+"""A loaded gear pair: contacts, compliances, modifications and errors brought together and solved."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.tally import note
+from fegear.contact.plane.load_sharing import SharedLoad, pair_tangent
+from fegear.contact.plane.roll_grids import RollGrid, RollGrids
+from fegear.geometry.relief import UNMODIFIED, Relief
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.meshing import Contacts, Meshing
+    from fegear.contact.plane.pair_compliance import PairCompliance
+    from fegear.geometry.pair import GearPair
+
+#: Roll positions nearer to each other are one [base pitches]: beyond round-off, below any length that a shop measures.
+_APART = 1e-12
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """Load sharing at P roll positions under L loads.
+
+    Parameters
+    ----------
+    grid : RollGrid
+    load : ndarray, shape (L,)
+        [N].
+    shared : SharedLoad
+    separation : ndarray, shape (n, P)
+        e_j [m]: modifications, errors and, off the path, the corner's gap.
+    """
+
+    grid: RollGrid
+    load: Array
+    shared: SharedLoad
+    separation: Array
+
+    @property
+    def x(self) -> Array:
+        """Roll positions, shape (P,) [m]."""
+        return self.grid.x
+
+    @property
+    def pair_x(self) -> Array:
+        """Position of each pair, shape (n, P) [m]."""
+        return self.grid.contacts.x
+
+    @property
+    def loads(self) -> Array:
+        """W_j, shape (n, P, L) [N]."""
+        return self.shared.loads
+
+    @property
+    def transmission_error(self) -> Array:
+        """Loaded static transmission error, shape (P, L) [m]."""
+        return self.shared.transmission_error
+
+    @property
+    def deflection(self) -> Array:
+        """Deflection of loaded pairs, both gears and the contact, shape (n, P, L) [m]; zero where unloaded."""
+        u = self.transmission_error[None] - np.where(self.grid.contacts.present, self.separation, 0.0)[:, :, None]
+        return np.where(self.loads > 0.0, u, 0.0)
+
+    @cached_property
+    def pair_tangent(self) -> Array:
+        """Local stiffness dW_j/dzeta of each pair, shape (n, P, L) [N/m]; zero where it is unloaded.
+
+        Mark's K_Sj (A.8): the sum over j' of the inverse of the pairs' tangent compliances, of those in contact. Unlike
+        a share of the mesh stiffness it knows that a pair which a relief holds back gives way no less than the others.
+        """
+        return pair_tangent(self.grid.matrices.tangent(self.loads), self.loads > 0.0)
+
+    @property
+    def local_stiffness(self) -> Array:
+        """Local mesh stiffness dW/dzeta of the pairs in contact, shape (P, L) [N/m]."""
+        return np.asarray(self.pair_tangent.sum(axis=0))
+
+    @property
+    def corner_bears(self) -> Array:
+        """Whether a loaded pair touches at a tip corner or so near to one that it is narrower, bool, shape (P, L)."""
+        contacts, tilt = self.grid.contacts, self.grid.matrices.tilt
+        at_corner = np.broadcast_to((contacts.gap > 0.0)[:, :, None], self.loads.shape)
+        if tilt is not None:
+            # the Hertzian width grows with the square root of the load; see `edge_law`
+            width = np.sqrt(self.loads / self.grid.matrices.reference_load)
+            at_corner = at_corner | (tilt[:, :, None] > -width)
+        return np.asarray(((self.loads > 0.0) & at_corner).any(axis=0))
+
+
+@dataclass(frozen=True)
+class Engagement:
+    """A gear pair with its compliances, modifications and spacing errors.
+
+    Parameters
+    ----------
+    compliance : PairCompliance
+    driver_relief, driven_relief : Relief
+        Modifications of all teeth of each gear.
+    driver_spacing, driven_spacing : ndarray
+        Spacing error of each tooth in the order of meshing, removal positive [m]; empty for none.
+    corner_contact : bool
+    grids : RollGrids, optional
+        Of the same gears under another load or with other reliefs, so that their contacts and compliances are
+        evaluated once; its own where it has none or they are of other gears.
+    """
+
+    compliance: PairCompliance
+    driver_relief: Relief = UNMODIFIED
+    driven_relief: Relief = UNMODIFIED
+    driver_spacing: Array = field(default_factory=lambda: np.empty(0))
+    driven_spacing: Array = field(default_factory=lambda: np.empty(0))
+    corner_contact: bool = False
+    grids: RollGrids = field(default=None, repr=False, compare=False)  # type: ignore[assignment]  # set below
+
+    def __post_init__(self) -> None:
+        """Begin anew where the grids are of other gears: a copy with another compliance has them handed down, too."""
+        if self.grids is None or not self.grids.serves(self.compliance, self.corner_contact):
+            object.__setattr__(self, "grids", RollGrids(self.compliance, self.corner_contact))
+
+    @property
+    def pair(self) -> GearPair:
+        """The gears."""
+        return self.compliance.pair
+
+    @property
+    def meshing(self) -> Meshing:
+        """Finds the contacts."""
+        return self.grids.meshing
+
+    def unmodified(self) -> Engagement:
+        """The same pair with perfect involutes at equal distances."""
+        none = np.empty(0)
+        return replace(
+            self, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED, driver_spacing=none, driven_spacing=none
+        )
+
+    def reversed(self) -> Engagement:
+        """The same gears with driver and driven exchanged; x changes sign."""
+        return Engagement(
+            self.compliance.reversed(), self.driven_relief, self.driver_relief, self.driven_spacing,
+            self.driver_spacing, self.corner_contact,
+        )  # fmt: skip
+
+    def grid(self, x: ArrayLike, *, again: bool = True) -> RollGrid:
+        """Evaluate contacts and compliances at roll positions, shape (P,) [m], brought into one base pitch.
+
+        `again` says whether the same positions may be asked for again.
+        """
+        at = np.atleast_1d(np.array(x, dtype=float))
+        return self.grids.at(at) if again else self.grids.new(at)
+
+    def modification(self, contacts: Contacts) -> Array:
+        """m_j of both gears together, shape (n, P) [m]."""
+        return self.driver_relief.removal(contacts.roll_driver) + self.driven_relief.removal(contacts.roll_driven)
+
+    def spacing(self, contacts: Contacts, cycle: int) -> Array:
+        """Spacing error of each pair, shape (n, 1) [m], in the base pitch number `cycle`.
+
+        Teeth are numbered in the order in which they come into mesh, so pair j is on teeth cycle - j.
+        """
+        total = np.zeros(contacts.number.size)
+        for errors in (self.driver_spacing, self.driven_spacing):
+            if errors.size:
+                note("spacing errors")
+                total += errors[np.mod(cycle - contacts.number, errors.size)]
+        return total[:, None]
+
+    @property
+    def cycles(self) -> int:
+        """Base pitches after which the spacing errors repeat, 1 without any."""
+        return math.lcm(*(errors.size for errors in (self.driver_spacing, self.driven_spacing) if errors.size))
+
+    def separation(self, contacts: Contacts, cycle: int = 0) -> Array:
+        """e_j, shape (n, P) [m]; infinite where a pair is out of reach."""
+        added = self.modification(contacts) + self.spacing(contacts, cycle)
+        return np.where(contacts.present, contacts.gap + added, np.inf)
+
+    def solve(self, grid: RollGrid, load: ArrayLike, cycle: int = 0) -> Loaded:
+        """Share loads, shape (L,) [N], at the positions of a grid."""
+        e = self.separation(grid.contacts, cycle)
+        loads = np.atleast_1d(np.asarray(load, dtype=float))
+        return Loaded(grid, loads, self.grids.share(grid, e, loads), e)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Roll positions [m] in one base pitch where pairs enter or leave or a modification has a kink.
+
+        Those that coincide but for round-off, across the seam of the pitch too, are one.
+        """
+        pair = self.pair
+        places = [
+            pair.x_start,
+            pair.x_end,
+            *(float(pair.x_of_roll(roll, "driver")) for roll in self.driver_relief.kinks),
+            *(float(pair.x_of_roll(roll, "driven")) for roll in self.driven_relief.kinks),
+            *(float(pair.x_of_radius(radius, "driver")) for radius in self.compliance.driver.kinks),
+            *(float(pair.x_of_radius(radius, "driven")) for radius in self.compliance.driven.kinks),
+        ]
+        apart = _APART * pair.base_pitch
+        inside = [x for x in places if pair.x_start - apart <= x <= pair.x_end + apart]
+        found: list[float] = []
+        for x in sorted(float(x) for x in self.meshing.reduced(inside)):
+            if not found or found[-1] + apart < x < pair.x_start + pair.base_pitch - apart:
+                found.append(x)
+        return tuple(found)

@@ -1,0 +1,401 @@
+"""The finite-element influence functions as a compliance source: tabulated once, then cheap anywhere on the flank.
+
+A gear's influence functions as small tables of plain numbers, for processes that share many states of one pair.
+
+A cubic spline in plain numpy: importing scipy's interpolation costs more time than a whole gear pair.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.compliance import GearCompliance, RootStressInfluence, Side
+    from fegear.contact.plane.root_stress_history import StressRows
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.geometry.gear import Gear
+
+
+#: Interpolation points over the flank: splines for the loaded tooth, Chebyshev polynomials for its smooth neighbours.
+_OWN_POINTS = 97
+
+
+_NEIGHBOUR_POINTS = 14
+
+
+#: Half-width that c_0 is given for [modules], and that a contact keeps whose width does not follow its load.
+_NOMINAL_HALF_WIDTH = 0.08
+
+
+@dataclass(frozen=True)
+class FiniteElementCompliance:
+    """One gear's influence functions over its flank, interpolated in the roll length.
+
+    Parameters
+    ----------
+    influence : GearInfluence
+    own_spline : Spline
+        c_0 at the reference half-width [m^2/N] over the roll length [m].
+    lowest, highest : float
+        Roll lengths of the ends of the flank [m].
+    """
+
+    influence: GearInfluence
+    own_spline: Spline
+    lowest: float
+    highest: float
+
+    kinks = ()
+    power = 0.0
+    remarks = ()
+
+    @cached_property
+    def stress_rows(self) -> dict[tuple[Side, int], StressRows]:
+        """Root stress at the contacts asked for last, by fillet and by how many neighbours count."""
+        return {}
+
+    @property
+    def reach(self) -> int:
+        """K of the finite-element solution."""
+        return self.influence.reach
+
+    @property
+    def log_slope(self) -> float:
+        """kappa [m^2/N]."""
+        return self.influence.log_slope
+
+    @property
+    def neighbours(self) -> Mapping[int, Array]:
+        """Chebyshev coefficients of c_k(p, q), shape (m, m) each; made when a neighbour is first asked for."""
+        kept, ends = self.influence.tabulated, f"neighbours {self.lowest.hex()} {self.highest.hex()}"
+        if ends not in kept:
+            kept[ends] = self._tabulated_neighbours()
+        found: Mapping[int, Array] = kept[ends]
+        return found
+
+    def _tabulated_neighbours(self) -> dict[int, Array]:
+        rb, m = self.influence.gear.base_radius, _NEIGHBOUR_POINTS
+        t = np.cos(math.pi * (np.arange(m) + 0.5) / m)
+        nodes = np.hypot(rb, 0.5 * (self.lowest + self.highest) + 0.5 * (self.highest - self.lowest) * t)
+        to_coefficients = np.linalg.inv(np.polynomial.chebyshev.chebvander(t, m - 1))
+        found = {}
+        for k in range(1, self.reach + 1):
+            found[k] = to_coefficients @ self.influence.neighbour(k, nodes, nodes) @ to_coefficients.T
+            found[-k] = found[k].T  # reciprocity, exact for pressure-weighted deflections
+        return found
+
+    def _roll_length(self, radius: ArrayLike) -> Array:
+        return roll_length(self.influence.gear, radius, self.lowest, self.highest)
+
+    def own(self, radius: ArrayLike) -> Array:
+        """c_0 at the reference half-width [m^2/N]."""
+        return np.asarray(self.own_spline(self._roll_length(radius)))
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """The half-width that `own` is for [m]; others follow by their logarithm."""
+        return np.full(np.shape(radius), _NOMINAL_HALF_WIDTH * self.influence.gear.module)
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k(p, q), zero beyond the reach."""
+        if abs(k) > self.reach:
+            return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
+        p, q = (self._roll_length(r) for r in (radius_p, radius_q))
+        return chebyshev_over(self.lowest, self.highest, p, q, self.neighbours[k])
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """Tangential stress along the fillet of tooth k [1/m], shape (points, Q); zero beyond the reach."""
+        if abs(k) > self.reach:
+            return np.zeros_like(self.influence.fillet_stress(0, side, radius_q))
+        return self.influence.fillet_stress(k, side, radius_q)
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """What the finite elements leave in the largest root tension under the tooth's own load [1/m]."""
+        known = self.influence
+        return known.root_stress_error(0, "tension", np.clip(radius_q, known.lowest_radius, known.highest_radius))
+
+    def describe(self) -> str:
+        """Return what it includes."""
+        coupled = f"neighbours up to {self.reach} teeth away" if self.reach else "no neighbours"
+        return f"finite elements of the whole gear, {coupled}, contact by the Hertzian half-width"
+
+
+def roll_length(gear: Gear, radius: ArrayLike, lowest: float, highest: float) -> Array:
+    """Roll lengths [m] of radii [m] on a flank between two roll lengths [m].
+
+    Raises
+    ------
+    RangeError
+        If a radius is off the flank.
+    """
+    r, rb = np.asarray(radius, dtype=float), gear.base_radius
+    length = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
+    slack = 1e-6 * gear.module
+    off = (length < lowest - slack) | (length > highest + slack)
+    if off.any():
+        raise RangeError(
+            "radius",
+            f"{float(r[off].flat[0]) * 1e3:.6g} mm",
+            f"is off the flank, which runs from {math.hypot(rb, lowest) * 1e3:.6g} mm "
+            f"to {math.hypot(rb, highest) * 1e3:.6g} mm",
+        )
+    return np.clip(length, lowest, highest)
+
+
+def chebyshev_over(lowest: float, highest: float, p: Array, q: Array, coefficients: Array) -> Array:
+    """A Chebyshev series in two roll lengths [m] between the same ends, shape of p and q broadcast."""
+    middle, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest)
+    first, second = np.broadcast_arrays((p - middle) / half, (q - middle) / half)
+    at = np.stack([first.ravel(), second.ravel()])
+    if first.size == 1:  # one place alone would be summed in another order than in company
+        at = np.repeat(at, 2, axis=1)
+    waves = np.empty((coefficients.shape[0], *at.shape))
+    waves[0], waves[1] = 1.0, at
+    for n in range(2, waves.shape[0]):
+        np.multiply(2.0 * at, waves[n - 1], out=waves[n])
+        waves[n] -= waves[n - 2]
+    along = np.einsum("ij,jp->ip", coefficients, waves[:, 1])
+    along *= waves[:, 0]
+    return np.asarray(along.sum(axis=0)[: first.size].reshape(first.shape))
+
+
+def finite_element_compliance(influence: GearInfluence) -> FiniteElementCompliance:
+    """Tabulate the influence functions of a solved gear, once for each solution."""
+    # Kept are the tables alone: what holds the solution itself would keep it alive in a circle, and with it its memory.
+    if "own" not in influence.tabulated:
+        influence.tabulated["own"] = _tabulated(influence)
+    return FiniteElementCompliance(influence, *influence.tabulated["own"])
+
+
+def _tabulated(influence: GearInfluence) -> tuple[Spline, float, float]:
+    gear = influence.gear
+    rb = gear.base_radius
+    bottom = max(influence.lowest_radius, gear.form_radius)
+    top = min(influence.highest_radius, gear.involute_tip_radius)
+    low, high = (math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (bottom, top))
+    # The compliance bends most where the patch has to shrink, within its own width of the tip corner: points crowd
+    # there, half of them in the last tenth of a module, and a little where the flank starts.
+    corner = min(0.1 * gear.module * rb / high, 0.3 * (high - low))
+    s = np.linspace(0.0, 1.0, _OWN_POINTS // 2)
+    lengths = np.concatenate([low + (high - corner - low) * (s * s * (3.0 - 2.0 * s))[:-1], high - corner * (1.0 - s)])
+    radii = np.clip(np.hypot(rb, lengths), bottom, top)
+    # Taken at a usual width, where what goes with the width itself is right, and given for the nominal one.
+    usual, nominal = influence.reference_half_width, _NOMINAL_HALF_WIDTH * gear.module
+    own = influence.self_compliance(radii, usual) - influence.log_slope * math.log(nominal / usual)
+    return spline(lengths, own), low, high
+
+
+#: Radii at which root stress is tabulated, evenly in roll length; cubic between them.
+_RADII = 129
+
+
+@dataclass(frozen=True)
+class ToothTable:
+    """What `FiniteElementCompliance` answers about deflections, without the finite elements.
+
+    Parameters
+    ----------
+    gear : Gear
+    own_spline : Spline
+        c_0 at the reference half-width [m^2/N] over the roll length [m].
+    neighbours : mapping of int to ndarray
+        Chebyshev coefficients of c_k(p, q) by k.
+    lowest, highest : float
+        Roll lengths of the ends of the flank [m].
+    half_width : float
+        The reference [m].
+    log_slope : float
+        kappa [m^2/N].
+    reach : int
+    """
+
+    gear: Gear
+    own_spline: Spline
+    neighbours: Mapping[int, Array]
+    lowest: float
+    highest: float
+    half_width: float
+    log_slope: float
+    reach: int
+
+    kinks = ()
+    power = 0.0
+    remarks = ()
+
+    @classmethod
+    def of(cls, source: FiniteElementCompliance) -> ToothTable:
+        """Take the tables of a source."""
+        half_width = float(source.reference_half_width(np.zeros(1))[0])
+        return cls(
+            source.influence.gear, source.own_spline, dict(source.neighbours), source.lowest, source.highest,
+            half_width, source.log_slope, source.reach,
+        )  # fmt: skip
+
+    def own(self, radius: ArrayLike) -> Array:
+        """c_0 at the reference half-width [m^2/N]."""
+        return np.asarray(self.own_spline(roll_length(self.gear, radius, self.lowest, self.highest)))
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """The half-width that `own` is for [m]."""
+        return np.full(np.shape(radius), self.half_width)
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k(p, q), zero beyond the reach."""
+        if abs(k) > self.reach:
+            return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
+        ends = self.lowest, self.highest
+        p, q = (roll_length(self.gear, r, *ends) for r in (radius_p, radius_q))
+        return chebyshev_over(*ends, p, q, self.neighbours[k])
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
+        """Unknown: see `RootTable`."""
+        return None
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """Unknown."""
+        return np.full(np.shape(radius_q), np.nan)
+
+    def describe(self) -> str:
+        """Return what it is."""
+        return "tables of finite elements"
+
+
+def light(source: GearCompliance) -> GearCompliance:
+    """The same compliances without the finite elements behind them; other sources as they are."""
+    return ToothTable.of(source) if isinstance(source, FiniteElementCompliance) else source
+
+
+@dataclass(frozen=True)
+class RootTable:
+    """Root tension of one gear's teeth over the flank, below the loaded flank.
+
+    Parameters
+    ----------
+    base_radius : float
+        [m].
+    lowest, step : float
+        Roll length of the first entry and distance of the next [m].
+    tension : mapping of int to ndarray, shape (N, points)
+        Stress along the fillet of tooth k per unit line load on tooth 0 [1/m], by k.
+    """
+
+    base_radius: float
+    lowest: float
+    step: float
+    tension: Mapping[int, Array]
+
+    @property
+    def reach(self) -> int:
+        """Teeth on either side that a load is felt by."""
+        return max(self.tension)
+
+    def at(self, k: int, radius: Array) -> Array:
+        """Stress along the fillet of tooth k, shape (*radius, points) [1/m]: cubic through four entries."""
+        table = self.tension[k]
+        length = np.sqrt(np.maximum((radius - self.base_radius) * (radius + self.base_radius), 0.0))
+        t = np.clip((length - self.lowest) / self.step, 0.0, table.shape[0] - 1.0)
+        i = np.clip(t.astype(np.intp) - 1, 0, table.shape[0] - 4)
+        s = (t - i)[..., None]
+        a, b, c = s - 1.0, s - 2.0, s - 3.0
+        return np.asarray(
+            table[i] * (-a * b * c / 6.0) + table[i + 1] * (s * b * c / 2.0)
+            - table[i + 2] * (s * a * c / 2.0) + table[i + 3] * (s * a * b / 6.0)
+        )  # fmt: skip
+
+
+def root_table(source: RootStressInfluence, gear: Gear, lowest: float, highest: float, *, coupled: bool) -> RootTable:
+    """Tabulate the root tension of a gear between two radii of its flank.
+
+    Parameters
+    ----------
+    source : RootStressInfluence
+        That knows root stress.
+    gear : Gear
+    lowest, highest : float
+        Radii [m].
+    coupled : bool
+        Whether the loads of neighbouring teeth are felt.
+    """
+    rb = gear.base_radius
+    low, high = (math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (lowest, highest))
+    lengths = np.linspace(low, high, _RADII)
+    radii = np.clip(np.hypot(rb, lengths), lowest, highest)
+    reach = source.reach if coupled else 0
+    found = {}
+    for k in range(-reach, reach + 1):
+        kernel = source.root_stress(k, radii, "tension")
+        if kernel is not None:
+            found[k] = np.ascontiguousarray(kernel.T)
+    return RootTable(rb, low, (high - low) / (_RADII - 1), found)
+
+
+@dataclass(frozen=True)
+class Spline:
+    """Not-a-knot cubic spline through points; the end pieces go on outside.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (N,)
+        Ascending positions, N >= 4, and values.
+    slope : ndarray, shape (N,)
+        Derivatives at the points.
+    """
+
+    x: Array
+    y: Array
+    slope: Array
+
+    def __call__(self, at: ArrayLike) -> Array:
+        """Interpolate (Hermite form)."""
+        t = np.asarray(at, dtype=float)
+        i = np.clip(np.searchsorted(self.x, t, side="right") - 1, 0, self.x.size - 2)
+        h = self.x[i + 1] - self.x[i]
+        s = (t - self.x[i]) / h
+        rise = (self.y[i + 1] - self.y[i]) / h
+        a, b = self.slope[i] - rise, self.slope[i + 1] - rise
+        return np.asarray(self.y[i] + s * h * (rise + (1.0 - s) * (a * (1.0 - s) - b * s)))
+
+
+def spline(x: ArrayLike, y: ArrayLike) -> Spline:
+    """Make the not-a-knot cubic spline: the third derivative too is continuous at the second and last but one point."""
+    at, value = np.array(x, dtype=float), np.array(y, dtype=float)
+    n = at.size
+    h = np.diff(at)
+    d = np.diff(value) / h
+    lower, middle, upper, r = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    lower[1:-1], middle[1:-1], upper[1:-1] = h[1:], 2.0 * (h[:-1] + h[1:]), h[:-1]
+    r[1:-1] = 3.0 * (h[1:] * d[:-1] + h[:-1] * d[1:])
+    middle[0], upper[0] = h[1], h[0] + h[1]
+    r[0] = ((h[0] + 2.0 * (h[0] + h[1])) * h[1] * d[0] + h[0] ** 2 * d[1]) / (h[0] + h[1])
+    middle[-1], lower[-1] = h[-2], h[-1] + h[-2]
+    r[-1] = ((h[-1] + 2.0 * (h[-1] + h[-2])) * h[-2] * d[-1] + h[-1] ** 2 * d[-2]) / (h[-1] + h[-2])
+    return Spline(at, value, _tridiagonal(lower, middle, upper, r))
+
+
+def _tridiagonal(lower: Array, middle: Array, upper: Array, right: Array) -> Array:
+    """Solve a tridiagonal system by elimination without exchanges.
+
+    Every row but the first and the last is dominated by its middle; the first leaves h_0 + h_1 > 0 to the second, whose
+    multiplier is then 1 + h_1/h_0 over 1, so nothing grows.
+    """
+    m, r = middle.tolist(), right.tolist()
+    low, up = lower.tolist(), upper.tolist()
+    for i in range(1, len(m)):
+        share = low[i] / m[i - 1]
+        m[i] -= share * up[i - 1]
+        r[i] -= share * r[i - 1]
+    r[-1] /= m[-1]
+    for i in range(len(m) - 2, -1, -1):
+        r[i] = (r[i] - up[i] * r[i + 1]) / m[i]
+    return np.array(r)

@@ -1,0 +1,192 @@
+"""Both gears' influence functions put together for the tooth pairs in contact (Mark, App. A)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.base.tally import tallied
+from fegear.contact.plane.load_sharing import edge_law
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.compliance import GearCompliance
+    from fegear.contact.plane.meshing import Contacts
+    from fegear.geometry.pair import GearPair, Member
+
+Hertz = Literal["load-dependent", "linear", "none"]
+
+#: Line load at which the diagonal of a load-dependent compliance is stated [N/m]; any would do.
+_REFERENCE_LINE_LOAD = 1e5
+
+
+@dataclass(frozen=True, slots=True)
+class PairMatrices:
+    """Compliances of n pairs at P roll positions, for the whole face, ready for `share_load`.
+
+    Parameters
+    ----------
+    compliance : ndarray, shape (n, n, P)
+        c_jj' [m/N], the diagonal at the reference load; zero in rows of pairs that are absent.
+    log_slope : ndarray, shape (n, P)
+        kappa [m/N].
+    reference_load : float
+        [N].
+    tilt : ndarray, shape (n, P), or None
+        Of contacts near tip corners, see `share_load`; None when corners do not matter.
+    power : float
+        q of a contact deflection q W^0.9 [m/N^0.9].
+    """
+
+    compliance: Array
+    log_slope: Array
+    reference_load: float
+    tilt: Array | None = None
+    power: float = 0.0
+
+    def at_load(self, loads: Array) -> Array:
+        """Secant compliances at loads of shape (n, P, L), shape (n, n, P, L) [m/N]."""
+        return self._with_diagonal(loads, 0.0)
+
+    def tangent(self, loads: Array) -> Array:
+        """Derivatives d u_j / d W_j' at loads of shape (n, P, L), shape (n, n, P, L) [m/N]."""
+        return self._with_diagonal(loads, 1.0)
+
+    def _with_diagonal(self, loads: Array, tangent: float) -> Array:
+        n = loads.shape[0]
+        c = np.broadcast_to(self.compliance[..., None], (n, *loads.shape)).copy()
+        w = np.maximum(loads, 1e-20 * self.reference_load) / self.reference_load
+        added = -0.5 * (np.log(w) + tangent)
+        if self.tilt is not None:
+            psi, t_slope = edge_law(self.tilt[:, :, None] / np.sqrt(w))
+            added += psi - 0.5 * tangent * t_slope
+        c[np.arange(n), np.arange(n)] += self.log_slope[:, :, None] * added
+        if self.power:
+            c[np.arange(n), np.arange(n)] += (1.0 - 0.1 * tangent) * self.power * (w * self.reference_load) ** -0.1
+        return c
+
+
+@dataclass(frozen=True)
+class PairCompliance:
+    """Compliance of a gear pair from the sources of its two gears.
+
+    Parameters
+    ----------
+    pair : GearPair
+    driver, driven : GearCompliance
+    coupling : bool
+        Whether a loaded tooth deflects its neighbours.
+    hertz : {"load-dependent", "linear", "none"}
+        The contact's half-width follows each pair's own load; stays what it is under `nominal_load` on one pair; or
+        stays the source's reference half-width.
+    nominal_load : float
+        Load [N] for the linear contact.
+    """
+
+    pair: GearPair
+    driver: GearCompliance
+    driven: GearCompliance
+    coupling: bool = True
+    hertz: Hertz = "load-dependent"
+    nominal_load: float = math.nan
+
+    def __post_init__(self) -> None:
+        """Refuse helical pairs, and a linear contact without a load to be linear about."""
+        if self.pair.driver.helix_angle != 0.0:
+            angle = f"helix angle {math.degrees(self.pair.driver.helix_angle):.6g} deg"
+            raise InputError("pair", angle, "is no plane problem: its contact runs along the face", "take spur gears")
+        if self.hertz not in ("load-dependent", "linear", "none"):
+            raise InputError("effects.hertz", f'"{self.hertz}"', 'must be "load-dependent", "linear" or "none"')
+        if self.hertz == "linear" and not self.nominal_load > 0.0:
+            raise InputError("effects.hertz", '"linear"', "needs a load at which the contact's width is taken")
+
+    @property
+    def face_width(self) -> float:
+        """Common face width [m]."""
+        return self.pair.face_width
+
+    @property
+    def log_slope(self) -> float:
+        """kappa of both gears for the whole face [m/N]."""
+        return (self.driver.log_slope + self.driven.log_slope) / self.face_width
+
+    @property
+    def contact_modulus(self) -> float:
+        """E* [Pa], 1/E* = sum of (1 - nu^2)/E in plane strain, of 1/E in plane stress: Hertzian line contact."""
+        return 1.0 / (1.0 / self.pair.driver.plane_modulus + 1.0 / self.pair.driven.plane_modulus)
+
+    def reversed(self) -> PairCompliance:
+        """The same gears with driver and driven exchanged."""
+        return replace(self, pair=self.pair.reversed(), driver=self.driven, driven=self.driver)
+
+    def source(self, member: Member) -> GearCompliance:
+        """Driver's or driven's."""
+        return self.driver if member == "driver" else self.driven
+
+    @tallied("Hertz widths")
+    def half_width(self, load: Array, relative_radius: Array) -> Array:
+        """Hertzian half-width b = sqrt(4 w R / (pi E*)) [m] under loads [N]."""
+        w = np.asarray(load) / self.face_width
+        return np.asarray(np.sqrt(4.0 * w * relative_radius / (math.pi * self.contact_modulus)))
+
+    def pressure(self, load: Array, relative_radius: Array) -> Array:
+        """Largest Hertzian pressure sqrt(w E* / (pi R)) [Pa]."""
+        w = np.asarray(load) / self.face_width
+        return np.asarray(np.sqrt(w * self.contact_modulus / (math.pi * relative_radius)))
+
+    def matrices(self, at: Contacts) -> PairMatrices:
+        """Compliances of all pairs at all roll positions."""
+        n, positions = at.x.shape
+        face, present = self.face_width, at.present
+        c = np.zeros((n, n, positions))
+        slope = np.zeros((n, positions))
+        reference = _REFERENCE_LINE_LOAD * face
+        at_load = self.nominal_load if self.hertz == "linear" else reference
+        for j in range(n):
+            here = present[j]
+            if not here.any():
+                c[j, j] = 1.0
+                continue
+            own = np.zeros(int(here.sum()))
+            for source, radius in ((self.driver, at.radius_driver), (self.driven, at.radius_driven)):
+                r = radius[j, here]
+                own += source.own(r)
+                if self.hertz != "load-dependent" and source.power > 0.0:
+                    own += source.power * (at_load / face) ** -0.1
+                if self.hertz != "none" and source.log_slope > 0.0:
+                    b = self.half_width(np.asarray(at_load), at.relative_radius[j, here])
+                    own += source.log_slope * np.log(source.reference_half_width(r) / b)
+            c[j, j, here] = own / face
+            c[j, j, ~here] = 1.0
+            if self.hertz == "load-dependent":
+                slope[j, here] = self.log_slope
+        if self.coupling and max(self.driver.reach, self.driven.reach) > 0:
+            self._couple(c, at)
+        tilt = None
+        if self.hertz == "load-dependent" and at.edge.max() > -np.inf:
+            tilt = at.edge / self.half_width(np.asarray(reference), at.relative_radius)
+        q = self.driver.power + self.driven.power if self.hertz == "load-dependent" else 0.0
+        return PairMatrices(c, slope, reference, tilt, q * face**-0.9)
+
+    @tallied("neighbours")
+    def _couple(self, c: Array, at: Contacts) -> None:
+        """Add what a load on pair j' does to pair j < j', and its transpose (Maxwell).
+
+        Pair j + 1 is ahead of pair j: its teeth are k = +1 seen from the driver's loaded tooth and k = -1 seen from
+        the driven gear's, since tooth +1 is the one on the side that the load comes from.
+        """
+        n = at.x.shape[0]
+        for k in range(1, n):  # all pairs that are k apart at once
+            both = at.present[: n - k] & at.present[k:]
+            if not both.any():
+                continue
+            (driver, driver_ahead), (driven, driven_ahead) = (
+                (radius[: n - k][both], radius[k:][both]) for radius in (at.radius_driver, at.radius_driven)
+            )
+            value = self.driver.neighbour(-k, driver, driver_ahead) + self.driven.neighbour(k, driven, driven_ahead)
+            j, p = np.nonzero(both)
+            c[j, j + k, p] = c[j + k, j, p] = value / self.face_width

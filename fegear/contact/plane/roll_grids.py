@@ -1,0 +1,184 @@
+"""What load sharing needs of a pair at roll positions: neither a load nor a relief changes it, so the last is kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from fegear.contact.plane.load_sharing import share_load
+from fegear.contact.plane.meshing import Contacts, Meshing
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array, Mask
+    from fegear.contact.plane.load_sharing import SharedLoad
+    from fegear.contact.plane.pair_compliance import PairCompliance, PairMatrices
+
+#: So many grids are kept for each pair: those of its history, its table, its quadrature, its stiffness, for two loads.
+_KEPT = 8
+#: So many of the states under load that were found last.
+_STATES = 2
+#: Of longer ones none: they serve one question of a design.
+_LONGEST = 4000
+#: A grid that shares this part of its positions with one that is kept takes their columns from it.
+_SHARED = 0.3
+
+
+@dataclass(frozen=True)
+class RollGrid:
+    """All that load sharing needs at P roll positions, evaluated once.
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+        Roll positions [m].
+    contacts : Contacts
+    matrices : PairMatrices
+    """
+
+    x: Array
+    contacts: Contacts
+    matrices: PairMatrices
+
+
+_PLACES = tuple(one.name for one in fields(Contacts) if one.name != "number")
+
+
+class _Kept(NamedTuple):
+    """A grid, its positions in ascending order, and where each of them stands in it."""
+
+    grid: RollGrid
+    ascending: Array
+    column: NDArray[np.intp]
+
+
+class _Shared(NamedTuple):
+    """Loads that were shared last."""
+
+    grid: RollGrid
+    separation: Array
+    load: Array
+    found: SharedLoad
+
+
+class RollGrids:
+    """Contacts and compliances of one pair, of which the grids asked for last are kept.
+
+    Parameters
+    ----------
+    compliance : PairCompliance
+    corner_contact : bool
+    """
+
+    def __init__(self, compliance: PairCompliance, corner_contact: bool) -> None:
+        self._compliance, self._corner_contact = compliance, corner_contact
+        self._kept: tuple[_Kept, ...] = ()
+        self._shared: tuple[_Shared, ...] = ()
+
+    def __reduce__(self) -> tuple[type[RollGrids], tuple[PairCompliance, bool]]:
+        """Travel to other processes without what is kept."""
+        return RollGrids, (self._compliance, self._corner_contact)
+
+    def serves(self, compliance: PairCompliance, corner_contact: bool) -> bool:
+        """Whether another pair's grids are these: only its load may be another."""
+        own = self._compliance
+        if corner_contact != self._corner_contact:
+            return False
+        return own is compliance or (
+            compliance.driver is own.driver
+            and compliance.driven is own.driven
+            and (compliance.coupling, compliance.hertz) == (own.coupling, own.hertz)
+            and (compliance.hertz != "linear" or compliance.nominal_load == own.nominal_load)
+            and compliance.pair == own.pair
+        )
+
+    @cached_property
+    def meshing(self) -> Meshing:
+        """Finds the contacts."""
+        return Meshing(self._compliance.pair, self._corner_contact)
+
+    def at(self, x: Array) -> RollGrid:
+        """The grid at roll positions, shape (P,) [m], each brought into one base pitch; kept for the next time."""
+        for number, kept in enumerate(self._kept):
+            if np.array_equal(kept.grid.x, x):
+                self._kept = (*self._kept[:number], *self._kept[number + 1 :], kept)
+                return kept.grid
+        grid = _read_only(self._with_known(x))
+        if x.size <= _LONGEST:
+            order = np.argsort(x, kind="stable")
+            # in one step, so that who is interrupted leaves nothing half
+            self._kept = (*self._kept[-_KEPT + 1 :], _Kept(grid, x[order], order))
+        return grid
+
+    def new(self, x: Array) -> RollGrid:
+        """The same at positions that will not be asked for again."""
+        pair = self._compliance.pair
+        start, pitch = pair.x_start, pair.base_pitch
+        outside = (x < start) | (x > start + pitch)
+        contacts = self.meshing.contacts(np.where(outside, self.meshing.reduced(x), x))
+        return RollGrid(x, contacts, self._compliance.matrices(contacts))
+
+    def share(self, grid: RollGrid, separation: Array, load: Array) -> SharedLoad:
+        """Share loads, shape (L,) [N], at the positions of a grid: for root stress the same ones as just before."""
+        for one in self._shared:
+            if one.grid is grid and np.array_equal(one.load, load) and np.array_equal(one.separation, separation):
+                return one.found
+        m = grid.matrices
+        found = share_load(m.compliance, separation, load, m.log_slope, m.reference_load, m.tilt, m.power)
+        self._shared = (*self._shared[-_STATES + 1 :], _Shared(grid, separation, load, found))
+        return found
+
+    def _with_known(self, x: Array) -> RollGrid:
+        """Columns of a kept grid where it has the same positions, new ones elsewhere."""
+        best, known, column = None, np.zeros(x.size, dtype=bool), np.zeros(x.size, dtype=np.intp)
+        for kept in reversed(self._kept):
+            place = np.minimum(np.searchsorted(kept.ascending, x), kept.ascending.size - 1)
+            same = kept.ascending[place] == x
+            if same.sum() > max(known.sum(), _SHARED * x.size):
+                best, known, column = kept.grid, same, kept.column[place]
+        if best is None:
+            return self.new(x)
+        if known.all():
+            return _joined(x, best, column, None, known)
+        return _joined(x, best, column, self.new(x[~known]), known)
+
+
+def _joined(x: Array, old: RollGrid, column: NDArray[np.intp], new: RollGrid | None, known: Mask) -> RollGrid:
+    """Columns of two grids, those of the old one where they are known."""
+
+    def columns(of: Callable[[RollGrid], Any]) -> Any:
+        found = of(old)[..., column]
+        if new is not None:
+            found[..., ~known] = of(new)
+        return found
+
+    places = {name: columns(attrgetter(f"contacts.{name}")) for name in _PLACES}
+    none = old.matrices.tilt is None and (new is None or new.matrices.tilt is None)
+    matrices = replace(
+        old.matrices,
+        compliance=columns(lambda grid: grid.matrices.compliance),
+        log_slope=columns(lambda grid: grid.matrices.log_slope),
+        tilt=None if none else columns(lambda grid: _tilt(grid.matrices)),
+    )
+    return RollGrid(x, replace(old.contacts, **places), matrices)
+
+
+def _tilt(matrices: PairMatrices) -> Array:
+    """None at all is the same as far inside of every corner."""
+    return np.full(matrices.log_slope.shape, -np.inf) if matrices.tilt is None else matrices.tilt
+
+
+def _read_only(grid: RollGrid) -> RollGrid:
+    for part in (grid.contacts, grid.matrices):
+        for one in fields(part):
+            value = getattr(part, one.name)
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+    return grid

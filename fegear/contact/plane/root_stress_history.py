@@ -1,0 +1,207 @@
+"""Root stress of a tooth on its way through the mesh, from its own load and its neighbours'.
+
+Root stress along a fillet per unit line load at many contacts, each evaluated once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.base.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.compliance import RootStressInfluence, Side
+    from fegear.contact.plane.engagement import Engagement, Loaded
+    from fegear.geometry.pair import Member
+
+    Rows = dict[int, Array]
+
+
+@dataclass(frozen=True)
+class RootStressHistory:
+    """Largest fillet stress of each pair's tooth at each roll position.
+
+    Parameters
+    ----------
+    member : {"driver", "driven"}
+    side : {"tension", "compression"}
+    x : ndarray, shape (n, P)
+        Position of the pair's contact [m]; beyond the path the tooth is unloaded but feels its neighbours.
+    stress : ndarray, shape (n, P, L)
+        Largest tension, or most negative compression [Pa].
+    """
+
+    member: Member
+    side: Side
+    x: Array
+    stress: Array
+
+    @property
+    def largest(self) -> Array:
+        """Over the whole engagement, shape (L,) [Pa]."""
+        flat = self.stress.reshape(-1, self.stress.shape[-1])
+        return np.asarray(flat.max(axis=0) if self.side == "tension" else flat.min(axis=0))
+
+
+def root_stress_history(
+    engagement: Engagement,
+    loaded: Loaded,
+    member: Member,
+    side: Side = "tension",
+    beyond: int = 0,
+    source: RootStressInfluence | None = None,
+) -> RootStressHistory:
+    """Superpose the fillet stress of a tooth's own load and of its neighbours' loads, then take the extreme.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    loaded : Loaded
+    member : {"driver", "driven"}
+    side : {"tension", "compression"}
+        The tension fillet lies below the loaded flank.
+    beyond : int
+        Teeth before the first and after the last pair that can touch, in addition: they feel their neighbours' loads.
+    source : RootStressInfluence, optional
+        Where this gear's root stress comes from; by default where its compliance does.
+
+    Raises
+    ------
+    InputError
+        If the source knows no root stress.
+    """
+    signed = np.max if side == "tension" else np.min
+    stress = np.stack(
+        [signed(total, axis=-1) for total in superposed_stress(engagement, loaded, member, side, beyond, source)]
+    )
+    contacts = loaded.grid.contacts
+    teeth = np.arange(-beyond, contacts.x.shape[0] + beyond)
+    return RootStressHistory(member, side, contacts.x[0] + teeth[:, None] * engagement.pair.base_pitch, stress)
+
+
+def superposed_stress(
+    engagement: Engagement,
+    loaded: Loaded,
+    member: Member,
+    side: Side = "tension",
+    beyond: int = 0,
+    source: RootStressInfluence | None = None,
+) -> Iterator[Array]:
+    """Stress along the fillet of one tooth after the other, from its own load and its neighbours', (P, L, points) [Pa].
+
+    Parameters
+    ----------
+    engagement, loaded, member, side, beyond, source
+        See `root_stress_history`; teeth come in its order.
+    """
+    source = source or engagement.compliance.source(member)
+    contacts = loaded.grid.contacts
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    n = radius.shape[0]
+    reach = min(source.reach, n - 1 + beyond) if engagement.compliance.coupling else 0
+    towards_load = 1 if member == "driver" else -1  # tooth +1 is ahead of a driving tooth and behind a driven one
+    line_load = loaded.loads / engagement.compliance.face_width
+    carries = np.asarray((line_load > 0.0).any(axis=2))
+    rows = _rows(source, reach, radius[carries], side)
+    first = np.concatenate([[0], np.cumsum(carries.sum(axis=1))])
+    carrying = [(j, np.flatnonzero(carries[j]), slice(first[j], first[j + 1])) for j in range(n) if carries[j].any()]
+    for tooth in range(-beyond, n + beyond):
+        total = np.zeros((*line_load.shape[1:], rows[0].shape[1]))
+        for other, at, of_other in carrying:
+            k = towards_load * (tooth - other)
+            if k in rows:
+                total[at] += line_load[other, at, :, None] * rows[k][of_other, None, :]
+        yield total
+
+
+def _rows(source: RootStressInfluence, reach: int, radius: Array, side: Side) -> Rows:
+    """Stress along the fillet of teeth -reach..reach per unit line load at radii, shape (Q, points) each [1/m]."""
+
+    def evaluate(at: Array) -> Rows:
+        found = {}
+        for k in range(-reach, reach + 1):
+            stress = source.root_stress(k, at, side)
+            if stress is None:
+                raise InputError(
+                    "results",
+                    '"root-stress"',
+                    "cannot come from a compliance source that knows deflections alone",
+                    'set pair.root_stress.source = "fe" or a formula',
+                )
+            found[k] = np.ascontiguousarray(stress.T)
+        return found
+
+    kept: dict[tuple[Side, int], StressRows] | None = getattr(source, "stress_rows", None)
+    return evaluate(radius) if kept is None else kept.setdefault((side, reach), StressRows()).at(radius, evaluate)
+
+
+#: Contacts that nobody asked for now are kept until there are so many times those that are.
+_MOST = 4
+
+
+class _Table(NamedTuple):
+    """Rows of contacts, their radii in ascending order, and the row of each."""
+
+    ascending: Array
+    row: NDArray[np.intp]
+    rows: Rows
+
+
+class StressRows:
+    """Rows of the contacts of one flank: those asked for before are looked up, whatever the load and the relief.
+
+    What is kept does not travel to other processes.
+    """
+
+    def __init__(self) -> None:
+        self._table: _Table | None = None
+
+    def __reduce__(self) -> tuple[type[StressRows], tuple[()]]:
+        """Travel without rows."""
+        return StressRows, ()
+
+    def at(self, radius: Array, evaluate: Callable[[Array], Rows]) -> Rows:
+        """Rows of contacts at radii, shape (Q,) [m].
+
+        Parameters
+        ----------
+        radius : ndarray, shape (Q,)
+            [m].
+        evaluate : callable
+            Radii to rows, where they are not known; always that of the same teeth.
+        """
+        wanted, inverse = np.unique(radius, return_inverse=True)
+        table = self._table if self._table is not None and self._table.row.size else None  # none carried load before
+        known = np.zeros(wanted.size, dtype=bool)
+        if table is not None:
+            place = np.minimum(np.searchsorted(table.ascending, wanted), table.ascending.size - 1)
+            known = table.ascending[place] == wanted
+        if not known.all() or table is None:
+            table = self._table = _extended(table if known.any() else None, wanted, known, evaluate)
+            place = np.searchsorted(table.ascending, wanted)
+        at = table.row[place][inverse]
+        return {k: rows[at] for k, rows in table.rows.items()}
+
+
+def _extended(
+    table: _Table | None, wanted: Array, known: NDArray[np.bool_], evaluate: Callable[[Array], Rows]
+) -> _Table:
+    missing = wanted[~known]
+    new = evaluate(missing)
+    if table is None:
+        return _Table(missing, np.arange(missing.size), new)
+    radius, keep = np.empty(table.row.size), np.ones(table.row.size, dtype=bool)
+    radius[table.row] = table.ascending
+    if table.row.size + missing.size > _MOST * wanted.size:
+        keep = np.isin(radius, wanted)
+    radius = np.concatenate([radius[keep], missing])
+    order = np.argsort(radius)
+    return _Table(radius[order], order, {k: np.concatenate([rows[keep], new[k]]) for k, rows in table.rows.items()})

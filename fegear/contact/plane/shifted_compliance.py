@@ -1,0 +1,169 @@
+"""A finite-element source shifted by its own estimated error: what is left of the digits further down the chain.
+
+Estimated errors of what follows from load sharing: solved again with each compliance off by its own error.
+
+`shifted` holds engagements whose compliances are off, one source each (`fegear.contact.plane.shifted_compliance`); the
+changes that they make add up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.fourier import fourier_series
+from fegear.contact.plane.engagement import Loaded
+from fegear.contact.plane.load_sharing import share_load
+from fegear.contact.plane.roll_grids import RollGrid
+from fegear.contact.plane.transmission_error import mean_secant_stiffness
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.compliance import Side
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.fe_compliance import FiniteElementCompliance
+    from fegear.contact.plane.pair_history import PairHistory
+    from fegear.contact.plane.transmission_error import TransmissionError
+
+
+_POINTS = 25
+
+
+@dataclass(frozen=True)
+class ShiftedCompliance:
+    """A source whose own compliance, or whose neighbours', is off by the estimated error.
+
+    Parameters
+    ----------
+    base : FiniteElementCompliance
+    radii, own_error : ndarray
+        Added to c_0 over the radius [m], [m^2/N]; straight between the points.
+    neighbour_error : float
+        Added to every c_k [m^2/N].
+    """
+
+    base: FiniteElementCompliance
+    radii: Array
+    own_error: Array
+    neighbour_error: float = 0.0
+
+    @property
+    def reach(self) -> int:
+        """As the base."""
+        return self.base.reach
+
+    @property
+    def log_slope(self) -> float:
+        """As the base."""
+        return self.base.log_slope
+
+    power = 0.0
+    kinks = ()
+    remarks = ()
+
+    def own(self, radius: ArrayLike) -> Array:
+        """c_0 and its error [m^2/N]."""
+        return np.asarray(
+            self.base.own(radius) + np.interp(np.asarray(radius, dtype=float), self.radii, self.own_error)
+        )
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """As the base."""
+        return self.base.reference_half_width(radius)
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike) -> Array:
+        """c_k and its error [m^2/N]."""
+        return np.asarray(self.base.neighbour(k, radius_p, radius_q) + self.neighbour_error)
+
+    def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
+        """As the base."""
+        return self.base.root_stress(k, radius_q, side)
+
+    def root_stress_error(self, radius_q: ArrayLike) -> Array:
+        """As the base."""
+        return self.base.root_stress_error(radius_q)
+
+    def describe(self) -> str:
+        """As the base, shifted."""
+        return f"{self.base.describe()}, shifted by its estimated error"
+
+
+def shifted_by_error(base: FiniteElementCompliance) -> ShiftedCompliance:
+    """The source with its loaded tooth softer by the estimated error."""
+    known = base.influence
+    low, high = _flank(base)
+    radii = np.linspace(low, high, _POINTS)
+    return ShiftedCompliance(base, radii, known.self_error(radii, base.reference_half_width(radii)))
+
+
+def neighbours_shifted_by_error(base: FiniteElementCompliance) -> ShiftedCompliance:
+    """The source with its neighbours softer by their estimated error."""
+    few = np.linspace(*_flank(base), 4)
+    errors = (float(np.nanmax(base.influence.neighbour_error(k, few, few))) for k in range(1, base.reach + 1))
+    return ShiftedCompliance(base, few, np.zeros_like(few), max(errors, default=0.0))
+
+
+def _flank(base: FiniteElementCompliance) -> tuple[float, float]:
+    """Radii between which the flank is in use [m]."""
+    known = base.influence
+    return max(known.lowest_radius, known.gear.form_radius), min(known.highest_radius, known.gear.involute_tip_radius)
+
+
+def solve_again(other: Engagement, loaded: Loaded) -> Loaded:
+    """Solve with another engagement's compliances at the same contacts, loads and separations."""
+    grid = loaded.grid
+    m = other.compliance.matrices(grid.contacts)
+    shared = share_load(m.compliance, loaded.separation, loaded.load, m.log_slope, m.reference_load, m.tilt, m.power)
+    return Loaded(RollGrid(grid.x, grid.contacts, m), loaded.load, shared, loaded.separation)
+
+
+@dataclass(frozen=True)
+class TransmissionErrorShift:
+    """Estimated errors of a transmission error's numbers, each the sum of the changes by the shifted compliances."""
+
+    mean: float
+    peak_to_peak: float
+    effective: float
+    amplitude: Array
+    stiffness: float
+
+
+def transmission_error_shift(te: TransmissionError, shifted: Sequence[Engagement]) -> TransmissionErrorShift | None:
+    """Solve again at the same quadrature points with each compliance off by its error; None where none states one."""
+    if not shifted:
+        return None
+    found = []
+    for engagement in shifted:
+        other = solve_again(engagement, te.loaded)
+        values = other.transmission_error[:, 0]
+        again = replace(te, loaded=other, series=fourier_series(te.points, values, te.series.amplitude.size))
+        found.append(
+            (
+                abs(again.mean - te.mean),
+                abs(again.peak_to_peak - te.peak_to_peak),
+                abs(again.effective_error - te.effective_error),
+                np.abs(again.series.amplitude - te.series.amplitude),
+                abs(mean_secant_stiffness(again) - mean_secant_stiffness(te)),
+            )
+        )
+    return TransmissionErrorShift(
+        sum(f[0] for f in found), sum(f[1] for f in found), sum(f[2] for f in found),
+        np.sum([f[3] for f in found], axis=0), sum(f[4] for f in found),
+    )  # fmt: skip
+
+
+def load_shift(history: PairHistory, other: PairHistory) -> Array:
+    """How far the loads of a shifted solution are from the original's, shape of its loads [N]."""
+    columns = [
+        np.interp(history.x, other.x, other.load[:, i], left=0.0, right=0.0) for i in range(history.load.shape[1])
+    ]
+    difference = np.abs(np.stack(columns, axis=1) - history.load)
+    # A jump of the load at an end of the path is in the same place in both; outside it one of them may have no point.
+    inside = (history.x >= other.x[0]) & (history.x <= other.x[-1]) if other.x.size else np.zeros(history.x.size, bool)
+    return np.where(inside[:, None], difference, 0.0)

@@ -1,0 +1,179 @@
+"""Compliances measured or computed elsewhere and given as a table over the path of contact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.contact.plane.compliance import OneTooth, Rigid
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.compliance import GearCompliance
+    from fegear.geometry.pair import GearPair, Member
+
+Fit = Literal["linear", "cubic"]
+
+
+@dataclass(frozen=True)
+class CompliancePolynomial:
+    """A least-squares polynomial in x / scale, or a linear interpolation when there are `knots`.
+
+    Parameters
+    ----------
+    coefficients : ndarray
+        Highest power first [m/N]; or the values at the knots.
+    scale : float
+        [m].
+    knots : ndarray
+        Positions [m] of a linear table; empty for a polynomial.
+    """
+
+    coefficients: Array
+    scale: float
+    knots: Array
+
+    def __call__(self, x: ArrayLike) -> Array:
+        """Compliance [m/N] at x [m]; a linear table continues its end pieces."""
+        at = np.asarray(x, dtype=float)
+        if self.knots.size == 0:
+            return np.asarray(np.polyval(self.coefficients, at / self.scale))
+        i = np.clip(np.searchsorted(self.knots, at) - 1, 0, self.knots.size - 2)
+        step = self.knots[i + 1] - self.knots[i]
+        return np.asarray(
+            self.coefficients[i] + (self.coefficients[i + 1] - self.coefficients[i]) * (at - self.knots[i]) / step
+        )
+
+
+def fit_compliance(x: ArrayLike, compliance: ArrayLike, fit: Fit = "cubic") -> CompliancePolynomial:
+    """Represent a table of compliance over position.
+
+    Parameters
+    ----------
+    x : array_like, shape (N,)
+        Positions on the line of action [m], positive toward the gear's own tip.
+    compliance : array_like, shape (N,)
+        Deflection per load [m/N], positive.
+    fit : {"linear", "cubic"}
+        Interpolate between the entries, or pass one unweighted least-squares cubic through all.
+
+    Returns
+    -------
+    CompliancePolynomial
+
+    Raises
+    ------
+    InputError
+        If the table is too short, not finite, has equal positions or negative compliances.
+    """
+    at, c = np.asarray(x, dtype=float), np.asarray(compliance, dtype=float)
+    least = 2 if fit == "linear" else 4
+    if fit not in ("linear", "cubic"):
+        raise InputError("compliance.fit", f'"{fit}"', 'must be "linear" or "cubic"')
+    if at.ndim != 1 or at.shape != c.shape or at.size < least:
+        raise InputError(
+            "compliance.file", f"{at.size} entries", f"must have at least {least} positions with one compliance each"
+        )
+    if not (np.isfinite(at).all() and np.isfinite(c).all() and (c > 0.0).all()):
+        raise InputError("compliance.file", "an entry", "must be a finite position with a positive compliance")
+    order = np.argsort(at)
+    at, c = at[order], c[order]
+    if (np.diff(at) <= 0.0).any():
+        raise InputError("compliance.file", f"{at[:-1][np.diff(at) <= 0][0]:.6g} m", "occurs twice as a position")
+    scale = float(np.abs(at).max())
+    if fit == "linear":
+        return CompliancePolynomial(c, scale, at)
+    return CompliancePolynomial(np.polyfit(at / scale, c, 3), scale, np.empty(0))
+
+
+@dataclass(frozen=True)
+class TableCompliance(OneTooth):
+    """Compliance of one gear's tooth as a function of the position on its own flank.
+
+    Parameters
+    ----------
+    table : callable
+        Compliance [m/N] of the whole face over x [m], positive toward this gear's tip (or as `sign` says).
+    base_radius : float
+        [m].
+    pitch_roll_length : float
+        Roll length (radius of curvature) of the flank at the pitch point [m].
+    face_width : float
+        [m]; the table holds for it.
+    sign : float
+        +1, or -1 for a table whose x runs toward the other gear's tip.
+    knots : tuple of float
+        Positions x [m] at which the table has kinks.
+    """
+
+    table: Callable[[ArrayLike], Array]
+    base_radius: float
+    pitch_roll_length: float
+    face_width: float
+    sign: float = 1.0
+    knots: tuple[float, ...] = ()
+
+    reach = 0
+    log_slope = 0.0
+    power = 0.0
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii of the knots [m]."""
+        lengths = (self.pitch_roll_length + self.sign * x for x in self.knots)
+        return tuple(math.hypot(self.base_radius, rho) for rho in lengths if rho > 0.0)
+
+    def own(self, radius: ArrayLike) -> Array:
+        """Compliance per unit face width [m^2/N], contact included."""
+        r = np.asarray(radius, dtype=float)
+        rho = np.sqrt(np.maximum((r - self.base_radius) * (r + self.base_radius), 0.0))
+        return self.table(self.sign * (rho - self.pitch_roll_length)) * self.face_width
+
+    def reference_half_width(self, radius: ArrayLike) -> Array:
+        """One: the table's contact compliance is fixed."""
+        return np.ones(np.shape(radius))
+
+    def describe(self) -> str:
+        """Return what the table includes."""
+        return "compliance from a table, contact included and independent of load, no neighbour coupling"
+
+
+def table_sources(
+    pair: GearPair,
+    x: ArrayLike,
+    compliance: ArrayLike,
+    of: Literal["tooth", "pair"] = "tooth",
+    fit: Fit = "cubic",
+) -> tuple[GearCompliance, GearCompliance]:
+    """Turn a table into the sources of driver and driven.
+
+    Parameters
+    ----------
+    pair : GearPair
+    x : array_like, shape (N,)
+        Positions [m] from the pitch point, positive toward the tip of the tooth (``of="tooth"``) or of the driver.
+    compliance : array_like, shape (N,)
+        [m/N] for the pair's face width.
+    of : {"tooth", "pair"}
+        A tooth of either gear, so that the pair has C(x) = c(x) + c(-x) (equal gears); or the pair as a whole.
+    fit : {"linear", "cubic"}
+    """
+    if of not in ("tooth", "pair"):
+        raise InputError("compliance.of", f'"{of}"', 'must be "tooth" or "pair"')
+    table = fit_compliance(x, compliance, fit)
+    face = pair.face_width
+    knots = tuple(float(k) for k in table.knots)
+
+    def source(member: Member) -> TableCompliance:
+        at_pitch = float(pair.flank_curvature_radius(0.0, member))
+        return TableCompliance(table, pair.gear(member).base_radius, at_pitch, face, 1.0, knots)
+
+    return (source("driver"), source("driven")) if of == "tooth" else (source("driver"), Rigid())

@@ -1,0 +1,206 @@
+"""Root stress of one tooth of a gear on its way through the mesh, its neighbours' loads and its error included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from fegear.contact.plane.pair_history import refined_peaks
+from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.contact.plane.shifted_compliance import solve_again
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.compliance import RootStressInfluence, Side
+    from fegear.contact.plane.engagement import Engagement, Loaded
+    from fegear.geometry.pair import Member
+
+
+#: Both fillets of a tooth, and the sign of the stress that is looked for.
+_FILLETS: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))
+
+
+@dataclass(frozen=True)
+class ToothStress:
+    """Largest root stresses of one tooth while its pair passes through the mesh; arrays of shape (P, L).
+
+    Parameters
+    ----------
+    x : ndarray, shape (P,)
+        Position of the tooth's contact [m].
+    tension : ndarray
+        Largest below the loaded flank [Pa].
+    compression : ndarray or None
+        Most negative of the other fillet [Pa]; None where the source knows none, as the formulas.
+    tension_error : ndarray
+        Estimated [Pa]; NaN where the source does not know its own.
+    """
+
+    x: Array
+    tension: Array
+    compression: Array | None
+    tension_error: Array
+
+
+class LoadedStates(NamedTuple):
+    """States that the teeth of both gears pass through.
+
+    Attributes
+    ----------
+    rows : list of Loaded
+        Of each tooth, from the one before the first pair that can touch to the one after the last: the same state
+        unless teeth differ by their spacing errors.
+    shifted : list of list of Loaded
+        The same with one compliance each off by its error.
+    """
+
+    rows: list[Loaded]
+    shifted: list[list[Loaded]]
+
+
+def loaded_states(e: Engagement, shifted: Sequence[Engagement], loads: Sequence[float], x: ArrayLike) -> LoadedStates:
+    """Share loads for a base pitch before and after a tooth's contact, once for both gears.
+
+    Parameters
+    ----------
+    e : Engagement
+    shifted : sequence of Engagement
+        The same with one compliance each off by its error.
+    loads : sequence of float, shape (L,)
+        Along the line of action [N].
+    x : array_like, shape (P,)
+        Roll positions over one base pitch [m].
+    """
+    grid = e.grid(x)
+    teeth = grid.contacts.number.size + 2
+    if not (e.driver_spacing.size or e.driven_spacing.size):
+        state = e.solve(grid, loads)
+        again = [solve_again(other, state) for other in shifted]
+        return LoadedStates([state] * teeth, [again] * teeth)
+    # The tooth of interest carries pair number j in base pitch number j.
+    first = int(grid.contacts.number[0]) - 1
+    rows = [e.solve(grid, loads, first + row) for row in range(teeth)]
+    return LoadedStates(rows, [[solve_again(other, state) for other in shifted] for state in rows])
+
+
+def with_peaks(e: Engagement, load: float, x: Array, sources: Mapping[Member, Sequence[RootStressInfluence]]) -> Array:
+    """Roll positions and, in addition, those where a tooth's root stress is largest, ascending [m].
+
+    As many for every state: peaks of two curves at one kink stay two positions, which round-off could tell apart.
+
+    Parameters
+    ----------
+    e : Engagement
+    load : float
+        [N].
+    x : ndarray, shape (P,)
+        Over one base pitch, with both sides of every jump, ascending [m].
+    sources : mapping of member to sequence of RootStressInfluence
+        Of root stress.
+    """
+    wanted = [
+        (member, source, side, sign)
+        for member, several in sources.items()
+        for source in several
+        for side, sign in _FILLETS
+        if _knows(e, member, source, side)
+    ]
+
+    def curves(at: Array) -> Array:
+        rows = loaded_states(e, (), [load], at).rows
+        alike = all(state is rows[0] for state in rows)
+        found = []
+        for member, source, side, sign in wanted:
+            stress = [
+                root_stress_history(e, state, member, side, 1, source).stress for state in (rows[:1] if alike else rows)
+            ]
+            teeth = stress[0] if alike else np.stack([one[row] for row, one in enumerate(stress)])
+            found.append((sign * teeth[:, :, 0]).max(axis=0))
+        return np.array(found)
+
+    return np.sort(np.concatenate([x, refined_peaks(curves, x)[0]]))
+
+
+def _knows(e: Engagement, member: Member, source: RootStressInfluence, side: Side) -> bool:
+    """Whether a source knows the stress of a fillet; formulas know that of the tension fillet alone."""
+    ends = np.array([e.pair.radius(end, member) for end in (e.pair.x_start, e.pair.x_end)])
+    return source.root_stress(0, ends, side) is not None
+
+
+def tooth_stress(
+    e: Engagement,
+    states: LoadedStates,
+    member: Member,
+    source: RootStressInfluence | None = None,
+    *,
+    estimates: bool = True,
+) -> ToothStress:
+    """Follow one tooth of a gear from a base pitch before its contact to one after it.
+
+    Parameters
+    ----------
+    e : Engagement
+    states : LoadedStates
+        Of this engagement.
+    member : {"driver", "driven"}
+    source : RootStressInfluence, optional
+        Where the gear's root stress comes from; by default where its compliance does, which must be finite elements.
+    estimates : bool
+        Whether the error is estimated; else it is not known.
+
+    Raises
+    ------
+    InputError
+        If the source knows no root stress.
+    """
+    knows_both = _knows(e, member, source or e.compliance.source(member), "compression")
+    xs: list[Array] = []
+    tension: list[Array] = []
+    compression: list[Array] = []
+    error: list[Array] = []
+    known: dict[int, tuple[Array, Array, Array, Array]] = {}
+    for row, (state, shifted) in enumerate(zip(*states, strict=True)):
+        if id(state) not in known:
+            pulled = root_stress_history(e, state, member, "tension", 1, source)
+            pressed = root_stress_history(e, state, member, "compression", 1, source) if knows_both else pulled
+            off = np.zeros_like(pulled.stress)
+            for again in shifted:
+                off = off + np.abs(root_stress_history(e, again, member, "tension", 1, source).stress - pulled.stress)
+            off[1:-1] += _own_error(e, member, state, source) if estimates else np.nan
+            # where a tooth carries next to nothing its stress comes from its neighbours, and is as exact as theirs
+            off = np.maximum(off, _share_left(e, member, source) * np.abs(pulled.stress)) if estimates else off
+            known[id(state)] = pulled.x, pulled.stress, pressed.stress, off
+        for found, values in zip((xs, tension, compression, error), known[id(state)], strict=True):
+            found.append(values[row])
+    x = np.concatenate(xs)
+    order = np.argsort(x)
+    pitch = e.pair.base_pitch
+    order = order[(x[order] > e.pair.x_start - pitch) & (x[order] < e.pair.x_end + pitch)]
+    t, c, off = (np.concatenate(parts)[order] for parts in (tension, compression, error))
+    return ToothStress(x[order], t, c if knows_both else None, off)
+
+
+def _share_left(e: Engagement, member: Member, source: RootStressInfluence | None) -> float:
+    """What the source leaves in the largest root tension under a tooth's own load, as a share; zero if not known."""
+    stress = source or e.compliance.source(member)
+    few = np.linspace(e.pair.radius(e.pair.x_start, member), e.pair.radius(e.pair.x_end, member), 9)
+    own = stress.root_stress(0, few, "tension")
+    share = 0.0 if own is None else float(np.max(stress.root_stress_error(few)) / np.max(own))
+    return share if np.isfinite(share) else 0.0
+
+
+def _own_error(e: Engagement, member: Member, state: Loaded, source: RootStressInfluence | None) -> Array:
+    """What the source leaves in the stress of each tooth's own load, shape (n, P, L) [Pa]."""
+    stress = source or e.compliance.source(member)
+    contacts = state.grid.contacts
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    few = np.linspace(radius.min(), radius.max(), 9)
+    usual = stress.root_stress_error(few)
+    per_load = np.interp(radius, few, usual)
+    return np.asarray(per_load[:, :, None] * state.loads / e.compliance.face_width)

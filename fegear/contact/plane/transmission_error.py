@@ -1,0 +1,273 @@
+"""Loaded static transmission error over a base pitch, with its Fourier series to quadrature accuracy.
+
+A loaded pair over one base pitch: the roll positions of its curves, and the secant stiffness along them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
+from fegear.contact.plane.load_sharing import share_load
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.engagement import Engagement, Loaded
+    from fegear.contact.plane.roll_grids import RollGrid
+
+
+#: Contact changes are bracketed by so many divisions into so many parts each.
+_PASSES, _PARTS = 3, 32
+
+
+@dataclass(frozen=True)
+class TransmissionError:
+    """Transmission error of one gear pair under one load, as a Fourier series over the base pitch.
+
+    Parameters
+    ----------
+    load : float
+        [N].
+    points : Panels
+        Quadrature points between all jumps and kinks.
+    loaded : Loaded
+        Load sharing at these points.
+    series : FourierSeries
+        [m].
+    """
+
+    load: float
+    points: Panels
+    loaded: Loaded
+    series: FourierSeries
+
+    @property
+    def values(self) -> Array:
+        """Transmission error at the quadrature points, shape (Q,) [m]."""
+        return np.asarray(self.loaded.transmission_error[:, 0])
+
+    @property
+    def mean(self) -> float:
+        """[m]."""
+        return float(self.series.mean)
+
+    @property
+    def peak_to_peak(self) -> float:
+        """Largest less smallest value [m]."""
+        return float(np.ptp(self.values))
+
+    @property
+    def effective_error(self) -> float:
+        """A_e of TM-89901 [m]."""
+        return float(effective_error(self.series))
+
+    @property
+    def average_stiffness(self) -> float:
+        """Mean over the base pitch of the local mesh stiffness dW/dzeta [N/m]."""
+        return float(self.loaded.local_stiffness[:, 0] @ self.points.weights / self.points.period)
+
+
+def contact_changes(engagement: Engagement, load: float, cycle: int = 0, samples: int = 48) -> Array:
+    """Roll positions [m] at which a pair comes into or out of contact between the geometric break points.
+
+    Found as events: between two neighbouring sample points with different loaded pairs the change is bracketed by
+    division, to 1e-6 of the base pitch; a misplaced kink costs the quadrature its square, a misplaced jump of the
+    local stiffness 1e-7 of its mean. Every pass cuts all brackets into 32 parts: as fast as cutting them in two.
+    """
+    pitch, start = engagement.pair.base_pitch, engagement.pair.x_start
+    edges = np.concatenate([[start], [b for b in engagement.breaks if start < b < start + pitch], [start + pitch]])
+    xs, piece = [], []
+    for i, (a, b) in enumerate(pairwise(edges)):
+        if b - a > 1e-12 * pitch:
+            n = max(4, round(samples * (b - a) / pitch))
+            xs.append(
+                np.concatenate([[a + 1e-9 * (b - a)], a + (b - a) * (np.arange(n) + 0.5) / n, [b - 1e-9 * (b - a)]])
+            )
+            piece.append(np.full(n + 2, i))
+    x, which = np.concatenate(xs), np.concatenate(piece)
+    active = _active(engagement, engagement.grid(x), load, cycle)
+    changed = (active[:, 1:] != active[:, :-1]).any(axis=0) & (which[1:] == which[:-1])
+    low, high, state = x[:-1][changed], x[1:][changed], active[:, :-1][:, changed]
+    if not low.size:
+        return low
+    every, inside = np.arange(low.size), np.arange(1, _PARTS) / _PARTS
+    for _ in range(_PASSES):
+        ends = np.concatenate([low[None], low + inside[:, None] * (high - low), high[None]])
+        grid = engagement.grid(ends[1:-1].ravel(), again=False)
+        found = _active(engagement, grid, load, cycle).reshape(-1, _PARTS - 1, low.size)
+        differs = np.concatenate([(found != state[:, None]).any(axis=0), np.ones((1, low.size), dtype=bool)])
+        first = differs.argmax(axis=0)
+        low, high = ends[first, every], ends[first + 1, every]
+    return np.asarray(0.5 * (low + high))
+
+
+def _active(engagement: Engagement, grid: RollGrid, load: float, cycle: int) -> NDArray[np.bool_]:
+    return np.asarray(engagement.solve(grid, [load], cycle).loads[:, :, 0] > 0.0)
+
+
+def transmission_error(
+    engagement: Engagement, load: float, harmonics: int = 64, *, order: int = 16, cycle: int = 0
+) -> TransmissionError:
+    """Transmission error under one load by piecewise Gauss quadrature.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    load : float
+        [N].
+    harmonics : int
+        N of the series.
+    order : int
+        Gauss points per subdivision: the setting that trades accuracy for time.
+    cycle : int
+        Which base pitch, when there are spacing errors.
+    """
+    pair = engagement.pair
+    changes = contact_changes(engagement, load, cycle)
+    points = panels(pair.x_start, pair.base_pitch, [*engagement.breaks, *changes], waves=harmonics, order=order)
+    loaded = engagement.solve(engagement.grid(points.x), [load], cycle)
+    return TransmissionError(load, points, loaded, fourier_series(points, loaded.transmission_error[:, 0], harmonics))
+
+
+@dataclass(frozen=True)
+class PairStiffness:
+    """Mark's effective stiffness of the tooth pairs (App. A, A.8, A.11).
+
+    Parameters
+    ----------
+    points : Panels
+    pair : ndarray, shape (n, Q)
+        K_Sj of each pair [N/m]; zero where it is off the path.
+    x : ndarray, shape (n, Q)
+        Positions of the pairs [m].
+    """
+
+    points: Panels
+    pair: Array
+    x: Array
+
+    @property
+    def mesh(self) -> Array:
+        """K_T = sum of K_Sj, shape (Q,) [N/m]."""
+        return np.asarray(self.pair.sum(axis=0))
+
+    @property
+    def mean_compliance(self) -> float:
+        """Mean of 1/K_T over the base pitch [m/N]."""
+        return float((1.0 / self.mesh) @ self.points.weights / self.points.period)
+
+
+def pair_stiffness(engagement: Engagement, load: float, harmonics: int = 64) -> PairStiffness:
+    """Effective tooth-pair stiffness K_Sj = sum_j' k_jj', k the inverse of c_jj'.
+
+    By Maxwell's theorem it is the load on pair j, per unit approach, of a pair without modifications or errors (A.11);
+    with a load-dependent contact it is the secant stiffness under `load` [N].
+
+    Raises
+    ------
+    InputError
+        If the contact ratio is below 1: perfect flanks then have positions without any pair on the path, whether tip
+        corners touch beyond it or not.
+    """
+    pair = engagement.pair
+    if pair.contact_ratio < 1.0:
+        raise InputError(
+            "pair", f"contact ratio {pair.contact_ratio:.4f}", "leaves perfect flanks no stiffness where no tooth pair "
+            "is on the path of contact, so that Mark's K_T and its mean compliance do not exist below 1",
+            'take transmission_error.method = "quadrature", which has tip corners in contact there',
+        )  # fmt: skip
+    points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=harmonics)
+    grid = engagement.grid(points.x)
+    m = grid.matrices
+    e = np.where(grid.contacts.gap == 0.0, 0.0, np.inf)
+    shared = share_load(m.compliance, e, [load], m.log_slope, m.reference_load, m.tilt, m.power)
+    return PairStiffness(points, shared.loads[:, :, 0] / shared.transmission_error[:, 0], grid.contacts.x)
+
+
+def revolution(engagement: Engagement, load: float, cycles: int, harmonics: int, order: int = 8) -> FourierSeries:
+    """Transmission error over many base pitches with spacing errors: its rotational harmonics.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        With spacing errors.
+    load : float
+        [N].
+    cycles : int
+        Number of base pitches: the teeth of the gear with errors, or the least common multiple of both.
+    harmonics : int
+        Highest rotational harmonic; order `cycles` is the tooth-mesh frequency.
+    order : int
+        Gauss points per subdivision. Contact changes of single pitches are not resolved as break points.
+
+    Returns
+    -------
+    FourierSeries
+        Over the period of `cycles` base pitches.
+    """
+    if cycles < 1:
+        raise InputError("cycles", cycles, "must be at least 1")
+    pair = engagement.pair
+    per_pitch = max(12, -(-harmonics // cycles))
+    points = panels(pair.x_start, pair.base_pitch, engagement.breaks, waves=per_pitch, order=order)
+    grid = engagement.grid(points.x)
+    m, e = grid.matrices, engagement.separation(grid.contacts)
+    finite = np.where(grid.contacts.present, e - engagement.spacing(grid.contacts, 0), np.inf)
+    errors = np.concatenate([engagement.spacing(grid.contacts, k) for k in range(cycles)], axis=1)
+    shared = share_load(
+        m.compliance, finite[:, :, None] + errors[:, None, :], np.full(cycles, load),
+        m.log_slope, m.reference_load, m.tilt, m.power,
+    )  # fmt: skip
+    # The points of every base pitch lie alike, so that the sum over the base pitches is a fast Fourier transform: a
+    # kernel of all points times all harmonics would take gigabytes for hunting tooth numbers.
+    over_pitches = np.fft.fft(shared.transmission_error, axis=1)
+    n, period = np.arange(harmonics + 1), cycles * pair.base_pitch
+    within = np.exp(-2j * math.pi / period * np.multiply.outer(n, points.x)) * points.weights / period
+    return FourierSeries((within * over_pitches[:, n % cycles].T).sum(axis=1), period)
+
+
+#: Distance from a jump at which both sides of it are looked at [base pitches].
+BESIDE = 1e-7
+
+
+def secant_stiffness(loaded: Loaded) -> Array:
+    """K_T = sum of K_Sj over the pairs in contact, with the secant compliances of their loads, shape (P, L) [N/m].
+
+    It is W / transmission error of the same pairs without modifications and errors (Mark, A.11).
+    """
+    secant = loaded.grid.matrices.at_load(loaded.loads)
+    active = loaded.loads > 0.0
+    n = active.shape[0]
+    c = np.where(active[:, None] & active[None, :], secant, np.eye(n)[:, :, None, None])
+    right = np.moveaxis(active.astype(float), 0, -1)[..., None]
+    return np.asarray(np.linalg.solve(np.moveaxis(c, (0, 1), (-2, -1)), right)[..., 0].sum(axis=-1))
+
+
+def mean_secant_stiffness(te: TransmissionError) -> float:
+    """Mean of `secant_stiffness` over the base pitch, under the load of a transmission error [N/m]."""
+    return float(secant_stiffness(te.loaded)[:, 0] @ te.points.weights / te.points.period)
+
+
+def roll_positions(engagement: Engagement, count: int) -> Array:
+    """Evenly over one base pitch from the start of contact, and on either side of every jump [m].
+
+    Parameters
+    ----------
+    engagement : Engagement
+    count : int
+        Even steps over the base pitch.
+    """
+    start, pitch = engagement.pair.x_start, engagement.pair.base_pitch
+    beside = np.array([b + side * BESIDE * pitch for b in engagement.breaks for side in (-1.0, 1.0)])
+    x = np.concatenate([np.linspace(start, start + pitch, count + 1), beside])
+    inside = (x > start + 0.5 * BESIDE * pitch) & (x < start + (1.0 - 0.5 * BESIDE) * pitch)
+    ends = np.array([start + BESIDE * pitch, start + (1.0 - BESIDE) * pitch])
+    return np.unique(np.concatenate([x[inside], ends]))

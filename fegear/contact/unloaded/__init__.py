@@ -1,0 +1,1 @@
+"""Tooth contact analysis of helical pairs, aligned and misaligned."""

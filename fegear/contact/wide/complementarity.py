@@ -1,0 +1,356 @@
+"""Contact over the flank as a complementarity problem, many roll positions and loads at a time.
+
+The line load f(z) is piecewise linear between the stations of a contact line, W_i the forces of its hats. They obey
+
+    u_i + e_i = zeta   where W_i > 0,      u_i + e_i >= zeta   where W_i = 0,      sum_i W_i = W,
+    u_i = sum_j C_ij W_j - 2 s int <phi_i> <f> ln (b / b_0) dz,      b = sqrt(q <f>),
+
+phi_i the hat of unit force, e_i the gap averaged over it, b_0 the half-width that stands for the line in C, and < > an
+average along the line over about that width (`fegear.contact.wide.complementarity`). These are the conditions of a
+minimum, strictly convex while C against long waves is more than s (1 + 2 ln b / b_0), so the solution is unique. It is
+found by active sets with Newton's method, as in `fegear.contact.plane.load_sharing`; sets that cycle go on by one
+station at a time (Murty, Linear Complementarity, 1988, 3.2: the least index).
+
+Line loads averaged over about a contact's width along its line: what the Hertzian half-width follows.
+
+A contact that is 2 b wide does not follow a line load that changes over less than that: the logarithm of b is a law for
+slowly changing loads, and with the load of a single point in it short panels would have no positive stiffness. So b
+goes with the load averaged from z - H to z + H, mirrored at the ends of the line: an even load stays what it is, and so
+does the sum of any. Panels that are long beside H see none of it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.errors import ConvergenceError
+from fegear.base.tally import note, tallied
+from fegear.contact.plane.load_sharing import edge_law
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array, Index, Mask
+    from fegear.contact.wide.compliance import FlankCompliance
+    from fegear.contact.wide.lines import ContactLines
+
+
+#: Steps in which many stations may change, and steps in all.
+_MANY_AT_ONCE, _MOST_STEPS = 15, 400
+
+
+#: Share of the mean line load below which the logarithm is continued by its tangent.
+_SMALLEST = 1e-9
+
+
+#: From a rounded tip the sharp edge is as far away as this [m].
+_FAR = 1e3
+
+
+@dataclass(frozen=True)
+class Contact(ReadOnlyArrays):
+    """Forces on the stations and the approach that goes with them.
+
+    Parameters
+    ----------
+    force : ndarray, shape (P, M, L)
+        W_i [N], zero where apart.
+    approach : ndarray, shape (P, L)
+        zeta [m].
+    stiffness : ndarray, shape (P, L)
+        dW / dzeta with the stations in contact [N/m].
+    residual : ndarray, shape (P, L)
+        Largest violation of the conditions, over the approach from first touch.
+    steps : int
+        Of the slowest problem.
+    """
+
+    force: Array
+    approach: Array
+    stiffness: Array
+    residual: Array
+    steps: int
+
+
+def hat_averages(lines: ContactLines, values: Array) -> Array:
+    """Averages over each station's hat of what is straight between the stations, shape (P, M)."""
+    h, support = lines.panel, lines.support
+    found = np.zeros(values.shape)
+    found[:, :-1] += h * (values[:, :-1] / 3.0 + values[:, 1:] / 6.0)
+    found[:, 1:] += h * (values[:, 1:] / 3.0 + values[:, :-1] / 6.0)
+    return np.asarray(np.divide(found, support, out=np.zeros_like(found), where=support > 0.0))
+
+
+@tallied("load sharing")
+def solve_contact(known: FlankCompliance, gap: Array, load: Array, most_steps: int = _MOST_STEPS) -> Contact:
+    """Find forces and approach at all roll positions under all loads.
+
+    Parameters
+    ----------
+    known : FlankCompliance
+    gap : ndarray, shape (P, M)
+        Distance of the unloaded flanks at the stations along the line of action [m], removal positive.
+    load : ndarray, shape (L,)
+        Total loads along the transverse line of action [N], positive.
+    most_steps : int
+        After which it gives up.
+
+    Returns
+    -------
+    Contact
+
+    Raises
+    ------
+    ConvergenceError
+        If the compliances are not positive definite.
+    """
+    lines = known.lines
+    positions, most = lines.x.shape
+    cases = load.size
+    place = np.repeat(np.arange(positions), cases)
+    total = np.tile(load, positions)
+    averaged = hat_averages(lines, gap)
+    nearest = np.where(lines.present, averaged, np.inf).min(axis=1)
+    apart = np.where(lines.present, averaged - nearest[:, None], 0.0)
+    force, approach = np.zeros((place.size, most)), np.zeros(place.size)
+    stiffness, residual = np.zeros(place.size), np.zeros(place.size)
+    index = np.arange(place.size)
+    active = lines.present[place]
+    v = lines.support[place] / lines.length[place][:, None] * total[:, None]
+    steps = 0
+    while index.size:
+        steps += 1
+        if steps > most_steps:
+            raise ConvergenceError(
+                f"Contact over the flank found no consistent set of loaded stations for {index.size} of {place.size} "
+                "problems: their panels are too short for how wide the contacts are. Lower load_distribution.panels, "
+                "and check load and face_width."
+            )
+        here, w = place[index], total[index]
+        matrix, constant = _tangent(known, here, v)
+        new, z, rate = _bordered(matrix, apart[here] + constant, active, w)
+        kept = np.where(active, np.maximum(new, 0.0), 0.0)
+        distance = np.einsum("bij,bj->bi", matrix, np.where(active, new, 0.0)) + constant + apart[here] - z[:, None]
+        leaves = active & (new <= 0.0)
+        scale = np.abs(z)[:, None] + apart[here]
+        enters = lines.present[here] & ~active & (distance < -1e-13 * scale)
+        close = (np.abs(kept - v) <= 1e-9 * np.abs(v) + 1e-12 * w[:, None]).all(axis=1)
+        changes = leaves | enters
+        done = ~changes.any(axis=1) & (close | (known.fixed_half_width is not None))
+        at = index[done]
+        force[at], approach[at], stiffness[at] = kept[done], z[done] + nearest[here[done]], rate[done]
+        wrong = np.where(active, np.abs(distance), np.maximum(-distance, 0.0)) * lines.present[here]
+        residual[at] = (wrong.max(axis=1) / np.abs(z))[done]
+        if steps > _MANY_AT_ONCE:
+            least = np.argmax(changes, axis=1)
+            only = np.zeros_like(changes)
+            only[np.arange(least.size), least] = True
+            changes &= only
+        active = (active ^ changes)[~done]
+        v, index = kept[~done], index[~done]
+    shape = (positions, cases)
+    forces = np.ascontiguousarray(np.moveaxis(force.reshape(*shape, most), 2, 1))
+    return Contact(forces, approach.reshape(shape), stiffness.reshape(shape), residual.reshape(shape), steps)
+
+
+def tangent_compliance(known: FlankCompliance, place: Index, force: Array) -> Array:
+    """What forces (B, M) at roll positions `place` leave of the compliances: their slopes, shape (B, M, M) [m/N]."""
+    return _tangent(known, place, force)[0]
+
+
+def secant_compliance(known: FlankCompliance, place: Index, force: Array) -> Array:
+    """Approach per force under forces (B, M) at roll positions `place`, shape (B, M, M) [m/N]."""
+    return _tangent(known, place, force, own=0.0)[0]
+
+
+def deflection(known: FlankCompliance, force: Array) -> Array:
+    """Approach of all stations under forces of shape (P, M), widths that follow the load included, shape (P, M) [m]."""
+    matrix, constant = _tangent(known, np.arange(force.shape[0]), force)
+    return np.asarray(np.einsum("pij,pj->pi", matrix, force) + constant)
+
+
+def approach_by_gap(known: FlankCompliance, force: Array) -> Array:
+    """Growth of the approach by that of the averaged gaps, solved forces of shape (P, M) given, shape (P, M).
+
+    None where apart; the sum at every roll position is one.
+    """
+    matrix = tangent_compliance(known, np.arange(force.shape[0]), force)
+    return _bordered(matrix, np.zeros_like(force), force > 0.0, np.ones(force.shape[0]))[0]
+
+
+def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.0) -> tuple[Array, Array]:
+    """Tangent compliances at forces of shape (B, M), and what the tangent leaves at zero force.
+
+    With `own` zero those of a secant, without what a load changes of its own contact's width.
+    """
+    lines, s = known.lines, known.log_slope
+    matrix = known.matrix[place]
+    h, support = lines.panel[place], lines.support[place]
+    density = np.divide(1.0, support, out=np.zeros_like(support), where=support > 0.0)
+    f = force * density
+    least = _SMALLEST * force.sum(axis=1, keepdims=True) / lines.length[place][:, None]
+    unit = np.ones_like(f) if known.line_half_width is None else known.line_half_width[place]
+    local = LocalMatrix(force.shape, known.averages.reach)
+    follows = known.fixed_half_width is None
+    if follows:
+        note("nonlinear steps")
+    for x, weight, rows in zip(*GAUSS, known.averages.rows, strict=True):
+        b, a = x, 1.0 - x
+        near = rows[place]
+        part = weight * h
+        if known.fixed_half_width is None:
+            load = np.maximum(local.read(near, f), least)
+            q = known.width_factor[place]
+            square = (a * q[:, :-1] + b * q[:, 1:]) * load
+            psi, change = _at_edges(known, place, (a, b), square)
+            slope = -s * (np.log(square / unit[:, :-1] ** 2) + own - 2.0 * psi + own * change)
+            local.add(near, part * slope, part * s * load * (1.0 + change))
+        else:
+            width = known.fixed_half_width[place]
+            relative = (a * width[:, :-1] + b * width[:, 1:]) / unit[:, :-1]
+            local.add(near, -2.0 * s * part * np.log(relative), np.zeros_like(part))
+    local.into(matrix, density)
+    return matrix, local.constant[:, local.inside] * density
+
+
+def _at_edges(known: FlankCompliance, place: Index, share: tuple[float, float], square: Array) -> tuple[Array, Array]:
+    """What sharp tip edges add beside and beyond the ends of the path: psi and t dpsi/dt of `edge_law`, (B, M - 1)."""
+    edges = known.lines.edges
+    if edges is None:
+        return np.zeros_like(square), np.zeros_like(square)
+    tilt = np.maximum(edges.tilt[place], -_FAR)
+    at = share[0] * tilt[:, :-1] + share[1] * tilt[:, 1:]
+    return edge_law(at / np.sqrt(square))
+
+
+def _bordered(matrix: Array, gap: Array, active: Mask, total: Array) -> tuple[Array, Array, Array]:
+    """Forces on the active stations, approach and dW/dzeta, the tangent compliances given."""
+    on = active.astype(float)
+    system = matrix * on[:, :, None] * on[:, None, :]
+    at = np.arange(on.shape[1])
+    system[:, at, at] += 1.0 - on
+    # In units of each station's own compliance, so that inactive rows weigh no more than others.
+    root = np.sqrt(np.abs(system[:, at, at]))
+    system /= root[:, :, None] * root[:, None, :]
+    right = np.stack([on, on * gap], axis=2) / root[:, :, None]
+    y = np.linalg.solve(system, right) / root[:, :, None]
+    rate = y[:, :, 0].sum(axis=1)
+    z = (total + y[:, :, 1].sum(axis=1)) / rate
+    return z[:, None] * y[:, :, 0] - y[:, :, 1], z, rate
+
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+#: Points on a panel as shares of its length, and their weights.
+GAUSS = (0.5 + 0.5 * _POINTS, 0.5 * _WEIGHTS)
+
+
+@dataclass(frozen=True)
+class Averages(ReadOnlyArrays):
+    """How the averaged load at the Gauss points of the panels follows from the line loads of the stations about them.
+
+    Parameters
+    ----------
+    reach : int
+        r: at a point of the panel from station i to i + 1 stations i - r to i + 1 + r count.
+    rows : ndarray, shape (Gauss points, P, M - 1, 2 r + 2)
+        Their weights, which add up to 1.
+    """
+
+    reach: int
+    rows: Array
+
+
+def averages(lines: ContactLines, window: Array | None) -> Averages:
+    """Weights of the stations about each Gauss point.
+
+    Parameters
+    ----------
+    lines : ContactLines
+    window : ndarray, shape (P, M), or None
+        H, the same all along a line [m]; None for the load at the point itself.
+    """
+    h = lines.panel
+    a, b = (np.broadcast_to(part[:, None, None], (GAUSS[0].size, *h.shape)) for part in (1.0 - GAUSS[0], GAUSS[0]))
+    if window is None or not h.any():
+        return Averages(0, np.stack([a, b], axis=3))
+    low, high = (part[:, :-1] for part in _ends(lines))
+    z = a * lines.z[:, :-1] + b * lines.z[:, 1:]
+    wide = np.where(h > 0.0, np.clip(window[:, :-1], 1e-6 * h, high - low), 1.0)
+    left, right = z - wide, z + wide
+    pieces = (
+        (np.maximum(left, low), np.minimum(right, high)),
+        (low, np.maximum(2.0 * low - left, low)),
+        (np.minimum(2.0 * high - right, high), high),
+    )
+    reach = max(0, math.ceil(float(np.max(wide[h > 0.0] / h[h > 0.0])) - 1e-9))
+    most = lines.z.shape[1]
+    rows = np.zeros((*z.shape, 2 * reach + 2))
+    for k in range(-reach, reach + 2):
+        at = np.arange(most - 1) + k
+        i = np.clip(at, 0, most - 1)
+        same = (at == i) & (lines.pair[:, i] == lines.pair[:, :-1]) & lines.present[:, i] & (h > 0.0)
+        below = np.where(i > 0, h[:, np.maximum(i - 1, 0)], 0.0)
+        above = np.where(i < most - 1, h[:, np.minimum(i, most - 2)], 0.0)
+        for first, last in pieces:
+            part = _hat_below(last - lines.z[:, i], below, above) - _hat_below(first - lines.z[:, i], below, above)
+            rows[..., k + reach] += np.where(same, part / (2.0 * wide), 0.0)
+    return Averages(reach, rows)
+
+
+def _ends(lines: ContactLines) -> tuple[Array, Array]:
+    """Heights of the ends of each station's line, shape (P, M) each [m]."""
+    low, high = lines.z.copy(), lines.z.copy()
+    for p in range(lines.roll.size):
+        for s in lines.at(p):
+            low[p, s], high[p, s] = lines.z[p, s][0], lines.z[p, s][-1]
+    return low, high
+
+
+def _hat_below(away: Array, below: Array, above: Array) -> Array:
+    """Integral of a hat of height 1 from its middle to `away`, negative on the lower side."""
+    up = np.clip(away, 0.0, above)
+    down = np.clip(-away, 0.0, below)
+    rising = up - 0.5 * up**2 / np.where(above > 0.0, above, 1.0)
+    return rising - (down - 0.5 * down**2 / np.where(below > 0.0, below, 1.0))
+
+
+class LocalMatrix:
+    """Sums over Gauss points of slope r r^T and load r, r their rows: a band matrix, and a vector beside it."""
+
+    def __init__(self, shape: tuple[int, ...], reach: int) -> None:
+        self._problems, self._most, self._reach = shape[0], shape[1], reach
+        padded = self._most + 2 * reach
+        self._bands = np.zeros((2 * reach + 2, self._problems, padded))
+        self.constant = np.zeros((self._problems, padded))
+        self.inside = slice(reach, reach + self._most)
+
+    def _at(self, k: int) -> slice:
+        """Stations that are the k-th of the panels' rows, in the padded arrays."""
+        return slice(k, k + self._most - 1)
+
+    def read(self, rows: Array, values: Array) -> Array:
+        """Averages of values (B, M) at a Gauss point of each panel, shape (B, M - 1)."""
+        padded = np.pad(values, ((0, 0), (self._reach, self._reach)))
+        return np.asarray(sum(rows[:, :, k] * padded[:, self._at(k)] for k in range(rows.shape[2])))
+
+    def add(self, rows: Array, slope: Array, load: Array) -> None:
+        """Add a Gauss point of each panel, (B, M - 1) each."""
+        for k in range(rows.shape[2]):
+            self.constant[:, self._at(k)] += rows[:, :, k] * load
+            weighted = rows[:, :, k] * slope
+            for other in range(k, rows.shape[2]):
+                self._bands[other - k][:, self._at(k)] += weighted * rows[:, :, other]
+
+    def into(self, matrix: Array, density: Array) -> None:
+        """Add it to matrices (B, M, M) of forces, whose loads are force times density (B, M)."""
+        at = np.arange(self._most)
+        for k, band in enumerate(self._bands[: self._most]):
+            part = band[:, self.inside][:, : self._most - k] * density[:, : self._most - k] * density[:, k:]
+            matrix[:, at[: self._most - k], at[k:]] += part
+            if k:
+                matrix[:, at[k:], at[: self._most - k]] += part

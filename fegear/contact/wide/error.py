@@ -1,0 +1,159 @@
+"""Estimated errors of loaded flanks: solved again with longer panels, then with the gears' coarser solutions, too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.wide.over_pitch import Stated
+from fegear.contact.wide.spots import missed_of_spots
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.contact.wide.gaps import FlankGaps
+    from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+    from fegear.contact.wide.over_pitch import OverPitch
+    from fegear.fem.solid.flank_body import FlankBody
+    from fegear.geometry.pair import Member
+
+#: By how much panels are longer.
+_LONGER = 1.5
+#: What is taken for an error of the change of shares, of that of the largest load at any roll position, and of that of
+#: the shape of the transmission error: compared with solutions of a fourth of the panel's length on finer meshes.
+_SHARES, _LOCAL, _SHAPE = 1.2, 2.5, 0.5
+#: What longer panels change of the mean transmission error of spots, as an error of its peak to peak.
+_OF_SPOT = 0.6
+
+
+@dataclass(frozen=True)
+class FlankError:
+    """Changes by the coarser solution, one for each load.
+
+    Parameters
+    ----------
+    transmission_error : ndarray, shape (P, L)
+        [m].
+    share : ndarray, shape (pairs, P, L)
+    mean, peak_to_peak : ndarray, shape (L,)
+        Of the transmission error [m].
+    face_load_factor : ndarray, shape (L,)
+    largest_line_load, largest_pressure : ndarray, shape (L,)
+        [N/m], [Pa].
+    coarse : LoadedFlanks
+        The coarser solution itself.
+    """
+
+    transmission_error: Array
+    share: Array
+    mean: Array
+    peak_to_peak: Array
+    face_load_factor: Array
+    largest_line_load: Array
+    largest_pressure: Array
+    coarse: LoadedFlanks
+
+
+def flank_error(
+    flanks: FlankPair,
+    found: LoadedFlanks,
+    coarse: Mapping[Member, FlankBody],
+    gaps: FlankGaps,
+    over: OverPitch,
+    about: float,
+) -> FlankError:
+    """Solve again with less of everything that leaves an error; the pressed width of the bands stays.
+
+    Longer panels and coarser gears may change a number in opposite directions: they are changed one after the other,
+    and what each of them changes adds up, with what roll positions leave open.
+
+    Parameters
+    ----------
+    flanks : FlankPair
+    found : LoadedFlanks
+        What it gave.
+    coarse : mapping of {"driver", "driven"} to FlankBody
+    gaps : FlankGaps
+    over : OverPitch
+        What is stated of the whole base pitch.
+    about : float
+        Load about which compliances are made, see `FlankPair.compliance` [N].
+    """
+    longer = replace(flanks, panel=_LONGER * flanks.panel)
+    fewer = longer.solve(found.load, gaps, longer.compliance(about))
+    softer = replace(longer, gears=coarse)
+    other = softer.solve(found.load, gaps, softer.compliance(about))
+    steps = (found, fewer, other)
+    changes = [_changes(one, two) for one, two in pairwise(steps)]
+    # Where panels are long beside a spot it comes and goes with them: at other roll positions by other amounts.
+    by_panels = changes[0]
+    changes[0] = by_panels._replace(peak_to_peak=np.maximum(by_panels.peak_to_peak, _OF_SPOT * by_panels.mean))
+    left = over.left_by_positions
+    # Largest loads that these roll positions miss change elsewhere: by no more than they are larger.
+    above = over.found.largest_line_load - found.largest_line_load
+    higher = over.found.largest_pressure - found.largest_pressure
+    missed = missed_of_spots(found.known, found.contact)
+    left = left._replace(
+        largest_line_load=left.largest_line_load + np.maximum(above, 0.0) + missed * found.largest_line_load,
+        largest_pressure=left.largest_pressure + np.maximum(higher, 0.0) + missed * found.largest_pressure,
+    )
+    sums = Stated(*(sum(parts) + more for *parts, more in zip(*changes, left, strict=True)))
+    te = sum(np.abs(two.transmission_error - one.transmission_error) for one, two in pairwise(steps))
+    share = sum(_share_changes(found, one, two) for one, two in pairwise(steps))
+    return FlankError(np.asarray(te), _SHARES * np.asarray(share), *sums, coarse=other)
+
+
+def _changes(found: LoadedFlanks, other: LoadedFlanks) -> Stated:
+    """Changes from one solution to another of it at the same roll positions."""
+    te, again = found.transmission_error, other.transmission_error
+    shift = np.abs(other.mean_transmission_error - found.mean_transmission_error)
+    mean = found.load / (found.lines.high - found.lines.low)
+    over_face = np.abs(other.mean_between(found.cells) - found.mean_over_face).max(axis=0) / mean
+    return Stated(
+        shift,
+        # Most of how far the curve changes its shape: its largest and smallest values may do so together.
+        np.maximum(np.abs(np.ptp(again, axis=0) - np.ptp(te, axis=0)), _SHAPE * np.ptp(again - te, axis=0)),
+        # The largest change anywhere on the face, for that of the largest value may be small by chance; no less than
+        # the compliances change together.
+        np.maximum(over_face, shift / found.mean_transmission_error * found.face_load_factor),
+        _largest(found, found.line_load, found.largest_line_loads, other.largest_line_loads),
+        _largest(found, found.pressure, found.largest_pressures, other.largest_pressures),
+    )
+
+
+def _share_changes(found: LoadedFlanks, one: LoadedFlanks, two: LoadedFlanks) -> Array:
+    """Changes of the shares of the pairs of `found`, shape (pairs, P, L)."""
+    first, second = (dict(zip(f.pair_numbers.tolist(), f.share, strict=True)) for f in (one, two))
+    none = np.zeros(found.share.shape[1:])
+    return np.stack([np.abs(second.get(j, none) - first.get(j, none)) for j in found.pair_numbers.tolist()])
+
+
+def with_misses(error: FlankError, found: LoadedFlanks, missed: float) -> FlankError:
+    """The same for bodies that are known to miss compliances by a share, as slices do: no coarser solution shows that.
+
+    Deflections are off by it; shares, load over the face and line loads, which only follow its unevenness, at most by
+    it; pressure goes with the root of the load.
+    """
+    share = found.share
+    return replace(
+        error,
+        transmission_error=error.transmission_error + missed * np.abs(found.transmission_error),
+        share=error.share + missed * share * (1.0 - share),
+        mean=error.mean + missed * np.abs(found.mean_transmission_error),
+        peak_to_peak=error.peak_to_peak + missed * np.ptp(found.transmission_error, axis=0),
+        face_load_factor=error.face_load_factor + missed * (found.face_load_factor - 1.0),
+        largest_line_load=error.largest_line_load + missed * found.largest_line_load,
+        largest_pressure=error.largest_pressure + 0.5 * missed * found.largest_pressure,
+    )
+
+
+def _largest(found: LoadedFlanks, values: Array, first: Array, second: Array) -> Array:
+    """Of a largest value: its change at any roll position, and by how much tips bear more that were left out of it."""
+    lines = found.lines
+    ends = lines.at_edge if lines.edges is None else lines.at_edge & (lines.edges.gap == 0.0)
+    above = np.where(ends[:, :, None], values, 0.0).max(axis=(0, 1)) - first.max(axis=0)
+    return np.asarray(_LOCAL * np.abs(second - first).max(axis=0) + np.maximum(above, 0.0))

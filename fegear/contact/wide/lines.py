@@ -1,0 +1,376 @@
+"""Contact lines of all tooth pairs in reach, in the plane of action, divided into panels.
+
+In the plane of action, x along the transverse line of action and z along the axes, the contact line of pair j at the
+roll position x_0 is straight: x = x_0 + j p_bt - z tan(beta_b), the twist of the driver positive for a right hand. It
+ends at the tips and form circles in use and at the ends of the common face (ISO 21771, 5.4), or goes on along the tip
+edges (`fegear.contact.wide.lines`).
+
+Roll positions over a base pitch: a quadrature whose pieces end where contact lines begin and end.
+
+Between those places everything that roll positions show is smooth. At them pairs come and go, and largest and smallest
+transmission errors stand beside them, so both sides are looked at: Lobatto's points on each piece, its ends included.
+
+Contact along tip edges: where the flanks go on touching beyond the ends of the plane of action.
+
+Across parallel axes a helical tooth is its transverse section, turned along the axis, and what turns the gears closes
+the gap of every section by itself. So the gap between a tip edge and its mate's flank at a height z is that of the
+plane corner at its distance beyond the path of contact (`fegear.contact.plane.corner`), and the contact line goes on in
+the coordinates of the plane of action, x = x_0 + j p_bt - z tan(beta_b), with a gap that grows from zero.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import math
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.errors import InputError
+from fegear.contact.fourier import Panels
+from fegear.contact.plane.meshing import Meshing
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.base.arrays import Array, Mask
+    from fegear.geometry.pair import GearPair, Member
+
+
+#: A contact line shorter than this is left out [modules]: it is no longer long beside its Hertzian width.
+SHORTEST_LINE = 0.15
+
+
+@dataclass(frozen=True)
+class ContactLines(ReadOnlyArrays):
+    """Stations on the contact lines of P roll positions; arrays of shape (P, M), padded where fewer are needed.
+
+    Parameters
+    ----------
+    roll : ndarray, shape (P,)
+        Roll positions: x of pair 0 in the middle of the face [m].
+    pair : ndarray of int
+        j, the pair that a station belongs to; stations of one line stand together, ascending in z.
+    present : ndarray of bool
+        Whether there is a station.
+    x, z : ndarray
+        In the plane of action: from the pitch point along the line of action, from the middle of the common face [m].
+    low, high : float
+        Ends of the common face [m].
+    at_edge : ndarray of bool
+        Whether a line ends here at a tip or form circle, or stands on a sharp tip edge.
+    weight : ndarray, shape (P,)
+        Part of a base pitch that each roll position stands for; they add up to 1. Empty: all alike.
+    edges : TipEdges or None
+        What the stations touch where lines go on along the tip edges; None where they end there.
+    """
+
+    roll: Array
+    pair: NDArray[np.int64]
+    present: Mask
+    x: Array
+    z: Array
+    low: float
+    high: float
+    at_edge: Mask
+    weight: Array = field(default_factory=lambda: np.empty(0))
+
+    edges: TipEdges | None = None
+
+    def roll_length(self, pair: GearPair, member: Member) -> Array:
+        """Roll length of one gear where the stations touch, shape (P, M) [m]: on the path its radius of curvature."""
+        return pair.flank_curvature_radius(self.x, member) if self.edges is None else self.edges.length(member)
+
+    def roll_angle(self, pair: GearPair, member: Member) -> Array:
+        """Roll angle of one gear where the stations touch, shape (P, M) [rad]."""
+        return self.roll_length(pair, member) / pair.gear(member).base_radius
+
+    def radius(self, pair: GearPair, member: Member) -> Array:
+        """Radius of one gear where the stations touch, shape (P, M) [m]."""
+        return np.hypot(pair.gear(member).base_radius, self.roll_length(pair, member))
+
+    def mean(self, values: Array) -> Array:
+        """Mean over a base pitch of what is known at the roll positions, shape (P, ...)."""
+        count = self.roll.size
+        weight = self.weight if self.weight.size else np.full(count, 1.0 / count)
+        return np.asarray(np.tensordot(weight, values, axes=1))
+
+    @property
+    def panel(self) -> Array:
+        """Length along the face from each station to the next of its line, 0 where there is none, (P, M - 1) [m]."""
+        same = self.present[:, 1:] & self.present[:, :-1] & (self.pair[:, 1:] == self.pair[:, :-1])
+        return np.asarray(np.where(same, np.diff(self.z, axis=1), 0.0))
+
+    @property
+    def support(self) -> Array:
+        """Length along the face over which a station's unit of line load gathers its force, shape (P, M) [m]."""
+        half = 0.5 * self.panel
+        total = np.zeros(self.z.shape)
+        total[:, :-1] += half
+        total[:, 1:] += half
+        return total
+
+    @property
+    def length(self) -> Array:
+        """Of all lines along the face, shape (P,) [m]."""
+        return np.asarray(self.panel.sum(axis=1))
+
+    def at(self, position: int) -> list[slice]:
+        """Where the lines of a roll position stand, in the order of their pairs."""
+        count = int(self.present[position].sum())
+        starts = [0, *(1 + np.flatnonzero(np.diff(self.pair[position, :count]))).tolist(), count]
+        return [slice(a, b) for a, b in itertools.pairwise(starts)]
+
+
+def base_twist(pair: GearPair) -> float:
+    """Tangent of the base helix angle, positive for a right-handed driver."""
+    return pair.driver.twist * pair.driver.base_radius
+
+
+def shortest_line(pair: GearPair) -> float:
+    """Length along the face below which a contact line is left out [m]."""
+    return min(SHORTEST_LINE * pair.driver.module, 0.5 * pair.face_width)
+
+
+def life_of_contact(pair: GearPair) -> tuple[float, float]:
+    """First and last place of a contact line's middle while it touches the plane of action: x_0 + j p_bt [m]."""
+    reach = abs(base_twist(pair)) * 0.5 * pair.face_width
+    return pair.x_start - reach, pair.x_end + reach
+
+
+def contact_lines(
+    pair: GearPair, roll: ArrayLike, panel: float, weight: ArrayLike = (), most_gap: float = 0.0
+) -> ContactLines:
+    """Divide the contact lines of all pairs in reach.
+
+    Parameters
+    ----------
+    pair : GearPair
+    roll : array_like, shape (P,)
+        Roll positions [m]: x of pair 0 in the middle of the face.
+    panel : float
+        Length of a panel along the face, at most [m].
+    weight : array_like, shape (P,) or (0,)
+        Part of a base pitch that each roll position stands for.
+    most_gap : float
+        Lines go on along tip edges up to this distance from the mate [m]; 0 for lines that end at tips.
+
+    Returns
+    -------
+    ContactLines
+
+    Raises
+    ------
+    InputError
+        If no pair is in reach at some position.
+    """
+    positions = np.atleast_1d(np.asarray(roll, dtype=float))
+    half, slope, pitch = 0.5 * pair.face_width, base_twist(pair), pair.base_pitch
+    shortest = shortest_line(pair)
+    before, after = edge_reach(pair, most_gap)
+    start, end = pair.x_start - before, pair.x_end + after
+    found: list[list[tuple[int, Array, Array, tuple[bool, bool]]]] = []
+    for x0 in positions.tolist():
+        lines = []
+        first = math.floor((start - abs(slope) * half - x0) / pitch)
+        last = math.ceil((end + abs(slope) * half - x0) / pitch)
+        for j in range(first, last + 1):
+            at = x0 + j * pitch
+            low, high, edges = _limits(at, slope, half, (start, end), 1e-10 * pitch)
+            if high - low < shortest * (1.0 - 1e-9):
+                continue
+            tips = sorted((at - x) / slope for x in (pair.x_start, pair.x_end)) if slope and most_gap > 0.0 else []
+            z = _stations(low, high, tips, panel)
+            lines.append((j, np.clip(at - slope * z, start, end), z, edges))
+        if not lines:
+            raise InputError(
+                "pair", f"roll position {x0 * 1e3:.6g} mm", "has no tooth pair in reach of the line of action",
+                "raise the contact ratio above 1",
+            )  # fmt: skip
+        found.append(lines)
+    most = max(sum(z.size for _, _, z, _ in lines) for lines in found)
+    shape = (positions.size, most)
+    number, present = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
+    x_, z_, at_edge = np.zeros(shape), np.zeros(shape), np.zeros(shape, dtype=bool)
+    for p, lines in enumerate(found):
+        at = 0
+        for j, x, z, edges in lines:
+            here = slice(at, at + z.size)
+            number[p, here], present[p, here], x_[p, here], z_[p, here] = j, True, x, z
+            at_edge[p, at], at_edge[p, at + z.size - 1] = edges
+            at += z.size
+    touched = tip_edges(pair, x_) if most_gap > 0.0 else None
+    if touched is not None:
+        on_edge = np.where(touched.gap > 0.0, touched.tilt > -np.inf, touched.tilt >= -1e-9 * pair.base_pitch)
+        at_edge = present & (on_edge | (at_edge & (touched.gap == 0.0)))
+    return ContactLines(
+        positions, number, present, x_, z_, -half, half, at_edge, np.asarray(weight, dtype=float), touched
+    )
+
+
+def _stations(low: float, high: float, tips: list[float], panel: float) -> Array:
+    """Stations of a line: equal panels, from tip edge to tip edge where these lie on it."""
+    inside = [z for z in tips if low + 0.5 * panel < z < high - 0.5 * panel]
+    ends = [low, *inside, high]
+    parts = [np.linspace(a, b, max(1, math.ceil((b - a) / panel - 1e-9)) + 1) for a, b in itertools.pairwise(ends)]
+    return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
+
+
+def _limits(
+    x: float, slope: float, half: float, path: tuple[float, float], slack: float
+) -> tuple[float, float, tuple[bool, bool]]:
+    """Between which heights a line is on the path and on the face, and whether its ends are those of the path."""
+    if slope == 0.0:
+        inside = path[0] - slack <= x <= path[1] + slack
+        return (-half, half, (False, False)) if inside else (0.0, -1.0, (False, False))
+    ends = sorted(((x - path[1]) / slope, (x - path[0]) / slope))
+    return max(-half, ends[0]), min(half, ends[1]), (ends[0] > -half, ends[1] < half)
+
+
+#: Points on a piece, at least; pieces shorter than this share of a base pitch have none of their own.
+_FEWEST, _SHORTEST = 3, 5e-3
+
+
+#: How far beside the end of a piece its outermost points stand, as a share of a base pitch.
+_BESIDE = 1e-7
+
+
+def line_breaks(pair: GearPair, beyond: tuple[float, float] = (0.0, 0.0)) -> Array:
+    """Roll positions in one base pitch from x_start on at which contact lines begin, end, or reach a corner [m].
+
+    Along tip edges lines go on `beyond` start and end of the path [m].
+    """
+    reach = abs(base_twist(pair)) * 0.5 * pair.face_width
+    late = abs(base_twist(pair)) * shortest_line(pair)  # a line counts once it is as long as that
+    start, end = pair.x_start - beyond[0], pair.x_end + beyond[1]
+    places = [start - reach + late, pair.x_start + reach, pair.x_end - reach, end + reach - late]
+    return np.unique(np.mod(np.array(places) - pair.x_start, pair.base_pitch)) + pair.x_start
+
+
+def roll_points(pair: GearPair, count: int, beyond: tuple[float, float] = (0.0, 0.0)) -> Panels:
+    """Roll positions and what part of a base pitch each stands for.
+
+    Parameters
+    ----------
+    pair : GearPair
+    count : int
+        Number of positions. With fewer than three to a piece they are the middles of equal parts of the base pitch.
+    beyond : (float, float)
+        How far lines go on along tip edges before the start and after the end of the path [m].
+
+    Returns
+    -------
+    Panels
+    """
+    pitch = pair.base_pitch
+    breaks = line_breaks(pair, beyond)
+    ends = np.append(breaks, breaks[0] + pitch)
+    pieces = [(a, b) for a, b in pairwise(ends.tolist()) if b - a > _SHORTEST * pitch]
+    if count < _FEWEST * len(pieces):
+        x = pair.x_start + pitch * (np.arange(count) + 0.5) / count
+        return Panels(x, np.full(count, pitch / count), pitch, ends)
+    places: list[Array] = []
+    weight: list[Array] = []
+    for (a, b), n in zip(pieces, _shared([b - a for a, b in pieces], count), strict=True):
+        at, w = _lobatto(n)
+        inside = 1.0 - 2.0 * _BESIDE * pitch / (b - a)
+        places.append(0.5 * (a + b) + 0.5 * (b - a) * inside * at)
+        weight.append(0.5 * (b - a) * w)
+    for i, ((_, end), (start, _)) in enumerate(zip(pieces, [*pieces[1:], (pieces[0][0] + pitch, 0.0)], strict=True)):
+        weight[i][-1] += 0.5 * (start - end)  # what lies between two pieces, by the trapezoidal rule
+        weight[(i + 1) % len(pieces)][0] += 0.5 * (start - end)
+    return Panels(np.concatenate(places), np.concatenate(weight), pitch, ends)
+
+
+def _shared(lengths: list[float], count: int) -> list[int]:
+    """Points on each piece, so that they stand equally dense."""
+    points = [_FEWEST] * len(lengths)
+    queue = [(-length / (_FEWEST - 1), i) for i, length in enumerate(lengths)]
+    heapq.heapify(queue)
+    for _ in range(count - sum(points)):
+        _, i = queue[0]
+        points[i] += 1
+        heapq.heapreplace(queue, (-lengths[i] / (points[i] - 1), i))
+    return points
+
+
+def _lobatto(count: int) -> tuple[Array, Array]:
+    """Points and weights of Lobatto's rule on (-1, 1), both ends among them."""
+    legendre = np.polynomial.legendre.Legendre.basis(count - 1)
+    x = np.concatenate([[-1.0], np.sort(np.real(legendre.deriv().roots())), [1.0]])
+    return x, 2.0 / (count * (count - 1) * legendre(x) ** 2)
+
+
+#: Points on which the reach of an edge is looked up, and how much of a base pitch it covers at most.
+_POINTS, _MOST = 400, 0.9
+
+
+#: Approach of a tooth pair times Young's modulus over the load per face width: 15 to 20, and as much again.
+_SOFTNESS = 40.0
+
+
+@dataclass(frozen=True)
+class TipEdges(ReadOnlyArrays):
+    """Contact of stations on the path and along both gears' tip edges; arrays of shape (P, M).
+
+    Parameters
+    ----------
+    gap : ndarray
+        Between an edge and its mate's unmodified flank, along the line of action [m]; 0 on the path.
+    driver_length, driven_length : ndarray
+        Roll lengths of the places that touch: on the path the flanks' radii of curvature [m].
+    relative_radius : ndarray
+        In the transverse section [m]: beyond the path that of the edge's rounding, or of the flank that a sharp edge
+        ends, with the mate's flank.
+    tilt : ndarray
+        Slope at which the flanks part inward from the nearest sharp edge times the relative radius [m]: minus the
+        distance from the edge on the path; minus infinity where edges are rounded.
+    """
+
+    gap: Array
+    driver_length: Array
+    driven_length: Array
+    relative_radius: Array
+    tilt: Array
+
+    def length(self, member: Member) -> Array:
+        """Roll lengths of one gear, shape (P, M) [m]."""
+        return self.driver_length if member == "driver" else self.driven_length
+
+
+def edge_reach(pair: GearPair, most_gap: float) -> tuple[float, float]:
+    """How far beyond the start and the end of the path [m] a tip edge is no farther from its mate than a gap [m]."""
+    if most_gap <= 0.0:
+        return 0.0, 0.0
+    found = []
+    for corner in Meshing(pair, corner_contact=True).corners:
+        if not corner.exists:
+            found.append(0.0)
+            continue
+        beyond = np.linspace(0.0, min(corner.reach, _MOST * pair.base_pitch), _POINTS)
+        gap = corner.locate(beyond)[0]
+        found.append(float(np.interp(most_gap, gap, beyond)))
+    return found[0], found[1]
+
+
+def usual_gap(pair: GearPair, load: float) -> float:
+    """Gap [m] that a load [N] does not close at any tip edge of a pair of solid steel gears whose load is even."""
+    modulus = min(gear.material.young_modulus for gear in (pair.driver, pair.driven))
+    return _SOFTNESS * load / (modulus * pair.face_width)
+
+
+def tip_edges(pair: GearPair, x: ArrayLike) -> TipEdges:
+    """Contact at places along the line of action, on the path or beyond it.
+
+    Parameters
+    ----------
+    pair : GearPair
+    x : array_like, shape (P, M)
+        [m].
+    """
+    at = Meshing(pair, corner_contact=True).touching(np.asarray(x, dtype=float))
+    return TipEdges(at.gap, at.driver_length, at.driven_length, at.relative_radius, at.edge)

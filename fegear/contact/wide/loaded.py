@@ -1,0 +1,320 @@
+"""Loaded flanks: line load, pressure, shares and transmission error of a pair of gears with a width."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.errors import InputError
+from fegear.base.one_thread import one_thread
+from fegear.base.solution_cache import SolutionCache
+from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.gaps import FlankGaps
+from fegear.contact.wide.lines import base_twist, contact_lines, edge_reach, roll_points
+from fegear.contact.wide.load_factors import load_below, swept_mean
+from fegear.contact.wide.spots import solve_spots
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.fourier import Panels
+    from fegear.contact.wide.complementarity import Contact
+    from fegear.contact.wide.compliance import FlankCompliance, Hertz
+    from fegear.contact.wide.lines import ContactLines
+    from fegear.fem.solid.flank_body import FlankBody
+    from fegear.geometry.pair import GearPair, Member
+
+
+#: Parts of the face whose loads are told apart: so long at most [modules], so many at least.
+_CELL, _FEWEST_CELLS = 0.5, 4
+#: Nearer to a sharp edge than this share of a base pitch is on it.
+_ON_EDGE = 1e-6
+#: Share of the largest gap of a tip edge from which on it is one of the last.
+_LAST = 0.8
+
+
+@dataclass(frozen=True)
+class LoadedFlanks(ReadOnlyArrays):
+    """A pair's flanks at P roll positions of one base pitch, under L loads.
+
+    Parameters
+    ----------
+    pair : GearPair
+    known : FlankCompliance
+    contact : Contact
+    load : ndarray, shape (L,)
+        [N], along the transverse line of action.
+    seconds : mapping of str to float
+    """
+
+    pair: GearPair
+    known: FlankCompliance
+    contact: Contact
+    load: Array
+    seconds: Mapping[str, float]
+
+    @property
+    def lines(self) -> ContactLines:
+        """Stations of all contact lines."""
+        return self.known.lines
+
+    @property
+    def transmission_error(self) -> Array:
+        """zeta [m], shape (P, L)."""
+        return self.contact.approach
+
+    @property
+    def mean_transmission_error(self) -> Array:
+        """Mean over a base pitch [m], shape (L,)."""
+        return self.lines.mean(self.transmission_error)
+
+    @cached_property
+    def line_load(self) -> Array:
+        """f at the stations [N/m], transverse force per length along the face, shape (P, M, L)."""
+        support = self.lines.support[:, :, None]
+        force = self.contact.force
+        return np.divide(force, support, out=np.zeros_like(force), where=support > 0.0)
+
+    @cached_property
+    def pressure(self) -> Array:
+        """Largest Hertzian pressure at the stations [Pa], shape (P, M, L)."""
+        return self.known.pressure(self.line_load)
+
+    @cached_property
+    def largest_line_loads(self) -> Array:
+        """At each roll position [N/m], shape (P, L); where lines end at tips or form circles is left out."""
+        ends = self.lines.at_edge
+        if self.lines.edges is not None:  # on tip edges line loads are finite
+            ends = ends & (self.lines.edges.gap == 0.0) & (self.lines.edges.tilt < -_ON_EDGE * self.pair.base_pitch)
+        return np.asarray(np.where(ends[:, :, None], 0.0, self.line_load).max(axis=1))
+
+    @cached_property
+    def largest_pressures(self) -> Array:
+        """Hertzian at each roll position [Pa], shape (P, L), where lines end at tips and sharp edges left out."""
+        return np.asarray(np.where(self.lines.at_edge[:, :, None], 0.0, self.pressure).max(axis=1))
+
+    @property
+    def largest_line_load(self) -> Array:
+        """Of all roll positions [N/m], shape (L,)."""
+        return np.asarray(self.largest_line_loads.max(axis=0))
+
+    @property
+    def largest_pressure(self) -> Array:
+        """Of all roll positions [Pa], shape (L,)."""
+        return np.asarray(self.largest_pressures.max(axis=0))
+
+    @property
+    def reaches_the_last_edges(self) -> bool:
+        """Whether tip edges are loaded that are as far from their mates as contact lines go on: to be continued."""
+        edges = self.lines.edges
+        if edges is None:
+            return False
+        far = edges.gap > _LAST * edges.gap[self.lines.present].max()
+        return bool((self.contact.force * (far & (edges.gap > 0.0))[:, :, None]).any())
+
+    @property
+    def pair_numbers(self) -> Array:
+        """j of all pairs that are ever in reach, ascending."""
+        return np.unique(self.lines.pair[self.lines.present])
+
+    @cached_property
+    def pair_load(self) -> Array:
+        """W_j [N], shape (pairs, P, L)."""
+        on = [(self.lines.pair == j) & self.lines.present for j in self.pair_numbers.tolist()]
+        return np.stack([(self.contact.force * here[:, :, None]).sum(axis=1) for here in on])
+
+    @property
+    def share(self) -> Array:
+        """W_j / W, shape (pairs, P, L)."""
+        return self.pair_load / self.load
+
+    @property
+    def equilibrium(self) -> Array:
+        """|sum of all forces - load| / load, shape (P, L)."""
+        return np.abs(self.contact.force.sum(axis=1) - self.load) / self.load
+
+    @cached_property
+    def cells(self) -> Array:
+        """Ends of equal parts of the face over which load is summed, shape (cells + 1,) [m]: half a module, or less.
+
+        Neither panels nor roll positions change them, and half a module is longer than what both do to a mean.
+        """
+        lines = self.lines
+        count = max(_FEWEST_CELLS, math.ceil((lines.high - lines.low) / (_CELL * self.pair.driver.module) - 1e-6))
+        return np.linspace(lines.low, lines.high, count + 1)
+
+    @cached_property
+    def over_face(self) -> Array:
+        """Load of all lines together per face width, averaged over each of `cells`, shape (P, cells, L) [N/m]."""
+        return self.load_between(self.cells)
+
+    def load_between(self, ends: Array) -> Array:
+        """The same between any heights, shape (P, n - 1, L) [N/m]."""
+        lines = self.lines
+        total = np.zeros((lines.roll.size, ends.size, self.load.size))
+        for p in range(lines.roll.size):
+            for s in lines.at(p):
+                total[p] += load_below(lines.z[p, s], self.line_load[p, s], ends)
+        return np.asarray(np.diff(total, axis=1) / np.diff(ends)[:, None])
+
+    def mean_between(self, ends: Array) -> Array:
+        """The same averaged over a base pitch, shape (n - 1, L) [N/m]: see `fegear.contact.wide.load_factors`."""
+        swept = swept_mean(self.lines, self.line_load, ends, self.pair.base_pitch)
+        return np.asarray(swept / np.diff(ends)[:, None])
+
+    @cached_property
+    def mean_over_face(self) -> Array:
+        """Load over each of `cells` averaged over a base pitch, shape (cells, L) [N/m]."""
+        return self.mean_between(self.cells)
+
+    @property
+    def face_load_factor(self) -> Array:
+        """K_Hbeta, shape (L,): largest load per face width over the mean one, averaged over a base pitch.
+
+        ISO 6336-1, 7.2: (F / b)_max / (F_m / b).
+        """
+        return np.asarray(self.mean_over_face.max(axis=0) / (self.load / (self.lines.high - self.lines.low)))
+
+    def over_plane(self, x: Array, z: Array, case: int) -> Array:
+        """Line load of a tooth pair as its contact line moves through the plane of action, shape (z, x) [N/m].
+
+        Straight between the roll positions; NaN before the first and after the last of them.
+
+        Parameters
+        ----------
+        x, z : ndarray
+            Along the line of action and along the face [m].
+        case : int
+            Number of the load.
+        """
+        return self.spread(x, z, self.line_load[:, :, case])
+
+    def spread(self, x: Array, z: Array, values: Array) -> Array:
+        """The same of anything that is known at the stations, shape (P, M)."""
+        lines, slope = self.lines, base_twist(self.pair)
+        seen = [(float(lines.roll[p] + lines.pair[p, s.start] * self.pair.base_pitch), p, s)
+                for p in range(lines.roll.size) for s in lines.at(p)]  # fmt: skip
+        seen.sort(key=lambda found: found[0])
+        ends = [self._along_edge(x_end, values) for x_end in (self.pair.x_start, self.pair.x_end)]
+        found = np.full((z.size, x.size), np.nan)
+        for row, height in enumerate(z.tolist()):
+            on = [(at, float(np.interp(height, lines.z[p, s], values[p, s])))
+                  for at, p, s in seen if lines.z[p, s][0] <= height <= lines.z[p, s][-1]]  # fmt: skip
+            for x_end, (heights, known) in zip((self.pair.x_start, self.pair.x_end), ends, strict=True):
+                if heights.size:  # beyond the last roll position that brings a line up to this height
+                    on.append((x_end + slope * height, float(np.interp(height, heights, known))))
+            if len(on) > 1:
+                at, load = np.array(sorted(on)).T
+                found[row] = np.interp(x + slope * height, at, load, left=np.nan, right=np.nan)
+        return found
+
+    def _along_edge(self, x: float, values: Array) -> tuple[Array, Array]:
+        """Heights at which contact lines end on the tip or form circle at x, ascending, and the values there."""
+        lines = self.lines
+        on = lines.present & lines.at_edge & (np.abs(lines.x - x) < 1e-6 * self.pair.base_pitch)
+        order = np.argsort(lines.z[on])
+        return lines.z[on][order], values[on][order]
+
+
+#: Matrices that a pair keeps: three for itself, three for its error, as many for other effects.
+_KEPT = 12
+
+
+@dataclass(frozen=True)
+class FlankPair:
+    """A pair of gears with a width, ready to be loaded.
+
+    Parameters
+    ----------
+    pair : GearPair
+    gears : mapping of {"driver", "driven"} to FlankBody
+    coupling : bool
+        Whether tooth pairs deflect each other.
+    hertz : {"load-dependent", "linear", "none"}
+    panel : float
+        Length of a panel along the face, at most [modules].
+    positions : int
+        Roll positions over one base pitch.
+    most_gap : float
+        Contact lines go on along tip edges up to this distance from the mate's flank [m]; 0 for lines that end there.
+    cache : SolutionCache
+        Where what gaps and loads do not change is recalled from and kept; by default a memory of this pair's own.
+    """
+
+    pair: GearPair
+    gears: Mapping[Member, FlankBody]
+    coupling: bool = True
+    hertz: Hertz = "load-dependent"
+    panel: float = 0.5
+    positions: int = 16
+    most_gap: float = 0.0
+    cache: SolutionCache = field(default_factory=partial(SolutionCache, most=_KEPT), compare=False, repr=False)
+
+    @property
+    def points(self) -> Panels:
+        """Roll positions and their weights over a base pitch, for means and Fourier series: see `roll_points`."""
+        return roll_points(self.pair, self.positions, edge_reach(self.pair, self.most_gap))
+
+    @property
+    def roll(self) -> Array:
+        """Roll positions [m]."""
+        return self.points.x
+
+    def compliance(self, load: float, roll: Array | None = None) -> FlankCompliance:
+        """Lines and compliances at all roll positions, or at those given; see `flank_compliance` for `load`."""
+        for member in MEMBERS:
+            if self.gears[member].reach == 0 and self.coupling:
+                raise InputError("reach", 0, "knows no neighbours", "solve the gears with reach = 1 or more")
+        if roll is None:
+            points = self.points
+            roll, weight = points.x, points.weights / points.period
+        else:
+            weight = np.empty(0)
+        lines = contact_lines(self.pair, roll, self.panel * self.pair.driver.module, weight, self.most_gap)
+        with one_thread(with_scipy=False):
+            return flank_compliance(
+                self.pair, self.gears, lines, load, coupling=self.coupling, hertz=self.hertz, cache=self.cache
+            )
+
+    def solve(
+        self, load: ArrayLike, gaps: FlankGaps | None = None, known: FlankCompliance | None = None
+    ) -> LoadedFlanks:
+        """Load the flanks.
+
+        Parameters
+        ----------
+        load : array_like, shape (L,)
+            Along the transverse line of action [N].
+        gaps : FlankGaps, optional
+        known : FlankCompliance, optional
+            What `compliance` gave: the same for all gaps, and for all loads about the one it was made for.
+
+        Returns
+        -------
+        LoadedFlanks
+
+        Raises
+        ------
+        InputError
+            If a load is not positive.
+        """
+        started = time.perf_counter()
+        loads = np.atleast_1d(np.asarray(load, dtype=float))
+        if not (np.isfinite(loads) & (loads > 0.0)).all():
+            raise InputError("load", f"{loads.min()} N", "must be positive and finite")
+        known = self.compliance(float(loads.max())) if known is None else known
+        assembled = time.perf_counter()
+        with one_thread(with_scipy=False):
+            known, contact = solve_spots(known, (gaps or FlankGaps()).at(self.pair, known.lines), loads)
+        seconds = {"compliance": assembled - started, "contact": time.perf_counter() - assembled}
+        return LoadedFlanks(self.pair, known, contact, loads, seconds)

@@ -1,0 +1,281 @@
+"""Root stress of a tooth with a width on its way through the mesh, over the face, from the solved line loads.
+
+The stress of a fillet is linear in the forces on the flanks: those on the stations of the tooth's own contact line and,
+through the body, those of the teeth beside it. Along the face it is looked for up the fillet at one place after the
+other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.contact.wide.compliance import line_bands, places_of
+from fegear.contact.wide.lines import base_twist
+from fegear.fem.plane.root_stress import extreme
+from fegear.fem.solid.bands import loads_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array, Index
+    from fegear.contact.wide.lines import ContactLines
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.solid.bands import Bands
+    from fegear.fem.solid.fillet import SolidFillet
+    from fegear.fem.solid.solution import SolidSolution
+    from fegear.geometry.pair import GearPair, Member
+
+#: Teeth beside the lines in contact that are followed too, where neighbours count.
+_BESIDE = 1
+#: What pulls and what presses counts as large.
+_SIGN: dict[Side, float] = {"tension": 1.0, "compression": -1.0}
+#: The largest of points up the fillet misses the largest of the curve through them by much less than this share.
+_FITTED = 0.1
+
+
+@dataclass(frozen=True)
+class StressOverFace(ReadOnlyArrays):
+    """Stress of one fillet of a tooth at T positions of the tooth and Z places along the face; arrays (T, Z).
+
+    Parameters
+    ----------
+    x : ndarray, shape (T,)
+        Where the tooth's contact line crosses the middle of the face, ascending [m].
+    z : ndarray, shape (Z,)
+        From the middle of the common face [m].
+    value : ndarray
+        Largest tension up the fillet, or most negative stress of the other one: along the fillet, in the transverse
+        section [Pa].
+    radius : ndarray
+        Where it sits [m].
+    """
+
+    x: Array
+    z: Array
+    value: Array
+    radius: Array
+
+    def largest(self, sign: float) -> tuple[Array, Array]:
+        """Largest (sign 1) or most negative (-1) stress over the face and its place along it, shape (T,) each."""
+        at = np.argmax(sign * self.value, axis=1)
+        return self.value[np.arange(at.size), at], self.z[at]
+
+
+@dataclass(frozen=True)
+class RootedLines:
+    """Contact lines of all roll positions on one gear, ready to tell of its roots.
+
+    Parameters
+    ----------
+    pair : GearPair
+    member : {"driver", "driven"}
+    lines : ContactLines
+    solution : SolidSolution
+        Of this gear.
+    bands : Bands
+        Of all stations.
+    loads : ndarray, shape (n, stations)
+        On the flank's ports, per unit force on each station.
+    teeth : ndarray of int, shape (T, 2)
+        Roll position and number of the pair of every tooth that is followed, in the order of its x.
+    sources : mapping of int to ndarray of int, shape (m, 2)
+        By k: tooth, as a row of `teeth`, and line whose load is felt on it as on tooth k beside the loaded one.
+    """
+
+    pair: GearPair
+    member: Member
+    lines: ContactLines
+    solution: SolidSolution
+    bands: Bands
+    loads: Array
+    teeth: Index
+    sources: dict[int, Index]
+
+    @property
+    def x(self) -> Array:
+        """Positions of the teeth, shape (T,) [m]."""
+        return np.asarray(self.lines.roll[self.teeth[:, 0]] + self.teeth[:, 1] * self.pair.base_pitch)
+
+    def stress(self, side: Side, force: Array, z: ArrayLike) -> StressOverFace:
+        """Stress of the fillets under forces on the stations.
+
+        Parameters
+        ----------
+        side : {"tension", "compression"}
+        force : ndarray, shape (P, M)
+            [N].
+        z : array_like, shape (Z,)
+            Along the face, from the middle of the common one [m].
+        """
+        m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
+        fillet, sign = self.solution.fillets[side], _SIGN[side]
+        total, end = self._felt(side, force, places / m), self._ends(side, places / m)
+        value, arc = extreme(total.reshape(fillet.arc.size, -1), fillet.arc, sign, end.ravel())
+        radius = np.interp(arc, fillet.arc, np.hypot(*fillet.place)) * m
+        shape = places.size, len(self.teeth)
+        return StressOverFace(self.x, places, value.reshape(shape).T / m**2, radius.reshape(shape).T)
+
+    def along_fillets(self, side: Side, force: Array, z: ArrayLike) -> Array:
+        """Stress at every point up the fillets of every tooth, for pictures, shape (points, Z, T) [Pa].
+
+        Arguments are those of `stress`. Beside a contact line near the fillet, where stress is that of the contact, it
+        is NaN.
+        """
+        m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
+        root = self.solution.fillets[side].arc[:, None, None] <= self._ends(side, places / m)
+        return np.where(root, self._felt(side, force, places / m) / m**2, np.nan)
+
+    def largest(self, side: Side, force: Array, z: ArrayLike, *, across: bool = False) -> float:
+        """Largest value of `stress` [Pa]: curves are laid through the highest of all points alone.
+
+        With `across` it is that of the stress across the root, at right angles to the helix through the place, which
+        is what a formula for the normal section means, rather than of that along the transverse section.
+        """
+        m, places = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float))
+        arc, sign = self.solution.fillets[side].arc, _SIGN[side]
+        felt = self._surface(side, force, places / m)
+        total = (_across(felt, self.solution.fillets[side], self.solution.tau) if across else felt[0]).reshape(
+            arc.size, -1
+        )
+        return _highest(total, arc, sign, self._ends(side, places / m).ravel()) / m**2
+
+    def influence(self, side: Side, z: ArrayLike) -> RootInfluence:
+        """The stress of every place as a sum over the stations' forces, for many states of forces.
+
+        Parameters
+        ----------
+        side : {"tension", "compression"}
+        z : array_like, shape (Z,)
+            Along the face, from the middle of the common one [m].
+        """
+        m, zeta = self.pair.driver.module, np.atleast_1d(np.asarray(z, dtype=float)) / self.pair.driver.module
+        present, columns = self.lines.present, []
+        for station in range(present.shape[1]):
+            force = np.zeros(present.shape)
+            force[:, station] = 1.0
+            columns.append(self._felt(side, force, zeta))
+        felt = np.stack(columns, axis=-1) / m**2
+        at = self.teeth[:, 0]
+        parts = tuple(np.ascontiguousarray(felt[:, :, at == p]) for p in range(self.lines.roll.size))
+        ends = self._ends(side, zeta)
+        order = tuple(np.ascontiguousarray(ends[:, at == p]) for p in range(self.lines.roll.size))
+        return RootInfluence(self.solution.fillets[side].arc, _SIGN[side], order, parts)
+
+    def _felt(self, side: Side, force: Array, zeta: Array) -> Array:
+        """Stress up the fillet under forces on the stations, shape (points, Z, T) [1/module^2 times N]."""
+        return np.asarray(self._surface(side, force, zeta)[0])
+
+    def _surface(self, side: Side, force: Array, zeta: Array) -> Array:
+        """The three stresses of `fegear.fem.solid.fillet.surface_stress` of each, shape (3, points, Z, T)."""
+        solution, fillet = self.solution, self.solution.fillets[side]
+        _, spans = places_of(self.lines)
+        on = force[self.lines.present]
+        loads = np.stack([self.loads[:, s] @ on[s] for s in spans], axis=1)
+        total = np.zeros((3, fillet.arc.size, zeta.size, len(self.teeth)))
+        for k, felt in self.sources.items():
+            used, column = np.unique(felt[:, 1], return_inverse=True)
+            stress = solution.stress_under(k, side, loads[:, used], zeta)
+            total[..., felt[:, 0]] += stress[..., column]  # at most one line is k teeth away
+        return total
+
+    def _ends(self, side: Side, zeta: Array) -> Array:
+        """How far up the fillet stress is root stress, shape (Z, T): less beside a contact line near its foot."""
+        found = np.full((zeta.size, len(self.teeth)), self.solution.fillets[side].length)
+        _, spans = places_of(self.lines)
+        for tooth, line in self.sources[0].tolist():
+            own = self.bands.part(spans[line])
+            near = (zeta > own.zeta[0] - own.half_width[0]) & (zeta < own.zeta[-1] + own.half_width[-1])
+            found[near, tooth] = np.interp(zeta[near], own.zeta, self.solution.root_end(0, side, own))
+        return found
+
+
+@dataclass(frozen=True)
+class RootInfluence:
+    """Stress of one fillet per unit force on the stations: small, and without the solution behind it.
+
+    Parameters
+    ----------
+    arc : ndarray, shape (points,)
+        Up the fillet [module].
+    sign : float
+        1 for tension, -1 for compression.
+    end : tuple of ndarray, shape (Z, teeth)
+        How far up the fillet stress is root stress, for each roll position [module].
+    felt : tuple of ndarray, shape (points, Z, teeth, M)
+        Of the teeth that are followed at each roll position [Pa/N].
+    """
+
+    arc: Array
+    sign: float
+    end: tuple[Array, ...]
+    felt: tuple[Array, ...]
+
+    def largest(self, force: Array) -> float:
+        """As `RootedLines.largest`, under forces of shape (P, M) [N]."""
+        total = [(felt * force[p]).sum(axis=-1).reshape(self.arc.size, -1) for p, felt in enumerate(self.felt)]
+        end = np.concatenate([one.ravel() for one in self.end])
+        return _highest(np.concatenate(total, axis=1), self.arc, self.sign, end)
+
+
+def _highest(total: Array, arc: Array, sign: float, end: Array) -> float:
+    """Largest value of curves through points up the fillet, shape (points, N), laid through the highest alone."""
+    on = np.maximum(np.searchsorted(arc, end, side="right"), 1) > np.arange(arc.size)[:, None]
+    top = np.where(on, sign * total, -np.inf).max(axis=0)
+    high = top >= top.max() - _FITTED * abs(top.max())
+    return float((sign * extreme(total[:, high], arc, sign, end[high])[0]).max())
+
+
+def _across(surface: Array, fillet: SolidFillet, tau: float) -> Array:
+    """Stress at right angles to the helix, from those along the section, across it, and the shear between both.
+
+    In the surface the helix through a place leans by its component along the section's tangent.
+    """
+    (x, y), (tx, ty) = fillet.place, fillet.tangent
+    skew = tau * (ty * x - tx * y)
+    across = np.sqrt(1.0 + tau**2 * (x * x + y * y) - skew**2)
+    lean = np.arctan2(skew, across)[:, None, None]
+    c, s = np.cos(lean), np.sin(lean)
+    return np.asarray(c * c * surface[0] + s * s * surface[1] - 2.0 * s * c * surface[2])
+
+
+def rooted_lines(
+    pair: GearPair, member: Member, lines: ContactLines, solution: SolidSolution, *, coupling: bool
+) -> RootedLines:
+    """Press the contact lines of all roll positions on a gear.
+
+    Parameters
+    ----------
+    pair : GearPair
+    member : {"driver", "driven"}
+    lines : ContactLines
+    solution : SolidSolution
+        Of this gear.
+    coupling : bool
+        Whether a tooth feels the loads of those beside it.
+    """
+    places, _ = places_of(lines)
+    bands = line_bands(pair, member, solution, lines)
+    reach = abs(base_twist(pair)) * 0.5 * pair.face_width + (pair.base_pitch if coupling else 0.0)
+    forward, beside = (1 if member == "driver" else -1), (_BESIDE if coupling else 0)
+    number = [int(lines.pair[p, s.start]) for p, s in places]
+    at = np.array([p for p, _ in places])
+    teeth = []
+    for p, roll in enumerate(lines.roll.tolist()):
+        own = [n for n, q in zip(number, at.tolist(), strict=True) if q == p]
+        followed = range(min(own) - beside, max(own) + beside + 1)
+        teeth += [(p, j) for j in followed if pair.x_start - reach < roll + j * pair.base_pitch < pair.x_end + reach]
+    teeth.sort(key=lambda one: float(lines.roll[one[0]] + one[1] * pair.base_pitch))
+    sources: dict[int, list[tuple[int, int]]] = {0: []}
+    for t, (p, j) in enumerate(teeth):
+        for line in np.flatnonzero(at == p).tolist():
+            k = forward * (j - number[line])
+            if k == 0 or (coupling and abs(k) <= solution.reach):
+                sources.setdefault(k, []).append((t, line))
+    return RootedLines(
+        pair, member, lines, solution, bands, loads_of(bands, solution.flank, solution.face), np.array(teeth),
+        {k: np.array(felt) for k, felt in sources.items()},
+    )  # fmt: skip

@@ -1,0 +1,267 @@
+"""The whole design of loaded flanks: exact topography, what can be ground, and how each holds up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.one_thread import one_thread
+from fegear.contact.wide.compliance import flank_compliance
+from fegear.design.flanks.forms import FAMILIES, GroundRelief, held_by, usual_grid
+from fegear.design.flanks.judge import SEARCHED, flank_judge
+from fegear.design.flanks.search import best_of_family, led_on, settled
+from fegear.design.flanks.topography import (
+    design_force,
+    design_lines,
+    lines_at,
+    station_relief,
+    table_nodes,
+    tabulated,
+    topography,
+)
+from fegear.design.flanks.trials import FlankTrials, Scatter
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.contact.wide.compliance import FlankCompliance
+    from fegear.contact.wide.gaps import FlankGaps
+    from fegear.contact.wide.lines import ContactLines
+    from fegear.contact.wide.loaded import FlankPair
+    from fegear.design.flanks.forms import Family, ReliefGrid
+    from fegear.design.flanks.judge import FlankJudge, Judged
+    from fegear.design.flanks.search import FamilyBest
+    from fegear.design.flanks.topography import FlankLoading, StationRelief
+    from fegear.design.flanks.trials import Tried
+    from fegear.fem.solid.flank_body import FlankBody
+    from fegear.geometry.flank_modification import Topography
+    from fegear.geometry.pair import Member
+
+UNRELIEVED, EXACT, ROBUST = "no relief", "exact topography", "robust"
+
+
+@dataclass(frozen=True)
+class FlankDesignTask:
+    """What flanks are designed for.
+
+    Parameters
+    ----------
+    loading : FlankLoading
+    load : float
+        W_d [N].
+    loads : tuple of float
+        Over which what can be ground is chosen: the worst of them, in proportion to its load [N].
+    families : tuple of str
+    grid : ReliefGrid or None
+        None for `usual_grid`.
+    most_factor : float
+        Largest K_Hbeta that ground reliefs may have at those loads.
+    scatter : Scatter
+        Of the misalignment, over which the robust relief is chosen.
+    deviation : float
+        Its standard deviation, as gap over the face [m].
+    positions : int
+        Roll positions over a base pitch.
+    map_over_face, map_loads : tuple of float
+        Misalignments [m] and loads [N] of the maps.
+    """
+
+    loading: FlankLoading
+    load: float
+    loads: tuple[float, ...]
+    families: tuple[Family, ...]
+    grid: ReliefGrid | None
+    most_factor: float
+    scatter: Scatter
+    deviation: float
+    positions: int
+    map_over_face: tuple[float, ...]
+    map_loads: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class FlankState(ReadOnlyArrays):
+    """One way to relieve the flanks and what it leaves at the design load.
+
+    Parameters
+    ----------
+    label : str
+    relief : GroundRelief or None
+        None for the exact topography.
+    te : ndarray, shape (P,)
+        Transmission error at the roll positions of the pair's other results [m].
+    judged : Judged
+        What it leaves, with errors.
+    mapped : Tried
+        Over the misalignments and loads of the maps.
+    """
+
+    label: str
+    relief: GroundRelief | None
+    te: Array
+    judged: Judged
+    mapped: Tried
+
+
+@dataclass(frozen=True)
+class FlankDesign(ReadOnlyArrays):
+    """A design of loaded flanks.
+
+    Parameters
+    ----------
+    task : FlankDesignTask
+    station : StationRelief
+    x, z : ndarray, shapes (n,), (m,)
+        Nodes of the topography in the plane of action [m].
+    removal : ndarray, shape (n, m)
+        By both gears together [m].
+    roll : ndarray, shape (P,)
+        Positions of `FlankState.te` [m].
+    states : tuple of FlankState
+        Without relief, exact topography, the best of every family, and the robust one if misalignment scatters.
+    found : mapping of str to FamilyBest
+        By the labels of what can be ground.
+    grid : ReliefGrid
+    """
+
+    task: FlankDesignTask
+    station: StationRelief
+    x: Array
+    z: Array
+    removal: Array
+    roll: Array
+    states: tuple[FlankState, ...]
+    found: Mapping[str, FamilyBest]
+    grid: ReliefGrid
+
+    @property
+    def unrelieved(self) -> FlankState:
+        """Without relief."""
+        return self.states[0]
+
+    @property
+    def exact(self) -> FlankState:
+        """With the exact topography."""
+        return self.states[1]
+
+    @property
+    def robust(self) -> tuple[FlankState, ...]:
+        """What can be ground and leaves the least over the scatter; empty where misalignment does not scatter."""
+        return tuple(state for state in self.states if state.label == ROBUST)
+
+    @property
+    def best(self) -> FlankState:
+        """What can be ground and leaves the least at the design load, aligned as given."""
+        return min((s for s in self.states if s.label in self.found and s.label != ROBUST),
+                   key=lambda s: s.judged.peak_to_peak.value)  # fmt: skip
+
+
+def design_flanks(
+    flanks: FlankPair,
+    coarse: Mapping[Member, FlankBody],
+    known: FlankCompliance,
+    apart: FlankGaps,
+    task: FlankDesignTask,
+    progress: Callable[[float], None] | None = None,
+) -> FlankDesign:
+    """Design the flanks of a pair.
+
+    Parameters
+    ----------
+    flanks : FlankPair
+    coarse : mapping of {"driver", "driven"} to FlankBody
+        The gears' coarser solutions, for errors.
+    known : FlankCompliance
+        Of the roll positions of the pair's other results, at which all combinations of a grid are tried.
+    apart : FlankGaps
+        What keeps the flanks apart besides the relief: misalignment that is known.
+    task : FlankDesignTask
+    progress : callable, optional
+
+    Raises
+    ------
+    RangeError
+        If no relief of a family keeps to the largest K_Hbeta.
+    """
+    report = progress or (lambda _fraction: None)
+    pair = flanks.pair
+    panel = flanks.panel * pair.driver.module
+    lines = design_lines(pair, task.loading, task.positions, panel)
+
+    def compliance_at(lines: ContactLines) -> FlankCompliance:
+        with one_thread():
+            return flank_compliance(
+                pair, flanks.gears, lines, task.load, coupling=flanks.coupling, hertz=flanks.hertz, cache=flanks.cache
+            )
+
+    own = compliance_at(lines)
+    report(0.3)
+    gap = apart.at(pair, lines)
+    station = station_relief(own, gap, task.loading, task.load)
+    x, z = table_nodes(station, pair)
+    removal = tabulated(station, pair, x, z)
+    table = topography(pair, "driver", x, z, removal)
+    grid = task.grid or usual_grid(float(np.ptp(removal)), pair.path_length, pair.face_width, pair.base_pitch)
+    # What is ground leaves most where contact lines begin and end, where the positions of the other results stand, and
+    # may leave as much between few of them: it is chosen by both, and led on at more of them.
+    scan = FlankTrials(pair, known, apart.at(pair, known.lines), np.array(task.loads))
+    force = design_force(known.lines, task.loading, task.load)
+
+    def trials_at(roll: Array) -> FlankTrials:
+        lines = lines_at(pair, np.unique(np.mod(roll - pair.x_start, pair.base_pitch) + pair.x_start), panel)
+        return FlankTrials(pair, compliance_at(lines), apart.at(pair, lines), scan.loads)
+
+    trials = trials_at(np.concatenate([known.lines.roll, lines.roll]))
+    even = pair.x_start + pair.base_pitch * (np.arange(SEARCHED) + 0.5) / SEARCHED
+    closer = trials_at(np.concatenate([known.lines.roll, even]))
+    found: dict[str, FamilyBest] = {}
+    wanted = [family for family in FAMILIES if family in task.families]
+    for number, family in enumerate(wanted):
+        starts = [found[held].relief for held in held_by(family) if held in found]
+        best = best_of_family(trials, family, grid, force, task.most_factor, starts, scan)
+        found[family] = settled(closer, best, grid, starts, task.most_factor)
+        report(0.3 + 0.4 * (number + 1) / len(wanted))
+    if wanted and task.scatter.over_face.size > 1:
+        starts = [one.relief for one in found.values() if one.family in (*held_by(wanted[-1]), wanted[-1])]
+        few, more, scattered = (replace(one, scatter=task.scatter) for one in (scan, closer, trials))
+        best = best_of_family(scattered, wanted[-1], grid, force, task.most_factor, starts, few)
+        found[ROBUST] = settled(more, best, grid, (), task.most_factor)
+        # One start more: where scattered misalignment leads may be the better valley without it, too.
+        found[wanted[-1]] = led_on(closer, found[wanted[-1]], grid, found[ROBUST].relief, task.most_factor)
+    report(0.8)
+    reliefs: dict[str, GroundRelief | Topography] = {
+        UNRELIEVED: GroundRelief(),
+        EXACT: table,
+        **{label: one.relief for label, one in found.items()},
+    }
+    here = replace(scan, loads=np.array([task.load]))
+    judge = flank_judge(flanks, coarse, apart, task.load, task.deviation)
+    states = tuple(_state(label, relief, here, judge, task)
+                   for label, relief in reliefs.items())  # fmt: skip
+    return FlankDesign(task, station, x, z, removal, known.lines.roll, states, found, grid)
+
+
+def _state(
+    label: str, relief: GroundRelief | Topography, here: FlankTrials, judge: FlankJudge, task: FlankDesignTask
+) -> FlankState:
+    """Judge a relief, and map what it leaves."""
+
+    def gap(lines: ContactLines) -> Array:
+        if isinstance(relief, GroundRelief):
+            removed = relief.removal(here.pair, lines.x, lines.z)
+        else:
+            height = lines.z + here.pair.face_height("driver")
+            removed = relief.removal(here.pair.roll_angle(lines.x, "driver"), height)
+        return np.where(lines.present, removed, 0.0)
+
+    count = len(task.map_over_face)
+    over = Scatter(np.array(task.map_over_face), np.full(count, 1.0 / count))
+    mapped = replace(judge.plain, scatter=over, loads=np.array(task.map_loads))
+    return FlankState(
+        label, relief if isinstance(relief, GroundRelief) else None, here.of_gap(gap(here.known.lines)).te[0, :, 0],
+        judge.judge(gap), mapped.of_gap(gap(mapped.known.lines)),
+    )  # fmt: skip

@@ -1,0 +1,180 @@
+"""Judging designed flanks: on roll positions, panels, gears and misalignments that no search has seen.
+
+A search leaves the least at the places that it looks at, and more between them. So what is stated of a relief is found
+at four times as many roll positions and misalignments, and its error from as many positions as the search had, panels
+of a fourth of their length, and the gears' coarser solutions. Misalignment scatters normally, and is one number: what
+it leaves is followed over that number, which gives means and percentiles without drawing any.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.base.one_thread import one_thread
+from fegear.contact.wide.compliance import flank_compliance
+from fegear.contact.wide.lines import contact_lines, roll_points
+from fegear.design.flanks.trials import NOMINAL, FlankTrials, Scatter, Tried
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.contact.wide.gaps import FlankGaps
+    from fegear.contact.wide.lines import ContactLines
+    from fegear.contact.wide.loaded import FlankPair
+    from fegear.fem.solid.flank_body import FlankBody
+    from fegear.geometry.pair import Member
+
+#: Roll positions that a search may look at, and those that it is judged at.
+SEARCHED, JUDGED = 48, 192
+#: Panels of the search to one of those whose change counts as an error.
+_FINER = 4
+#: Misalignments that are followed, in standard deviations, and places between them for percentiles.
+_LEVELS = np.linspace(-3.5, 3.5, 15)
+_BETWEEN = 100
+#: Misalignments at which positions, panels and gears are changed, in standard deviations, and their weights.
+_CHANGED, _WEIGHTS = np.array([-1.0, 0.0, 1.0]), np.array([0.3, 0.4, 0.3])
+#: Part of misalignments that leave no more than what is stated.
+PERCENTILE = 0.95
+#: What is taken for an error of a change by four times fewer positions or longer panels, or by half of the levels.
+_OF_FEWER = 0.5
+
+
+class Number(NamedTuple):
+    """A number and its estimated error."""
+
+    value: float
+    error: float
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What a relief leaves at the design load.
+
+    Parameters
+    ----------
+    peak_to_peak : Number
+        Of the transmission error [m].
+    face_load_factor, pressure : Number
+        K_Hbeta, and the largest Hertzian pressure away from tips and form circles [Pa].
+    mean_over_scatter, most_over_scatter : Number
+        Of the peak to peak over the misalignments: mean, and what `PERCENTILE` of them do not exceed [m].
+    factor_over_scatter : Number
+        K_Hbeta that as many do not exceed.
+    """
+
+    peak_to_peak: Number
+    face_load_factor: Number
+    pressure: Number
+    mean_over_scatter: Number
+    most_over_scatter: Number
+    factor_over_scatter: Number
+
+
+@dataclass(frozen=True)
+class FlankJudge:
+    """A pair set up for judging reliefs.
+
+    Parameters
+    ----------
+    dense, plain : FlankTrials
+        At `JUDGED` and at `SEARCHED` roll positions.
+    thin, soft : FlankTrials
+        At those of `plain` with shorter panels, and of the gears' coarser solutions.
+    deviation : float
+        Standard deviation of the misalignment over the face [m].
+    """
+
+    dense: FlankTrials
+    plain: FlankTrials
+    thin: FlankTrials
+    soft: FlankTrials
+    deviation: float
+
+    def judge(self, gap: Callable[[ContactLines], Array]) -> Judged:
+        """Judge a relief, given by the gap that it leaves at the stations of contact lines [m]."""
+        levels = Scatter(self.deviation * _CHANGED, _WEIGHTS) if self.deviation else NOMINAL
+        dense, plain, thin, soft = (
+            _numbers(replace(one, scatter=levels).of_gap(gap(one.known.lines)))
+            for one in (self.dense, self.plain, self.thin, self.soft)
+        )  # fmt: skip
+        off = _OF_FEWER * np.abs(dense - plain) + _OF_FEWER * np.abs(thin - plain) + np.abs(soft - plain)
+        middle = levels.over_face.size // 2
+        ripple, factor, pressure = (
+            Number(float(v), float(e)) for v, e in zip(dense[:, middle], off[:, middle], strict=True)
+        )
+        if not self.deviation:
+            return Judged(ripple, factor, pressure, ripple, ripple, factor)
+        every = Scatter(self.deviation * _LEVELS, np.full(_LEVELS.size, 1.0 / _LEVELS.size))
+        over, factors, _ = _numbers(replace(self.dense, scatter=every).of_gap(gap(self.dense.known.lines)))
+        return Judged(
+            ripple, factor, pressure, over_scatter(over, None, float(_WEIGHTS @ off[0])),
+            over_scatter(over, PERCENTILE, float(off[0].max())), over_scatter(factors, PERCENTILE, float(off[1].max())),
+        )  # fmt: skip
+
+
+def _numbers(tried: Tried) -> Array:
+    """Peak to peak, K_Hbeta and pressure at every misalignment, shape (3, S)."""
+    return np.stack([tried.peak_to_peak[:, 0], tried.face_load_factor[:, 0], tried.pressure[:, 0]])
+
+
+def over_scatter(values: Array, percentile: float | None, off: float) -> Number:
+    """Mean, or a percentile, of what is known at `_LEVELS` of a normal distribution and straight between them.
+
+    Parameters
+    ----------
+    values : ndarray, shape (levels,)
+    percentile : float or None
+        Part of the distribution; None for the mean.
+    off : float
+        Error of the values.
+    """
+    place = np.linspace(_LEVELS[0], _LEVELS[-1], _BETWEEN * (_LEVELS.size - 1) + 1)
+    weight = np.exp(-0.5 * place**2)
+    weight /= weight.sum()
+
+    def found(some: slice) -> float:
+        curve = np.interp(place, _LEVELS[some], values[some])
+        if percentile is None:
+            return float(weight @ curve)
+        order = np.argsort(curve, kind="stable")
+        return float(np.interp(percentile, np.cumsum(weight[order]), curve[order]))
+
+    whole = found(slice(None))
+    return Number(whole, _OF_FEWER * abs(found(slice(None, None, 2)) - whole) + off)
+
+
+def flank_judge(
+    flanks: FlankPair, coarse: Mapping[Member, FlankBody], apart: FlankGaps, load: float, deviation: float
+) -> FlankJudge:
+    """Set up a pair for judging reliefs.
+
+    Parameters
+    ----------
+    flanks : FlankPair
+        As it is searched; no contact along tip edges.
+    coarse : mapping of {"driver", "driven"} to FlankBody
+    apart : FlankGaps
+        What keeps the flanks apart besides the relief.
+    load : float
+        Design load [N].
+    deviation : float
+        Standard deviation of the misalignment over the face [m].
+    """
+    pair, panel = flanks.pair, flanks.panel * flanks.pair.driver.module
+
+    def trials(positions: int, panel: float, gears: Mapping[Member, FlankBody]) -> FlankTrials:
+        points = roll_points(pair, positions)
+        lines = contact_lines(pair, points.x, panel, points.weights / points.period)
+        with one_thread():
+            known = flank_compliance(pair, gears, lines, load, coupling=flanks.coupling, hertz=flanks.hertz,
+                                     cache=flanks.cache)  # fmt: skip
+        return FlankTrials(pair, known, apart.at(pair, lines), np.array([load]))
+
+    return FlankJudge(
+        trials(JUDGED, panel, flanks.gears), trials(SEARCHED, panel, flanks.gears),
+        trials(SEARCHED, panel / _FINER, flanks.gears), trials(SEARCHED, panel, coarse), deviation,
+    )  # fmt: skip

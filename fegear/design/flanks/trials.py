@@ -1,0 +1,371 @@
+"""Trying modifications of loaded flanks: transmission error, K_Hbeta and pressure over loads and misalignments.
+
+Loaded flanks with few stations and straight compliances, for trying many thousand modifications.
+
+The compliances between all stations are pressed together: the coarse hats of longer panels are sums of the fine ones,
+so C_coarse = R^T C R with the forces R of unit coarse hats (Galerkin's way), and gaps are averaged alike. Widths of the
+contacts are those of the design load: the compliances are the tangents there. Contact itself is solved exactly.
+
+Misalignment that scatters: levels of the gap over the face with weights, and the gap that each of them opens.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.errors import ConvergenceError
+from fegear.contact.wide.complementarity import (
+    approach_by_gap,
+    deflection,
+    hat_averages,
+    solve_contact,
+    tangent_compliance,
+)
+from fegear.contact.wide.load_factors import swept_mean
+from fegear.contact.wide.loaded import LoadedFlanks
+from fegear.design.flanks.forms import FormsAt
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array, Mask
+    from fegear.contact.wide.compliance import FlankCompliance
+    from fegear.contact.wide.lines import ContactLines
+    from fegear.geometry.pair import GearPair
+
+
+@dataclass(frozen=True)
+class Tried(ReadOnlyArrays):
+    """What a modification leaves at S misalignments, P roll positions and L loads.
+
+    Parameters
+    ----------
+    found : tuple of LoadedFlanks
+        One for each misalignment.
+    slope : ndarray, shape (S, 9, P, L)
+        Growth of `te` by each number of a ground relief; empty, (S, 0, P, L), where it was not asked for.
+    """
+
+    found: tuple[LoadedFlanks, ...]
+    slope: Array
+
+    @cached_property
+    def te(self) -> Array:
+        """Transmission error, shape (S, P, L) [m]."""
+        return np.stack([one.transmission_error for one in self.found])
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Shape (S, L) [m]."""
+        return np.asarray(np.ptp(self.te, axis=1))
+
+    @cached_property
+    def face_load_factor(self) -> Array:
+        """K_Hbeta, shape (S, L); all misalignments are swept over the face in one go."""
+        first = self.found[0]
+        loads = np.concatenate([one.line_load for one in self.found], axis=2)
+        over_face = swept_mean(first.lines, loads, first.cells, first.pair.base_pitch) / np.diff(first.cells)[:, None]
+        largest = over_face.max(axis=0).reshape(len(self.found), -1)
+        return np.asarray(largest / (first.load / (first.lines.high - first.lines.low)))
+
+    @cached_property
+    def pressure(self) -> Array:
+        """Largest Hertzian pressure away from tips and form circles, shape (S, L) [Pa]."""
+        inner = self.found[0].lines.present & ~self.found[0].lines.at_edge
+        return np.stack([np.where(inner[:, :, None], one.pressure, 0.0).max(axis=(0, 1)) for one in self.found])
+
+
+@dataclass(frozen=True)
+class Scatter(ReadOnlyArrays):
+    """Deviations of the gap over the face from the nominal one, and how often they occur.
+
+    Parameters
+    ----------
+    over_face : ndarray, shape (S,)
+        Gap at the end of the face at +b/2 less that at -b/2 [m].
+    weights : ndarray, shape (S,)
+        Sum one.
+    """
+
+    over_face: Array
+    weights: Array
+
+    def gaps(self, lines: ContactLines) -> Array:
+        """Gap of each level at the stations, nothing in the middle of the face, shape (S, P, M) [m]."""
+        share = (lines.z - 0.5 * (lines.low + lines.high)) / (lines.high - lines.low)
+        return np.asarray(np.multiply.outer(self.over_face, np.where(lines.present, share, 0.0)))
+
+
+#: No deviation.
+NOMINAL = Scatter(np.zeros(1), np.ones(1))
+
+
+@dataclass(frozen=True)
+class FlankTrials:
+    """A pair's flanks set up for trying modifications under several loads and misalignments.
+
+    Parameters
+    ----------
+    pair : GearPair
+    known : FlankCompliance
+    apart : ndarray, shape (P, M)
+        Gap that is there besides, a nominal misalignment say [m].
+    loads : ndarray, shape (L,)
+        [N].
+    scatter : Scatter
+    """
+
+    pair: GearPair
+    known: FlankCompliance
+    apart: Array
+    loads: Array
+    scatter: Scatter = NOMINAL
+
+    @cached_property
+    def forms(self) -> FormsAt:
+        """The stations, as modifications count them."""
+        return FormsAt.over(self.pair, self.known.lines.x, self.known.lines.z)
+
+    @property
+    def cells(self) -> int:
+        """Parts of the face whose loads K_Hbeta compares."""
+        nothing = solve_contact(self.known, self.apart, self.loads[:1])
+        return LoadedFlanks(self.pair, self.known, nothing, self.loads[:1], {}).cells.size - 1
+
+    @cached_property
+    def deviations(self) -> Array:
+        """Gaps by misalignment, shape (S, P, M) [m]."""
+        return self.scatter.gaps(self.known.lines)
+
+    def gap(self, numbers: Array) -> Array:
+        """Gap by the nine numbers of a ground relief, shape (P, M) [m]."""
+        return np.asarray(np.where(self.known.lines.present, self.forms.removed(numbers), 0.0))
+
+    def of_gap(self, gap: Array) -> Tried:
+        """Try any gap of shape (P, M) [m]."""
+        return self._tried(gap, np.empty((0, *gap.shape)))
+
+    def of_numbers(self, numbers: Array, *, slope: bool = False) -> Tried:
+        """Try nine numbers of a ground relief, with derivatives where asked for."""
+        lines = self.known.lines
+        wanted = self.forms.slopes(numbers) if slope else np.empty((0, *lines.x.shape))
+        forms = [hat_averages(lines, np.where(lines.present, form, 0.0)) for form in wanted]
+        return self._tried(self.gap(numbers), np.array(forms).reshape(-1, *lines.x.shape))
+
+    def _tried(self, gap: Array, forms: Array) -> Tried:
+        found, slopes = [], []
+        for deviation in self.deviations:
+            contact = solve_contact(self.known, self.apart + deviation + gap, self.loads)
+            found.append(LoadedFlanks(self.pair, self.known, contact, self.loads, {}))
+            slope = np.empty((len(forms), *contact.approach.shape))
+            for i in range(self.loads.size if len(forms) else 0):
+                slope[:, :, i] = np.einsum("pm,kpm->kp", approach_by_gap(self.known, contact.force[:, :, i]), forms)
+            slopes.append(slope)
+        return Tried(tuple(found), np.stack(slopes))
+
+    @property
+    def proportion(self) -> Array:
+        """Largest load over each, shape (L,): excitations count in proportion to their load."""
+        return np.asarray(self.loads.max() / self.loads)
+
+    def value(self, peak_to_peak: Array) -> float:
+        """What is to be least, of values of shape (S, L): means over the misalignments, of the worst load [m]."""
+        return float((self.scatter.weights @ peak_to_peak * self.proportion).max())
+
+    def tangent(self, tried: Tried, step: Array) -> tuple[float, Array]:
+        """The same a step of the nine numbers ahead, transmission errors taken as straight, and its gradient (9,)."""
+        te = tried.te + np.einsum("skpl,k->spl", tried.slope, step)
+        high, low = te.argmax(axis=1), te.argmin(axis=1)
+        values = self.scatter.weights @ np.ptp(te, axis=1) * self.proportion
+        worst = int(values.argmax())
+        gradient = np.zeros(tried.slope.shape[1])
+        for s, weight in enumerate(self.scatter.weights):
+            slope = tried.slope[s, :, :, worst]
+            gradient += weight * (slope[:, high[s, worst]] - slope[:, low[s, worst]])
+        return float(values[worst]), gradient * self.proportion[worst]
+
+
+#: Problems solved at a time, times the square of their size; steps after which one station changes at a time, in all.
+_BATCH, _MANY_AT_ONCE, _MOST_STEPS = 4_000_000, 12, 400
+
+
+#: Points of a fine panel when forces are shared out over the face.
+_POINTS = 8
+
+
+@dataclass(frozen=True)
+class QuickFlanks(ReadOnlyArrays):
+    """Few stations at P roll positions.
+
+    Parameters
+    ----------
+    lines : ContactLines
+        The fine stations.
+    spread : ndarray, shape (P, M, m)
+        R: forces on the fine stations by unit forces on the coarse ones.
+    present : ndarray of bool, shape (P, m)
+    matrix : ndarray, shape (P, m, m)
+        Tangent compliances [m/N].
+    constant : ndarray, shape (P, m)
+        What the tangents leave at zero force [m].
+    over_face : ndarray, shape (P, cells, m)
+        Part of a station's unit force in equal parts of the face, times the part of a base pitch of its position.
+    """
+
+    lines: ContactLines
+    spread: Array
+    present: Mask
+    matrix: Array
+    constant: Array
+    over_face: Array
+
+    def gaps(self, gap: Array) -> Array:
+        """Gaps at the fine stations, shape (..., P, M), averaged over the coarse hats, shape (..., P, m) [m]."""
+        flat = gap.reshape(-1, *gap.shape[-2:])
+        found = np.stack([np.einsum("pM,pMm->pm", hat_averages(self.lines, g), self.spread) for g in flat])
+        return np.asarray(found.reshape(*gap.shape[:-1], -1))
+
+    @cached_property
+    def _all_on(self) -> tuple[Array, Array]:
+        """Inverse of the compliances of all stations, and forces by unit approach."""
+        inverse = np.linalg.inv(self.matrix) * (self.present[:, :, None] & self.present[:, None, :])
+        return np.asarray(inverse), np.asarray(inverse.sum(axis=2))
+
+    def solve(self, gap: Array, load: float) -> tuple[Array, Array]:
+        """Load C candidates.
+
+        Parameters
+        ----------
+        gap : ndarray, shape (C, P, m)
+            From `gaps` [m].
+        load : float
+            [N].
+
+        Returns
+        -------
+        approach : ndarray, shape (C, P)
+            [m].
+        factor : ndarray, shape (C,)
+            K_Hbeta.
+        """
+        count, positions, size = gap.shape
+        approach, factor = np.empty((count, positions)), np.empty(count)
+        step = max(1, _BATCH // (positions * size**2))
+        for first in range(0, count, step):
+            part = slice(first, first + step)
+            approach[part], force = self._contact(gap[part] + self.constant, load)
+            over = np.einsum("cpm,pfm->cf", force, self.over_face)
+            factor[part] = over.max(axis=1) * over.shape[1] / load
+        return approach, factor
+
+    def _contact(self, gap: Array, load: float) -> tuple[Array, Array]:
+        size = gap.shape[2]
+        inverse, unit = self._all_on
+        held = np.einsum("pij,cpj->cpi", inverse, np.where(self.present, gap, 0.0))
+        z = (load + held.sum(axis=2)) / unit.sum(axis=1)
+        force = z[:, :, None] * unit - held
+        left = np.argwhere((force < 0.0).any(axis=2))
+        c, p = left.T
+        force = np.maximum(force, 0.0)
+        active = force[c, p] > 0.0
+        place = np.arange(c.size)
+        for steps in range(_MOST_STEPS):
+            if not place.size:
+                return z, force
+            on = active[place]
+            matrix, e = self.matrix[p[place]], np.where(self.present[p[place]], gap[c[place], p[place]], 0.0)
+            system = np.where(on[:, :, None] & on[:, None, :], matrix, 0.0)
+            system[:, range(size), range(size)] += ~on
+            y = np.linalg.solve(system, np.stack([on.astype(float), on * e], axis=2))
+            zeta = (load + y[:, :, 1].sum(axis=1)) / y[:, :, 0].sum(axis=1)
+            new = zeta[:, None] * y[:, :, 0] - y[:, :, 1]
+            distance = np.einsum("bij,bj->bi", matrix, new) + e - zeta[:, None]
+            leaves = on & (new <= 0.0)
+            enters = self.present[p[place]] & ~on & (distance < -1e-12 * np.abs(zeta)[:, None])
+            changes = leaves | enters
+            done = ~changes.any(axis=1)
+            at = place[done]
+            z[c[at], p[at]], force[c[at], p[at]] = zeta[done], new[done]
+            if steps > _MANY_AT_ONCE:
+                only = np.zeros_like(changes)
+                only[np.arange(place.size), changes.argmax(axis=1)] = True
+                changes &= only
+            active[place] = on ^ changes
+            place = place[~done]
+        raise ConvergenceError(
+            f"Contact over the flank with few stations found no loaded set for {place.size} problems."
+        )
+
+
+def quick_flanks(known: FlankCompliance, force: Array, panels: int, cells: int) -> QuickFlanks:
+    """Press the stations of all lines together.
+
+    Parameters
+    ----------
+    known : FlankCompliance
+    force : ndarray, shape (P, M)
+        Forces about which compliances are straight [N].
+    panels : int
+        Over the whole face; shorter lines have as many fewer.
+    cells : int
+        Equal parts of the face whose loads are told apart.
+    """
+    lines = known.lines
+    matrix = tangent_compliance(known, np.arange(force.shape[0]), force)
+    constant = deflection(known, force) - np.einsum("pij,pj->pi", matrix, force)
+    longest = (lines.high - lines.low) / panels
+    spread = []
+    for p in range(lines.roll.size):
+        columns = []
+        for s in lines.at(p):
+            z = lines.z[p, s]
+            count = min(max(1, round((z[-1] - z[0]) / longest)), z.size - 1)
+            nodes = np.linspace(z[0], z[-1], count + 1)
+            for unit in np.eye(count + 1):
+                column = np.zeros(lines.z.shape[1])
+                column[s] = np.interp(z, nodes, unit) * lines.support[p, s]
+                columns.append(column / column.sum())
+        spread.append(np.stack(columns, axis=1))
+    most = max(r.shape[1] for r in spread)
+    present = np.stack([np.arange(most) < r.shape[1] for r in spread])
+    whole = np.stack([np.pad(r, ((0, 0), (0, most - r.shape[1]))) for r in spread])
+    pressed = np.einsum("pMi,pMN,pNj->pij", whole, matrix, whole)
+    at = np.arange(most)
+    # Stations that are not there bear nothing; their own compliance only keeps the matrix from being singular.
+    pressed[:, at, at] += np.where(present, 0.0, float(np.abs(pressed).max()))
+    weight = lines.mean(np.eye(lines.roll.size))
+    over = np.einsum("p,pfM,pMm->pfm", weight, _face_cells(lines, cells), whole)
+    return QuickFlanks(lines, whole, present, pressed, np.einsum("pM,pMm->pm", constant, whole), over)
+
+
+def _face_cells(lines: ContactLines, count: int) -> Array:
+    """Part of the unit force of every fine hat in equal cells of the face, shape (P, cells, M)."""
+    positions, most = lines.z.shape
+    found = np.zeros((positions, count, most))
+    width = (lines.high - lines.low) / count
+    h, support = lines.panel, lines.support
+    for t in (np.arange(_POINTS) + 0.5) / _POINTS:
+        z = lines.z[:, :-1] + t * h
+        cell = np.clip(((z - lines.low) / width).astype(int), 0, count - 1)
+        p, i = np.nonzero(h > 0.0)
+        for side, weight in ((0, 1.0 - t), (1, t)):
+            np.add.at(found, (p, cell[p, i], i + side), weight * h[p, i] / _POINTS / support[p, i + side])
+    return found
+
+
+def normal_scatter(deviation: float, levels: int) -> Scatter:
+    """Levels of a normal distribution by Gauss and Hermite: means of polynomials up to degree 2 levels - 1 are exact.
+
+    Parameters
+    ----------
+    deviation : float
+        Standard deviation of the gap over the face [m]; zero is `NOMINAL`.
+    levels : int
+    """
+    if deviation == 0.0 or levels == 1:
+        return NOMINAL
+    places, weights = np.polynomial.hermite_e.hermegauss(levels)
+    return Scatter(deviation * places, weights / weights.sum())

@@ -1,0 +1,391 @@
+"""A loaded pair with deviations of manufacture and housing: the tooth shapes stay, contact is found anew.
+
+Loaded flanks with deviations of manufacture: compliances over the face stay, contact is found anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.base.errors import FegearError
+from fegear.contact.fourier import panels
+from fegear.contact.plane.fe_compliance import RootTable, light, root_table
+from fegear.contact.plane.load_sharing import share_load
+from fegear.contact.wide.complementarity import solve_contact
+from fegear.contact.wide.loaded import LoadedFlanks
+from fegear.design.robustness.tolerance_draws import HelixDeviation, ProfileDeviation
+from fegear.geometry.pair import MEMBERS, GearPair
+from fegear.geometry.relief import CombinedRelief
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.contact.fourier import Panels
+    from fegear.contact.plane.compliance import RootStressInfluence
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.roll_grids import RollGrid
+    from fegear.contact.wide.compliance import FlankCompliance
+    from fegear.contact.wide.gaps import FlankGaps
+    from fegear.contact.wide.root_stress import RootInfluence
+    from fegear.design.robustness.tolerance_draws import Deviations
+    from fegear.geometry.pair import Member
+    from fegear.geometry.relief import Relief
+
+
+#: Harmonics of the transmission error that are kept.
+HARMONICS = 4
+
+
+#: What is kept of a draw, in the order of its numbers.
+OUTCOMES = (
+    "te_peak_to_peak", "te_mean", *(f"te_harmonic_{n}" for n in range(1, HARMONICS + 1)), "driver_root_tension",
+    "driven_root_tension", "hertz_pressure", "largest_load",
+)  # fmt: skip
+
+
+#: Points over one base pitch: two waves to a subdivision, crowded at the ends of each piece.
+_WAVES, _ORDER = 12, 12
+
+
+#: Points laid between two that differ in the pairs that touch.
+_BETWEEN = 6
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A pair set up for deviations: small enough to be sent to other processes.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        With the reliefs and the effects of its case, without spacing errors.
+    load : float
+        Along the line of action [N].
+    roots : tuple of (RootTable, RootTable)
+        Of driver and driven.
+    """
+
+    engagement: Engagement
+    load: float
+    roots: tuple[RootTable, RootTable]
+
+    @property
+    def teeth(self) -> int:
+        """Teeth on either side of one that meet while it is in contact."""
+        numbers = self.engagement.meshing.pair_numbers
+        return int(numbers.max() - numbers.min())
+
+
+class State(NamedTuple):
+    """A deviated pair under load at some roll positions.
+
+    Attributes
+    ----------
+    grid : RollGrid
+    cycles : ndarray, shape (C,)
+        Base pitches during which teeth 0 are in contact: pair j carries them in base pitch j.
+    loads : ndarray, shape (n, P, C)
+        [N].
+    transmission_error : ndarray, shape (P, C)
+        [m].
+    """
+
+    grid: RollGrid
+    cycles: NDArray[np.int64]
+    loads: Array
+    transmission_error: Array
+
+
+def bench(engagement: Engagement, load: float, sources: tuple[RootStressInfluence, RootStressInfluence]) -> Bench:
+    """Set a pair up: tables of its compliances and root stress.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        Its spacing errors are left out.
+    load : float
+        [N].
+    sources : (RootStressInfluence, RootStressInfluence)
+        Of the root stress of driver and driven.
+    """
+    pair, none = engagement.pair, np.empty(0)
+    compliance = replace(
+        engagement.compliance, driver=light(engagement.compliance.driver), driven=light(engagement.compliance.driven)
+    )
+    tables = []
+    for member, source in zip(MEMBERS, sources, strict=True):
+        gear = pair.gear(member)
+        ends = gear.form_radius, gear.involute_tip_radius
+        tables.append(root_table(source, gear, *ends, coupled=compliance.coupling))
+    lean = replace(engagement, compliance=compliance, driver_spacing=none, driven_spacing=none)
+    return Bench(lean, load, (tables[0], tables[1]))
+
+
+def deviated(bench: Bench, deviations: Deviations, row: int) -> Engagement:
+    """The engagement of one draw.
+
+    Raises
+    ------
+    InputError
+        If the teeth jam at its centre distance, or lose contact.
+    """
+    e = bench.engagement
+    pair, moved = e.pair, float(deviations.centre_distance[row])
+    if moved:
+        pair = GearPair(pair.driver, pair.driven, pair.centre_distance + moved, pair.axial_offset)
+    reliefs: list[Relief] = []
+    for i, (member, own) in enumerate(zip(MEMBERS, (e.driver_relief, e.driven_relief), strict=True)):
+        # The profile is evaluated over what is active at the drawing's centre distance.
+        low, high = sorted(float(e.pair.roll_angle(x, member)) for x in (e.pair.x_start, e.pair.x_end))
+        off = ProfileDeviation(
+            low, high, float(deviations.profile_slope[row, i]), float(deviations.profile_form[row, i]),
+            float(deviations.waves[row, i]), float(deviations.phase[row, i]),
+        )  # fmt: skip
+        reliefs.append(CombinedRelief((own, off)))
+    driver, driven = (deviations.spacing(row, i, pair.gear(member).teeth) for i, member in enumerate(MEMBERS))
+    return replace(
+        e, compliance=replace(e.compliance, pair=pair), driver_relief=reliefs[0], driven_relief=reliefs[1],
+        driver_spacing=driver, driven_spacing=driven,
+    )  # fmt: skip
+
+
+def quadrature(engagement: Engagement, kinks_of: Engagement) -> Panels:
+    """Points over the base pitch in which teeth 0 come into contact.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    kinks_of : Engagement
+        Whose reliefs' kinks are break points.
+    """
+    pair = engagement.pair
+    own: tuple[tuple[tuple[float, ...], Member], ...] = (
+        (kinks_of.driver_relief.kinks, "driver"), (kinks_of.driven_relief.kinks, "driven")
+    )  # fmt: skip
+    kinks = [float(pair.x_of_roll(roll, member)) for found, member in own for roll in found]
+    places = [pair.x_start, pair.x_end, *(x for x in kinks if pair.x_start <= x <= pair.x_end)]
+    breaks = sorted({float(x) for x in engagement.meshing.reduced(places)})
+    return panels(pair.x_start, pair.base_pitch, breaks, waves=_WAVES, order=_ORDER)
+
+
+def loaded(engagement: Engagement, load: float, x: Array) -> State:
+    """Share the load at roll positions x [m] in every base pitch that teeth 0 pass."""
+    grid = engagement.grid(x)
+    c, m = grid.contacts, grid.matrices
+    separation = np.stack([engagement.separation(c, int(cycle)) for cycle in c.number], axis=2)
+    shared = share_load(
+        m.compliance, separation, np.full(c.number.size, load), m.log_slope, m.reference_load, m.tilt, m.power
+    )
+    return State(grid, c.number, shared.loads, shared.transmission_error)
+
+
+def outcomes(bench: Bench, engagement: Engagement) -> Array:
+    """What comes of a deviated pair, in the order of `OUTCOMES`.
+
+    Extremes sit where pairs come into and out of contact: between two points that differ in the loaded pairs more are
+    laid.
+
+    Parameters
+    ----------
+    bench : Bench
+    engagement : Engagement
+        From `deviated`.
+    """
+    points = quadrature(engagement, bench.engagement)
+    state = loaded(engagement, bench.load, points.x)
+    te = np.ascontiguousarray(state.transmission_error[:, state.cycles == 0][:, 0])
+    share = points.weights / points.period
+    waves = np.exp(-2j * np.pi / points.period * np.multiply.outer(np.arange(1, HARMONICS + 1), points.x))
+    amplitudes = 2.0 * np.abs((waves * (share * te)).sum(axis=1))
+    touching = state.loads > 0.0
+    changes = np.flatnonzero((touching[:, 1:] != touching[:, :-1]).any(axis=(0, 2)))
+    found = [_extremes(bench, engagement, state)]
+    if changes.size:
+        low, high = points.x[changes], points.x[changes + 1]
+        between = low[:, None] + (high - low)[:, None] * (np.arange(1, _BETWEEN + 1) / (_BETWEEN + 1))
+        found.append(_extremes(bench, engagement, loaded(engagement, bench.load, between.ravel())))
+    most = np.max(found, axis=0)
+    return np.array([most[0] + most[1], (share * te).sum(), *amplitudes, *most[2:]])
+
+
+def _extremes(bench: Bench, engagement: Engagement, state: State) -> Array:
+    """Largest and minus the smallest transmission error, root tensions, pressure and load of teeth 0."""
+    c = state.grid.contacts
+    te = state.transmission_error[:, state.cycles == 0]
+    rows = np.arange(state.cycles.size)
+    own = state.loads[rows, :, rows]  # of teeth 0 in each of the base pitches that they pass, (n, P)
+    pressure = engagement.compliance.pressure(own, c.relative_radius)
+    line_load = state.loads / engagement.compliance.face_width
+    roots = [
+        _root_tension(bench.roots[i], radius, line_load, towards)
+        for i, (radius, towards) in enumerate(((c.radius_driver, 1), (c.radius_driven, -1)))
+    ]
+    return np.array([te.max(), -te.min(), *roots, pressure.max(), own.max()])
+
+
+def _root_tension(table: RootTable, radius: Array, line_load: Array, towards_load: int) -> float:
+    """Largest root tension of tooth 0 over its way through the mesh, its neighbours' loads included [Pa].
+
+    Tooth +1 is ahead of a driving tooth and behind a driven one, as in `root_stress_history`.
+    """
+    largest = 0.0
+    for row in range(radius.shape[0]):
+        loads = line_load[:, :, row]
+        total: Array | None = None
+        for other in np.flatnonzero((loads > 0.0).any(axis=1)):
+            k = towards_load * (row - int(other))
+            if k in table.tension:
+                part = table.at(k, radius[other]) * loads[other][:, None]
+                total = part if total is None else total + part
+        if total is not None:
+            largest = max(largest, float(total.max()))
+    return largest
+
+
+class Drawn(NamedTuple):
+    """What came of some draws: numbers of shape (D, outcomes), NaN where there are none, and why by row."""
+
+    values: Array
+    reasons: dict[int, str]
+
+
+def drawn_outcomes(bench: Bench, deviations: Deviations) -> Drawn:
+    """Outcomes of every draw, each computed alone, so that its bits are the same in any company."""
+    values, reasons = np.full((len(deviations), len(OUTCOMES)), np.nan), {}
+    for row in range(len(deviations)):
+        try:
+            values[row] = outcomes(bench, deviated(bench, deviations, row))
+        except FegearError as error:
+            reasons[row] = str(error)
+    return Drawn(values, reasons)
+
+
+#: What is kept of a draw, in the order of its numbers.
+FLANK_OUTCOMES = (
+    "te_peak_to_peak", "te_mean", *(f"te_harmonic_{n}" for n in range(1, HARMONICS + 1)), "face_load_factor",
+    "driver_root_tension", "driven_root_tension", "hertz_pressure", "largest_line_load",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FlankBenches:
+    """A pair at the drawing's centre distance, and at those of its largest deviations.
+
+    Parameters
+    ----------
+    nominal : FlankBench
+    nearer, farther : FlankBench, optional
+        At the least and the largest centre distance; None where it is not drawn.
+    largest : float
+        Largest deviation of the centre distance [m].
+    """
+
+    nominal: FlankBench
+    nearer: FlankBench | None = None
+    farther: FlankBench | None = None
+    largest: float = 0.0
+
+    def outcomes(self, gaps: FlankGaps, moved: float) -> Array:
+        """What comes of a pair whose centre distance is off by `moved` [m], in the order of `FLANK_OUTCOMES`.
+
+        Straight between the centre distances that are solved: contact lines move along the teeth by about three times
+        as much as the gears do, which is little beside what they cross.
+        """
+        found = flank_outcomes(self.nominal, gaps)
+        beside = self.nearer if moved < 0.0 else self.farther
+        if moved == 0.0 or beside is None:
+            return found
+        return np.asarray(found + abs(moved) / self.largest * (flank_outcomes(beside, gaps) - found))
+
+
+@dataclass(frozen=True)
+class FlankBench:
+    """A pair with a width set up for deviations: small enough to be sent to other processes.
+
+    Parameters
+    ----------
+    pair : GearPair
+    known : FlankCompliance
+        At all roll positions.
+    gaps : FlankGaps
+        Of the drawing, without spacing errors.
+    points : Panels
+        The roll positions with their weights.
+    load : float
+        Along the transverse line of action [N].
+    roots : tuple of (RootInfluence, RootInfluence)
+        Root tension of driver and driven gear.
+    """
+
+    pair: GearPair
+    known: FlankCompliance
+    gaps: FlankGaps
+    points: Panels
+    load: float
+    roots: tuple[RootInfluence, RootInfluence]
+
+    @property
+    def teeth(self) -> int:
+        """Teeth on either side of tooth 0 that are in reach in one base pitch."""
+        lines = self.known.lines
+        return int(np.abs(lines.pair[lines.present]).max())
+
+
+def deviated_gaps(bench: FlankBench, deviations: Deviations, row: int) -> FlankGaps:
+    """What keeps the flanks of one draw apart; profiles are evaluated over what is active in the drawing."""
+    pair, gaps, reliefs, flanks = bench.pair, bench.gaps, [], []
+    own = (gaps.driver_relief, gaps.driver_flank), (gaps.driven_relief, gaps.driven_flank)
+    for i, (member, (relief, over_face)) in enumerate(zip(MEMBERS, own, strict=True)):
+        low, high = sorted(float(pair.roll_angle(x, member)) for x in (pair.x_start, pair.x_end))
+        off = ProfileDeviation(
+            low, high, float(deviations.profile_slope[row, i]), float(deviations.profile_form[row, i]),
+            float(deviations.waves[row, i]), float(deviations.phase[row, i]),
+        )  # fmt: skip
+        reliefs.append(CombinedRelief((relief, off)))
+        lead = HelixDeviation(float(deviations.helix_slope[row, i]), pair.gear(member).face_width)
+        flanks.append((*over_face, lead))
+    driver, driven = (deviations.spacing(row, i, pair.gear(member).teeth) for i, member in enumerate(MEMBERS))
+    return replace(
+        gaps, driver_relief=reliefs[0], driven_relief=reliefs[1], driver_flank=flanks[0], driven_flank=flanks[1],
+        driver_spacing=driver, driven_spacing=driven, base_pitch=0,
+    )  # fmt: skip
+
+
+def flank_outcomes(bench: FlankBench, gaps: FlankGaps) -> Array:
+    """What comes of a deviated pair, in the order of `FLANK_OUTCOMES`.
+
+    Parameters
+    ----------
+    bench : FlankBench
+    gaps : FlankGaps
+        From `deviated_gaps`.
+    """
+    load = np.array([bench.load])
+    contact = solve_contact(bench.known, gaps.at(bench.pair, bench.known.lines), load)
+    found = LoadedFlanks(bench.pair, bench.known, contact, load, {})
+    te = np.ascontiguousarray(found.transmission_error[:, 0])
+    points = bench.points
+    share = points.weights / points.period
+    waves = np.exp(-2j * np.pi / points.period * np.multiply.outer(np.arange(1, HARMONICS + 1), points.x))
+    amplitudes = 2.0 * np.abs((waves * (share * te)).sum(axis=1))
+    roots = [root.largest(contact.force[:, :, 0]) for root in bench.roots]
+    return np.array([
+        np.ptp(te), (share * te).sum(), *amplitudes, found.face_load_factor[0], *roots, found.largest_pressure[0],
+        found.largest_line_load[0],
+    ])  # fmt: skip
+
+
+def drawn_flank_outcomes(benches: FlankBenches, deviations: Deviations) -> Drawn:
+    """Outcomes of every draw, each computed alone, so that its bits are the same in any company."""
+    values, reasons = np.full((len(deviations), len(FLANK_OUTCOMES)), np.nan), {}
+    for row in range(len(deviations)):
+        try:
+            gaps = deviated_gaps(benches.nominal, deviations, row)
+            values[row] = benches.outcomes(gaps, float(deviations.centre_distance[row]))
+        except FegearError as error:
+            reasons[row] = str(error)
+    return Drawn(values, reasons)

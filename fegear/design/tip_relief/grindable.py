@@ -1,0 +1,179 @@
+"""The best tip relief that a shop can grind: straight or parabolic, on both gears, over a range of loads."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.contact.fourier import effective_error
+from fegear.contact.plane.transmission_error import transmission_error
+from fegear.design.tip_relief.search import SHARE, search
+from fegear.geometry.relief import UNMODIFIED, EndRelief, Shape, roll_of_radius
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.design.charts import Metric
+    from fegear.geometry.gear import Gear
+
+#: Reliefs and what they leave are found again within this of themselves whatever the last digits of inputs are.
+REPEATED = 1e-6
+#: What is left below this is nothing [m].
+_NOTHING = 1e-15
+
+
+@dataclass(frozen=True)
+class TipReliefPair:
+    """Tip relief of both gears, what it leaves, and what vouches that nothing leaves less.
+
+    Parameters
+    ----------
+    driver, driven : EndRelief
+    loads : ndarray, shape (L,)
+        [N].
+    effective_error, peak_to_peak : ndarray, shape (L,)
+        Left at each load [m].
+    before : ndarray, shape (L,)
+        The metric of the unmodified pair [m].
+    objective : float
+        Worst metric over the loads, each in proportion to its load, at the largest load [m].
+    least : float
+        What the best of all reliefs of this shape leave [m], by the search's own roll positions. These, and all up to
+        1 % above, count as equally good: of them the one with the least removal is taken, and of two such the longer.
+    driver_band, driven_band : tuple of EndRelief
+        From where to where equally good reliefs go: least amount and length, and largest. Like gears have the same, and
+        the driver takes the deeper relief.
+    error, band_error : ndarray, shapes (4,), (2, 4)
+        Estimated errors of the reliefs taken and of the ends of the bands: amount [m] and roll angle of the start
+        [rad] of the driver's, then of the driven gear's.
+    candidates : int
+        Combinations of amounts and lengths scanned.
+    evaluations : int
+        Load sharings over a base pitch solved exactly on the way.
+    starts, agreeing : int
+        Searches from different places of the scan, and those of them that end within 5 % of the best: several vouch
+        for the global minimum, a single one leaves a doubt.
+    runner_up, runner_up_error : float
+        The least that the other searches leave [m]; the most that any leaves where all agree; and its estimated error.
+    objective_error : float
+        How far what is left by the search's own roll positions is from `objective` [m].
+    seconds : float
+        Processor time of the search.
+    """
+
+    driver: EndRelief
+    driven: EndRelief
+    loads: Array
+    effective_error: Array
+    peak_to_peak: Array
+    before: Array
+    objective: float
+    least: float
+    driver_band: tuple[EndRelief, EndRelief]
+    driven_band: tuple[EndRelief, EndRelief]
+    error: Array
+    band_error: Array
+    candidates: int
+    evaluations: int
+    starts: int
+    agreeing: int
+    runner_up: float
+    runner_up_error: float
+    objective_error: float
+    seconds: float
+
+    def applied(self, engagement: Engagement) -> Engagement:
+        """The pair with this relief instead of its own."""
+        return replace(engagement, driver_relief=self.driver, driven_relief=self.driven)
+
+
+def optimise_tip_relief(
+    engagement: Engagement, loads: ArrayLike, shape: Shape = "linear", metric: Metric = "effective_error"
+) -> TipReliefPair:
+    """Find amount and length of tip relief on both gears for the least excitation over a range of loads.
+
+    All amounts up to six times the mean transmission error, or what the tooth can take, and all lengths from a fiftieth
+    of the path to the whole of it are searched; see `tip_relief_search`.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        Its own reliefs are replaced; its spacing errors do not count.
+    loads : array_like, shape (L,)
+        [N]; the worst of them counts, each excitation in proportion to its load.
+    shape : {"linear", "parabolic"}
+    metric : {"effective_error", "peak_to_peak"}
+
+    Raises
+    ------
+    InputError
+        Without loads, or with one that is not positive.
+    """
+    w = np.atleast_1d(np.asarray(loads, dtype=float))
+    if w.size == 0:
+        raise InputError("design.loads", "[]", "must name at least one load")
+    if not (np.isfinite(w).all() and (w > 0.0).all()):
+        raise InputError("design.loads", f"{w.min()} N", "must be positive and finite")
+    power = 1.0 if shape == "linear" else 2.0
+    begun = time.process_time()
+    found = search(engagement, w, power, metric)
+    seconds = time.process_time() - begun
+    pair = engagement.pair
+    gears = pair.driver, pair.driven
+    tips, *ends = (
+        [relief_over_path(gear, pair.path_length, p[2 * i], p[2 * i + 1], power) for i, gear in enumerate(gears)]
+        for p in (found.best, *found.band)
+    )
+    driver_band, driven_band = ((ends[0][i], ends[1][i]) for i in (0, 1))
+    plain = replace(engagement, driver_spacing=np.empty(0), driven_spacing=np.empty(0))
+    before = _left(replace(plain, driver_relief=UNMODIFIED, driven_relief=UNMODIFIED), w)
+    after = _left(replace(plain, driver_relief=tips[0], driven_relief=tips[1]), w)
+    objective = float((after[metric] * w.max() / w).max())
+    # More may be left than the search saw: then the relief goes on as it does from the least to what is allowed.
+    off = max(abs(objective - found.left), REPEATED * objective)
+    per_left = np.abs(found.best - found.ground) / max(SHARE * found.least, _NOTHING)
+    by_roll = np.array([v for gear in gears for v in (1.0, pair.path_length / gear.base_radius)])
+    error = np.maximum(off * per_left, REPEATED * np.abs(found.best)) * by_roll
+    return TipReliefPair(
+        tips[0], tips[1], w, after["effective_error"], after["peak_to_peak"], before[metric], objective, found.least,
+        driver_band, driven_band, error, found.band_error * by_roll, found.candidates, found.evaluations, found.starts,
+        found.agreeing, found.runner_up, found.runner_up_error, off, seconds,
+    )  # fmt: skip
+
+
+def relief_over_path(gear: Gear, path: float, amount: float, length: float, power: float) -> EndRelief:
+    """Tip relief of an amount [m] and a length over the path of contact [m]; power 1 is straight, 2 parabolic."""
+    tip = float(roll_of_radius(gear, gear.involute_tip_radius))
+    return EndRelief(float(amount), tip - float(length) * path / gear.base_radius, tip, power)
+
+
+def _left(engagement: Engagement, loads: Array) -> dict[str, Array]:
+    """Both metrics at every load, with a break point at every kink."""
+    solved = [transmission_error(engagement, float(load), 12) for load in loads]
+    return {
+        "effective_error": np.array([float(effective_error(t.series)) for t in solved]),
+        "peak_to_peak": np.array([t.peak_to_peak for t in solved]),
+    }
+
+
+def grindable(
+    engagement: Engagement, load: float, shape: Shape = "linear", metric: Metric = "peak_to_peak"
+) -> TipReliefPair:
+    """Find the straight or parabolic tip reliefs that leave the least error at the design load.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        Its reliefs, those of (4.6) say, are replaced.
+    load : float
+        Design load [N].
+    shape : {"linear", "parabolic"}
+    metric : {"peak_to_peak", "effective_error"}
+    """
+    return optimise_tip_relief(engagement, [load], shape, metric)

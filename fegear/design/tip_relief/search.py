@@ -1,0 +1,356 @@
+"""Global search for the tip reliefs of both gears that leave the least, and among the equally good ones for one.
+
+Four numbers: amount and length of each gear's relief. What a candidate leaves is a landscape of many valleys, for the
+largest and the smallest transmission error change places and pairs part and touch; a search from one start ends in the
+valley where it began. So all combinations on a grid are scanned with `QuickSharing`; the best of them that lie apart
+descend with it, and the best ends with the exact load sharing. The deepest valleys are followed to their ground.
+
+The ground is flat: reliefs of half and of twice the depth may leave the same within a hundredth, and which of them is
+lowest hangs on the last digits of the load. So all that leave at most a hundredth more than the least count as equally
+good. Of them the one with the least removal is taken, and of two such the longer; the others are stated as a band. Of
+two like gears either may have either relief: the driver takes the deeper one, and both have the same band.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.fourier import Panels
+from fegear.design.charts import Bench, bench
+from fegear.design.tip_relief.descent import Aim, Limits, descend, refine, room
+from fegear.design.tip_relief.trials import Trials
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible import deepest_relief
+from fegear.geometry.relief import roll_of_radius
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.base.arrays import Floats, Index
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.pair_compliance import PairCompliance
+    from fegear.geometry.pair import GearPair
+
+#: Reliefs that leave at most this much more than the least, over it, are equally good.
+SHARE = 0.01
+#: Lengths of relief over the path of contact.
+SHORTEST, LONGEST = 0.02, 1.0
+#: Deepest relief tried, in mean transmission errors of the unmodified pair.
+_DEEPEST = 6.0
+#: What a scan may cost, and how fine it may be: amounts, and lengths, of one gear.
+_BUDGET = {"peak_to_peak": (1.2e7, 15), "effective_error": (2.4e7, 17)}
+#: Best of the scan among which starts are looked for, starts, and steps of the grid that they are apart at least.
+_BEST, _STARTS, _APART = 4000, 64, 2
+#: Even roll positions, or Gauss points (0), candidates followed from the stage before, regions of trust and rounds of
+#: the three descents. The largest and smallest transmission errors sit on kinks, found between even positions; its
+#: harmonics need good quadrature.
+_STAGES = {
+    "peak_to_peak": ((56, 64, 0.15, 8), (56, 12, 0.15, 6)),
+    "effective_error": ((0, 48, 0.15, 10), (0, 16, 0.15, 7)),
+}
+#: Ends of the last descent that are led to the ground, and of the equally good those that are led to the end.
+_GROUNDS, _CHOSEN = 3, 3
+#: Ends that leave so many times the least are not led on, nor are those that lie so near to one that was, in their
+#: units; a penalty below this is none.
+_HOPELESS, _BESIDE_END, _WITHIN = 1.03, 0.04, 1e-3
+#: Candidates closer than this in all numbers, in their units, are the same.
+_SAME = 0.01
+#: Starts that agree leave at most so much times the least.
+_AGREED = 1.05
+#: A whole path of contact more of relief is worth this much more removal, in mean transmission errors.
+_LONGER = 0.01
+#: Removals that differ by less, in mean transmission errors, are equal: then the driver's counts.
+_EQUAL = 1e-6
+#: Region of trust within which an end of a band, or another valley, may go on.
+_DOUBT = 0.1
+#: Gears are alike whose sizes and compliances differ by less, over these.
+_LIKE = 1e-9
+#: Positions beside changes of pairs, over the distance of the even ones.
+_BESIDE = (0.04, 0.14, 0.35)
+#: States of all sets of pairs to a roll position up to which nothing is saved: three pairs under one load.
+_WORK = 4.0
+
+
+def scan(trials: Trials, limits: Limits) -> tuple[Floats, int]:
+    """Try every combination of amounts and lengths on a grid; amounts go to four mean transmission errors.
+
+    Parameters
+    ----------
+    trials : Trials
+    limits : Limits
+
+    Returns
+    -------
+    starts : ndarray, shape (B, 4)
+        The best of the grid that lie apart, best first.
+    count : int
+        Candidates tried.
+    """
+    quick = trials.quick
+    work = sum(s.base.size for s in quick.sets)
+    budget, finest = _BUDGET[trials.metric]
+    side = int(np.clip((budget / work) ** 0.25, 7, finest))
+    t = np.linspace(0.0, 1.0, side)
+    axes = []
+    for gear in (0, 1):
+        top = min(4.0 * limits.unit[0], limits.high[2 * gear])
+        axes += [top * (0.55 * t + 0.45 * t**3), np.maximum(0.6 * t + 0.4 * t**3, 0.03)]
+    single = [np.stack(np.meshgrid(*axes[2 * g : 2 * g + 2], indexing="ij"), axis=-1).reshape(-1, 2) for g in (0, 1)]
+    count = trials.loads.size
+    parts = [
+        np.repeat(s[:, 0, None, None] * trials.form(g, s[:, 1]), count, axis=-1).astype(np.float32)
+        for g, s in enumerate(single)
+    ]
+    by_set = []
+    for s in quick.sets:
+        held = [part[:, s.pairs, s.states] for part in parts]
+        by_set.append([np.einsum("jn,cjn->cn", s.weight, part) for part in held])
+    values = np.empty((single[0].shape[0], single[1].shape[0]), dtype=np.float32)
+    step = max(1, 150_000 // (single[1].shape[0] * quick.size))
+    for first in range(0, values.shape[0], step):
+        part = slice(first, first + step)
+        least = np.full((values[part].shape[0], values.shape[1], quick.size), np.inf, dtype=np.float32)
+        for s, (one, two) in zip(quick.sets, by_set, strict=True):
+            there = least[..., s.states]
+            np.minimum(there, (one[part] + s.base)[:, None] + two, out=there)
+        values[part] = trials.left(trials.seen(least.reshape(*least.shape[:2], -1, count)))
+    flat = values.ravel()
+    best = np.argpartition(flat, min(_BEST, flat.size - 1))[:_BEST]
+    best = best[np.argsort(flat[best], kind="stable")]
+    places = np.stack(np.unravel_index(best, (side,) * 4), axis=1)
+    open_ = np.ones(best.size, dtype=bool)
+    starts: list[Index] = []
+    while open_.any() and len(starts) < _STARTS:
+        starts.append(places[open_.argmax()])
+        open_ &= np.abs(places - starts[-1]).max(axis=1) >= _APART
+    return np.stack([axis[np.array(starts)[:, i]] for i, axis in enumerate(axes)], axis=1), flat.size
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Outcome of a search and what vouches for it.
+
+    Parameters
+    ----------
+    best : ndarray, shape (4,)
+        Amount [m] and length over the path of the driver's relief, then of the driven gear's: chosen among the equally
+        good.
+    left, least : float
+        What it leaves, and what the best of all leave [m], by the search's own roll positions.
+    ground : ndarray, shape (4,)
+        The best of all.
+    band, band_error : ndarray, shape (2, 4)
+        From where to where the numbers of equally good reliefs go, and how much farther that may be.
+    candidates : int
+        Combinations scanned.
+    evaluations : int
+        Load sharings over a base pitch solved exactly.
+    starts, agreeing : int
+        Searches from places of the scan that lie apart, and those of them that come within 5 % of the lowest.
+    runner_up, runner_up_error : float
+        The least that the others leave [m]; the most that any leaves where all agree; and how much less it may be.
+    """
+
+    best: Floats
+    left: float
+    least: float
+    ground: Floats
+    band: Floats
+    band_error: Floats
+    candidates: int
+    evaluations: int
+    starts: int
+    agreeing: int
+    runner_up: float
+    runner_up_error: float
+
+
+def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> Found:
+    """Find the tip reliefs of both gears that leave the least over all amounts and lengths.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        Its own reliefs do not count.
+    loads : ndarray, shape (L,)
+        [N]; the worst of them counts, each in proportion to its load.
+    power : float
+        1 for straight, 2 for parabolic relief.
+    metric : str
+        `effective_error` or `peak_to_peak`.
+    """
+    pair = engagement.pair
+    coarse = Trials(bench(engagement, 5, 6), loads, power, metric)
+    # Several loads and many sets of pairs cost as much as many candidates: fewer of these keep the time.
+    work = sum(s.base.size for s in coarse.quick.sets) / coarse.bench.points.x.size
+    thrift = 1.0 if work < _WORK else max(math.sqrt(2.6 / work), 0.4)
+    scale = coarse.mean()
+    deepest = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (pair.driver, pair.driven)]
+    top = [min(_DEEPEST * scale, d) for d in deepest]
+    limits = Limits(
+        np.array([0.0, SHORTEST, 0.0, SHORTEST]), np.array([top[0], LONGEST, top[1], LONGEST]),
+        np.array([scale, 1.0, scale, 1.0]),
+    )  # fmt: skip
+    p: Floats
+    values: Floats
+    of_starts: Floats
+    p, candidates = scan(coarse, limits)
+    values, solved, of_starts, trials, now = np.arange(float(p.shape[0])), 0, np.empty(0), coarse, -1
+    for step, (positions, followed, trust, rounds) in enumerate(_STAGES[metric]):
+        if positions != now:
+            now, trials = positions, Trials(_set_up(engagement, positions, loads.size), loads, power, metric)
+        p = p[_apart(p, values, limits, math.ceil(followed * thrift))]
+        p, values, count = descend(trials.exact if step else trials.rough, trials, p, limits, trust, rounds)
+        solved += count if step else 0
+        of_starts = values if step == 1 else of_starts
+    agree = of_starts < _AGREED * of_starts.min() + 1e-6 * scale
+    other = int(of_starts.argmax() if agree.all() else np.where(agree, np.inf, of_starts).argmin())
+    doubt = float(room(trials, p[other : other + 1], limits, _DOUBT)[0])
+    like = _are_like(pair, engagement.compliance)
+    p = _driver_deeper(p) if like else p
+    grounds: list[tuple[float, Floats]] = []
+    for i in _apart(p, values, limits, _GROUNDS):
+        if grounds and (values[i] > _HOPELESS * grounds[0][0] or _led_already(p[i], grounds, limits)):
+            continue
+        end, left, count = refine(trials, p[i], limits)
+        grounds.append((left, end))
+        solved += count
+    least, ground = min(grounds, key=lambda one: one[0])
+    p, values = np.concatenate([[end for _, end in grounds], p]), np.append([left for left, _ in grounds], values)
+    best, count = _among_equals(trials, p[values <= (1.0 + SHARE) * least], (1.0 + SHARE) * least, limits, like)
+    return Found(
+        best.chosen, best.left, least, ground, best.band, best.band_error, candidates, solved + count, of_starts.size,
+        int(agree.sum()), float(of_starts[other]), doubt,
+    )  # fmt: skip
+
+
+def _mirrored(p: Floats) -> Floats:
+    """Reliefs with those of driver and driven gear exchanged."""
+    return np.roll(p, 2, axis=-1)
+
+
+def _driver_deeper(p: Floats) -> Floats:
+    """Reliefs of like gears, those of driver and driven gear exchanged where the driven gear's is the deeper."""
+    return np.where(p[:, :1] < p[:, 2:3], _mirrored(p), p)
+
+
+def _are_like(pair: GearPair, compliance: PairCompliance) -> bool:
+    """Whether driver and driven gear may change places: their flanks have the same place, size and compliance."""
+    x = np.linspace(pair.x_start, pair.x_end, 9)
+    sizes, soft = [], []
+    for member, at in zip(MEMBERS, (x, x[::-1]), strict=True):
+        gear = pair.gear(member)
+        tip = roll_of_radius(gear, gear.involute_tip_radius)
+        sizes.append(np.array([gear.base_radius, tip, float(gear.tooth.teeth)]))
+        radius = np.asarray(pair.radius(at, member))
+        soft.append(np.concatenate([radius, np.asarray(compliance.source(member).own(radius))]))
+    return all(bool(np.allclose(one, other, rtol=_LIKE, atol=0.0)) for one, other in (sizes, soft))
+
+
+def _apart(p: Floats, values: Floats, limits: Limits, most: int) -> list[int]:
+    """Which of some candidates are the best that differ, best first."""
+    found: list[int] = []
+    for i in np.argsort(values, kind="stable"):
+        if all((np.abs(p[i] - p[j]) > _SAME * limits.unit).any() for j in found):
+            found.append(int(i))
+        if len(found) == most:
+            break
+    return found
+
+
+def _led_already(p: Floats, ends: Sequence[tuple[float, Floats, *tuple[float, ...]]], limits: Limits) -> bool:
+    """Whether a candidate lies beside an end that another came to."""
+    return any((np.abs(p - one[1]) < _BESIDE_END * limits.unit).all() for one in ends)
+
+
+@dataclass(frozen=True, slots=True)
+class _Choice:
+    """One of the equally good reliefs, and from where to where they go, see `Found`."""
+
+    chosen: Floats
+    left: float
+    band: Floats
+    band_error: Floats
+
+
+def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits, like: bool) -> tuple[_Choice, int]:
+    """Choose one of the reliefs that leave no more than allowed, and find from where to where they go.
+
+    Parameters
+    ----------
+    trials : Trials
+    equals : ndarray, shape (B, 4)
+        Some of them.
+    allowed : float
+        [m].
+    limits : Limits
+    like : bool
+        Whether driver and driven gear may change places.
+
+    Returns
+    -------
+    choice : _Choice
+    evaluations : int
+    """
+    unit = limits.unit
+    rule = np.array([1.0, -_LONGER, 1.0, -_LONGER])
+    starts = equals[_apart(equals, equals / unit @ rule, limits, _CHOSEN)]
+    outward = np.concatenate([-np.eye(4), np.eye(4)])
+    # The band is looked for from what lies farthest out already.
+    ends = equals[(equals / unit @ outward.T).argmax(axis=0)]
+    along = np.concatenate([np.tile(rule, (starts.shape[0], 1)), -outward])
+    p, values, solved = descend(
+        trials.exact, trials, np.concatenate([starts, ends]), limits, 0.1, 7, Aim(along, allowed)
+    )
+    doubt = room(trials, p[starts.shape[0] :], limits, _DOUBT, Aim(-outward, allowed)).reshape(2, -1)
+    # Whatever came within what is allowed may lead on to less removal.
+    within = p[values - (along * p / unit).sum(axis=1) < _WITHIN]
+    within = _driver_deeper(within) if like else within
+    removals = (within / unit) @ rule
+    led: list[tuple[float, Floats, float]] = []
+    for i in _apart(within, removals, limits, _CHOSEN):
+        if _led_already(within[i], led, limits):
+            continue
+        end, left, count = refine(trials, within[i], limits, Aim(rule[None], allowed))
+        solved += count
+        led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
+    # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
+    end, left, count = refine(trials, min(led, key=lambda one: one[0])[1], limits, Aim(rule[None], allowed))
+    led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
+    fewest = min(removal for removal, _, _ in led)
+    _, chosen, left = max((one for one in led if one[0] < fewest + _EQUAL), key=lambda one: float(one[1][0]))
+    known = np.concatenate([within, chosen[None]])
+    known = np.concatenate([known, _mirrored(known)]) if like else known
+    error = (np.maximum(doubt, _mirrored(doubt)) if like else doubt) * unit
+    return _Choice(chosen, left, np.array([known.min(axis=0), known.max(axis=0)]), error), solved + count
+
+
+def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:
+    """Set up at even positions, or at Gauss points, fewer of these for several loads."""
+    if positions:
+        return _even(engagement, positions)
+    return bench(engagement) if loads == 1 else bench(engagement, 8, 10)
+
+
+def _even(engagement: Engagement, positions: int) -> Bench:
+    """Set up at even roll positions, at both sides of every change of pairs, and closer by these.
+
+    Where a relief starts beside such a change, one side of its kink is short.
+    """
+    pair = engagement.pair
+    pitch, start = pair.base_pitch, pair.x_start
+    breaks = engagement.meshing.reduced([pair.x_start, pair.x_end])
+    beside = np.concatenate([[1e-9], np.array(_BESIDE) / positions])
+    x = np.concatenate([
+        start + pitch * (np.arange(positions) + 0.5) / positions,
+        np.add.outer(breaks, pitch * np.concatenate([-beside, beside])).ravel(),
+    ])  # fmt: skip
+    x = np.unique(engagement.meshing.reduced(x))
+    weights = 0.5 * (np.roll(x, -1) - np.roll(x, 1))
+    weights[[0, -1]] += 0.5 * pitch
+    points = Panels(x, weights, pitch, np.append(np.sort(breaks), start + pitch))
+    return Bench(engagement, points, engagement.grid(x))

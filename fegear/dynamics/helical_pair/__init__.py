@@ -1,0 +1,1 @@
+"""A helical pair on its bearings: modes, force transmissibility, forced response."""

@@ -1,0 +1,354 @@
+"""Tooth friction: coefficients by sliding speed, and the torques it puts on both gears (TM-100180, Eqs. 17 and 18).
+
+Tooth friction over the path of contact: coefficient, torques on both gears, and the power that it takes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.base.errors import InputError, RangeError
+from fegear.base.tally import tallied
+from fegear.dynamics.train.mesh_excitation import FIT
+from fegear.dynamics.train.periodic import Periodic
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.dynamics.train.gear_train import TrainMesh
+    from fegear.dynamics.train.train import Mesh
+
+
+_INCH = 0.0254
+
+
+_POUND_PER_INCH = 4.4482216152605 / _INCH
+
+
+_REYN = 4.4482216152605 / _INCH**2
+
+
+#: Largest friction coefficient used; (18) has no bound where sliding stops.
+LARGEST_COEFFICIENT = 0.2
+
+
+#: Shortest stretch of the base pitch on which friction is resolved; at the pitch point it has a root or a logarithm.
+SHORTEST = 1e-3
+
+
+def buckingham(sliding: ArrayLike) -> Array:
+    """Friction coefficient of boundary lubrication 0.05 exp(-0.125 V) + 0.002 sqrt(V), V in in/s (17).
+
+    Parameters
+    ----------
+    sliding : array_like
+        Sliding speed [m/s]; its sign does not matter.
+    """
+    v = np.abs(np.asarray(sliding, dtype=float)) / _INCH
+    return 0.05 * np.exp(-0.125 * v) + 0.002 * np.sqrt(v)
+
+
+def benedict_kelley(line_load: ArrayLike, viscosity: float, sliding: ArrayLike, rolling: ArrayLike) -> Array:
+    """Friction coefficient of elastohydrodynamic lubrication 0.0127 log10(45.94 w / (mu V_s V_r^2)) (18).
+
+    The constant 45.94 belongs to lb/in, lb s/in^2 and in/s (it follows from Benedict and Kelley's 3.17e8 in lb/in, cP
+    and in/s; with the SI units that the report names it would be 0.0297). The value is held between zero and 0.2: the
+    formula grows without bound where sliding stops, and falls below zero far outside its range.
+
+    Parameters
+    ----------
+    line_load : array_like
+        Load per face width [N/m].
+    viscosity : float
+        Dynamic viscosity [Pa s].
+    sliding, rolling : array_like
+        Sliding speed and sum of the rolling speeds [m/s].
+    """
+    if not (math.isfinite(viscosity) and viscosity > 0.0):
+        raise RangeError("viscosity", viscosity, "must be positive")
+    w = np.maximum(np.asarray(line_load, dtype=float), 0.0) / _POUND_PER_INCH
+    speed = np.abs(np.asarray(sliding, dtype=float)) * np.asarray(rolling, dtype=float) ** 2 / _INCH**3
+    below = viscosity / _REYN * speed
+    tiny = np.finfo(float).tiny
+    value = 0.0127 * (np.log10(np.maximum(45.94 * w, tiny)) - np.log10(np.maximum(below, tiny)))
+    found: Array = np.clip(np.where(w > 0.0, value, 0.0), 0.0, LARGEST_COEFFICIENT)
+    return found
+
+
+class Sliding(NamedTuple):
+    """Where tooth friction acts, and how fast the flanks move there; arrays over the positions asked for.
+
+    Attributes
+    ----------
+    arm_driver, arm_driven : ndarray
+        Distance of the friction force from the gears' axes [m]: the flanks' radii of curvature.
+    sliding : ndarray
+        Tangential speed of the driver's flank less that of the driven one [m/s]; negative before the pitch point.
+    rolling : ndarray
+        Sum of both [m/s], V_R of TM-100180.
+    """
+
+    arm_driver: Array
+    arm_driven: Array
+    sliding: Array
+    rolling: Array
+
+
+def sliding_contact(
+    x: ArrayLike, radius_driver: float, radius_driven: float, pressure_angle: float, speed: float
+) -> Sliding:
+    """Lever arms and speeds of the flanks on the line of action.
+
+    Parameters
+    ----------
+    x : array_like
+        Position from the pitch point, positive toward the driver's tip [m].
+    radius_driver, radius_driven : float
+        Base radii [m].
+    pressure_angle : float
+        Working pressure angle [rad].
+    speed : float
+        Of the contact along the line of action, the speed of the base circles [m/s].
+    """
+    place, tangent = np.asarray(x, dtype=float), math.tan(pressure_angle)
+    arm_1, arm_2 = radius_driver * tangent + place, radius_driven * tangent - place
+    v_1, v_2 = speed / radius_driver * arm_1, speed / radius_driven * arm_2
+    return Sliding(arm_1, arm_2, v_1 - v_2, v_1 + v_2)
+
+
+@tallied("friction fits")
+def with_friction(
+    excitation: MeshExcitation,
+    mesh: Mesh,
+    base_pitch: float,
+    pressure_angle: float,
+    mesh_frequency: float,
+    load: float,
+    coefficient: Callable[[Array, Array, Array], Array],
+    *,
+    tolerance: float = 1e-7,
+    a_drives: bool = True,
+) -> MeshExcitation:
+    """Add tooth friction to a gear pair.
+
+    The friction force is the coefficient times the elastic tooth force at every instant; the coefficient itself is
+    taken at the nominal speed and the static tooth load.
+
+    Parameters
+    ----------
+    excitation : MeshExcitation
+        A gear pair in tooth-pair slots (`from_tooth_pair`): friction needs to know where each contact is. Its positions
+        count toward the tip of the gear that drives.
+    mesh : Mesh
+        The gear pair in the train.
+    base_pitch, pressure_angle : float
+        Base pitch [m] and working pressure angle [rad].
+    mesh_frequency, load : float
+        Mesh frequency [Hz] and mean mesh force [N].
+    coefficient : callable
+        Friction coefficient from sliding speed [m/s], sum of rolling speeds [m/s] and static tooth force [N], arrays.
+    tolerance : float
+        Accuracy of the fitted torques beside the largest.
+    a_drives : bool
+        Whether the mesh's body `a` drives, and not body `b` (see `train_mesh.a_drives`).
+
+    Raises
+    ------
+    InputError
+        If the excitation is one spring for the whole gear pair.
+    """
+    if not excitation.slotted:
+        raise InputError(
+            "friction", "one spring per gear pair", "needs tooth pairs, each at its place on the line of action"
+        )
+    speed = mesh_frequency * base_pitch  # of the contact along the line of action
+    radii = (mesh.radius_a, mesh.radius_b) if a_drives else (mesh.radius_b, mesh.radius_a)
+    radius_1, radius_2 = (abs(r) for r in radii)  # of the gear that drives, of the driven one
+    # the gears approach as the driver turns forward and the driven gear back
+    sense_1, sense_2 = math.copysign(1.0, radii[0]), -math.copysign(1.0, radii[1])
+    kinks = tuple(excitation.contact_changes(load)) if load > 0.0 else ()
+    parts = (*excitation.stiffness, *excitation.separation)
+    pitches = math.lcm(*(part.pitches for part in parts))
+    cuts = np.unique(np.concatenate([*(part.breaks_over(pitches) for part in parts), np.array([*kinks])])) / pitches
+    known: dict[bytes, Array] = {}
+
+    def static_force(j: int, phase: Array) -> Array:
+        key = phase.tobytes()
+        if key not in known:  # the torques of all slots are asked for at the same places
+            known[key] = excitation.approach(load, phase)
+        return excitation.tooth_force(j, phase, known[key])
+
+    def torque(j: int, phase: Array, *, driver: bool) -> Array:
+        at = sliding_contact(excitation.place(j, phase) * base_pitch, radius_1, radius_2, pressure_angle, speed)
+        bears = np.where(excitation.stiffness[j](phase) > 0.0, 1.0, 0.0)
+        mu = coefficient(np.abs(at.sliding), at.rolling, static_force(j, phase)) * bears
+        slip = np.sign(at.sliding)
+        return -slip * mu * at.arm_driver * sense_1 if driver else slip * mu * at.arm_driven * sense_2
+
+    def fitted(j: int, *, driver: bool) -> Periodic:
+        return Periodic.fit(
+            lambda s: torque(j, s * pitches, driver=driver), cuts, tolerance=tolerance, pitches=pitches,
+            shortest=SHORTEST,
+        )  # fmt: skip
+
+    slots = range(len(excitation.stiffness))
+    return replace(
+        excitation, friction=tuple((fitted(j, driver=a_drives), fitted(j, driver=not a_drives)) for j in slots)
+    )
+
+
+#: Gauss points between neighbouring kinks of what is integrated; half of them for the estimate of the error.
+_GAUSS = 32
+
+
+#: How far from a jump it is looked at [base pitches].
+_BESIDE = 1e-9
+
+
+@dataclass(frozen=True)
+class FrictionOverPath:
+    """Friction on one tooth pair from its first to its last contact under the static load; arrays of shape (N,).
+
+    Parameters
+    ----------
+    x : ndarray
+        Position on the line of action, toward the tip of the gear that drives [m]; two beside each jump.
+    load : ndarray
+        Static force on the tooth pair [N].
+    sliding, rolling : ndarray
+        Speed of the driver's flank less that of the driven one, and their sum [m/s].
+    coefficient : ndarray
+    torque_driver, torque_driven : ndarray
+        Of this pair's friction on both gears [N m]; positive turns a gear on, as T_f1 and T_f2 of TM-100180.
+    total_driver, total_driven : ndarray
+        Of all pairs in contact then [N m].
+    loss, loss_error : float
+        Mean power that friction takes [W], and its error: of the integration and of the fitted teeth.
+    mean_coefficient : float
+        That would take as much, were it the same everywhere.
+    power : float
+        That the mesh transmits [W].
+    """
+
+    x: Array
+    load: Array
+    sliding: Array
+    rolling: Array
+    coefficient: Array
+    torque_driver: Array
+    torque_driven: Array
+    total_driver: Array
+    total_driven: Array
+    loss: float
+    loss_error: float
+    mean_coefficient: float
+    power: float
+
+
+def friction_over_path(
+    mesh: TrainMesh, frequency: float, coefficient: Callable[[Array, Array, Array], Array], positions: int = 201
+) -> FrictionOverPath:
+    """Follow a tooth pair over its path (TM-100180, Figs. 5 and 6).
+
+    Parameters
+    ----------
+    mesh : TrainMesh
+        Its tooth pairs stand alone.
+    frequency : float
+        Tooth-mesh frequency [Hz].
+    coefficient : callable
+        From sliding speed [m/s], sum of the rolling speeds [m/s] and tooth force [N], arrays.
+    positions : int
+        Over the path; two more beside each jump of the load and beside the pitch point.
+
+    Raises
+    ------
+    InputError
+        If the excitation is one spring for the whole gear pair.
+    """
+    if not mesh.excitation.slotted:
+        raise InputError("friction", "one spring per gear pair", "needs tooth pairs, each at its place on the path")
+    pair, pitch = mesh.pair, mesh.pair.base_pitch
+    speed = frequency * pitch
+    pitches, kinks = _kinks(mesh)
+    ends = pair.x_start / pitch, pair.x_end / pitch
+    turns = np.arange(math.floor(ends[0] / pitches), math.ceil(ends[1] / pitches) + 1) * pitches
+    inside = (kinks[None, :] + turns[:, None]).ravel()
+    cuts = _distinct(np.array([*ends, *inside[(inside > ends[0]) & (inside < ends[1])]]))
+    shares = np.diff(cuts) / (ends[1] - ends[0])
+    place = np.concatenate(
+        [_between(a, b, round(positions * share)) for (a, b), share in zip(pairwise(cuts), shares, strict=True)]
+    )
+    slots = _on_slots(mesh, speed, coefficient, place)
+    own = np.floor(place).astype(int) - mesh.excitation.first_slot
+    load, sliding, rolling, mu, *own_torques = slots[own, :, np.arange(place.size)].T
+    total = slots[:, 4:].sum(axis=0)
+    turn = speed / pair.driver.base_radius, speed / pair.driven.base_radius
+
+    def loss(count: int, law: Callable[[Array, Array, Array], Array]) -> float:
+        node, weight = np.polynomial.legendre.leggauss(count)
+        power = 0.0
+        for a, b in pairwise(kinks):
+            at = 0.5 * (a + b) + 0.5 * (b - a) * node
+            on_driver, on_driven = _on_slots(mesh, speed, law, at)[:, 4:].sum(axis=0)
+            power -= 0.5 * (b - a) * float(weight @ (on_driver * turn[0] + on_driven * turn[1]))
+        return power / pitches
+
+    exact = loss(_GAUSS, coefficient)
+    # two rules integrate the same fitted teeth: they cannot see what the fit leaves
+    error = abs(exact - loss(_GAUSS // 2, coefficient)) + FIT * abs(exact)
+    return FrictionOverPath(
+        place * pitch, load, sliding, rolling, mu, own_torques[0], own_torques[1], total[0], total[1], exact,
+        error, exact / loss(_GAUSS, lambda v, _r, _w: np.ones_like(v)), mesh.force * speed,
+    )  # fmt: skip
+
+
+def _on_slots(
+    mesh: TrainMesh, speed: float, coefficient: Callable[[Array, Array, Array], Array], phase: Array
+) -> Array:
+    """Load, sliding, rolling, coefficient and both torques of the tooth pair in each slot, shape (slots, 6, N)."""
+    excitation, pair = mesh.excitation, mesh.pair
+    approach, rows = excitation.approach(mesh.force, phase), []
+    for slot in range(len(excitation.stiffness)):
+        load = excitation.tooth_force(slot, phase, approach)
+        at = sliding_contact(
+            excitation.place(slot, phase) * pair.base_pitch, pair.driver.base_radius, pair.driven.base_radius,
+            pair.working_pressure_angle, speed,
+        )  # fmt: skip
+        mu = coefficient(np.abs(at.sliding), at.rolling, load)
+        rub = np.sign(at.sliding) * mu * load
+        rows.append([load, at.sliding, at.rolling, mu, -rub * at.arm_driver, rub * at.arm_driven])
+    return np.array(rows)
+
+
+def _kinks(mesh: TrainMesh) -> tuple[int, Array]:
+    """Base pitches after which all repeats, and the phases at which loads or sliding have a kink, both ends included.
+
+    Sliding turns at the pitch point, which is the end of a slot: every whole phase.
+    """
+    parts = (*mesh.excitation.stiffness, *mesh.excitation.separation)
+    pitches = math.lcm(*(part.pitches for part in parts))
+    found = [part.breaks_over(pitches) for part in parts]
+    changes = mesh.excitation.contact_changes(mesh.force)
+    return pitches, _distinct(np.concatenate([*found, np.array(changes), np.arange(pitches + 1.0)]))
+
+
+def _between(a: float, b: float, count: int) -> Array:
+    """Places between two kinks, close together beside them: at the pitch point the coefficient has a tip."""
+    middle, half = 0.5 * (a + b), 0.5 * (b - a) - _BESIDE
+    return np.asarray(middle - half * np.cos(math.pi * np.linspace(0.0, 1.0, max(3, count))))
+
+
+def _distinct(places: Array) -> Array:
+    """Rising, without any that lie on each other."""
+    rising = np.unique(places)
+    return rising[np.append(True, np.diff(rising) > 4.0 * _BESIDE)]

@@ -1,0 +1,162 @@
+"""Coordinates in which long trains stay sparse: turns of one part of the train against the next, from halves to pairs.
+
+Natural modes reach over the whole train, so that every shaft's damper couples all of them: the work of a time step
+grows with the square of the number of bodies, with tangents with its cube. Here the train is cut in two at a link in
+its middle, each half again, down to single bodies, and each cut gives one coordinate: the halves turning against each
+other, each as a rigid body, their momenta in balance. These shapes are orthogonal by mass to each other and to the
+rigid-body motion, and a link strains only those whose parts it lies in: log n of them.
+
+The equations of a train solved as they stand, for frequencies at which elimination finds no good pivot.
+
+On a loop a body whose own springs hold it at its own resonance leaves nothing to divide by. Gaussian elimination with
+pivots finds its way round; steps of refinement with residuals in long floats give back the digits. At low frequency,
+where inertia disappears beside stiffness, `star_mesh` is far better: whoever asks compares the bounds of round-off.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.dynamics.train.matrices import elements
+from fegear.dynamics.train.rounded import Rounded
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.dynamics.train.network import Network
+    from fegear.dynamics.train.train import Train
+
+
+def segment_shapes(train: Train) -> Array:
+    """Rigid-body motion, then one shape for each cut, as columns in rotation angles with unit modal mass.
+
+    Parameters
+    ----------
+    train : Train
+
+    Returns
+    -------
+    ndarray, shape (size, size)
+    """
+    mass = train.inertia * train.ratios**2
+    shapes = np.zeros((train.size, train.size))
+    shapes[:, 0] = train.ratios / np.sqrt(mass.sum())
+    waiting = [_spanning_tree(train)]
+    column = 1
+    while waiting:
+        near = waiting.pop()
+        if len(near) < 2:
+            continue
+        one, other = _halves(near)
+        heavy, light = float(mass[one].sum()), float(mass[other].sum())
+        # momenta balance: heavy a + light b = 0; unit modal mass: heavy a^2 + light b^2 = 1
+        shapes[one, column] = train.ratios[one] * np.sqrt(light / (heavy * (heavy + light)))
+        shapes[other, column] = -train.ratios[other] * np.sqrt(heavy / (light * (heavy + light)))
+        column += 1
+        waiting.extend({node: near[node] & part for node in part} for part in (set(one), set(other)))
+    return shapes
+
+
+def _spanning_tree(train: Train) -> dict[int, set[int]]:
+    """Neighbours of each node in a tree of springs over the whole train."""
+    all_near: list[list[int]] = [[] for _ in range(train.size)]
+    for part in elements(train):
+        if part.b >= 0 and part.stiffness > 0.0 and part.a != part.b:
+            all_near[part.a].append(part.b)
+            all_near[part.b].append(part.a)
+    near: dict[int, set[int]] = {0: set()}
+    reached = [0]
+    for node in reached:
+        for other in all_near[node]:
+            if other not in near:
+                near[other] = {node}
+                near[node].add(other)
+                reached.append(other)
+    return near
+
+
+def _halves(near: dict[int, set[int]]) -> tuple[list[int], list[int]]:
+    """Two connected parts of a tree, as equal as one cut makes them."""
+    root = next(iter(near))
+    order, parent = [root], {root: root}
+    for node in order:
+        for other in near[node]:
+            if other != parent[node]:
+                parent[other] = node
+                order.append(other)
+    below = dict.fromkeys(order, 1)
+    for node in reversed(order[1:]):
+        below[parent[node]] += below[node]
+    cut = min(order[1:], key=lambda node: abs(2 * below[node] - len(order)))
+    inside = {cut}
+    for node in order:
+        if parent[node] in inside and node != root:
+            inside.add(node)
+    return sorted(inside), sorted(set(order) - inside)
+
+
+#: Steps of refinement; each gains what doubles leave of a condition number.
+REFINEMENTS = 4
+
+
+def _add(
+    matrix: NDArray[np.clongdouble], a: int, b: int, turn_a: np.floating, turn_b: np.floating, y: np.complexfloating
+) -> None:
+    """Put in what acts on ``turn_a q_a + turn_b q_b``."""
+    for p, turn_p in ((a, turn_a), (b, turn_b)):
+        for q, turn_q in ((a, turn_a), (b, turn_b)):
+            matrix[p, q] += y * turn_p * turn_q
+
+
+def _matrix(network: Network, w: np.longdouble) -> NDArray[np.clongdouble]:
+    matrix = np.diag((-w * w * network.mass + 1j * w * network.ground).astype(np.clongdouble))
+    one = np.longdouble(1.0)
+    for link in network.links:
+        _add(matrix, link.a, link.b, one, -one, link.stiffness + 1j * w * link.damping)
+    for slip in network.slips:
+        _add(matrix, slip.a, slip.b, slip.turn_a, slip.turn_b, 1j * w * slip.damping)
+    return matrix
+
+
+def lags_by_pivots(network: Network, w: NDArray[np.longdouble], mesh: int) -> list[Rounded]:
+    """Difference of approach of every gear pair per unit force on the approach of one [m/N].
+
+    Parameters
+    ----------
+    network : Network
+        In long floats.
+    w : ndarray, shape (frequencies,)
+        Angular frequencies [rad/s], positive.
+    mesh : int
+        The gear pair on which the force acts.
+    """
+    count, eps = network.turns.size, np.finfo(np.longdouble).eps
+    rows = np.zeros((count, network.size), dtype=np.longdouble)
+    for link in network.links:
+        if link.mesh >= 0:
+            rows[link.mesh, link.a] += network.turns[link.mesh]
+            rows[link.mesh, link.b] -= network.turns[link.mesh]
+    value = np.zeros((count, w.size), dtype=np.clongdouble)
+    error = np.full((count, w.size), np.inf, dtype=np.longdouble)
+    for n, at in enumerate(w):
+        matrix = _matrix(network, at)
+        # equal scales on the diagonal, so that light bodies have their say among heavy ones
+        scale = 1.0 / np.sqrt(np.abs(matrix).sum(axis=1))
+        matrix = scale[:, None] * matrix * scale
+        load = scale * rows[mesh]
+        try:
+            inverse = np.linalg.inv(matrix.astype(complex))
+        except np.linalg.LinAlgError:
+            continue
+        x = np.zeros(network.size, dtype=np.clongdouble)
+        for _ in range(REFINEMENTS):
+            change = inverse @ (load - matrix @ x).astype(complex)
+            x = x + change
+        residual = 4.0 * (np.abs(matrix) @ np.abs(x) + np.abs(load))
+        value[:, n] = rows @ (scale * x)
+        scaled = rows * scale
+        error[:, n] = np.abs(scaled.astype(float) @ inverse) @ residual + np.abs(scaled) @ np.abs(change) / eps
+    return [Rounded(value[i], error[i]) for i in range(count)]

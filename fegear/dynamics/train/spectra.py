@@ -1,0 +1,117 @@
+"""Mesh-force spectra of a train in the frequency domain (Mark, Eqs. 3.1 to 3.11), over a range of speeds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.dynamics.train.increments import dynamic_increments
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from fegear.base.arrays import Array, Complex
+    from fegear.dynamics.train.periodic import Periodic
+    from fegear.dynamics.train.train import Train
+
+
+@dataclass(frozen=True)
+class MeshForceSpectrum:
+    """Line spectra of the mesh forces; the bearings react to the same forces.
+
+    Attributes
+    ----------
+    speeds : ndarray, shape (speeds,)
+        Speeds of the first body [rad/s].
+    orders : ndarray, shape (harmonics,)
+        n = 1, 2, ...; with spacing errors fractions as well, the rotational harmonics.
+    present : ndarray of bool, shape (meshes, harmonics)
+        Whether the static transmission error of mesh j has that harmonic.
+    frequencies : ndarray, shape (meshes, harmonics, speeds)
+        n times the mesh frequency of the mesh that excites [Hz].
+    coefficients : ndarray, shape (meshes, meshes, harmonics, speeds)
+        Complex Fourier coefficient [N] of the force in mesh i that the static transmission error of mesh j excites, in
+        time from the moment that the phases hold for; its amplitude (0-peak) is twice the modulus.
+    static : ndarray, shape (meshes,)
+        Mean mesh forces [N].
+    """
+
+    speeds: Array
+    orders: Array
+    present: NDArray[np.bool_]
+    frequencies: Array
+    coefficients: Complex
+    static: Array
+
+    @property
+    def amplitudes(self) -> Array:
+        """Amplitudes (0-peak) [N], shape (meshes, meshes, harmonics, speeds)."""
+        return 2.0 * np.abs(self.coefficients)
+
+    @property
+    def power_lines(self) -> Array:
+        """One-sided power of each line [N^2], 2 |alpha|^2 (3.11)."""
+        return 2.0 * np.abs(self.coefficients) ** 2
+
+
+def mesh_force_spectrum(
+    train: Train,
+    errors: Sequence[Periodic],
+    speeds: ArrayLike,
+    harmonics: int = 64,
+    static: ArrayLike | None = None,
+    *,
+    rotational: bool = False,
+    phases: ArrayLike = 0.0,
+) -> MeshForceSpectrum:
+    """Forces in every mesh from the static transmission error of every mesh, at every speed.
+
+    Parameters
+    ----------
+    train : Train
+        Meshes with their mean stiffness.
+    errors : sequence of Periodic, one per mesh
+        Static transmission error [m] under the mean load over the base pitch, or as many as its spacing errors take to
+        repeat; its mean has no meaning here.
+    speeds : array_like
+        Speeds of the first body [rad/s].
+    harmonics : int
+        Harmonics of the mesh frequency.
+    static : array_like, optional
+        Mean mesh forces [N]; by default those of the train's torques.
+    rotational : bool
+        Whether to add the harmonics between those of the mesh frequency, which spacing errors cause.
+    phases : array_like, shape () or (meshes,)
+        Phase of each mesh at time zero [its base pitches].
+    """
+    from fegear.dynamics.train.matrices import static_forces
+
+    if len(errors) != len(train.meshes):
+        raise InputError("errors", len(errors), f"must be one function for each of the {len(train.meshes)} gear pairs")
+    speed = np.atleast_1d(np.array(speeds, dtype=float))
+    count = len(train.meshes)
+    step = math.lcm(*(error.pitches for error in errors)) if rotational else 1
+    n = np.arange(1, harmonics * step + 1)
+    mesh = train.mesh_frequencies(speed)
+    ahead = np.broadcast_to(np.asarray(phases, dtype=float), (count,))
+    present = np.array([n * error.pitches % step == 0 for error in errors])
+    frequencies = np.empty((count, n.size, speed.size))
+    coefficients = np.zeros((count, count, n.size, speed.size), dtype=complex)
+    stiffness = np.array([m.stiffness for m in train.meshes])[:, None, None]
+    for j, error in enumerate(errors):
+        frequencies[j] = n[:, None] * mesh[j][None, :] / step
+        own = present[j]
+        q = dynamic_increments(train, 2.0 * math.pi * frequencies[j, own], [j])
+        alpha = error.fourier(n[own] * error.pitches // step) * np.exp(2j * math.pi * n[own] * ahead[j] / step)
+        coefficients[:, j, own] = stiffness * q[:, 0] * alpha[:, None]
+    mean = static_forces(train) if static is None else np.array(static, dtype=float)
+    orders = n / step
+    for array in (speed, orders, present, frequencies, coefficients, mean):
+        array.flags.writeable = False
+    return MeshForceSpectrum(speed, orders, present, frequencies, coefficients, mean)

@@ -1,0 +1,345 @@
+"""Where the nodes of the sector's boundary lie: graded toward the fillets, the loaded flank and its corners.
+
+The sector of one tooth runs from side A (clockwise angle -pi/z from the tooth's centre line) to side B (+pi/z), from
+the bore to the outline. Side B's nodes are side A's turned by one pitch, so that the sectors fit together exactly. The
+right flank is the loaded one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+from fegear.geometry.curves import Curve, arc_length
+from fegear.geometry.outline import turned
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.settings import MeshSettings
+    from fegear.geometry.tooth import Tooth
+
+    #: Edge length as a function of arc length, both in modules.
+    Law = Callable[[Array], Array]
+
+#: Root lands shorter than this [modules] (a rack tip all but full) are dropped: the fillets meet on the sector's
+#: side. Fillet and root circle are tangent there, so the outline moves by the square of it.
+_SHORTEST_LAND = 2e-4
+#: A fillet turns by up to 70 degrees however short it is: elements with fewer edges along it may turn inside out.
+_FEWEST_FILLET_EDGES = 4
+#: Shorter fillets [modules] are all curvature: so many edges at the default fraction of its radius, and in proportion
+#: to the root of that fraction at others, so that no two levels have the same few edges and err alike.
+_SHORT_FILLET, _SHORT_FILLET_EDGES, _USUAL_FRACTION = 0.1, 8, 0.2
+#: Edges where flank and a short fillet meet go with its length, down to this share of the usual ones.
+_SHORTEST_JOINT = 0.03
+#: Bores that can be meshed. Nearer the centre the whole gear turns about its bore so freely, with the inverse square of
+#: the radius, that nothing is left of the digits of a tooth's own strain; a thinner rim [modules] takes elements
+#: without number.
+_SMALLEST_BORE, _THINNEST_RIM = 1e-4, 5e-3
+#: Widest angle of an edge on the bore [rad]: a cubic edge misses its circle by the fourth power of it over 384.
+_WIDEST_BORE_EDGE = 0.15
+#: An edge on a tip rounding that turns by more than this [rad] is shorter than what matters there and stays straight:
+#: gmsh draws triangles over two such edges, whose corner between two tangents would be flat.
+_SHARPEST_TURN = 0.26
+#: The shortest edges on a sharp fillet, as a share of the usual ones: what keeps edges above nothing where a sharp rack
+#: tip all but reaches the flank. Short edges cost little: a fillet that turns by 70 degrees takes as many of them
+#: however small its radius. With a tenth, two levels missed root tension alike (a radius of .005 modules: 3 %).
+_SHARPEST = 1e-3
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A run of boundary edges: vertices in order, with the points in the middle of each edge on the exact curve.
+
+    Parameters
+    ----------
+    name : str
+        One of bore, side_a, side_b, root_land, fillet, flank, tip_rounding, tip, back_flank, back_fillet.
+    vertices : ndarray, shape (2, n + 1)
+        [modules], in counterclockwise order round the sector.
+    middles : ndarray, shape (2, n)
+        [modules].
+    tangents : ndarray, shape (2, n + 1)
+        Unit tangents of the exact curve at the vertices.
+    """
+
+    name: str
+    vertices: Array
+    middles: Array
+    tangents: Array
+
+
+def graded(length: float, size: Law, *, fewest: int = 1, at: Array | None = None) -> Array:
+    """Arc lengths of nodes whose spacing follows `size`, from 0 to `length`, shape (n + 1,).
+
+    Parameters
+    ----------
+    length : float
+    size : callable
+    fewest : int
+        Least number of edges.
+    at : ndarray, optional
+        Where to sample `size`, from 0 to `length`; by default evenly, which is not enough for one that nearly vanishes.
+    """
+    s = np.linspace(0.0, length, 513) if at is None else at
+    density = 1.0 / size(s)
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
+    edges = max(fewest, round(float(count[-1])))
+    nodes = np.interp(np.linspace(0.0, count[-1], edges + 1), count, s)
+    nodes[0], nodes[-1] = 0.0, length
+    return nodes
+
+
+def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1, *, dense: bool = False) -> Chain:
+    """Edges along a curve; where `dense`, the law is sampled more and more densely toward the start."""
+    parameter, length = arc_length(curve)
+    end = float(length[-1])
+    at = np.union1d(np.linspace(0.0, end, 513), np.geomspace(1e-6 * end, end, 257)) if dense else None
+    nodes = graded(end, size, fewest=fewest, at=at)
+    halves = np.sort(np.concatenate([nodes, 0.5 * (nodes[1:] + nodes[:-1])]))
+    points = curve.points(np.interp(halves, length, parameter))
+    points[:, 0], points[:, -1] = curve.points(curve.start), curve.points(curve.end)
+    normals = curve.normals(np.interp(nodes, length, parameter))
+    vertices, middles, tangents = points[:, ::2], points[:, 1::2], np.stack([-normals[1], normals[0]])
+    if name == "tip_rounding":
+        sharp = (tangents[:, 1:] * tangents[:, :-1]).sum(axis=0) < math.cos(_SHARPEST_TURN)
+        middles = np.where(sharp, 0.5 * (vertices[:, 1:] + vertices[:, :-1]), middles)
+    return Chain(name, vertices, middles, tangents)
+
+
+def _mirrored(chain: Chain, name: str) -> Chain:
+    flip = np.array([[-1.0], [1.0]])
+    vertices, middles = (flip * chain.vertices)[:, ::-1], (flip * chain.middles)[:, ::-1]
+    return Chain(name, vertices, middles, (-flip * chain.tangents)[:, ::-1])
+
+
+def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> list[Chain]:
+    """Discretise the closed boundary of one sector, counterclockwise from the bore on side A.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    bore_radius : float
+        [modules].
+    settings : MeshSettings
+        Edge lengths in modules.
+
+    Returns
+    -------
+    list of Chain
+        Consecutive chains share their end points exactly.
+
+    Raises
+    ------
+    RangeError
+        If the bore lies so near the centre or the outline that elements cannot resolve what is left.
+    """
+    check_bore(tooth, bore_radius)
+    pieces = tooth.outline
+    pitch_angle = 2.0 * math.pi / tooth.teeth
+    short = tooth.root_radius * tooth.root_land_half_angle < _SHORTEST_LAND
+    land = (
+        []
+        if tooth.root_land is None or short
+        else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings))]
+    )
+    front_laws = _front_sizes(tooth, settings)
+    fewest = _fewest_edges(tooth, settings)
+    short_fillet = _length(tooth.fillet) < _SHORT_FILLET
+    front = [
+        _on_curve(
+            _boundary(piece, tooth),
+            pieces[piece],
+            law,
+            fewest if piece == "fillet" else 1,
+            dense=short_fillet and piece == "flank",
+        )
+        for piece, law in front_laws.items()
+        if piece in pieces
+    ]
+    if not land:
+        front[0] = _from_the_side(front[0], tooth)
+    back_laws = _back_sizes(tooth, settings)
+    back_tip = [
+        _mirrored(_on_curve(_boundary(piece, tooth), pieces[piece], law), "tip")
+        for piece, law in reversed(back_laws.items())
+        if piece in pieces and piece != "flank"
+    ]
+    back_flank = _mirrored(_on_curve("flank", tooth.involute, back_laws["flank"]), "back_flank")
+    fillet = _on_curve("fillet", tooth.fillet, _fillet_size(tooth, settings), fewest)
+    back_fillet = _mirrored(fillet if land else _from_the_side(fillet, tooth), "back_fillet")
+    top = (land + front)[0].vertices
+    first = float(np.hypot(*(top[:, 1] - top[:, 0])))
+    outer = float(np.hypot(*top[:, 0]))
+
+    def body_size(depth: Array) -> Array:
+        width = settings.body_fraction * pitch_angle * (outer - depth)
+        rim = settings.rim_fraction * (outer - bore_radius)
+        return np.minimum(first + settings.side_growth * depth, np.minimum(width, rim))
+
+    side_b = _side(top[:, 0], bore_radius, body_size)
+    vertices, middles, tangents = (
+        turned(part, -pitch_angle)[:, ::-1] for part in (side_b.vertices, side_b.middles, -side_b.tangents)
+    )
+    side_a = Chain("side_a", vertices, middles, tangents)
+    by_size = round(pitch_angle * bore_radius / float(body_size(np.array(outer - bore_radius))))
+    bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
+    bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
+    back_land = [_mirrored(chain, "root_land") for chain in land]
+    return [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]
+
+
+def check_bore(tooth: Tooth, bore_radius: float, module: float | None = None) -> None:
+    """Refuse bores so near the centre or the outline that elements cannot resolve what is left.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    bore_radius : float
+        [modules].
+    module : float, optional
+        [m]; if given, the refusal is in millimetres.
+
+    Raises
+    ------
+    RangeError
+    """
+    root = tooth.root_radius
+    lowest, highest = _SMALLEST_BORE * root, root - _THINNEST_RIM
+    if lowest <= bore_radius <= highest:
+        return
+    unit, name = (1.0, "modules") if module is None else (1e3 * module, "mm")
+    near = "the centre" if bore_radius < lowest else f"the root circle of radius {root * unit:.6g} {name}"
+    # rounded inward, so that what is reported is accepted
+    step = 10.0 ** (math.floor(math.log10(highest * unit)) - 5)
+    raise RangeError(
+        "bore_radius",
+        f"{bore_radius * unit:.9g} {name}",
+        f"lies too near {near} for finite elements",
+        f"choose between {1.001 * lowest * unit:.4g} and {math.floor(highest * unit / step) * step:.6g} {name}: "
+        "the radius at which shaft or hub hold the body",
+    )
+
+
+def _from_the_side(fillet: Chain, tooth: Tooth) -> Chain:
+    """Fillet that starts in the middle of the tooth space, on the side of the sector."""
+    vertices = fillet.vertices.copy()
+    half = math.pi / tooth.teeth
+    vertices[:, 0] = tooth.root_radius * math.sin(half), tooth.root_radius * math.cos(half)
+    return Chain(fillet.name, vertices, fillet.middles, fillet.tangents)
+
+
+def _boundary(piece: str, tooth: Tooth) -> str:
+    """Name of the boundary that a piece of the outline belongs to; a rounding carries load as the flank does."""
+    if piece == "tip_edge" and tooth.tip_rounding > 0.0:
+        return "tip_rounding"
+    return "tip" if piece.startswith("tip") else piece
+
+
+def _length(curve: Curve) -> float:
+    return float(arc_length(curve)[1][-1])
+
+
+def _land_size(tooth: Tooth, settings: MeshSettings) -> Law:
+    """Edges on the root land grow away from the fillet."""
+    length = tooth.root_radius * tooth.root_land_half_angle
+    first = float(_fillet_size(tooth, settings)(np.zeros(1))[0])
+    return lambda s: first + settings.growth * (length - s)
+
+
+def _fewest_edges(tooth: Tooth, settings: MeshSettings) -> int:
+    """Least number of edges along a fillet."""
+    if _length(tooth.fillet) >= _SHORT_FILLET:
+        return _FEWEST_FILLET_EDGES
+    graded_by_level = _SHORT_FILLET_EDGES * math.sqrt(_USUAL_FRACTION / settings.root_fraction)
+    return max(_FEWEST_FILLET_EDGES, round(graded_by_level))
+
+
+def _fillet_size(tooth: Tooth, settings: MeshSettings) -> Law:
+    """Edges on a fillet follow its curvature: their shape is quadratic, and what that misses is a notch."""
+    parameter, length = arc_length(tooth.fillet)
+    radius = 1.0 / np.maximum(np.abs(tooth.fillet.curvatures(parameter)), 1e-9)
+    finest = _SHARPEST * settings.root_edge_length
+    sizes = np.clip(settings.root_fraction * radius, finest, settings.root_edge_length)
+    # No faster than edges may grow, from the sharpest place on to either side.
+    grown = settings.growth * length
+    upward = np.minimum.accumulate(sizes - grown) + grown
+    downward = np.minimum.accumulate((sizes + grown)[::-1])[::-1] - grown
+    sizes = np.minimum(upward, downward)
+    return lambda s: np.interp(s, length, sizes)
+
+
+def _back_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
+    """Edge lengths along the other side from its fillet to the tooth's centre line.
+
+    Nothing is loaded there: edges grow away from the fillet, from the centre line, where they are as long as the loaded
+    side's, and from a rounded tip, which they must follow.
+    """
+    grow, longest = settings.growth, settings.back_edge_length
+    flank, land = _length(tooth.involute), _length(tooth.outline["tip_land"])
+    edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
+    last = float(_fillet_size(tooth, settings)(np.array([_length(tooth.fillet)]))[0])
+    middle = float(_front_sizes(tooth, settings)["tip_land"](np.array([land]))[0])
+    # a rounding that turns sharper than an edge can follow is drawn straight, as on the loaded side
+    round_ = max(_SHARPEST_TURN * tooth.tip_rounding, settings.tip_edge_length) if tooth.tip_rounding > 0.0 else longest
+
+    def size(s: Array) -> Array:
+        """By the distance from the start of the flank."""
+        by_ends = np.minimum(last + grow * s, middle + grow * np.abs(flank + edge + land - s))
+        off_tip = np.maximum(np.maximum(flank - s, s - flank - edge), 0.0)
+        return np.minimum(np.minimum(by_ends, round_ + grow * off_tip), longest)
+
+    return {
+        "flank": size,
+        "tip_edge": lambda s: size(s + flank),
+        "tip_land": lambda s: size(s + flank + edge),
+    }
+
+
+def _front_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
+    """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""
+    grow, root, corner = settings.growth, _fillet_size(tooth, settings), settings.tip_edge_length
+    fillet, flank = _length(tooth.fillet), _length(tooth.involute)
+    edge = _length(tooth.tip_edge) if tooth.tip_edge else 0.0
+    # Root tension is looked for down from half of a short fillet: as near to a contact at the flank's start as that.
+    joint = settings.junction_edge_length * min(max(fillet / _SHORT_FILLET, _SHORTEST_JOINT), 1.0)
+    joint = min(joint, float(root(np.array([fillet]))[0]))
+
+    def flank_size(s: Array) -> Array:
+        by_ends = np.minimum(joint + settings.tip_growth * s, corner + settings.tip_growth * (flank - s))
+        return np.minimum(settings.flank_edge_length, by_ends)
+
+    return {
+        "fillet": lambda s: np.minimum(root(s), joint + grow * (fillet - s)),
+        "flank": flank_size,
+        "tip_edge": lambda s: np.minimum(corner + grow * s, 0.5 * settings.flank_edge_length),
+        "tip_land": lambda s: np.minimum(corner + grow * (s + edge), settings.back_edge_length),
+    }
+
+
+def _side(top: Array, bore_radius: float, size: Law) -> Chain:
+    outer = float(np.hypot(*top))
+    # Evenly in depth down to the bore, and evenly in the logarithm of the radius for bores near the centre.
+    depths = outer - np.geomspace(outer, bore_radius, 513)
+    depths[0], depths[-1] = 0.0, outer - bore_radius
+    at = np.union1d(np.linspace(0.0, outer - bore_radius, 513), np.clip(depths, 0.0, outer - bore_radius))
+    radii = outer - graded(outer - bore_radius, size, at=at)[::-1]
+    direction = top / outer
+    middles = np.multiply.outer(direction, 0.5 * (radii[1:] + radii[:-1]))
+    tangents = np.repeat(direction[:, None], radii.size, axis=1)
+    return Chain("side_b", np.multiply.outer(direction, radii), middles, tangents)
+
+
+def _bore(right: Array, bore_radius: float, edges: int, pitch_angle: float) -> Chain:
+    half = math.atan2(right[0], right[1])
+    angle = np.linspace(-half, half, 2 * edges + 1)
+    points = bore_radius * np.stack([np.sin(angle), np.cos(angle)])
+    points[:, -1] = right
+    points[:, 0] = turned(right, -pitch_angle)
+    tangents = np.stack([np.cos(angle), -np.sin(angle)])[:, ::2]
+    return Chain("bore", points[:, ::2], points[:, 1::2], tangents)

@@ -1,0 +1,114 @@
+"""Which contact half-widths a flank can hold.
+
+What a corner of the outline does to a contact near it: the exact wedge, and how its angle follows from the tooth.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from fegear.geometry.tooth import Tooth
+
+
+#: A contact's usual half-width [modules], at which what depends on it is reported.
+REFERENCE_HALF_WIDTH = 0.02
+
+
+#: Wider contacts than this [modules] are refused: the flank is too short to hold them.
+LARGEST_HALF_WIDTH = 0.5
+
+
+#: A contact that reaches past an end of the flank by no more than this [modules] is reported; by more it is refused.
+FARTHEST_PAST_END = 0.1
+
+
+def check_half_widths(
+    half_width: ArrayLike, room: ArrayLike, *, unit: str = "modules", scale: float = 1.0, key: str = "half_width"
+) -> None:
+    """Refuse contacts that no flank holds.
+
+    Parameters
+    ----------
+    half_width : array_like
+        [modules].
+    room : array_like
+        Length of the flank from the contact's centre to the nearer end [modules], broadcast against `half_width`.
+    unit, scale, key : str, float, str
+        Unit of the refusal, modules times `scale`, and what it is about.
+
+    Raises
+    ------
+    RangeError
+        If a half-width is not positive, exceeds half a module, or reaches past the flank's end by more than a tenth
+        of one.
+    """
+    b, room = np.broadcast_arrays(np.asarray(half_width, dtype=float), np.asarray(room, dtype=float))
+    wrong = ~(np.isfinite(b) & (b > 0.0))
+    if wrong.any():
+        raise RangeError(key, f"{b[wrong][0] * scale:.6g} {unit}", "must be positive and finite")
+    usual = f"{REFERENCE_HALF_WIDTH * scale:.6g} {unit} is usual"
+    wide = b > LARGEST_HALF_WIDTH * (1.0 + 1e-9)
+    if wide.any():
+        raise RangeError(
+            key,
+            f"{b[wide][0] * scale:.6g} {unit}",
+            f"is no contact on a flank: it exceeds half a module, {LARGEST_HALF_WIDTH * scale:.6g} {unit}",
+            usual,
+        )
+    past = b > np.maximum(room, 0.0) + FARTHEST_PAST_END * (1.0 + 1e-9)
+    if past.any():
+        raise RangeError(
+            key,
+            f"{b[past][0] * scale:.6g} {unit}",
+            f"reaches past the end of the flank, {room[past][0] * scale:.6g} {unit} from the contact's centre, "
+            f"by more than a tenth of a module",
+            usual + ", or choose radii farther from the flank's ends",
+        )
+
+
+def wedge_slope(angle: float) -> float:
+    """How fast a load on one face of a wedge sinks as it nears the apex, per unit line load and plane compliance.
+
+    The load's own place moves against the far body by wedge_slope * ln(far / near): beyond a few times the load's
+    distance from the apex the stress is the one under a force at the apex itself (Michell; Timoshenko and Goodier,
+    Theory of Elasticity, art. 38), whose radial displacement along the bisector and across it goes with
+    2 ln r / (angle + sin angle) and 2 ln r / (angle - sin angle). The half-plane (pi) gives 2/pi.
+
+    Parameters
+    ----------
+    angle : float
+        Angle between the faces, inside the material [rad].
+
+    Returns
+    -------
+    float
+        Times (1 - nu^2)/E in plane strain, 1/E in plane stress.
+    """
+    along, across = math.sin(0.5 * angle) ** 2, math.cos(0.5 * angle) ** 2
+    return 2.0 * (along / (angle + math.sin(angle)) + across / (angle - math.sin(angle)))
+
+
+def corner_angles(tooth: Tooth) -> tuple[float, float]:
+    """Angles inside the material where the flank starts and where it ends [rad]; pi where the outline goes on smoothly.
+
+    A tip rounding counts as the corner that it rounds off.
+    """
+    pieces = tooth.outline
+    flank = tooth.involute
+    start, end = (flank.normals(np.array([at]))[:, 0] for at in (flank.start, flank.end))
+    below = tooth.fillet.normals(np.array([tooth.fillet.end]))[:, 0]
+    above = pieces["tip_land"] if tooth.tip_rounding > 0.0 or "tip_edge" not in pieces else pieces["tip_edge"]
+    beyond = above.normals(np.array([above.start]))[:, 0]
+    return _inside(below, start) if tooth.undercut else math.pi, _inside(end, beyond)
+
+
+def _inside(before: np.ndarray, after: np.ndarray) -> float:
+    return math.pi - math.acos(float(np.clip(before @ after, -1.0, 1.0)))

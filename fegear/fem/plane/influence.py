@@ -1,0 +1,413 @@
+"""Influence functions of a gear's teeth, from one factored ring; dimensionless (module 1, Young's modulus 1)."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from fegear.base.one_thread import one_thread
+from fegear.base.tally import tallied
+from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
+from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.ring import close_ring
+from fegear.fem.plane.root_stress import FilletStrain, extreme, fillet_strain, search_end
+from fegear.fem.plane.trace import LoadedFlank, loaded_flank
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+    from scipy.sparse import csr_array
+
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.mesh import SectorMesh
+    from fegear.geometry.gear import Plane
+    from fegear.geometry.tooth import Tooth
+
+Side = Literal["tension", "compression"]
+SIDES: tuple[Side, ...] = ("tension", "compression")
+#: Half-width of a load that is as good as concentrated [modules].
+_POINT = 1e-4
+#: The narrower of the two pressures that load the mesh, as a share of the wider one.
+_NARROWER = 0.6
+#: The wider pressure takes this share of the room to the nearest corner or curvature jump: what the corner does to it
+#: goes with the square of that share, which is taken out, and then with higher powers of it.
+_ROOM_SHARE = 0.7
+#: From how far beside the tip on a true contact keeps to Hertz's pressure [modules]: there the mating flank stiffens as
+#: fast as this one softens.
+_BESIDE_TIP = 0.15
+#: How far down the flank its compliance is compared, at most [modules] and as a share of the distance from the tip.
+_STEP, _STEP_SHARE = 0.05, 0.25
+#: How far below the edge of a contact root tension begins [modules]: nearer, stress is what the contact itself leaves,
+#: and a coarse mesh does not resolve it.
+_CLEARANCE = 0.05
+#: Mean distance of two points of a semi-elliptic pressure over its half-width.
+_MEAN = 256.0 / (45.0 * np.pi**2)
+
+
+def log_slope(poisson_ratio: float, plane: Plane) -> float:
+    """Change of a body's approach with the logarithm of the contact's half-width, per unit line load, E = 1.
+
+    Two semi-elliptic pressures of the same load on a half-plane differ at their centre by exactly
+    2 (1 - nu^2) / (pi E) ln(a / b) (plane strain; without the nu in plane stress); Johnson, Contact Mechanics, 4.2.
+    """
+    return 2.0 * (1.0 - poisson_ratio**2 if plane == "strain" else 1.0) / np.pi
+
+
+def curvature_slope(poisson_ratio: float, plane: Plane) -> float:
+    """How the deflection near a line load on a convex surface of curvature 1/rho departs from the half-plane's, E = 1.
+
+    At a distance s it is larger by curvature_slope * s / rho. The exact disc under pressure of n waves round its rim
+    deflects (1/(n - 1) + (3 - 4 nu)/(n + 1)) (1 + nu)/2 (from Michell's stress function; Barber, Elasticity, table
+    9.1). Its 1/n is the half-plane's logarithm; its 1/n^2, which vanishes with 1 - 2 nu, is this.
+    """
+    nu = poisson_ratio
+    return 0.5 * (1.0 - 2.0 * nu) * (1.0 + nu) if plane == "strain" else 0.5 * (1.0 - nu)
+
+
+@dataclass(frozen=True)
+class Influence:
+    """c_k(p, q) and root-stress influence of one gear shape, ready for any position and contact width.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    poisson_ratio : float
+    plane : {"strain", "stress"}
+    mesh : SectorMesh
+    flank : LoadedFlank
+    compliance : mapping of int to ndarray, shape (2n, 2n)
+        Displacements of the loaded run of tooth k under forces on tooth 0's run.
+    fillets : mapping of {"tension", "compression"} to FilletStrain
+    stress : mapping of (int, side) to ndarray, shape (points, 2n)
+        Tangential fillet stress of tooth k under forces on tooth 0's run.
+    corner_distance : float
+        Nearer than this to a corner of the flank the exact wedge gives c_0; the narrowest pressure that loads the
+        mesh [modules].
+    reach : int
+        K: neighbours -K..K are known. Tooth k = +1 lies clockwise of tooth 0, on the side that the load comes from.
+    unknowns : int
+        Size of the sector's system.
+    seconds : mapping of str to float
+    """
+
+    tooth: Tooth
+    poisson_ratio: float
+    plane: Plane
+    mesh: SectorMesh
+    flank: LoadedFlank
+    compliance: Mapping[int, Array]
+    fillets: Mapping[Side, FilletStrain]
+    stress: Mapping[tuple[int, Side], Array]
+    corner_distance: float
+    reach: int
+    unknowns: int
+    seconds: Mapping[str, float]
+
+    @property
+    def log_slope(self) -> float:
+        """See `log_slope`."""
+        return log_slope(self.poisson_ratio, self.plane)
+
+    def place(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[Array, Array]:
+        """Arc position and half-width of contacts at `radius`, shape (P,) each [modules].
+
+        A contact that reaches past a corner of the flank stands where it just ends there.
+
+        Raises
+        ------
+        RangeError
+            If no flank holds such a contact (`check_half_widths`).
+        """
+        arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
+        width = np.broadcast_to(np.asarray(half_width, dtype=float), arc.shape)
+        low, high = self.flank.flank_start, self.flank.flank_end
+        check_half_widths(width, np.minimum(arc - low, high - arc))
+        arc = np.minimum(arc, high - np.maximum(width - self.flank.beyond, 0.0))
+        if self.flank.lower_corner:
+            arc = np.maximum(arc, low + width)
+        return arc, width
+
+    def _remote(self, radius: ArrayLike, patch: float) -> Array:
+        """Loads in their exact place for effects away from the contact, where a narrow patch needs no resolution.
+
+        The last ones are kept: both neighbours are asked for at the same radii.
+        """
+        key = np.asarray(radius, dtype=float).tobytes(), patch
+        kept: tuple[object, Array] | None = self._last.get("remote")
+        if kept is not None and kept[0] == key:
+            return kept[1]
+        arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
+        room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
+        low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
+        # Two pressures in such a mixture that the second moment vanishes: a concentrated load, seen from afar.
+        wide = np.maximum(np.minimum(patch, room), _POINT)
+        narrow = np.maximum(_NARROWER * wide, 0.5 * _POINT)
+        loads = self.flank.patches(np.tile(np.clip(arc, low, high), 2), np.concatenate([wide, narrow]))
+        share = -(narrow**2) / (wide**2 - narrow**2)
+        found = np.asarray(share * loads[:, : arc.size] + (1.0 - share) * loads[:, arc.size :])
+        found.flags.writeable = False
+        self._last["remote"] = key, found
+        return found
+
+    def _fillet_loads(self, radius: ArrayLike, half_width: ArrayLike) -> tuple[csr_array, Array, Array]:
+        """Loads for the stress in the fillet, how far above it they stand and their half-width.
+
+        In their exact place, for it decides about the bending; narrowed where they would reach past an end of the
+        flank, for nothing presses on a fillet. The last ones are kept: all teeth and both fillets are asked for at the
+        same radii.
+        """
+        r, half = np.atleast_1d(np.asarray(radius, dtype=float)), np.asarray(half_width, dtype=float)
+        key = r.tobytes(), half.tobytes()
+        if self._last.get("key") == key:
+            return self._last["loads"]
+        arc = np.atleast_1d(self.flank.arc_of_radius(r))
+        above = arc - self.flank.flank_start
+        width = np.minimum(half, np.maximum(np.minimum(above, self.flank.flank_end - arc), _POINT))
+        low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
+        loads = self.flank.few_patches(np.clip(arc, low, high), width), above, width
+        self._last.update(key=key, loads=loads)
+        return loads
+
+    @cached_property
+    def _last(self) -> dict[str, Any]:
+        return {}
+
+    def self_compliance(self, radius: ArrayLike, patch: float, half_width: ArrayLike | None = None) -> Array:
+        """Deflection of a contact under its own unit line load, shape (P,) [1/E].
+
+        Parameters
+        ----------
+        radius : array_like, shape (P,)
+            [modules].
+        patch : float
+            Half-width of the wider of the two pressures that load the mesh [modules].
+        half_width : array_like, optional
+            Half-width of the true contact [modules], by default `patch`; broadcast against `radius`.
+
+        Notes
+        -----
+        The deflection is the pressure-weighted mean over the contact plus `log_slope` / 4, by which Hertz's centre
+        lies deeper than it: the approach of two bodies in contact, for the gap that closes is as deep as that,
+        weighted with the pressure. Unlike the deflection of one point it is reciprocal, and it converges at twice
+        the order.
+
+        What depends on the width of a narrow contact is known in closed form: the half-plane's logarithm and, on a
+        flank of curvature 1/rho, `curvature_slope` times width / rho. What is left varies with the square of the
+        width; two pressures that the mesh resolves give that, and the value at the true width follows. Nearer to a
+        corner than `corner_distance` the exact wedge says how the deflection grows.
+        """
+        wanted = np.asarray(patch if half_width is None else half_width, dtype=float)
+        if wanted.ndim > 1:  # several widths at every radius
+            at, widths = np.broadcast_arrays(np.asarray(radius, dtype=float), wanted)
+            return self.self_compliance(at.ravel(), patch, widths.ravel()).reshape(at.shape)
+        arc, width = self.place(radius, wanted)
+        regular = self._regular(arc, width, patch)
+        for corner, inward, angle in self._corners:
+            distance = inward * (arc - corner)
+            near = distance < self.corner_distance
+            if near.any():
+                regular[near] = self._beside_corner(corner, inward, angle, distance[near], width[near], patch)
+        bend = self.curvature_slope * _MEAN * self._curvature(arc)
+        return regular - self.log_slope * np.log(width) + bend * width
+
+    def tip_shift(self, radius: ArrayLike, patch: float, half_width: ArrayLike) -> Array:
+        """How much less a true contact beside the tip gives way than Hertz's pressure in its place, shape (P,) [1/E].
+
+        Towards the tip a tooth grows softer, so a convex body pressed on it carries more of its load below the place
+        where it was aimed at, and gives way less. With c' the slope of c_0 and R the body's radius, the load W moves by
+        u = c' W R / 2 beside which the approach is c_0 - c' u + u^2 / (2 R W): 3/8 c'^2 R W less, R W from Hertz.
+
+        Parameters
+        ----------
+        radius, patch, half_width
+            As for `self_compliance`.
+        """
+        arc, width = self.place(radius, half_width)
+        end = self.flank.flank_end + self.flank.beyond
+        off = np.maximum(end - arc, width)
+        step = np.minimum(_STEP_SHARE * off, _STEP)
+        below = np.maximum(arc - step, self.flank.flank_start + np.minimum(width, 0.5 * (arc - self.flank.flank_start)))
+        at, lower = (self.self_compliance(self.flank.radius_of_arc(s), patch, width) for s in (arc, below))
+        slope = (at - lower) / np.maximum(arc - below, _POINT)
+        return np.asarray(0.1875 * slope**2 * width**2 / self.log_slope / (1.0 + (off / _BESIDE_TIP) ** 2))
+
+    @property
+    def _corners(self) -> list[tuple[float, float, float]]:
+        """Arc position, direction into the flank and angle of the flank's corners."""
+        lower, upper = corner_angles(self.tooth)
+        found = [(self.flank.flank_start, 1.0, lower)] if self.flank.lower_corner else []
+        # A tip rounded by less than the corner distance is a corner still.
+        if self.flank.beyond < self.corner_distance:
+            found.append((self.flank.flank_end + self.flank.beyond, -1.0, upper))
+        return found
+
+    def _beside_corner(
+        self, corner: float, inward: float, angle: float, distance: Array, width: Array, patch: float
+    ) -> Array:
+        """`_regular` nearer to a corner than the mesh resolves: scaled contacts on a wedge differ by a logarithm alone.
+
+        What is left of first order in the distance follows from contacts at once and twice the corner distance.
+        """
+        d = self.corner_distance
+        distance = np.maximum(distance, 1e-6 * d)
+        slope = (wedge_slope(angle) - 2.0 / np.pi) * self.log_slope * np.pi / 2.0
+        near, twice = (
+            self._regular(np.full(distance.shape, corner + inward * n * d), n * d * width / distance, patch)
+            for n in (1.0, 2.0)
+        )
+        return near - slope * np.log(distance / d) + (distance / d - 1.0) * (twice - near + slope * np.log(2.0))
+
+    def _regular(self, arc: Array, width: Array, patch: float) -> Array:
+        """What contacts leave of c_0 beside what depends on their width in closed form, shape (P,)."""
+        room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
+        wide = np.maximum(np.minimum(patch, _ROOM_SHARE * room), self.corner_distance)
+        wide = np.maximum(wide, width)
+        narrow = _NARROWER * wide
+        places, widths = np.concatenate([arc, arc]), np.concatenate([wide, narrow])
+        loads = self.flank.patches(places, widths)
+        mean = np.einsum("ip,ip->p", loads, self.compliance[0] @ loads)
+        bend = self.curvature_slope * _MEAN * np.tile(self._curvature(arc), 2) * widths
+        both = mean + self.log_slope * (0.25 + np.log(widths)) - bend
+        by_wide, by_narrow = both[: arc.size], both[arc.size :]
+        return np.asarray(by_narrow + (by_wide - by_narrow) * (width**2 - narrow**2) / (wide**2 - narrow**2))
+
+    @property
+    def curvature_slope(self) -> float:
+        """See `curvature_slope`."""
+        return curvature_slope(self.poisson_ratio, self.plane)
+
+    def _curvature(self, arc: Array) -> Array:
+        """Curvature of the flank, no nearer to its start than the corner distance, shape (P,) [1/module]."""
+        inside = np.maximum(arc - self.flank.flank_start, self.corner_distance) + self.flank.flank_start
+        run = self.flank.arc[self.flank.first_flank_edge : self.flank.after_flank_edge + 1]
+        return np.asarray(1.0 / (self.flank.base_radius * np.sqrt(np.interp(inside, run, self.flank.roll_squared))))
+
+    def mean_compliance(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
+        """c_0 straight from a pressure as wide as the contact itself, as far as the mesh resolves it: a check."""
+        arc, width = self.place(radius, half_width)
+        loads = self.flank.patches(arc, width)
+        return np.asarray(np.einsum("ip,ip->p", loads, self.compliance[0] @ loads)) + 0.25 * self.log_slope
+
+    def neighbour(self, k: int, radius_p: ArrayLike, radius_q: ArrayLike, patch: float) -> Array:
+        """c_k(p, q): deflection at p of tooth k under a unit line load at q of tooth 0, shape (P, Q) [1/E].
+
+        Weighted with the pressure of a contact at p, so that c_k(p, q) = c_-k(q, p) to round-off.
+        """
+        return self._remote(radius_p, patch).T @ self.compliance[k] @ self._remote(radius_q, patch)
+
+    def fillet_stress(
+        self, k: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
+    ) -> Array:
+        """Tangential stress along a fillet of tooth k per unit line load at q of tooth 0, shape (points, Q) [1/module].
+
+        The tension fillet is the one below the loaded flank.
+        """
+        loads = self._fillet_loads(radius_q, half_width)[0]
+        return np.ascontiguousarray((loads @ self.stress[k, side].T).T)
+
+    def largest_root_stress(
+        self, k: int, side: Side, radius_q: ArrayLike, half_width: ArrayLike = REFERENCE_HALF_WIDTH
+    ) -> tuple[Array, Array]:
+        """Largest tension (or compression) of a fillet and the arc length where it sits, shape (Q,) each.
+
+        That of the whole fillet, up to the start of the flank, but no nearer than .05 modules to the contact's edge;
+        of a fillet that this would leave less than half of, that of its lower half (`search_end`).
+        """
+        fillet = self.fillets[side]
+        loads, above, width = self._fillet_loads(radius_q, half_width)
+        beside = k == 0 and side == "tension"
+        end = search_end(fillet.length, above, width, _CLEARANCE) if beside else np.full(above.shape, fillet.length)
+        sign, stress = 1.0 if side == "tension" else -1.0, (loads @ self.stress[k, side].T).T
+        return extreme(stress, fillet.arc, sign, end, _CLEARANCE if beside else math.inf)
+
+
+@tallied("tooth shapes")
+def solve_influence(
+    tooth: Tooth,
+    mesh: SectorMesh,
+    poisson_ratio: float,
+    plane: Plane,
+    *,
+    order: int = 2,
+    reach: int = 1,
+    corner_distance: float = 0.006,
+    margin: float = 0.15,
+    sector_teeth: int = 0,
+) -> Influence:
+    """Solve one ring for all that can be asked of its teeth.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    mesh : SectorMesh
+    poisson_ratio : float
+    plane : {"strain", "stress"}
+    order : {2, 3, 4}
+    reach : int
+        K: neighbours -K..K; at most (z - 1) // 2.
+    corner_distance : float
+        Nearer than this to a corner of the flank the exact wedge gives c_0; the narrowest pressure that loads the
+        mesh [modules].
+    margin : float
+        How far below the flank a patch may reach into the fillet [modules].
+    sector_teeth : int
+        Solve a sector of so many teeth with free sides, loaded in the middle, instead of the ring; the reach is then
+        at most (sector_teeth - 1) // 2.
+
+    Returns
+    -------
+    Influence
+    """
+    with one_thread():
+        return _solve(tooth, mesh, poisson_ratio, plane, order, reach, corner_distance, margin, sector_teeth)
+
+
+def _solve(
+    tooth: Tooth,
+    mesh: SectorMesh,
+    poisson_ratio: float,
+    plane: Plane,
+    order: int,
+    reach: int,
+    corner_distance: float,
+    margin: float,
+    sector_teeth: int,
+) -> Influence:
+    started = time.perf_counter()
+    reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
+    elasticity = assemble(mesh, poisson_ratio, plane, order)
+    flank = loaded_flank(mesh, elasticity, tooth, margin)
+    fillets: dict[Side, FilletStrain] = {
+        "tension": fillet_strain(mesh, elasticity, "fillet"),
+        "compression": fillet_strain(mesh, elasticity, "back_fillet"),
+    }
+    assembled = time.perf_counter()
+    watch = np.concatenate([flank.dofs, fillets["tension"].dofs, fillets["compression"].dofs])
+    ring = close_ring(mesh, elasticity, watch, reach, sector_teeth=sector_teeth)
+    closed = time.perf_counter()
+    response = ring.respond(flank.dofs, watch)
+    n, t = flank.dofs.size, fillets["tension"].dofs.size
+    modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
+    compliance: dict[int, Array] = {}
+    stress: dict[tuple[int, Side], Array] = {}
+    for k, u in response.items():
+        compliance[k] = np.ascontiguousarray(u[:n])  # as it comes back from a file, so that sums run in one order
+        stress[k, "tension"] = modulus * (fillets["tension"].strain @ u[n : n + t])
+        stress[k, "compression"] = modulus * (fillets["compression"].strain @ u[n + t :])
+    solved = time.perf_counter()
+    seconds = {
+        "mesh": mesh.seconds,
+        "assembly": assembled - started,
+        **ring.seconds,
+        "influence": solved - closed,
+    }
+    return Influence(
+        tooth, poisson_ratio, plane, mesh, flank, compliance, fillets, stress,
+        corner_distance, reach, ring.size, seconds,
+    )  # fmt: skip

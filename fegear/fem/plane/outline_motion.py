@@ -1,0 +1,163 @@
+"""How the outline of a gear's teeth moves under a contact on one of them: what a picture of deformed teeth needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.one_thread import one_thread
+from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.ring import close_ring
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array, Index
+    from fegear.fem.plane.influence import Influence
+    from fegear.fem.plane.mesh import SectorMesh
+
+#: Boundaries of a sector that are no outline of a tooth.
+_INNER = ("side_a", "side_b", "bore")
+#: Points of the outline stand so far apart at least, corners excepted [modules].
+_APART = 0.04
+#: The pressure that loads the mesh takes this share of the room to the nearest end of the flank.
+_ROOM_SHARE = 0.7
+
+
+@dataclass(frozen=True)
+class OutlineMotion:
+    """Displacements of the outline of teeth -K..K under contacts on tooth 0; module 1, Young's modulus 1.
+
+    Parameters
+    ----------
+    influence : Influence
+        Of the same gear, on the same mesh.
+    points : ndarray, shape (2, N)
+        The outline of a tooth in its own frame (centre line along +y), from the middle of its left space to the right.
+    response : ndarray, shape (2 n, 2 K + 1, 2 N)
+        Under forces on the unknowns of tooth 0's flank: x of all points, then y, in the frame of their own tooth.
+    reach : int
+        K.
+    """
+
+    influence: Influence
+    points: Array
+    response: NDArray[np.float32]
+    reach: int
+
+    def displacement(self, radius: Array, patch: float, half_width: Array) -> dict[int, Array]:
+        """Move the outline under unit line loads.
+
+        Parameters
+        ----------
+        radius : ndarray, shape (P,)
+            Where the contacts stand [modules].
+        patch : float
+            Half-width of the pressure that loads the mesh, narrowed where the flank ends [modules].
+        half_width : ndarray, shape (P,)
+            Of the true contacts [modules].
+
+        Returns
+        -------
+        dict of int to ndarray, shape (2, N, P)
+            By tooth k = -K..K; k = +1 lies clockwise of the loaded one.
+
+        Notes
+        -----
+        The mesh resolves a pressure of half-width a; the dent of the true one, of half-width b, differs from that by
+        `log_slope` times the difference of the half-planes' own (`half_plane_dent`), which dies out with the square of
+        the distance: so the surfaces of two gears under their Hertzian pressure fit each other.
+        """
+        from scipy.sparse import csr_array
+
+        flank = self.influence.flank
+        arc, least = flank.arc_of_radius(radius), self.influence.corner_distance
+        arc = np.clip(arc, flank.flank_start + least, flank.flank_end - least)
+        room = np.minimum(arc - flank.flank_start, flank.flank_end - arc)
+        width = np.minimum(half_width, np.maximum(room, least))  # a picture of a corner needs no law of its own
+        wide = np.maximum(np.maximum(np.minimum(patch, _ROOM_SHARE * room), least), width)
+        forces = csr_array(flank.patches(arc, wide).T.astype(np.float32))  # a contact presses on few of the nodes
+        found = (forces @ self.response.reshape(forces.shape[1], -1)).reshape(arc.size, 2 * self.reach + 1, 2, -1)
+        moved = {k: found[:, k + self.reach].transpose(1, 2, 0) for k in range(-self.reach, self.reach + 1)}
+        place, inward = self._contact(arc)
+        distance = np.hypot(*(self.points[:, :, None] - place[:, None]))
+        dent = half_plane_dent(distance, width) - half_plane_dent(distance, wide)
+        moved[0] = moved[0] + self.influence.log_slope * dent * inward[:, None]
+        return moved
+
+    def _contact(self, arc: Array) -> tuple[Array, Array]:
+        """Places of contacts and the directions into the tooth there, shape (2, P) each."""
+        flank, tooth = self.influence.flank, self.influence.tooth
+        radius = flank.radius_of_arc(arc)
+        half = tooth.half_thickness_angle(radius)
+        lean = flank.base_half_angle - np.sqrt(np.maximum((radius / flank.base_radius) ** 2 - 1.0, 0.0))
+        place = radius * np.stack([np.sin(half), np.cos(half)])
+        return place, np.stack([-np.cos(lean), np.sin(lean)])
+
+
+def half_plane_dent(distance: Array, half_width: Array) -> Array:
+    """How deep a half-plane is pressed at a distance from a semi-elliptic pressure's centre, over `log_slope`.
+
+    Minus the mean of ln|s - t| over the pressure: 1/2 - ln(a/2) - (s/a)^2 beneath it (Hertz's parabola; Johnson,
+    Contact Mechanics, 4.2), minus the logarithm of the distance far from it.
+    """
+    ratio = np.maximum(distance / half_width, 1.0)
+    root = np.sqrt(ratio * ratio - 1.0)
+    # (s/a)^2 - (s/a) sqrt((s/a)^2 - 1) without the cancellation of large numbers
+    outside = ratio / (ratio + root) + np.log(ratio + root)
+    inside = (distance / half_width) ** 2
+    return 0.5 - np.log(0.5 * half_width) - np.where(distance < half_width, inside, outside)
+
+
+def outline_motion(influence: Influence, reach: int) -> OutlineMotion:
+    """Solve the ring of a gear once more for the motion of its teeth's outline.
+
+    Parameters
+    ----------
+    influence : Influence
+    reach : int
+        K; at most (z - 1) // 2 are given.
+    """
+    mesh = influence.mesh
+    chain = _outline(mesh)
+    with one_thread():
+        elasticity = assemble(mesh, influence.poisson_ratio, influence.plane, influence.flank.order)
+        watch = elasticity.node_dofs[:, chain].reshape(-1)
+        reach = min(reach, (mesh.teeth - 1) // 2)
+        ring = close_ring(mesh, elasticity, np.union1d(influence.flank.dofs, watch), reach)
+        response = ring.respond(influence.flank.dofs, watch)
+    stacked = np.stack([response[k].T for k in range(-reach, reach + 1)], axis=1).astype(np.float32)
+    return OutlineMotion(influence, mesh.points[:, chain], stacked, reach)
+
+
+def _outline(mesh: SectorMesh) -> Index:
+    """Vertices of a tooth's outline from left to right, those that crowd thinned out."""
+    t = mesh.triangles
+    edges = np.hstack([t[[a, b, c]] for a, b, c in ((0, 3, 1), (1, 4, 2), (2, 5, 0))])
+    _, first, count = np.unique(edges[1], return_index=True, return_counts=True)
+    inner = np.concatenate([mesh.edges[name][2] for name in _INNER])
+    outer = edges[:, first[count == 1]]
+    outer = outer[[0, 2]][:, ~np.isin(outer[1], inner)]
+    beside: dict[int, list[int]] = {}
+    for one, other in outer.T.tolist():
+        beside.setdefault(one, []).append(other)
+        beside.setdefault(other, []).append(one)
+    ends = [vertex for vertex, others in beside.items() if len(others) == 1]
+    chain = [min(ends, key=lambda vertex: float(mesh.points[0, vertex]))]
+    while len(beside[chain[-1]]) > len(chain[-2:-1]):
+        chain.append(next(other for other in beside[chain[-1]] if other not in chain[-2:-1]))
+    named = {int(vertex) for name, part in mesh.edges.items() if name not in _INNER for vertex in _ends(part[:2])}
+    kept = chain[:1]
+    for vertex in chain[1:]:
+        apart = np.hypot(*(mesh.points[:, vertex] - mesh.points[:, kept[-1]]))
+        if vertex in named or vertex == chain[-1] or apart >= _APART:
+            kept.append(vertex)
+    return np.array(kept)
+
+
+def _ends(edges: Index) -> Index:
+    """Vertices that one edge alone has."""
+    vertices, count = np.unique(edges, return_counts=True)
+    return vertices[count == 1]

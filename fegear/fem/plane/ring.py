@@ -1,0 +1,380 @@
+"""The whole gear at the cost of one tooth: condense a sector onto its sides and close the ring by Fourier harmonics.
+
+One sector is condensed onto its ports: the unknowns that are loaded or looked at, and those of its sides. Without the
+ports inside, what remains couples only the unknowns of side A and side B, in polar components; harmonic n of the ring
+ties them by u_B = exp(i theta_n) u_A, theta_n = 2 pi n / z, and has the matrix
+
+    K_n = (S_aa + S_bb) + e S_ab + conj(e) S_ba,   e = exp(i theta_n).
+
+Loads act on sector 0 only, so the response of sector k follows from the real matrices
+H_k = (1/z) sum_n exp(i k theta_n) / K_n; harmonics n and z - n are conjugate and share one inverse. For a few
+neighbours of many teeth the same H_k come cheaper from joining sectors, two and two.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.errors import FegearError, InputError
+from fegear.fem.plane.chain import chain_coupling
+from fegear.fem.plane.condensation import Condensed, condense
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array, Index
+    from fegear.fem.plane.elasticity import SectorElasticity
+    from fegear.fem.plane.mesh import SectorMesh
+
+#: Inverses of this many complex numbers are held at once while the harmonics are summed.
+_BATCH = 2_000_000
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A condensed ring of z equal sectors with the bore held; E = 1, lengths in modules.
+
+    With row matrices A, B (how a port follows the polar motion of its sector's sides A and B) and G (ports' motion
+    under forces on ports with the sides held), the response of sector k to forces f on sector 0 is
+
+        u_k = A (H_k A' + H_k-1 B') f + B (H_k+1 A' + H_k B') f + (k = 0) G f.
+
+    A row of a few sectors with free sides is of the same form, but what side B does is not what side A does one
+    sector on; hence the two mappings.
+
+    Parameters
+    ----------
+    sector : Condensed
+        Its `kept` are the ports, the sides first.
+    follow_a, follow_b : ndarray, shape (ports, m)
+        A and B.
+    own : ndarray, shape (ports, ports)
+        G; symmetric, zero for the sides.
+    from_a, from_b : dict of int to ndarray, shape (m, m)
+        Motion of side A of sector k under forces on side A (H_k) and on side B (H_k-1) of sector 0, for
+        k = -reach .. reach+1.
+    teeth, reach : int
+        z, the neighbours K that can be asked for.
+    seconds : dict of str to float
+    """
+
+    sector: Condensed
+    follow_a: Array
+    follow_b: Array
+    own: Array
+    from_a: dict[int, Array]
+    from_b: dict[int, Array]
+    teeth: int
+    reach: int
+    seconds: dict[str, float]
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns of a sector."""
+        return self.sector.size
+
+    def respond(self, loaded: Index, watch: Index, forces: Array | None = None) -> dict[int, Array]:
+        """Displacements of watched ports on sectors -reach..reach under forces on sector 0.
+
+        Parameters
+        ----------
+        loaded : ndarray of int, shape (n,)
+            Unknowns that are loaded; ports.
+        watch : ndarray of int, shape (q,)
+            Unknowns of a sector whose displacement is wanted, in that sector's own frame; ports.
+        forces : ndarray, shape (n, P), optional
+            By default a unit force on each in turn.
+
+        Returns
+        -------
+        dict of int to ndarray, shape (q, P)
+        """
+        rows, columns = self._ports(watch), self._ports(loaded)
+        drive_a, drive_b = self.follow_a[columns].T, self.follow_b[columns].T
+        own = self.own[rows[:, None], columns]
+        if forces is not None:
+            drive_a, drive_b, own = drive_a @ forces, drive_b @ forces, own @ forces
+        both = np.hstack([self.follow_a[rows], self.follow_b[rows]])
+        answer = {}
+        for k in range(-self.reach, self.reach + 1):
+            sides = [self.from_a[j] @ drive_a + self.from_b[j] @ drive_b for j in (k, k + 1)]
+            answer[k] = both @ np.vstack(sides)
+            if k % self.teeth == 0:
+                answer[k] += own
+        return answer
+
+    def _ports(self, unknowns: Index) -> Index:
+        order = np.argsort(self.sector.kept)
+        place = np.minimum(np.searchsorted(self.sector.kept, unknowns, sorter=order), order.size - 1)
+        found = order[place]
+        if (self.sector.kept[found] != unknowns).any():
+            raise ValueError("only ports of the ring can be loaded or watched")
+        return found
+
+    def field(self, loaded: Index, forces: Array, sectors: list[int]) -> dict[int, Array]:
+        """Displacements of every unknown of chosen sectors (only within the reach), each in its own frame.
+
+        The ring must have been closed with `expandable`.
+        """
+        response = self.respond(loaded, self.sector.kept, forces)
+        every = self.sector.expand(np.hstack([response[k] for k in sectors]))  # at once: many small solves
+        return dict(zip(sectors, np.split(every, len(sectors), axis=1), strict=True))
+
+
+def close_ring(
+    mesh: SectorMesh,
+    elasticity: SectorElasticity,
+    ports: Index,
+    reach: int = 1,
+    *,
+    expandable: bool = False,
+    sector_teeth: int = 0,
+) -> Ring:
+    """Condense a sector once and close the ring.
+
+    Parameters
+    ----------
+    mesh : SectorMesh
+    elasticity : SectorElasticity
+    ports : ndarray of int
+        Unknowns that will be loaded or watched.
+    reach : int
+        K: neighbours -K..K can be asked for afterwards.
+    expandable : bool
+        Whether `Ring.field` will be asked for.
+    sector_teeth : int
+        Leave the ring open: so many sectors in a row with free sides, the middle one loaded. 0 for the ring.
+
+    Returns
+    -------
+    Ring
+
+    Raises
+    ------
+    InputError
+        If the sides do not match node by node, or the row of sectors is too short for the reach.
+    FegearError
+        If the stiffness is singular.
+    """
+    if sector_teeth and not 2 * reach + 1 <= sector_teeth <= mesh.teeth:
+        raise InputError(
+            "sector_teeth", sector_teeth, f"must lie between {2 * reach + 1} and {mesh.teeth}",
+            "the neighbours that are asked for must be in the sector",
+        )  # fmt: skip
+
+    started = time.perf_counter()
+    z = mesh.teeth
+    side_a, side_b, angle_a = _matching_sides(mesh, elasticity)
+    bore = np.unique(elasticity.edge_dofs["bore"])
+    free = ~np.isin(side_a, bore)
+    side_a, side_b, angle_a = side_a[free], side_b[free], angle_a[free[::2]]
+    sides = np.concatenate([side_a, side_b])
+    inner = np.setdiff1d(ports, np.concatenate([bore, sides]))
+    sector = condense(elasticity, np.concatenate([sides, inner]), bore, expandable=expandable)
+    m, n = side_a.size, sides.size
+    turn = np.zeros((n, n))
+    turn[:m, :m], turn[m:, m:] = _polar(angle_a), _polar(angle_a + 2.0 * np.pi / z)
+    return closed_ring(sector, m, turn, z, reach, sector_teeth=sector_teeth, started=started)
+
+
+def closed_ring(
+    sector: Condensed,
+    side: int,
+    turn: Array | None,
+    teeth: int,
+    reach: int,
+    *,
+    sector_teeth: int = 0,
+    started: float | None = None,
+) -> Ring:
+    """Close a ring of condensed sectors.
+
+    Parameters
+    ----------
+    sector : Condensed
+        Its first kept unknowns are those of side A, then those of side B, in the same order.
+    side : int
+        m, unknowns of one side.
+    turn : ndarray, shape (2 m, 2 m), optional
+        From components that agree between neighbours (polar ones) to the sector's own; None if these do.
+    teeth, reach : int
+        z and K.
+    sector_teeth : int
+        As for `close_ring`.
+    started : float, optional
+        Clock (`time.perf_counter`) when condensing began.
+
+    Returns
+    -------
+    Ring
+    """
+    from scipy.linalg import lapack
+
+    condensed = time.perf_counter()
+    m, n = side, 2 * side
+    S = sector.stiffness
+    factor = _factor(S[n:, n:]) if n < S.shape[0] else S[n:, n:]
+    own = np.zeros_like(S)
+    triangle = np.tril(cast("Array", lapack.dpotri(factor, lower=1)[0])) if n < S.shape[0] else S[n:, n:]
+    own[n:, n:] = triangle + np.tril(triangle, -1).T
+    turned = S[:, :n] if turn is None else S[:, :n] @ turn
+    follow = np.vstack([np.eye(n) if turn is None else turn, -own[n:, n:] @ turned[n:]])
+    held = turned[:n] + S[:n, n:] @ follow[n:]
+    if turn is not None:
+        held = turn.T @ held
+    held = 0.5 * (held + held.T)
+    if sector_teeth:
+        from_a, from_b = chain_coupling(held, sector_teeth, reach)
+    else:
+        from_a = _coupling(held, teeth, reach + 1)
+        from_b = {k: from_a[k - 1] for k in range(-reach, reach + 2)}
+    return Ring(
+        sector=sector,
+        follow_a=follow[:, :m],
+        follow_b=follow[:, m:],
+        own=own,
+        from_a=from_a,
+        from_b=from_b,
+        teeth=teeth,
+        reach=reach,
+        seconds={
+            "condensation": condensed - (condensed if started is None else started),
+            "ring": time.perf_counter() - condensed,
+        },
+    )
+
+
+def _coupling(condensed: Array, z: int, reach: int) -> dict[int, Array]:
+    """H_k for k = -reach..reach, by the cheaper way."""
+    if 2 * reach + 1 < z:
+        return coupling_by_doubling(condensed, z, reach)
+    return coupling_by_harmonics(condensed, z, reach)
+
+
+def coupling_by_harmonics(condensed: Array, z: int, reach: int) -> dict[int, Array]:
+    """H_k = (1/z) sum_n exp(i k theta_n) / K_n for k = -reach..reach, shape (m, m) each.
+
+    Parameters
+    ----------
+    condensed : ndarray, shape (2 m, 2 m)
+        Stiffness of one sector between its sides A and B, in polar components.
+    z, reach : int
+    """
+    m = condensed.shape[0] // 2
+    diagonal = condensed[:m, :m] + condensed[m:, m:]
+    ahead = condensed[:m, m:]
+    harmonics = np.arange(z // 2 + 1)
+    total = {k: np.zeros((m, m)) for k in range(reach + 1)}
+    step = max(1, _BATCH // (m * m))
+    for first in range(0, harmonics.size, step):
+        n = harmonics[first : first + step]
+        theta = 2.0 * np.pi * n / z
+        e = np.exp(1j * theta)[:, None, None]
+        inverse = np.linalg.inv(diagonal + e * ahead + np.conj(e) * ahead.T)
+        # n = 0 and n = z/2 stand alone, every other harmonic stands for its conjugate as well
+        weight = np.where((n == 0) | (2 * n == z), 1.0, 2.0) / z
+        for k in total:
+            phase = weight * np.exp(1j * k * theta)
+            total[k] += np.tensordot(phase.real, inverse.real, 1) - np.tensordot(phase.imag, inverse.imag, 1)
+    return {k: (total[k] if k >= 0 else total[-k].T) for k in range(-reach, reach + 1)}
+
+
+def coupling_by_doubling(condensed: Array, z: int, reach: int) -> dict[int, Array]:
+    """Return the same for a few neighbours of a ring of many teeth, in some log2(z) real steps.
+
+    Two chains of sectors joined, the side between them eliminated, are one longer chain; so all sectors but those
+    between sides -reach and reach become one, whose ends close the ring.
+    """
+    from scipy.linalg import lapack
+
+    m = condensed.shape[0] // 2
+
+    def joined(one: Array, other: Array) -> Array:
+        between = one[m:, m:] + other[:m, :m]
+        border = np.hstack([one[m:, :m], other[:m, m:]])
+        chain = np.zeros_like(one)
+        chain[:m, :m], chain[m:, m:] = one[:m, :m], other[m:, m:]
+        half = lapack.dtrtrs(_factor(between), border, lower=1)[0]
+        chain -= half.T @ half
+        return chain
+
+    rest: Array | None = None
+    power, left = condensed, z - 2 * reach
+    while left:
+        if left & 1:
+            rest = power if rest is None else joined(rest, power)
+        left >>= 1
+        power = joined(power, power) if left else power
+    sides = 2 * reach + 1
+    whole = np.zeros((sides, m, sides, m))
+    for chain, first, last in [*((condensed, i, i + 1) for i in range(2 * reach)), (rest, sides - 1, 0)]:
+        if chain is not None:
+            block = chain.reshape(2, m, 2, m)
+            ends = np.array([first, last])
+            whole[ends[:, None], :, ends] += block.transpose(0, 2, 1, 3)
+    right = np.zeros((sides, m, m))
+    right[reach] = np.eye(m)
+    found = lapack.dpotrs(_factor(whole.reshape(sides * m, -1)), right.reshape(-1, m), lower=1)[0].reshape(sides, m, m)
+    return {k: (found[reach + k] if k >= 0 else found[reach - k].T) for k in range(-reach, reach + 1)}
+
+
+def _factor(stiffness: Array) -> Array:
+    """Lower Cholesky factor.
+
+    Raises
+    ------
+    FegearError
+        If the stiffness is not positive definite.
+    """
+    from scipy.linalg import lapack
+
+    factor, failed = lapack.dpotrf(stiffness, lower=1)
+    if failed:
+        raise FegearError("the sector's stiffness cannot be factored: it is not positive definite")
+    return np.asarray(factor)
+
+
+def _polar(angle: Array) -> Array:
+    """Matrix from polar components (radial, clockwise tangential) of nodes at clockwise angles to x and y, (2n, 2n)."""
+    n = angle.size
+    matrix = np.zeros((2 * n, 2 * n))
+    i = 2 * np.arange(n)
+    s, c = np.sin(angle), np.cos(angle)
+    matrix[i, i], matrix[i, i + 1] = s, c
+    matrix[i + 1, i], matrix[i + 1, i + 1] = c, -s
+    return matrix
+
+
+def _matching_sides(mesh: SectorMesh, elasticity: SectorElasticity) -> tuple[Index, Index, Array]:
+    """Unknowns of both sides from the bore outward, and the clockwise angle of side A's nodes."""
+    both = []
+    for name in ("side_a", "side_b"):
+        edges, dofs = mesh.edges[name], elasticity.edge_dofs[name]
+        radius = np.hypot(*mesh.points[:, edges[:2]])
+        outward = radius[0] < radius[1]
+        dofs = np.where(outward, dofs, dofs[:, ::-1])
+        lower = np.where(outward, radius[0], radius[1])
+        sequence = np.argsort(lower)
+        dofs = dofs[:, :, sequence]
+        run = np.concatenate([dofs[:, :1, 0], dofs[:, 1:, :].transpose(0, 2, 1).reshape(2, -1)], axis=1)
+        ends = np.sort(radius.min(axis=0)), np.sort(radius.max(axis=0))
+        if not np.allclose(ends[0][1:], ends[1][:-1], rtol=1e-6):
+            raise InputError("mesh", name, "is not one unbroken line from the bore to the outline")
+        angles = np.arctan2(*mesh.points[:, edges[:2]])
+        both.append((run.T.reshape(-1), ends, float(angles.mean())))
+    (dofs_a, ends_a, angle_a), (dofs_b, ends_b, angle_b) = both
+    if dofs_a.size != dofs_b.size or not np.allclose(ends_a, ends_b, rtol=1e-6):
+        raise InputError(
+            "mesh",
+            "side_a, side_b",
+            "do not carry the same nodes, so the sectors cannot be joined",
+            "mesh side_b as side_a turned by one pitch",
+        )
+    pitch = 2.0 * np.pi / mesh.teeth
+    if abs(angle_b - angle_a - pitch) > 1e-6:
+        raise InputError(
+            "mesh", f"{angle_b - angle_a:.8g} rad between the sides", f"must be one pitch, {pitch:.8g} rad"
+        )
+    return dofs_a, dofs_b, np.full(dofs_a.size // 2, angle_a)

@@ -1,0 +1,328 @@
+"""Mesh one tooth sector with gmsh (its only door): the boundary's nodes are given, gmsh fills the inside."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import signal
+import threading
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fegear.base.errors import FegearError, InputError, MissingLibraryError, lacks_memory
+from fegear.fem.plane.boundary import Chain, sector_boundary
+from fegear.fem.plane.elements import check_cubic_edges
+from fegear.fem.plane.mesh import GENERATED, SectorMesh, with_middle_nodes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from fegear.fem.plane.settings import MeshSettings
+    from fegear.geometry.tooth import Tooth
+
+#: What gmsh's wheel needs from the system, for the error message.
+SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
+
+#: A middle node this near to the middle of its edge, as a share of the edge, leaves the edge straight.
+_STRAIGHT = 1e-12
+#: Each corner of the boundary is drawn on a grid this share of its shorter edge wide: its last bits, which another
+#: processor's rounding changes, do not reach gmsh.
+_GRID = 1e-3
+#: How fast edges inside grow with the distance from the boundary where nobody says: level 0's `side_growth`.
+_GROWTH = 0.4
+#: What a mesh depends on. Algorithm 5 is Delaunay's: the frontal one (6) leaves triangles of quality .05 at sharp
+#: fillets. Sizes come from a function of the place alone.
+_OPTIONS = {
+    "General.Terminal": 0,
+    "General.NumThreads": 1,
+    "Geometry.Tolerance": 1e-8,
+    "Mesh.Algorithm": 5,
+    "Mesh.AlgorithmSwitchOnFailure": 1,
+    "Mesh.ElementOrder": 1,
+    "Mesh.MeshSizeExtendFromBoundary": 0,
+    "Mesh.MeshSizeFactor": 1,
+    "Mesh.MeshSizeFromCurvature": 0,
+    "Mesh.MeshSizeFromPoints": 0,
+    "Mesh.MeshSizeMax": 1e22,
+    "Mesh.MeshSizeMin": 0,
+    "Mesh.Optimize": 1,
+    "Mesh.RandomFactor": 1e-9,
+    "Mesh.RandomSeed": 1,
+    "Mesh.RecombineAll": 0,
+    "Mesh.Smoothing": 1,
+}
+_ONE_AT_A_TIME = threading.RLock()
+#: Gmsh's frontal algorithm, whose triangles are the most even where they are few.
+_FRONTAL = 6
+#: Flatter triangles (1 is equilateral, 0 flat) spoil what lies near them. Those of the usual settings are above .3.
+_FLATTEST = 0.12
+#: Boundary edges next to one so many times shorter (a tip rounding of a micrometre, say) make flat triangles.
+_UNEVEN = 5.0
+#: How often, and by which factor, edges are shortened when elements turn inside out.
+_MOST_REFINEMENTS, _FINER = 4, 0.6
+
+
+def load_gmsh() -> Any:
+    """Import gmsh, or say which system packages it misses.
+
+    Raises
+    ------
+    MissingLibraryError
+        If gmsh or one of its shared libraries is not there.
+    MemoryError
+        If there is too little memory to load it.
+    """
+    try:
+        import gmsh
+    except (ImportError, OSError) as problem:
+        if lacks_memory(problem):
+            raise MemoryError(f"gmsh cannot be loaded ({problem})") from problem
+        raise MissingLibraryError(
+            f"gmsh cannot be loaded ({problem}); on Debian or Ubuntu run: apt-get install {SYSTEM_PACKAGES}"
+        ) from problem
+    return gmsh
+
+
+@contextmanager
+def gmsh_session(name: str) -> Iterator[Any]:
+    """Gmsh with an empty model of this name, which is gone afterwards; started and ended unless it runs already.
+
+    Whatever was drawn or set before, the same input gives the same mesh; who had gmsh running finds its options and
+    its model again. One thread at a time: gmsh has one state for all of them.
+    """
+    gmsh = load_gmsh()
+    with _ONE_AT_A_TIME:
+        own = not gmsh.isInitialized()
+        if own:
+            _initialize(gmsh)
+        current = gmsh.model.getCurrent()
+        kept = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
+        try:
+            for option, value in _OPTIONS.items():
+                gmsh.option.setNumber(option, value)
+            _forget_the_last_model(gmsh)
+            gmsh.model.add(name)
+            try:
+                yield gmsh
+            finally:
+                gmsh.model.remove()
+        finally:
+            if own:
+                gmsh.finalize()
+            else:
+                for option, value in kept.items():
+                    gmsh.option.setNumber(option, value)
+                gmsh.model.setCurrent(current)
+
+
+def _forget_the_last_model(gmsh: Any) -> None:
+    """Draw a model of size one: gmsh takes its tolerances from the size of the model that it drew last."""
+    gmsh.model.add("of size one")
+    for x in (0.0, 1.0):
+        gmsh.model.geo.addPoint(x, x, 0.0)
+    gmsh.model.geo.synchronize()
+    gmsh.model.remove()
+
+
+def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings, *, frontal: bool = False) -> SectorMesh:
+    """Mesh the sector of one tooth.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    bore_radius : float
+        [modules].
+    settings : MeshSettings
+        Where they are too coarse for a sound mesh (a curved boundary may turn an element inside out), finer ones are
+        taken.
+    frontal : bool
+        Whether to fill evenly from the boundary inward, which suits meshes of so few elements as solid teeth have.
+
+    Returns
+    -------
+    SectorMesh
+        Side B's nodes are side A's, turned by one pitch.
+
+    Raises
+    ------
+    RangeError
+        If the bore lies too near the centre or the outline to be meshed.
+    FegearError
+        If gmsh fails, or no finer mesh is sound either.
+    """
+    started = time.perf_counter()
+    for _ in range(_MOST_REFINEMENTS):
+        try:
+            return _mesh(tooth, bore_radius, settings, started, frontal)
+        except InputError as problem:
+            if problem.key != "mesh":
+                raise
+            refused = problem
+            settings = settings.scaled(_FINER)
+    raise FegearError(
+        f"No sound mesh of the tooth sector was found: at edges of {settings.root_edge_length:.3g} modules along the "
+        f"fillet it still {refused.rule}. Choose a thicker rim or a larger fillet."
+    ) from refused
+
+
+def _mesh(tooth: Tooth, bore_radius: float, settings: MeshSettings, started: float, frontal: bool) -> SectorMesh:
+    growth = None if frontal else settings.side_growth
+    mesh = mesh_inside(sector_boundary(tooth, bore_radius, settings), tooth.teeth, started, growth)
+    if settings.order > 2:
+        check_cubic_edges(mesh)
+    return mesh
+
+
+def mesh_inside(
+    chains: list[Chain], teeth: int, started: float | None = None, growth: float | None = _GROWTH
+) -> SectorMesh:
+    """Fill a closed boundary of one sector with curved triangles.
+
+    Parameters
+    ----------
+    chains : list of Chain
+        As `sector_boundary` makes them; sides of another mesh's boundary make sectors that fit each other.
+    teeth : int
+    started : float, optional
+        When the work began [s], of `time.perf_counter`.
+    growth : float, optional
+        How fast edges inside grow with the distance from the boundary; None fills evenly from the boundary inward.
+
+    Raises
+    ------
+    InputError
+        If an element is turned inside out or all but flat.
+    FegearError
+        If gmsh fails.
+    """
+    started = time.perf_counter() if started is None else started
+    polygon = np.hstack([chain.vertices[:, :-1] for chain in chains])
+    vertices, triangles = _fill(polygon, growth)
+    _refuse_flat(vertices, triangles, polygon.shape[1])
+    starts = np.cumsum([0] + [chain.vertices.shape[1] - 1 for chain in chains])
+    total = int(starts[-1])
+    runs: dict[str, list[NDArray[np.int64]]] = {}
+    middles: dict[str, list[NDArray[np.float64]]] = {}
+    bends: dict[str, list[NDArray[np.float64]]] = {}
+    for chain, start in zip(chains, starts, strict=False):
+        n = chain.vertices.shape[1]
+        runs.setdefault(chain.name, []).append(np.arange(start, start + n) % total)
+        middles.setdefault(chain.name, []).append(chain.middles)
+        bends.setdefault(chain.name, []).append(_bends(chain))
+    edges: dict[str, NDArray[np.int64]] = {}
+    flat = {f"{name}:{i}": run for name, parts in runs.items() for i, run in enumerate(parts)}
+    flat_middles = {f"{name}:{i}": m for name, parts in middles.items() for i, m in enumerate(parts)}
+    points, six, numbered = with_middle_nodes(vertices, triangles, flat, flat_middles)
+    for name, parts in runs.items():
+        edges[name] = np.hstack([numbered[f"{name}:{i}"] for i in range(len(parts))])
+    joined = {name: np.concatenate(parts, axis=2) for name, parts in bends.items()}
+    return SectorMesh(points, six, edges, teeth, GENERATED, time.perf_counter() - started, joined)
+
+
+def _bends(chain: Chain) -> NDArray[np.float64]:
+    """How the exact curve leaves each edge's chord at its ends, shape (2, 2, n): see `SectorMesh`."""
+    chord = np.diff(chain.vertices)
+    # Twice the way over the middle node, less what the chord is shorter: the arc's length to fourth order.
+    halves = np.hypot(*(chain.middles - chain.vertices[:, :-1])) + np.hypot(*(chain.vertices[:, 1:] - chain.middles))
+    length = (4.0 * halves - np.hypot(*chord)) / 3.0
+    bends = np.stack([length * chain.tangents[:, :-1] - chord, chord - length * chain.tangents[:, 1:]], axis=1)
+    off = np.hypot(*(chain.middles - 0.5 * (chain.vertices[:, 1:] + chain.vertices[:, :-1])))
+    return np.where(off > _STRAIGHT * np.hypot(*chord), bends, 0.0)
+
+
+def _initialize(gmsh: Any) -> None:
+    """Start gmsh, from any thread; signals stay with whoever has them.
+
+    gmsh.initialize gives them back to the system: a request to stop would end the process before it has cleared away
+    what is unfinished, and writing to a pipe that the other side has closed would end it without a word.
+    """
+    names = ("SIGPIPE", "SIGTERM", "SIGHUP")
+    handlers = ctypes.pythonapi
+    handlers.PyOS_getsig.restype = ctypes.c_void_p
+    held = {int(n): handlers.PyOS_getsig(int(n)) for n in (getattr(signal, name, None) for name in names) if n}
+    gmsh.initialize(interruptible=False)
+    for number, handler in held.items():
+        handlers.PyOS_setsig(number, ctypes.c_void_p(handler))
+
+
+def _fill(polygon: NDArray[np.float64], growth: float | None) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Triangulate the inside of a closed polygon whose corners stay the only boundary nodes.
+
+    Two processors whose mathematical functions differ in the last bit draw the same triangles.
+    """
+    n = polygon.shape[1]
+    drawn, length = _on_a_grid(polygon)
+    x_middle, y_middle = 0.5 * (drawn + np.roll(drawn, -1, axis=1))
+
+    def size(_dim: int, _tag: int, x: float, y: float, _z: float, _lc: float) -> float:
+        return float((length + (growth or 0.0) * np.sqrt((x_middle - x) ** 2 + (y_middle - y) ** 2)).min())
+
+    with gmsh_session("fegear sector") as gmsh:
+        try:
+            geo = gmsh.model.geo
+            for tag, (x, y) in enumerate(drawn.T, start=1):
+                geo.addPoint(x, y, 0.0, tag=tag)
+            for tag in range(1, n + 1):
+                geo.addLine(tag, tag % n + 1, tag)
+                geo.mesh.setTransfiniteCurve(tag, 2)
+            geo.addCurveLoop(list(range(1, n + 1)), 1)
+            geo.addPlaneSurface([1], 1)
+            geo.synchronize()
+            if growth is None:
+                gmsh.option.setNumber("Mesh.Algorithm", _FRONTAL)
+                gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
+            else:
+                gmsh.model.mesh.setSizeCallback(size)
+            gmsh.model.mesh.generate(2)
+            tags, coordinates, _ = gmsh.model.mesh.getNodes()
+            _, _, connectivity = gmsh.model.mesh.getElements(2)
+        except Exception as problem:
+            raise FegearError(f"gmsh could not mesh the sector: {problem}") from problem
+        finally:
+            gmsh.model.mesh.removeSizeCallback()
+    position = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    order = np.argsort(tags)  # boundary corners carry the lowest tags, in the polygon's order
+    position[tags[order].astype(np.int64)] = np.arange(tags.size)
+    vertices = coordinates.reshape(-1, 3)[order, :2].T.copy()
+    vertices[:, :n] = polygon
+    triangles = position[connectivity[0].astype(np.int64)].reshape(-1, 3).T.copy()
+    flipped = _areas(vertices, triangles) < 0.0
+    triangles[1:, flipped] = triangles[:0:-1, flipped]
+    return vertices, triangles
+
+
+def _on_a_grid(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The polygon with every corner on a grid that suits its shorter edge, and the lengths of its edges then."""
+    length = np.hypot(*(np.roll(polygon, -1, axis=1) - polygon))
+    grid = 2.0 ** np.floor(np.log2(_GRID * np.minimum(length, np.roll(length, 1))))
+    drawn = np.round(polygon / grid) * grid
+    # Products, sums and roots are rounded alike everywhere, which np.hypot is not.
+    return drawn, np.sqrt(((np.roll(drawn, -1, axis=1) - drawn) ** 2).sum(axis=0))
+
+
+def _refuse_flat(vertices: NDArray[np.float64], triangles: NDArray[np.int64], boundary: int) -> None:
+    """Refuse flat triangles, but for those at boundary edges much shorter than their neighbours, which must be flat."""
+    length = np.hypot(*(np.roll(vertices[:, :boundary], -1, axis=1) - vertices[:, :boundary]))
+    before = np.roll(length, 1)
+    forced = np.zeros(vertices.shape[1], dtype=bool)
+    forced[:boundary] = np.maximum(length, before) > _UNEVEN * np.minimum(length, before)
+    triangles = triangles[:, ~forced[triangles].any(axis=0)]
+    corners = [vertices[:, corner] for corner in triangles]
+    sides = sum(((one - other) ** 2).sum(axis=0) for one, other in zip(corners, corners[1:] + corners[:1], strict=True))
+    flattest = float((2.0 * math.sqrt(3.0) * _areas(vertices, triangles) / sides).min(initial=1.0))
+    if flattest < _FLATTEST:
+        raise InputError(
+            "mesh", GENERATED, f"has a triangle of quality {flattest:.2g} (1 is equilateral, {_FLATTEST:g} the least)",
+            "shorten the edges",
+        )  # fmt: skip
+
+
+def _areas(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Twice the area of each triangle, negative if its corners run clockwise."""
+    a, b, c = (vertices[:, corner] for corner in triangles)
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -1,0 +1,141 @@
+"""Every choice that trades accuracy against time in the finite-element part, in modules."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+
+from fegear.base.errors import InputError
+
+#: Unknowns of a sector beyond which neither time nor memory suffices: some 20 GB.
+_MOST_UNKNOWNS = 3e6
+#: No pressure on the mesh of a level is wider [modules].
+_WIDEST_PATCH = 0.36
+
+
+@dataclass(frozen=True, slots=True)
+class MeshSettings:
+    """Edge lengths and order of the sector's mesh; all lengths in modules, so one choice serves every size.
+
+    Parameters
+    ----------
+    root_edge_length : float
+        Edges along both fillets.
+    root_fraction : float
+        Longest edge along a fillet as a fraction of its radius of curvature there.
+    flank_edge_length : float
+        Edges along the loaded flank.
+    tip_edge_length, junction_edge_length : float
+        Edges at the ends of the loaded flank: at its tip corner, and where it joins the fillet (in proportion to the
+        length of fillets shorter than .1 modules).
+    back_edge_length : float
+        Longest edge along the other flank and the tip.
+    growth, tip_growth, side_growth : float
+        How fast edges grow with distance from the fillet, from the ends of the loaded flank, and from the outline.
+    body_fraction : float
+        Longest edge in the body as a fraction of the sector's width there.
+    rim_fraction : float
+        Longest edge in the body as a fraction of the rim's thickness (outline to bore).
+    corner_distance : float
+        Nearer than this to a corner of the flank the exact wedge gives the deflection; the narrowest pressure that
+        loads the mesh.
+    patch_half_width : float
+        Half-width of the wider of the two semi-elliptic pressures that load the mesh.
+    order : int
+        Polynomial order of the displacement, 2 to 4.
+    """
+
+    root_edge_length: float = 0.055
+    root_fraction: float = 0.08
+    flank_edge_length: float = 0.055
+    tip_edge_length: float = 0.003
+    junction_edge_length: float = 0.00075
+    back_edge_length: float = 0.3
+    growth: float = 0.28
+    tip_growth: float = 0.155
+    side_growth: float = 0.4
+    body_fraction: float = 1.4
+    rim_fraction: float = 0.45
+    corner_distance: float = 0.006
+    patch_half_width: float = 0.18
+    order: int = 4
+
+    def __post_init__(self) -> None:
+        """Refuse settings that make no mesh."""
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise InputError(f"accuracy.{f.name}", value, "must be positive and finite")
+        if self.order not in (2, 3, 4):
+            raise InputError("accuracy.order", self.order, "must be 2, 3 or 4")
+
+        triangles = self.expected_triangles
+        if triangles * self.order**2 > _MOST_UNKNOWNS:
+            raise InputError(
+                "accuracy", "(edge lengths)", f"asks for about {triangles:.1g} triangles of order {self.order}",
+                f"lengthen the edges: {_MOST_UNKNOWNS / self.order**2:.1g} is what a large computer can solve",
+            )  # fmt: skip
+
+    @property
+    def expected_triangles(self) -> float:
+        """About how many triangles a sector gets, half to three times as many: rows along each edge, longer row by row.
+
+        Around the flank's ends the rows are half rings whose edges grow with the distance.
+        """
+        # Modules: both fillets, their sharpest parts, the loaded flank, the ends' reach.
+        fillet, sharpest, flank, ring = 2.5, 0.7, 2.3, 0.3
+        rows = sharpest / (self.growth * min(self.root_edge_length, 0.3 * self.root_fraction))
+        rows += (fillet - sharpest) / (self.growth * self.root_edge_length)
+        rows += flank / (self.side_growth * min(self.flank_edge_length, self.back_edge_length))
+        grown = [self.tip_growth * ring / edge for edge in (self.tip_edge_length, self.junction_edge_length)]
+        ends = sum(math.pi / self.tip_growth**2 * (math.log1p(g) - g / (1.0 + g)) for g in grown)
+        body = 2.0 / min(self.body_fraction, self.rim_fraction) ** 2
+        return 2.3 * (rows + ends + body)
+
+    def scaled(self, factor: float) -> MeshSettings:
+        """Return a coarser (factor > 1) or finer set: every edge length and the corner distance times `factor`.
+
+        Patch and order stay.
+        """
+        return replace(
+            self,
+            root_edge_length=self.root_edge_length * factor,
+            root_fraction=self.root_fraction * factor,
+            flank_edge_length=self.flank_edge_length * factor,
+            tip_edge_length=self.tip_edge_length * factor,
+            junction_edge_length=self.junction_edge_length * factor,
+            back_edge_length=self.back_edge_length * factor,
+            growth=self.growth * factor,
+            tip_growth=self.tip_growth * factor,
+            side_growth=self.side_growth * factor,
+            body_fraction=self.body_fraction * factor,
+            rim_fraction=self.rim_fraction * factor,
+            corner_distance=self.corner_distance * factor,
+        )
+
+    def refined(self, factor: float) -> MeshSettings:
+        """Return a finer (factor < 1) or coarser set for another accuracy.
+
+        Edge lengths go with `factor`. How fast edges grow goes with its root, and so does the patch: a pressure on a
+        mesh has two errors, how well the mesh resolves it and its own width's, and both must fall; and a mesh of few
+        elements whose edges grow by more than their own length spoils what its short edges are there for.
+        """
+        root = math.sqrt(factor)
+        return replace(
+            self.scaled(factor),
+            growth=self.growth * root,
+            tip_growth=self.tip_growth * root,
+            side_growth=self.side_growth * root,
+            patch_half_width=min(self.patch_half_width * root, _WIDEST_PATCH),
+        )
+
+
+#: Edge lengths of neighbouring levels differ by this factor.
+LEVEL_RATIO = math.sqrt(2.0)
+#: Levels that can be asked for: edge lengths 2.8 to 0.25 times the default.
+COARSEST_LEVEL, FINEST_LEVEL = -3, 4
+
+
+def settings_at(level: int) -> MeshSettings:
+    """Settings of a level: 0 the default, every further one with edges shorter by the square root of two."""
+    return MeshSettings().refined(LEVEL_RATIO**-level)

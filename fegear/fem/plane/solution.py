@@ -1,0 +1,307 @@
+"""Solving a gear: with given settings, or as cheaply as a tolerance allows.
+
+Solved tooth shapes by their content, in memory and on disk: where a cache is handed down, none is solved twice.
+
+The key holds all that the solution depends on, the source of this
+package and of the geometry among it, so that a changed program never reads what an older one made.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from fegear.base.plain import code_version, content_key, pack, read_only, unpack
+from fegear.base.solution_cache import Codec, SolutionCache
+from fegear.fem.plane.boundary import check_bore
+from fegear.fem.plane.gear import GearInfluence
+from fegear.fem.plane.influence import Influence, solve_influence
+from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.root_stress import FilletStrain
+from fegear.fem.plane.sector import mesh_sector
+from fegear.fem.plane.settings import COARSEST_LEVEL, FINEST_LEVEL, LEVEL_RATIO, MeshSettings, settings_at
+from fegear.fem.plane.trace import LoadedFlank
+from fegear.geometry.gear import Gear, Material
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from fegear.geometry.gear import Plane
+    from fegear.geometry.tooth import Tooth
+
+    Progress = Callable[[str], None]
+
+
+_HIGHEST_ORDER = 4
+
+
+#: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md).
+_LEVELS = ((1e-2, -3), (1e-3, -2), (1e-4, 0), (1e-5, 2), (1e-6, 4))
+
+
+#: How many solutions are tried at most.
+_MOST_ROUNDS = 4
+
+
+@dataclass(frozen=True)
+class Round:
+    """One solution on the way to a tolerance.
+
+    Attributes
+    ----------
+    settings : MeshSettings
+    unknowns : int
+        Of one sector.
+    errors : mapping of str to float
+        Largest estimated relative error over the flank of c_self, c_neighbour (over c_self), root_tension and
+        root_compression.
+    seconds : float
+    """
+
+    settings: MeshSettings
+    unknowns: int
+    errors: Mapping[str, float]
+    seconds: float
+
+    @property
+    def error(self) -> float:
+        """The largest of them."""
+        return max(self.errors.values())
+
+
+def influence_of_shape(
+    tooth: Tooth,
+    bore_radius: float,
+    poisson_ratio: float,
+    plane: Plane,
+    settings: MeshSettings,
+    reach: int,
+    cache: SolutionCache | None = None,
+) -> Influence:
+    """Solve one gear shape (lengths in modules), or recall it from a cache."""
+
+    def solve() -> Influence:
+        return solve_influence(
+            tooth,
+            mesh_sector(tooth, bore_radius, settings),
+            poisson_ratio,
+            plane,
+            order=settings.order,
+            reach=reach,
+            corner_distance=settings.corner_distance,
+        )
+
+    what = (bore_radius, poisson_ratio, plane, settings, reach)
+    return solve() if cache is None else known_or_solved(cache, tooth, what, solve)
+
+
+def solve_gear(
+    gear: Gear,
+    settings: MeshSettings | None = None,
+    *,
+    reach: int = 1,
+    estimate_error: bool = True,
+    coarser: MeshSettings | None = None,
+    mesh: SectorMesh | None = None,
+    progress: Progress | None = None,
+    cache: SolutionCache | None = None,
+) -> GearInfluence:
+    """Solve a gear for its influence functions.
+
+    Of a helical gear this is its section across the axis as a plane problem: a thin slice, not the gear.
+
+    Parameters
+    ----------
+    gear : Gear
+    settings : MeshSettings, optional
+    reach : int
+        K: neighbours -K..K.
+    estimate_error : bool
+        Whether to spend about half as much again on a second solution.
+    coarser : MeshSettings, optional
+        Settings of that one, by default edges longer by the square root of two.
+    mesh : SectorMesh, optional
+        A user's own sector mesh (in modules) instead of the generated one; its error is estimated with elements one
+        order higher.
+    progress : callable, optional
+        Called with the name of each stage as it starts.
+    cache : SolutionCache, optional
+        Where solved shapes are recalled from and kept.
+
+    Returns
+    -------
+    GearInfluence
+
+    Raises
+    ------
+    RangeError
+        If the bore lies too near the centre or the outline to be meshed.
+    """
+    started = time.perf_counter()
+    settings = settings or MeshSettings()
+    say = progress or (lambda _stage: None)
+    shape = _shape(gear)
+    coarse: Influence | None = None
+    coarser = coarser or settings.refined(LEVEL_RATIO)
+    if mesh is not None:
+        say("influence functions on the given mesh")
+        _, _, nu, plane = shape
+        order, closest = settings.order, settings.corner_distance
+
+        def solve(order: int) -> Influence:
+            return known_or_solved(
+                cache or SolutionCache(),
+                gear.tooth,
+                (mesh, nu, plane, order, reach, closest),
+                lambda: solve_influence(gear.tooth, mesh, nu, plane, order=order, reach=reach, corner_distance=closest),
+            )
+
+        fine = solve(order)
+        if estimate_error:
+            coarse = solve(order + 1 if order < _HIGHEST_ORDER else order - 1)
+    else:
+        check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
+        say("influence functions")
+        fine = influence_of_shape(*shape, settings, reach, cache)
+        if estimate_error:
+            say("influence functions on a coarser mesh, for the error")
+            coarse = influence_of_shape(*shape, coarser, reach, cache)
+    seconds = {**fine.seconds, "total": time.perf_counter() - started}
+    return GearInfluence(gear, fine, coarse, replace(settings), coarser.patch_half_width, seconds)
+
+
+def solve_to_tolerance(
+    gear: Gear,
+    tolerance: float,
+    *,
+    reach: int = 1,
+    progress: Progress | None = None,
+    cache: SolutionCache | None = None,
+) -> GearInfluence:
+    """Solve a gear as cheaply as a relative tolerance allows.
+
+    The first settings are those that usually meet the tolerance (`level_for`). While the error estimate misses it,
+    edges are shortened by the square root of two: the solution before serves as the coarser one of the next estimate.
+
+    Parameters
+    ----------
+    gear : Gear
+    tolerance : float
+        For the largest error over the flank of c_0, of c_1 (over c_0), of root tension and of root compression.
+    reach : int
+        K: neighbours -K..K.
+    progress : callable, optional
+
+    Returns
+    -------
+    GearInfluence
+        Its `rounds` list what was tried; the last one may miss the tolerance at the finest level or after the last
+        round.
+    """
+    level, rounds = level_for(tolerance), []
+    cache = SolutionCache() if cache is None else cache  # each round's solution is the coarser one of the next
+    while True:
+        started = time.perf_counter()
+        settings, coarser = settings_at(level), settings_at(level - 1)
+        known = solve_gear(gear, settings, reach=reach, coarser=coarser, progress=progress, cache=cache)
+        errors = _errors_of_shape(_shape(gear), settings, coarser, reach, cache)
+        rounds.append(Round(settings, known.fine.unknowns, errors, time.perf_counter() - started))
+        if rounds[-1].error <= tolerance or level >= FINEST_LEVEL or len(rounds) == _MOST_ROUNDS:
+            seconds = {**known.seconds, "total": sum(one.seconds for one in rounds)}
+            return replace(known, rounds=tuple(rounds), seconds=seconds)
+        level += 1
+
+
+def _errors_of_shape(
+    shape: tuple[Tooth, float, float, Plane],
+    settings: MeshSettings,
+    coarser: MeshSettings,
+    reach: int,
+    cache: SolutionCache,
+) -> Mapping[str, float]:
+    """`GearInfluence.largest_errors`, which neither size nor steel change: a sweep over loads asks again and again."""
+    tooth, bore_radius, nu, plane = shape
+
+    def largest() -> Mapping[str, float]:
+        gear = Gear(tooth, 1.0, bore_radius, material=Material(1.0, nu), plane=plane)
+        solved = solve_gear(gear, settings, reach=reach, coarser=coarser, cache=cache)
+        return read_only(solved.largest_errors())
+
+    return cache.solve(content_key("largest errors", shape, settings, coarser, reach), largest).value
+
+
+def _shape(gear: Gear) -> tuple[Tooth, float, float, Plane]:
+    return gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption
+
+
+def level_for(tolerance: float) -> int:
+    """Level of `settings_at` that usually meets a relative tolerance: -2 for 1e-3, 0 for 1e-4."""
+    decades, levels = zip(*((-math.log10(known), level) for known, level in _LEVELS), strict=True)
+    between = float(np.interp(-math.log10(tolerance), decades, levels))
+    return min(max(math.ceil(between - 1e-9), COARSEST_LEVEL), FINEST_LEVEL)
+
+
+Shape = TypeVar("Shape")
+
+
+#: What a solved plane shape consists of.
+_PLANE: tuple[type, ...] = (Influence, SectorMesh, LoadedFlank, FilletStrain)
+
+
+def known_or_solved(
+    cache: SolutionCache,
+    tooth: Tooth,
+    what: tuple[object, ...],
+    solve: Callable[[], Shape],
+    kinds: tuple[type, ...] = _PLANE,
+) -> Shape:
+    """Recall the solution of a shape, or solve and keep it.
+
+    Parameters
+    ----------
+    cache : SolutionCache
+    tooth : Tooth
+    what : tuple
+        All else that the solution depends on; anything that `content_key` takes.
+    solve : callable
+    kinds : tuple of type
+        Dataclasses that the solution consists of, its own first; it has the tooth as a field.
+    """
+    key = content_key(code_version("fem", "geometry"), tooth, what)
+    codec: Codec[Shape] = Codec(lambda found: pack(_plain(found, kinds)), lambda data: _restored(data, tooth, kinds))
+    return cache.solve(key, solve, codec).value
+
+
+def _plain(item: object, kinds: tuple[type, ...]) -> object:
+    """Dataclasses as dictionaries with their name; without the tooth, which the reader knows."""
+    if dataclasses.is_dataclass(item) and isinstance(item, kinds):
+        fields = {f.name: _plain(getattr(item, f.name), kinds) for f in dataclasses.fields(item) if f.name != "tooth"}
+        return {"kind": type(item).__name__, "fields": fields}
+    if isinstance(item, dict):
+        return {key: _plain(value, kinds) for key, value in item.items()}
+    return item
+
+
+def _restored(data: bytes | memoryview, tooth: Tooth, kinds: tuple[type, ...]) -> Any:
+    """Rebuild a solution; None if the bytes do not fit."""
+    names = {kind.__name__: kind for kind in kinds}
+
+    def build(item: object) -> object:
+        if not isinstance(item, dict):
+            return item
+        if set(item) == {"kind", "fields"}:
+            kind = names[item["kind"]]
+            given = {"tooth": tooth} if kind is kinds[0] else {}
+            return kind(**given, **{key: build(value) for key, value in item["fields"].items()})
+        return {key: build(value) for key, value in item.items()}
+
+    try:
+        known = build(unpack(data))
+    except (ValueError, KeyError, TypeError):
+        return None
+    return known if isinstance(known, kinds[0]) else None

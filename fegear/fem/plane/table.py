@@ -1,0 +1,172 @@
+"""The stiffness and root-stress table of one gear: what most users come for first."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+from fegear.fem.plane.contact_width import check_half_widths
+from fegear.fem.plane.solution import solve_gear
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.settings import MeshSettings
+    from fegear.fem.plane.solution import Progress
+    from fegear.geometry.gear import Gear
+
+
+#: Load positions at a time: compliances between neighbours come as a matrix over all of them.
+_BLOCK = 512
+
+
+@dataclass(frozen=True)
+class StiffnessTable:
+    """Compliance and root stress of a gear's tooth over load positions, per unit face width, SI; arrays of shape (P,).
+
+    Parameters
+    ----------
+    radius : ndarray
+        Load radius [m].
+    roll_angle : ndarray
+        [rad].
+    c_self, c_prev, c_next : ndarray
+        Deflection per unit line load [m^2/N] of the loaded tooth at its contact, and of its neighbours -1 and +1
+        at the same radius. Tooth +1 is the one that the loaded flank faces.
+    half_width : ndarray
+        Contact half-width that `c_self` is for [m].
+    root_tension, root_compression : ndarray
+        Largest tangential stress (tension: positive) of the fillet below the loaded flank, and the most negative of
+        the other fillet, per unit line load [1/m].
+    root_tension_radius, root_compression_radius : ndarray
+        Where they sit: distance from the gear's centre [m].
+    root_tension_angle, root_compression_angle : ndarray
+        Angle between the fillet's tangent there and the tooth's centre line [rad] (ISO 6336-3 looks at 30 deg).
+    errors : mapping of str to ndarray
+        Estimated absolute error of c_self, c_neighbour, root_tension, root_compression.
+    influence : GearInfluence
+        What the table was made from.
+    seconds : float
+        For the whole table.
+    """
+
+    radius: Array
+    roll_angle: Array
+    c_self: Array
+    c_prev: Array
+    c_next: Array
+    half_width: Array
+    root_tension: Array
+    root_tension_radius: Array
+    root_tension_angle: Array
+    root_compression: Array
+    root_compression_radius: Array
+    root_compression_angle: Array
+    errors: Mapping[str, Array]
+    influence: GearInfluence
+    seconds: float
+
+
+def stiffness_table(
+    gear: Gear,
+    radii: ArrayLike,
+    half_width: ArrayLike,
+    settings: MeshSettings | None = None,
+    *,
+    influence: GearInfluence | None = None,
+    progress: Progress | None = None,
+) -> StiffnessTable:
+    """Tabulate one gear's compliance and root stress.
+
+    Parameters
+    ----------
+    gear : Gear
+    radii : array_like, shape (P,)
+        Load radii [m], on the flank.
+    half_width : array_like
+        Contact half-width [m], one or one for each radius.
+    settings : MeshSettings, optional
+    influence : GearInfluence, optional
+        If the gear has been solved already.
+    progress : callable, optional
+
+    Returns
+    -------
+    StiffnessTable
+
+    Raises
+    ------
+    RangeError
+        If a radius lies off the flank, or a half-width is one that no flank holds (`check_half_widths`).
+    """
+    started = time.perf_counter()
+    r = np.atleast_1d(np.asarray(radii, dtype=float))
+    b = np.broadcast_to(np.asarray(half_width, dtype=float), r.shape).copy()
+    low, high = gear.form_radius, gear.involute_tip_radius
+    off = ~((r >= low * (1 - 1e-9)) & (r <= high * (1 + 1e-9)))
+    if off.any():
+        raise RangeError(
+            "radii",
+            f"{r[off][0] * 1e3:.6g} mm",
+            f"lies off the involute flank, which runs from {low * 1e3:.6g} to {high * 1e3:.6g} mm",
+        )
+    check_contacts(gear, r, b)
+    known = influence or solve_gear(gear, settings, progress=progress)
+    parts = [_columns(known, r[i : i + _BLOCK], b[i : i + _BLOCK]) for i in range(0, r.size, _BLOCK)]
+    found = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    for array in (r, b, *found.values()):
+        array.flags.writeable = False
+    errors = {name.removeprefix("error_of_"): found.pop(name) for name in tuple(found) if name.startswith("error_of_")}
+    angle = np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
+    return StiffnessTable(
+        r, angle, half_width=b, errors=errors, influence=known, seconds=time.perf_counter() - started, **found
+    )
+
+
+def _columns(known: GearInfluence, r: Array, b: Array) -> dict[str, Array]:
+    """Every column over some of the load positions, and each error as ``error_of_<column>``."""
+    module = known.gear.module
+    found = {
+        "c_self": known.self_compliance(r, b),
+        "c_prev": np.diagonal(known.neighbour(-1, r, r)),
+        "c_next": np.diagonal(known.neighbour(1, r, r)),
+        "error_of_c_self": known.contact_error(r, b),
+        "error_of_c_neighbour": np.diagonal(known.neighbour_error(1, r, r)),
+    }
+    for side in ("tension", "compression"):
+        value, arc = known.largest_root_stress(0, side, r, b)
+        fillet = known.fine.fillets[side]
+        found[f"root_{side}"] = value
+        found[f"root_{side}_radius"] = np.interp(arc / module, fillet.arc, fillet.radius) * module
+        found[f"root_{side}_angle"] = np.interp(arc / module, fillet.arc, fillet.tangent_angle)
+        found[f"error_of_root_{side}"] = known.root_stress_error(0, side, r, b)
+    return found
+
+
+def check_contacts(gear: Gear, radii: ArrayLike, half_width: ArrayLike, key: str = "contact_half_width") -> None:
+    """Refuse contacts that the gear's flank cannot hold, in millimetres.
+
+    Parameters
+    ----------
+    gear : Gear
+    radii, half_width : array_like, shape (P,)
+        [m].
+    key : str
+        What the refusal is about.
+
+    Raises
+    ------
+    RangeError
+    """
+    r, m = np.asarray(radii, dtype=float), gear.module
+    # On an involute the squared radius grows by twice the base radius times the arc length.
+    room = np.minimum(r**2 - gear.form_radius**2, gear.involute_tip_radius**2 - r**2) / (2.0 * gear.base_radius)
+    check_half_widths(np.asarray(half_width) / m, room / m, unit="mm", scale=1e3 * m, key=key)

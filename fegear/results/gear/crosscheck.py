@@ -1,0 +1,467 @@
+"""Result ``crosscheck``: every closed form beside the finite elements, over load positions.
+
+What the result ``crosscheck`` reads and what it finds, by the names of gears and pairs.
+
+Tables and single values of the result ``crosscheck``: closed forms over finite elements.
+
+Figures of closed forms beside finite elements.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve, Mark, Zone
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.table import Column, Table
+from fegear.results import forecasts
+from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, RING, ROOT_STRESS_FORMULAS
+from fegear.results.gear.crosscheck_iso import iso_inputs, iso_table, section_figure, section_table
+from fegear.results.gear.stiffness import chosen_gears, needs_solution, solution_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.contact.compared.crosscheck import ComplianceAnswers, PairReference, RootStressAnswers
+    from fegear.contact.compared.iso_check import RatedPair
+    from fegear.engine.stage import Upstream, Work
+    from fegear.fem.plane.table import StiffnessTable
+    from fegear.formulas.cornell import SectionLengths
+    from fegear.formulas.iso6336.part1_stiffness import Stiffness
+    from fegear.formulas.outcome import Outcome as Answer
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.pair import GearPair
+    from fegear.results.gear.crosscheck_iso import IsoInputs
+
+
+#: Line load of the pairs when the case names none [N/m].
+USUAL_LINE_LOAD = 100e3
+
+
+#: The whole case is one subject: gears and pairs share the tables of sources and the remarks.
+_WHOLE = ""
+
+
+_GEAR_REMARKS = (
+    (
+        "Crosscheck: one tooth of the whole gear is loaded normal to its flank, without friction and with no other "
+        "tooth loaded; everything is per unit line load (secant, not local slope)."
+    ),
+    (
+        "Crosscheck of root stress: FE is the largest tangential stress along the fillet below the loaded flank, "
+        "radial compression included, in the whole ring with its own rim; the formulas know no rim, and whether they "
+        "subtract the radial compression stands in table crosscheck_sources. Root stress per line load is the same in "
+        "plane stress and plane strain."
+    ),
+    (
+        "Crosscheck of gear compliance: tooth and body without the contact zone; from FE the exact half-plane approach "
+        "down to the tooth's centre line along the line of action is taken off."
+    ),
+)
+
+
+_PAIR_REMARK = (
+    "Crosscheck of pair compliance: one tooth pair with its contact of Hertz's width, no load sharing; FE "
+    "deflections are means weighted with the contact pressure."
+)
+
+
+def _pairs(scene: Scene) -> tuple[str, ...]:
+    """The pair that ``[stiffness]`` names, else those of the gears that are looked at."""
+    chosen, gears = scene.case.stiffness.pair, chosen_gears(scene)
+    return tuple(
+        name
+        for name in scene.spur_pairs
+        if chosen in (None, name) and {scene.case.pair[name].driver, scene.case.pair[name].driven} & set(gears)
+    )
+
+
+def _helical(scene: Scene) -> tuple[str, ...]:
+    """The pairs that ISO 6336 rates through their virtual spur teeth."""
+    return tuple(name for name in scene.pairs if name not in scene.spur_pairs)
+
+
+def _pair_check(scene: Scene, name: str) -> PairCheck:
+    pair, part, stiffness = scene.pairs[name], scene.case.pair[name], scene.case.stiffness
+    force = part.normal_load(pair)
+    line_load, chosen = stiffness.load, False
+    if line_load is None:
+        chosen = force is None
+        width = pair.face_width
+        line_load = USUAL_LINE_LOAD if force is None else force / width
+    return PairCheck(pair, (part.driver, part.driven), stiffness.positions, line_load, chosen)
+
+
+def _inputs(scene: Scene, _subject: str) -> CrosscheckInputs:
+    gears = {name: scene.gears[name] for name in chosen_gears(scene)}
+    pairs, settings = _pairs(scene), mesh_settings(scene.case.accuracy)
+    iso = {name: iso_inputs(scene, name, settings) for name in (*pairs, *_helical(scene))}
+    return CrosscheckInputs(gears, {name: _pair_check(scene, name) for name in pairs}, iso)
+
+
+def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
+    mates = [gear for name in _pairs(scene) for gear in (scene.case.pair[name].driver, scene.case.pair[name].driven)]
+    return (*(Task("stiffness", name) for name in chosen_gears(scene)), *needs_solution(*mates))
+
+
+def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> CrosscheckData:
+    from fegear.contact.compared.crosscheck import (
+        contact_zone,
+        pair_compliance_answers,
+        pair_reference,
+        root_stress_answers,
+        tooth_compliance_answers,
+    )
+    from fegear.contact.compared.iso_check import rated_helical_pair, rated_spur_pair
+    from fegear.formulas.cornell import radial_section_lengths
+    from fegear.formulas.iso6336.part1_stiffness import pair_stiffness
+    from fegear.formulas.outcome import attempt
+
+    gears, pairs, count = {}, {}, len(asked.gears) + len(asked.pairs)
+    rated: dict[str, RatedPair] = {}
+    for name, gear in asked.gears.items():
+        fe: StiffnessTable = upstream[Task("stiffness", name)]
+        gears[name] = GearAnswers(
+            fe, root_stress_answers(gear.tooth, fe.radius / gear.module), tooth_compliance_answers(gear, fe.radius),
+            contact_zone(gear, fe.radius, fe.half_width),
+            attempt(partial(radial_section_lengths, gear.tooth, fe.radius / gear.module)),
+        )  # fmt: skip
+        work.progress(len(gears) / count)
+    for name, check in asked.pairs.items():
+        pair, w = check.pair, check.line_load
+        x = np.linspace(pair.x_start, pair.x_end, check.positions)
+        driver, driven = (solution_of(upstream, gear) for gear in check.gears)
+        fe_pair = pair_reference(pair, driver, driven, x, w)
+        iso = attempt(partial(pair_stiffness, pair, w))
+        pairs[name] = PairAnswers(fe_pair, pair_compliance_answers(pair, fe_pair.x, w), iso)
+        iso_asked = asked.iso[name]
+        rated[name] = rated_spur_pair(pair, (driver, driven), w, iso_asked.choice, iso_asked.rims)
+        work.progress((len(gears) + len(pairs)) / count)
+    for name, wanted in asked.iso.items():
+        if wanted.helical is not None and wanted.settings is not None:
+            rated[name] = rated_helical_pair(wanted.helical, wanted.choice, wanted.rims, wanted.settings, work.cache)
+    return CrosscheckData(gears, pairs, rated)
+
+
+def _present(data: CrosscheckData, asked: CrosscheckInputs) -> Outcome:
+    # A case of helical pairs alone compares no spur gear of its own: its remarks come with each pair.
+    tables, values = [sources_table()], []
+    remarks = [*(_GEAR_REMARKS if asked.gears else ()), *((_PAIR_REMARK,) if asked.pairs else ())]
+    for name, gear in asked.gears.items():
+        answers = data.gears[name]
+        found = (
+            root_stress_table(name, gear, answers.table, answers.root_stress),
+            gear_compliance_table(name, gear, answers),
+        )
+        tables += [table for table, _ in found]
+        values += [value for _, some in found for value in some]
+    for name, check in asked.pairs.items():
+        if check.chosen:
+            load = f"{check.line_load * 1e-3:.6g} N/mm"
+            remarks.append(f"Pair {name}: no load was given; its contact is that of {load}.")
+        table, some, remark = pair_table(name, check, data.pairs[name])
+        remarks += [remark] if remark else []
+        tables.append(table)
+        values += some
+    for name, wanted in asked.iso.items():
+        table, some, more = iso_table(name, wanted, data.iso[name])
+        remarks += more
+        tables.append(table)
+        values += some
+    for table in tables[1:]:
+        head = table.columns[0].name
+        silent = {str(f): str(r) for f, r in zip(table[head], table["reason"], strict=True) if r}
+        remarks += [f"{table.title}: {f} is out of its range at some positions: {r}" for f, r in silent.items()]
+    figures = [crosscheck_figure(table) for table in tables[1:] if "formula" in table.columns[0].name]
+    for name, gear in asked.gears.items():
+        answers = data.gears[name]
+        if answers.cornell.value is not None:
+            table, some = section_table(name, gear, answers.table.radius, answers.cornell.value)
+            tables.append(table)
+            values += some
+            figures.append(section_figure(name, gear, answers.table, answers.cornell.value))
+    return Outcome(data, tuple(tables), tuple(values), {}, tuple(remarks), tuple(figures))
+
+
+def _forecast(scene: Scene, _subject: str) -> Forecast:
+    """Every closed form for every gear and pair; helical pairs solve two virtual spur gears for each of theirs."""
+    virtual = 4 * len(_helical(scene)) * seconds_of_gear(mesh_settings(scene.case.accuracy))
+    return forecasts.constant(0.05 + 0.08 * (len(scene.spur_gears) + len(scene.spur_pairs)) + virtual)
+
+
+@dataclass(frozen=True, slots=True)
+class PairCheck:
+    """One pair whose compliance is compared.
+
+    Parameters
+    ----------
+    pair : GearPair
+    gears : tuple of str
+        Names of driver and driven.
+    positions : int
+        Over the path of contact.
+    line_load : float
+        [N/m].
+    chosen : bool
+        Whether the line load had to be chosen.
+    """
+
+    pair: GearPair
+    gears: tuple[str, str]
+    positions: int
+    line_load: float
+    chosen: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CrosscheckInputs:
+    """Gears and pairs that are compared, and spur and helical pairs that ISO 6336 rates, by name."""
+
+    gears: Mapping[str, Gear]
+    pairs: Mapping[str, PairCheck]
+    iso: Mapping[str, IsoInputs]
+
+
+@dataclass(frozen=True, slots=True)
+class GearAnswers:
+    """Closed forms of a gear beside its finite elements, and Cornell's root section or why it has none."""
+
+    table: StiffnessTable
+    root_stress: Mapping[str, RootStressAnswers]
+    compliance: Mapping[str, ComplianceAnswers]
+    contact_zone: Array
+    cornell: Answer[SectionLengths]
+
+
+@dataclass(frozen=True, slots=True)
+class PairAnswers:
+    """Closed forms of a pair beside its finite elements; ISO's stiffness or the reason why there is none."""
+
+    reference: PairReference
+    compliance: Mapping[str, ComplianceAnswers]
+    iso: Answer[Stiffness]
+
+
+@dataclass(frozen=True, slots=True)
+class CrosscheckData:
+    """Everything that is compared, by the names of gears and pairs."""
+
+    gears: Mapping[str, GearAnswers]
+    pairs: Mapping[str, PairAnswers]
+    iso: Mapping[str, RatedPair]
+
+
+COMPLIANCE, STRESS = "um.mm/N", "MPa.mm/N"
+
+
+def root_stress_table(
+    name: str, gear: Gear, fe: StiffnessTable, answers: Mapping[str, RootStressAnswers]
+) -> tuple[Table, tuple[Value, ...]]:
+    """Every root-stress formula over the finite elements of one gear."""
+    count, m = fe.radius.size, gear.module
+    times = len(answers)
+
+    def tiled(values: Array) -> Array:
+        return np.tile(values, times)
+
+    def joined(attribute: str, scale: float) -> Array:
+        return np.concatenate([getattr(a, attribute) for a in answers.values()]) * scale
+
+    stress = joined("stress", 1.0 / m)
+    ratio = stress / tiled(fe.root_tension)
+    columns = (
+        Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources"),
+        Column("radius", tiled(fe.radius), "mm", "radius of the contact point"),
+        Column("roll_angle", tiled(fe.roll_angle), "deg", "roll angle of the contact point"),
+        Column("root_tension", stress, STRESS, "by the formula, per line load normal to the flank"),
+        Column("root_tension_fe", tiled(fe.root_tension), STRESS, "largest tangential stress of the fillet by FE"),
+        Column("root_tension_fe_error", tiled(fe.errors["root_tension"]), STRESS, "estimated error of FE"),
+        Column("ratio_to_fe", ratio, "", "formula over FE"),
+        Column("place_radius", joined("radius", m), "mm", "where the formula puts it"),
+        Column("place_radius_fe", tiled(fe.root_tension_radius), "mm", "where FE puts it"),
+        Column("place_angle", joined("tangent_angle", 1.0), "deg", "fillet tangent to tooth centre line there"),
+        Column("place_angle_fe", tiled(fe.root_tension_angle), "deg", "the same by FE"),
+        Column("reason", _words(answers), "", "why the formula gives nothing; empty where it does"),
+    )
+    title = f"Root stress of gear {name}: closed forms over finite elements"
+    values = _extremes(f"{name}.root_stress", ratio.reshape(times, count), tuple(answers))
+    return Table(f"crosscheck_root_stress_{name}", columns, title), values
+
+
+def _words(answers: Mapping[str, RootStressAnswers] | Mapping[str, ComplianceAnswers]) -> NDArray[np.str_]:
+    return np.array([reason for a in answers.values() for reason in a.reasons], dtype=np.str_)
+
+
+def _extremes(prefix: str, ratio: Array, names: tuple[str, ...]) -> tuple[Value, ...]:
+    """Smallest and largest ratio and the largest deviation of every formula that gives anything."""
+    found = []
+    for name, row in zip(names, ratio, strict=True):
+        r = row[np.isfinite(row)]
+        if r.size:
+            key = f"{prefix}.{name}"
+            found += [
+                Value(f"{key}.lowest_ratio", float(r.min()), "", None, f"{name} over FE, smallest over the positions"),
+                Value(f"{key}.highest_ratio", float(r.max()), "", None, f"{name} over FE, largest over the positions"),
+                Value(
+                    f"{key}.largest_deviation", float(np.abs(r - 1.0).max()), "", None, f"{name} against FE, relative"
+                ),
+            ]
+    return tuple(found)
+
+
+def _compliance_table(
+    name: str,
+    what: str,
+    first: tuple[Column, ...],
+    reference: tuple[Column, ...],
+    answers: Mapping[str, ComplianceAnswers],
+    parts: tuple[str, ...],
+) -> tuple[Table, tuple[Value, ...]]:
+    times, count = len(answers), len(first[0].si)
+    total = np.concatenate([a.total for a in answers.values()])
+    ratio = total / np.tile(reference[0].si, times)
+    split = [
+        np.concatenate([a.parts[i] if len(a.parts) > i else a.parts[0] for a in answers.values()])
+        for i in range(len(parts))
+    ]
+    columns = (
+        Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources"),
+        *(Column(c.name, np.tile(c.si, times), c.unit, c.meaning) for c in first),
+        Column("compliance", total, COMPLIANCE, "by the formula, deflection along the line of action per line load"),
+        *(Column(c.name, np.tile(c.si, times), c.unit, c.meaning) for c in reference),
+        Column("ratio_to_fe", ratio, "", "formula over FE"),
+        *(Column(p, s, COMPLIANCE, "part of the formula's sum") for p, s in zip(parts, split, strict=True)),
+        Column("reason", _words(answers), "", "why the formula gives nothing; empty where it does"),
+    )
+    table = Table(f"crosscheck_compliance_{name}", columns, f"{what}: closed forms over finite elements")
+    return table, _extremes(f"{name}.compliance", ratio.reshape(times, count), tuple(answers))
+
+
+def gear_compliance_table(name: str, gear: Gear, found: GearAnswers) -> tuple[Table, tuple[Value, ...]]:
+    """Every compliance formula of one tooth, without its contact, over the finite elements."""
+    fe, zone = found.table, found.contact_zone
+    first = (
+        Column("radius", fe.radius, "mm", "radius of the contact point"),
+        Column("roll_angle", fe.roll_angle, "deg", "roll angle of the contact point"),
+    )
+    reference = (
+        Column("compliance_fe", fe.c_self - zone, COMPLIANCE, "FE, the loaded tooth without its contact zone"),
+        Column("compliance_fe_error", fe.errors["c_self"], COMPLIANCE, "estimated error of FE"),
+        Column("contact_zone", zone, COMPLIANCE, "half-plane approach that was taken off from FE"),
+    )
+    parts = ("bending", "shear", "axial", "foundation")
+    what = f"Compliance of one tooth of gear {name} without its contact, plane {gear.plane_assumption}"
+    return _compliance_table(name, what, first, reference, found.compliance, parts)
+
+
+def pair_table(name: str, check: PairCheck, found: PairAnswers) -> tuple[Table, tuple[Value, ...], str]:
+    """Table and values of a pair, and what is to be remarked about ISO's c'; empty if nothing."""
+    fe, w = found.reference, check.line_load
+    first = (Column("x", fe.x, "mm", "contact point from the pitch point, positive toward the driver's tip"),)
+    reference = (
+        Column("compliance_fe", fe.total, COMPLIANCE, "FE, one tooth pair with its contact"),
+        Column("driver_fe", fe.driver, COMPLIANCE, "FE, the driver's tooth with its side of the contact"),
+        Column("driven_fe", fe.driven, COMPLIANCE, "FE, the driven tooth with its side of the contact"),
+        Column("contact_half_width", fe.half_width, "mm", "Hertz's half-width under the line load"),
+    )
+    what = f"Compliance of one tooth pair of pair {name} under {w * 1e-3:.6g} N/mm"
+    parts = ("driver", "driven", "contact")
+    table, values = _compliance_table(name, what, first, reference, found.compliance, parts)
+    greatest = float(1.0 / fe.total.min())
+    unit = "N/(mm.um)"
+    own = Value(f"{name}.single_stiffness_fe", greatest, unit, None, "greatest stiffness of one tooth pair by FE")
+    iso = found.iso.value
+    if iso is None:
+        return table, (*values, own), f"Pair {name}: ISO 6336-1 gives no c': {found.iso.reason}"
+    extra = (
+        *values,
+        own,
+        Value(f"{name}.single_stiffness_iso", iso.single, unit, None, "ISO 6336-1 c', solid blank, with C_M = 0.8"),
+        Value(f"{name}.theoretical_stiffness_iso", iso.theoretical, unit, None, "ISO 6336-1 c'_th"),
+        Value(f"{name}.single_stiffness_iso.ratio_to_fe", iso.single / greatest, "", None, "c' over FE"),
+    )
+    return table, extra, f"Pair {name}: {iso.remark}." if iso.remark else ""
+
+
+def sources_table() -> Table:
+    """Where each closed form comes from and what it compares."""
+    from fegear.formulas.sources import ROOT_STRESS_SOURCES, SOURCES
+
+    rows = [(s.name, "root stress", s.citation, s.compared) for s in ROOT_STRESS_SOURCES.values()]
+    rows += [(s.name, "compliance", s.citation, s.remark) for s in SOURCES.values()]
+    heads = ("formula", "gives", "source", "what_is_compared")
+    columns = (Column(head, np.array(values)) for head, values in zip(heads, zip(*rows, strict=True), strict=True))
+    return Table("crosscheck_sources", tuple(columns), "The closed forms and what each compares")
+
+
+#: Ratios that figures shade as agreement.
+_AGREEMENT = (0.95, 1.05)
+
+
+def crosscheck_figure(table: Table) -> Figure:
+    """Every formula of a table beside the finite elements, their ratio, and of a root stress its place."""
+    shown = {column.name: column.values for column in table.columns}
+    formulas = list(dict.fromkeys(str(name) for name in shown["formula"]))
+    stress = "root_tension" in shown
+    first = "x" if "x" in shown else "roll_angle"
+    label = ("contact point from the pitch point", "mm") if first == "x" else ("roll angle of the load", "deg")
+
+    def curves(key: str, reference: str) -> tuple[Curve, ...]:
+        drawn = []
+        for number, formula in enumerate(formulas):
+            rows = shown["formula"] == formula
+            x, y = (np.asarray(shown[k][rows], dtype=float) for k in (first, key))
+            if reference and not number:
+                fe = np.asarray(shown[reference][rows], dtype=float)
+                drawn.append(Curve(x, fe, "finite elements", "finite elements", width=2.6))
+            drawn.append(Curve(x, y, formula, f"series:{number}"))
+        return tuple(drawn)
+
+    x = Axis(*label)
+    key, unit = ("root_tension", STRESS) if stress else ("compliance", COMPLIANCE)
+    title = "root stress per line load" if stress else "deflection per line load"
+    panels = [
+        Panel(x, Axis(title, unit, zero=not stress), curves(key, f"{key}_fe"), height=1.2),
+        Panel(x, Axis("formula / FE"), curves("ratio_to_fe", ""), (Zone("y", *_AGREEMENT), Mark("y", 1.0, "±5 %"))),
+    ]
+    if stress:
+        angle = Axis("fillet tangent to centre line", "deg")
+        panels.append(Panel(x, angle, curves("place_angle", "place_angle_fe")))
+    silent = dict.fromkeys(str(f) for f, r in zip(shown["formula"], shown["reason"], strict=True) if r)
+    out = f" Out of range at some positions (see the table's reasons): {', '.join(silent)}." if silent else ""
+    what = "along the line of action (secant), and its ratio to the finite elements"
+    if stress:
+        what = (
+            "largest fillet stress under a load normal to the flank, its ratio to the finite elements, and its place "
+            "(ISO looks at 30 deg always)"
+        )
+    subject = table.title.split(":", maxsplit=1)[0]
+    return Figure(table.name, table.title, f"{subject}: {what}.{out}", tuple(panels))
+
+
+CROSSCHECK = Stage(
+    subjects=lambda scene: (_WHOLE,) if scene.spur_gears or _helical(scene) else (),
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    cites=citing(
+        *ROOT_STRESS_FORMULAS,
+        *(citation for group in CLOSED_FORM_COMPLIANCES.values() for citation in group),
+        Citation("iso-6336-1", "single tooth stiffness c'", "clause 9, method B"),
+        *RING,
+    ),
+    forecast=_forecast,
+)

@@ -1,0 +1,354 @@
+"""Stage ``geometry``: the numbers of every gear and pair that a drawing would carry.
+
+The gear data of a drawing, gear beside gear: what stands in the corner of a drawing and at the head of a report.
+
+What is ground off the flanks of a gear, for its gear data: the amounts that a drawing states.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import GeometryError
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.engine.table import Column, Table
+from fegear.geometry.checks import tip_thickness
+from fegear.geometry.inspection import over_balls, touching_ball, usual_ball, usual_span
+from fegear.geometry.interference import interference
+from fegear.geometry.pair import MEMBERS, active_profile, specific_sliding
+from fegear.results.forecasts import INVOLUTE
+from fegear.results.gear.drawing import pair_figure
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from fegear.case.gear import GearPart
+    from fegear.case.reading import Scene
+    from fegear.geometry.gear import Gear
+    from fegear.geometry.inspection import OverBalls
+    from fegear.geometry.pair import GearPair
+
+
+def _everything(scene: Scene) -> tuple[str, ...]:
+    return ("",) if scene.gears else ()
+
+
+def _present(_found: Drawing, drawing: Drawing) -> Outcome:
+    gears, pairs = drawing.gears, drawing.pairs
+    names = list(gears)
+    measures = {column.name: column for column in measurement_columns(drawing, names)}
+
+    def column(name: str, attribute: str, meaning: str) -> Column:
+        values = np.array([getattr(gear, attribute) for gear in gears.values()])
+        return Column(name, values, "mm", meaning)
+
+    table = Table(
+        "geometry",
+        (
+            Column("gear", np.array(names), "", "name of the gear"),
+            Column("teeth", np.array([gear.teeth for gear in gears.values()]), "", "number of teeth"),
+            column("module", "module", "module"),
+            column("tip_radius", "tip_radius", "tip circle"),
+            column("involute_tip_radius", "involute_tip_radius", "where the involute ends"),
+            column("pitch_radius", "pitch_radius", "pitch circle"),
+            column("base_radius", "base_radius", "base circle"),
+            column("form_radius", "form_radius", "where the involute starts"),
+            column("root_radius", "root_radius", "root circle"),
+            column("bore_radius", "bore_radius", "radius at which the body is held"),
+            column("face_width", "face_width", "face width"),
+            *(measures[name] for name in ("span_teeth", "span", "ball_diameter", "over_balls")),
+            *(measures[name] for name in ("tooth_thickness", "tip_thickness")),
+        ),
+        "Gears",
+        printed=True,
+    )
+    values = tuple(value for name, pair in pairs.items() for value in pair_values(name, pair))
+    remarks = tuple(
+        f"Pair {name}: the contact ratio of {pair.total_contact_ratio:.4f} is below 1: no teeth are on the path at "
+        "some roll positions. Lengthen the teeth, raise their number or lower the centre distance."
+        for name, pair in pairs.items()
+        if pair.total_contact_ratio < 1.0
+    )
+    remarks += tuple(
+        f"Pair {name}: {sentence}."
+        for name, pair in pairs.items()
+        for sentence in (interference(pair, "driver").sentence, interference(pair, "driven").sentence)
+        if sentence
+    )
+    lone = lone_table(drawing)
+    tables = (table, *(pair_table(name, drawing) for name in pairs), *(() if lone is None else (lone,)))
+    figures = tuple(pair_figure(name, drawing) for name in pairs)
+    return Outcome(drawing, tables, values, {}, (*remarks, *unmeasured_remarks(drawing)), figures)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Everything that a drawing would carry.
+
+    Parameters
+    ----------
+    gears : mapping of str to Gear
+    pairs : mapping of str to GearPair
+    members : mapping of str to (str, str)
+        Names of the driver and the driven gear of each pair.
+    balls : mapping of str to float
+        Diameters of the measuring balls or pins that the case names, by gear [m].
+    ground : mapping of str to mapping of str to float
+        What is ground off the flanks [m], by gear and by `gear_modifications.MEANINGS`.
+    """
+
+    gears: Mapping[str, Gear]
+    pairs: Mapping[str, GearPair]
+    members: Mapping[str, tuple[str, str]]
+    balls: Mapping[str, float]
+    ground: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+
+def drawing_of(scene: Scene) -> Drawing:
+    """What a case says of its gears and pairs."""
+    parts = scene.case.pair
+    members = {name: (parts[name].driver, parts[name].driven) for name in scene.pairs}
+    balls = {name: d for name in scene.gears if (d := scene.case.gear[name].ball_diameter) is not None}
+    ground = {name: amounts for name in scene.gears if (amounts := ground_off(scene.case.gear[name]))}
+    return Drawing(scene.gears, scene.pairs, members, balls, ground)
+
+
+def measured(gear: Gear, ball_diameter: float | None = None) -> OverBalls | None:
+    """Dimension over the given balls, or over usual ones; None where no ball touches the flanks."""
+    if ball_diameter is not None:
+        return over_balls(gear, ball_diameter)
+    for diameter in (usual_ball(gear), touching_ball(gear)):
+        try:
+            return over_balls(gear, diameter)
+        except GeometryError:
+            continue
+    return None
+
+
+def measurement_columns(drawing: Drawing, names: Sequence[str]) -> tuple[Column, ...]:
+    """Thicknesses, span and dimension over balls of some gears."""
+    gears = [drawing.gears[name] for name in names]
+    found = [measured(drawing.gears[name], drawing.balls.get(name)) for name in names]
+    spans = [usual_span(gear) or (np.nan, np.nan) for gear in gears]
+    normal = "normal tooth thickness s_n" if _helical(gears) else "tooth thickness s"
+
+    return (
+        Column("tooth_thickness", np.array([gear.normal_thickness(gear.pitch_radius) for gear in gears]), "mm",
+               f"{normal} at d"),
+        Column("tip_thickness", np.array([tip_thickness(gear) for gear in gears]), "mm",
+               f"{normal.rpartition(' ')[0]} at d_Fa"),
+        Column("span_teeth", np.array([count for count, _ in spans]), "", "teeth in the span k"),
+        Column("span", np.array([length for _, length in spans]), "mm", "span W_k"),
+        Column("ball_diameter", np.array([np.nan if one is None else one.ball_diameter for one in found]), "mm",
+               "ball or pin D_M"),
+        Column("over_balls", np.array([np.nan if one is None else one.dimension for one in found]), "mm",
+               "over balls or pins M_dK"),
+    )  # fmt: skip
+
+
+def _helical(gears: Sequence[Gear]) -> bool:
+    return any(gear.helix_angle != 0.0 for gear in gears)
+
+
+def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
+    """Which gears have no span or no dimension over balls, and why."""
+    spanless = tuple(
+        f"Gear {name} has no span: its face is too narrow for discs that touch its leaning flanks."
+        for name, gear in drawing.gears.items()
+        if usual_span(gear) is None
+    )
+    return spanless + tuple(
+        f"Gear {name} has no dimension over balls: none that touches both flanks stands out of the tooth space."
+        for name, gear in drawing.gears.items()
+        if measured(gear, drawing.balls.get(name)) is None
+    )
+
+
+def _tooth_columns(names: Sequence[str], gears: Sequence[Gear]) -> tuple[Column, ...]:
+    def column(name: str, values: Sequence[float], unit: str, meaning: str) -> Column:
+        return Column(name, np.array(values), unit, meaning)
+
+    def diameter(name: str, attribute: str, meaning: str) -> Column:
+        return column(name, [2.0 * getattr(gear, attribute) for gear in gears], "mm", meaning)
+
+    return (
+        Column("gear", np.array(names), "", "gear"),
+        column("teeth", [gear.teeth for gear in gears], "", "number of teeth z"),
+        *_section_columns(gears),
+        column("profile_shift", [gear.tooth.profile_shift for gear in gears], "", "profile shift coefficient x"),
+        column("face_width", [gear.face_width for gear in gears], "mm", "face width b"),
+        diameter("reference_diameter", "pitch_radius", "reference diameter d"),
+        diameter("base_diameter", "base_radius", "base diameter d_b"),
+        diameter("tip_diameter", "tip_radius", "tip diameter d_a"),
+        diameter("root_diameter", "root_radius", "root diameter d_f"),
+        diameter("root_form_diameter", "form_radius", "root form diameter d_Ff"),
+        diameter("tip_form_diameter", "involute_tip_radius", "tip form diameter d_Fa"),
+    )
+
+
+def _section_columns(gears: Sequence[Gear]) -> tuple[Column, ...]:
+    """Module and pressure angle of the rack, and for helical gears what they become across the axis."""
+
+    def column(name: str, attribute: str, unit: str, meaning: str) -> Column:
+        return Column(name, np.array([getattr(gear, attribute) for gear in gears]), unit, meaning)
+
+    if not _helical(gears):
+        return (
+            column("module", "module", "mm", "module m"),
+            column("pressure_angle", "normal_pressure_angle", "deg", "pressure angle α"),
+        )
+    return (
+        column("module", "module", "mm", "normal module m_n"),
+        column("pressure_angle", "normal_pressure_angle", "deg", "normal pressure angle α_n"),
+        column("helix_angle", "helix_angle", "deg", "helix angle β"),
+        column("hand", "hand", "", "hand of the helix"),
+        column("lead", "lead", "mm", "lead p_z"),
+        column("transverse_module", "transverse_module", "mm", "transverse module m_t"),
+        column("transverse_pressure_angle", "transverse_pressure_angle", "deg", "transverse pressure angle α_t"),
+        column("base_helix_angle", "base_helix_angle", "deg", "base helix angle β_b"),
+    )
+
+
+def _mesh_columns(pair: GearPair) -> tuple[Column, ...]:
+    profiles = [active_profile(pair, member) for member in MEMBERS]
+    ends = pair.x_start, pair.x_end
+
+    def diameter(name: str, attribute: str, meaning: str) -> Column:
+        return Column(name, np.array([2.0 * getattr(one, attribute) for one in profiles]), "mm", meaning)
+
+    sliding = [[float(specific_sliding(pair, x, member)) for x in ends] for member in MEMBERS]
+    return (
+        diameter("active_root_diameter", "start", "start of active profile d_Nf"),
+        diameter("lpstc_diameter", "lowest_single", "lowest single contact (LPSTC)"),
+        diameter("hpstc_diameter", "highest_single", "highest single contact (HPSTC)"),
+        diameter("active_tip_diameter", "end", "end of active profile d_Na"),
+        Column("tip_clearance", np.array([pair.tip_clearance(member) for member in MEMBERS]), "mm",
+               "tip clearance c"),
+        Column("specific_sliding_start", np.array([one[0] for one in sliding]), "", "specific sliding ζ at A"),
+        Column("specific_sliding_end", np.array([one[1] for one in sliding]), "", "specific sliding ζ at E"),
+    )  # fmt: skip
+
+
+def _modified(drawing: Drawing, names: Sequence[str]) -> tuple[Column, ...]:
+    return modification_columns([drawing.ground.get(name, {}) for name in names])
+
+
+def pair_table(name: str, drawing: Drawing) -> Table:
+    """Gear data of a pair: driver first, driven gear second."""
+    pair, names = drawing.pairs[name], drawing.members[name]
+    gears = [pair.gear(member) for member in MEMBERS]
+    columns = (
+        *_tooth_columns(names, gears), *_mesh_columns(pair), *measurement_columns(drawing, names),
+        *_modified(drawing, names),
+    )  # fmt: skip
+    return Table(f"gear_data_{name}", columns, f"Gear data of pair {name}")
+
+
+def lone_table(drawing: Drawing) -> Table | None:
+    """Gear data of the gears that are in no pair, if any."""
+    paired = {name for names in drawing.members.values() for name in names}
+    names = [name for name in drawing.gears if name not in paired]
+    if not names:
+        return None
+    columns = (
+        *_tooth_columns(names, [drawing.gears[name] for name in names]),
+        *measurement_columns(drawing, names),
+        *_modified(drawing, names),
+    )
+    return Table("gear_data", columns, "Gear data")
+
+
+def pair_values(name: str, pair: GearPair) -> tuple[Value, ...]:
+    """The numbers of a pair as a whole."""
+    more: tuple[Value, ...] = ()
+    if pair.driver.helix_angle != 0.0:
+        more = (
+            Value(f"{name}.overlap_ratio", pair.overlap_ratio, "", 0.0, "overlap ratio, faces middle to middle"),
+            Value(f"{name}.total_contact_ratio", pair.total_contact_ratio, "", 0.0, "total contact ratio"),
+            Value(f"{name}.working_helix_angle", pair.working_helix_angle, "deg", 0.0, "working helix angle"),
+            Value(f"{name}.circumferential_backlash", pair.circumferential_backlash, "mm", 0.0,
+                  "backlash on the working pitch circle"),
+        )  # fmt: skip
+    return (
+        Value(f"{name}.contact_ratio", pair.contact_ratio, "", 0.0, "transverse contact ratio"),
+        Value(f"{name}.centre_distance", pair.centre_distance, "mm", 0.0, "working centre distance"),
+        Value(f"{name}.working_pressure_angle", pair.working_pressure_angle, "deg", 0.0, "working pressure angle"),
+        Value(f"{name}.path_length", pair.path_length, "mm", 0.0, "length of the path of contact"),
+        Value(f"{name}.base_pitch", pair.base_pitch, "mm", 0.0, "base pitch"),
+        Value(f"{name}.normal_backlash", pair.normal_backlash, "mm", 0.0, "backlash along the line of action"
+              if pair.driver.helix_angle == 0.0 else "backlash normal to the flanks"),
+        *more,
+        *_losses(name, pair),
+    )  # fmt: skip
+
+
+def _losses(name: str, pair: GearPair) -> tuple[Value, ...]:
+    """What teeth without deflection lose; nothing where at times none of them is in contact."""
+    from fegear.formulas.friction import wimmer
+
+    if pair.contact_ratio < 1.0:
+        return ()
+    return (Value(f"{name}.rigid_loss_factor", wimmer(pair), "", 0.0, "tooth loss factor H_V of rigid gears"),)
+
+
+#: Amounts that a drawing states, in its order, with their symbols of ISO 21771.
+MEANINGS = {
+    "tip_relief": "tip relief C_αa",
+    "root_relief": "root relief C_αf",
+    "profile_crowning": "profile crowning C_α",
+    "crowning": "crowning of the lead C_β",
+    "helix_slope": "helix slope modification C_Hβ",
+    "end_relief_I": "end relief at end I",
+    "end_relief_II": "end relief at end II",
+    "bias": "twist S_α",
+}
+
+
+def ground_off(part: GearPart) -> dict[str, float]:
+    """Amounts that a case gives for a gear [m], by `MEANINGS`; tables, files and amounts in Delta have none."""
+    found: dict[str, float] = {}
+
+    def add(key: str, amount: float | None) -> None:
+        if amount:
+            found[key] = found.get(key, 0.0) + amount
+
+    if part.relief is not None:
+        for key, ends in (("tip_relief", part.relief.tip), ("root_relief", part.relief.root)):
+            for end in ends:
+                add(key, end.amount)
+        for crown in part.relief.crowning:
+            add("profile_crowning", crown.amount)
+    if part.lead is not None:
+        add("crowning", part.lead.crowning)
+        add("helix_slope", part.lead.slope)
+        for relief in part.lead.end_relief:
+            for side in ("I", "II"):
+                if relief.end in (side, "both"):
+                    add(f"end_relief_{side}", relief.amount)
+    if part.bias is not None:
+        add("bias", part.bias.amount)
+    return found
+
+
+def modification_columns(amounts: Sequence[Mapping[str, float]]) -> tuple[Column, ...]:
+    """A column for every modification that some of the gears have."""
+    return tuple(
+        Column(key, np.array([one.get(key, 0.0) for one in amounts]), "um", meaning)
+        for key, meaning in MEANINGS.items()
+        if any(key in one for one in amounts)
+    )
+
+
+GEOMETRY = Stage(
+    subjects=_everything,
+    inputs=lambda scene, _subject: drawing_of(scene),
+    compute=lambda drawing, _upstream, _work: drawing,
+    present=_present,
+    cites=citing(INVOLUTE, Citation("iso-53", "standard basic racks", "Table 1")),
+    forecast=lambda _scene, _subject: Forecast({}, 0.01),
+)

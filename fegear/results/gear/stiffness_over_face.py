@@ -1,0 +1,429 @@
+"""Result ``stiffness`` over the face: the table of one gear with its width, band by band.
+
+Figures of a gear with a width: compliance over the flank, root stress along the face, the deformed tooth.
+
+Stage ``solid-solution``: the influence functions of a gear with its width, for every result that needs them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.case.built.rated_duty import bore_remarks
+from fegear.case.built.solid_influence import (
+    check_solid_gear,
+    seconds_of_solid_gear,
+    solid_gear_to_solve,
+    solid_settings_of,
+    solid_solution_settings,
+    solve_solid_influence,
+)
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, SolidMeshField
+from fegear.engine.figure.items import Curve, HeatMap, Skin
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.table import Column, Table
+from fegear.results.forecasts import RING
+from fegear.results.gear.stiffness import USUAL_HALF_WIDTH, check_contacts_of, contact_half_width, load_radii
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array, Index
+    from fegear.case.built.solid_influence import SolidGearToSolve
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Upstream, Work
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.solid.field import SolidField
+    from fegear.fem.solid.influence import SolidInfluence
+    from fegear.fem.solid.table import SolidTable
+    from fegear.geometry.gear import Gear
+
+
+#: Reading off one band of a solved gear, and the fixed part [s].
+_SECONDS_PER_BAND, _SECONDS_OF_TABLE = 5e-3, 0.1
+
+
+#: Of the picture of the deformed tooth when the case names none [N].
+_USUAL_FORCE = 1e3
+
+
+_SIDES: tuple[tuple[Side, str], ...] = (
+    ("tension", "largest tangential stress of the fillet below the loaded flank, anywhere along the face"),
+    ("compression", "most negative tangential stress of the other fillet"),
+)
+
+
+def _table(name: str, t: SolidTable) -> Table:
+    compliance, stress = "um/N", "MPa/N"
+    rows, places = t.c_self.shape
+
+    def up(values: Array) -> Array:
+        return np.repeat(values, places)
+
+    def along(values: Array) -> Array:
+        return np.tile(values, rows)
+
+    columns = [
+        Column("radius", up(t.radius), "mm", "radius of the band's middle"),
+        Column("roll_angle", up(t.roll_angle), "deg", "roll angle of the band's middle"),
+        Column("face_position", along(t.position), "mm", "place of the band's top along the face, from its middle"),
+        Column("c_self", t.c_self.ravel(), compliance, "approach of the contact per force"),
+        Column("c_prev", t.c_prev.ravel(), compliance, "deflection of the same band on the tooth before"),
+        Column("c_next", t.c_next.ravel(), compliance, "of the same band on the tooth after (which the flank faces)"),
+        Column("contact_half_width", up(t.half_width), "mm", "half-width of the contact that c_self is for"),
+        Column("pressed_half_width", up(t.pressed_half_width), "mm", "of the pressure that all else is for"),
+        Column("band_before", along(t.before), "mm", "how far the band reaches toward the face end at minus"),
+        Column("band_after", along(t.after), "mm", "how far it reaches toward the other end"),
+    ]
+    for side, meaning in _SIDES:
+        found = t.root[side]
+        columns += [
+            Column(f"root_{side}", found.value.ravel(), stress, meaning),
+            Column(f"root_{side}_position", found.position.ravel(), "mm", "where it sits along the face"),
+            Column(f"root_{side}_radius", found.radius.ravel(), "mm", "and its distance from the axis"),
+            Column(f"root_{side}_axial", found.axial.ravel(), stress, "stress across it in the surface there"),
+            Column(f"root_{side}_shear", found.shear.ravel(), stress, "shear between both there"),
+        ]
+    columns += [
+        Column("c_self_error", t.errors["c_self"].ravel(), compliance, "estimated error of c_self"),
+        Column("c_neighbour_error", t.errors["c_neighbour"].ravel(), compliance, "of c_prev and c_next"),
+        Column("root_tension_error", t.errors["root_tension"].ravel(), stress, "of root_tension"),
+        Column("root_compression_error", t.errors["root_compression"].ravel(), stress, "of root_compression"),
+    ]
+    title = f"Compliance and root stress of gear {name} over its face, per force on a band"
+    return Table(f"stiffness_over_face_{name}", tuple(columns), title)
+
+
+def _values(name: str, t: SolidTable) -> tuple[Value, ...]:
+    found = []
+    for key, values, error, unit, pick in (
+        ("largest_band_c_self", t.c_self, t.errors["c_self"], "um/N", np.argmax),
+        ("smallest_band_c_self", t.c_self, t.errors["c_self"], "um/N", np.argmin),
+        ("largest_band_root_tension", t.root["tension"].value, t.errors["root_tension"], "MPa/N", np.argmax),
+        ("largest_band_root_compression", t.root["compression"].value, t.errors["root_compression"], "MPa/N",
+         np.argmin),
+    ):  # fmt: skip
+        i, j = np.unravel_index(int(pick(values)), values.shape)
+        where = f"per force on a band at radius {t.radius[i] * 1e3:.6g} mm, face position {t.position[j] * 1e3:.6g} mm"
+        found.append(Value(f"{name}.{key}", float(values[i, j]), unit, float(error[i, j]), where))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class SolidTableInputs:
+    """What the table of a solid gear depends on beside its influence functions.
+
+    Parameters
+    ----------
+    gear : Gear
+    radii, positions, half_widths : ndarray, shape (R,), (Z,), (R,)
+        Of the bands and their contacts [m].
+    tolerance : float
+        That estimated errors are held against.
+    assumed : tuple of str
+        Sentences about values that the case does not give.
+    name : str
+        Of the gear.
+    """
+
+    gear: Gear
+    radii: Array
+    positions: Array
+    half_widths: Array
+    tolerance: float
+    assumed: tuple[str, ...] = field(default=(), compare=False)
+    name: str = field(default="", compare=False)
+
+
+def face_positions(scene: Scene, name: str) -> Array:
+    """Places along the face [m]: those of the case, or so many equally spaced from end to end."""
+    wanted, half = scene.case.stiffness.face_positions, 0.5 * scene.gears[name].face_width
+    if isinstance(wanted, int):
+        return np.linspace(-half, half, wanted) if wanted > 1 else np.zeros(1)
+    return np.array(wanted)
+
+
+def _inputs(scene: Scene, name: str) -> SolidTableInputs:
+    assumed, radii = bore_remarks(scene, name), load_radii(scene, name)
+    if scene.case.stiffness.contact_half_width is None:
+        usual = f"so c_self is for a half-width of {USUAL_HALF_WIDTH} modules."
+        assumed = (f"Gear {name}: no contact_half_width was given, {usual}", *assumed)
+    widths, tolerance = contact_half_width(scene, name, radii), scene.case.accuracy.tolerance
+    return SolidTableInputs(scene.gears[name], radii, face_positions(scene, name), widths, tolerance, assumed, name)
+
+
+def _compute(asked: SolidTableInputs, upstream: Upstream, _work: Work) -> SolidTable:
+    from fegear.fem.solid.table import solid_table
+
+    (influence,) = upstream.values()
+    return solid_table(asked.gear, influence, asked.radii, asked.positions, asked.half_widths)
+
+
+def _present(table: SolidTable, asked: SolidTableInputs) -> Outcome:
+    name, m = asked.name, asked.gear.module
+    reach = float(max(table.before.max(), table.after.max())) * 1e3
+    width = f"{table.pressed_half_width.min() * 1e3:.4g} to {table.pressed_half_width.max() * 1e3:.4g}"
+    bands = (
+        f"Gear {name} over its face: each force presses on a band of the contact line, falling linearly along the face "
+        f"over {reach:.4g} mm to either side, where the face goes on so far. c_self is for the contact's own "
+        f"half-width; neighbours and root stress are for a pressure of {width} mm half-width up the flank."
+    )
+    return Outcome(
+        table,
+        (_table(name, table),),
+        _values(name, table),
+        remarks=(bands, *_sliced(table, asked), *_missed(table, asked), *asked.assumed),
+        figures=solid_figures(name, asked.gear, table, _USUAL_FORCE * m / 1e-3),
+    )
+
+
+def _sliced(table: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
+    """Say what slices are."""
+    if table.influence.settings.source == "solid":
+        return ()
+    said = "coupled slices of its plane section are used instead of the solid; errors are their largest on solid gears"
+    return (f"Gear {asked.name} over its face: {said}.",)
+
+
+def _missed(t: SolidTable, asked: SolidTableInputs) -> tuple[str, ...]:
+    """Say where the tolerance is missed."""
+    told = []
+    for label, value in (
+        ("c_self", t.c_self),
+        ("root_tension", t.root["tension"].value),
+        ("root_compression", t.root["compression"].value),
+    ):
+        relative = np.abs(t.errors[label] / value).max(axis=1)
+        i = int(np.argmax(relative))
+        if relative[i] > asked.tolerance:
+            within = float(np.mean(relative <= asked.tolerance))
+            told.append(
+                f"Gear {asked.name} over its face: the estimated error of {label} reaches {relative[i]:.1e} (tolerance "
+                f"{asked.tolerance:.0e}), at radius {t.radius[i] * 1e3:.6g} mm; at {within:.0%} of the radii it is "
+                "within the tolerance."
+            )
+    return tuple(told)
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_contacts_of(scene, name)
+    wanted, half = scene.case.stiffness.face_positions, 0.5 * scene.gears[name].face_width
+    for i, place in enumerate(wanted if isinstance(wanted, list) else ()):
+        if abs(place) > half * (1.0 + 1e-9):
+            raise InputError(
+                f"stiffness.face_positions[{i}]", f"{place * 1e3:.9g} mm", f"lies off the face of gear {name}",
+                f"it runs from {-half * 1e3:.9g} mm to {half * 1e3:.9g} mm, 0 in its middle",
+            )  # fmt: skip
+
+
+def _subjects(scene: Scene) -> tuple[str, ...]:
+    """The gear that ``[stiffness]`` names, spur or helical; every gear of the case if it names none."""
+    part = scene.case.stiffness
+    if part.face_positions is None:
+        return ()
+    return (part.gear,) if part.gear else tuple(scene.gears)
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    part = scene.case.stiffness
+    wanted = part.face_positions or 0
+    places = wanted if isinstance(wanted, int) else len(wanted)
+    bands = part.band_radii * places
+    return Forecast({"bands": bands}, _SECONDS_OF_TABLE + _SECONDS_PER_BAND * bands)
+
+
+#: Bands whose root stress is drawn along the face.
+_MOST_CURVES = 5
+
+
+#: Largest displacement as drawn, and depth below the root circle down to which the tooth is drawn [modules].
+_DRAWN, _DEPTH = 0.25, 0.8
+
+
+#: Where the scale of colours ends: this share of the nodes away from the band has less stress.
+_TOP = 99.0
+
+
+#: Layers of the field along the face per module, and how many at most.
+_LAYERS, _MOST_LAYERS = 3.0, 60
+
+
+def solid_figures(name: str, gear: Gear, t: SolidTable, force: float) -> tuple[Figure | DeferredFigure, ...]:
+    """Describe all figures of a solid gear's table; `force` [N] is that of the deformed tooth."""
+    title = f"Deformed tooth of gear {name}"
+    deformed = DeferredFigure(f"deformed_tooth_{name}", title, partial(deformed_tooth, name, gear, t, force))
+    return (*((_map(name, t),) if min(t.c_self.shape) > 1 else ()), _along(name, t), deformed)
+
+
+def worst_band(t: SolidTable) -> tuple[int, int]:
+    """Row and column of the band that causes the largest root tension, of those with room for a pressure of full width.
+
+    Nearer to the flank's ends bands are narrower and the stress is that of the contact.
+    """
+    full = t.pressed_half_width >= 0.999 * t.pressed_half_width.max()
+    tension = np.where(full[:, None], t.root["tension"].value, -np.inf)
+    i, j = np.unravel_index(int(np.argmax(tension)), tension.shape)
+    return int(i), int(j)
+
+
+def _map(name: str, t: SolidTable) -> Figure:
+    """c_self and the largest root tension over the flank."""
+    x, y = Axis("face position", "mm"), Axis("roll angle of the load", "deg")
+    order, sequence = np.argsort(t.roll_angle), np.argsort(t.position)
+    at = t.position[sequence] * 1e3, np.rad2deg(t.roll_angle[order])
+
+    def over(values: np.ndarray, label: str, unit: str) -> Panel:
+        return Panel(x, y, (HeatMap(*at, values[np.ix_(order, sequence)], label, unit),), title=label)
+
+    worst = float(np.max(t.errors["c_self"] / t.c_self))
+    return Figure(
+        f"flank_{name}",
+        f"Flank of gear {name}",
+        f"Gear {name}, per force on a band: approach of the contact, and the largest tension that it causes in the "
+        f"fillet. Estimated error of c_0 at most {worst:.1e} of it.",
+        (
+            over(t.c_self * 1e6, "c_{0} of the contact", "um/N"),
+            over(t.root["tension"].value * 1e-6, "largest root tension", "MPa/N"),
+        ),
+        columns=2,
+    )
+
+
+def _along(name: str, t: SolidTable) -> Figure:
+    """Largest stress up each fillet along the face, at the radius of the largest tension."""
+    row, _ = worst_band(t)
+    count = t.position.size
+    chosen = np.unique(np.round(np.linspace(0, count - 1, min(count, _MOST_CURVES))).astype(int))
+    panels = []
+    for side, sign, title in (
+        ("tension", 1.0, "Fillet below the loaded flank"),
+        ("compression", -1.0, "Fillet of the other flank"),
+    ):
+        found = t.root[side]  # type: ignore[index]
+        curves = tuple(
+            Curve(found.places * 1e3, sign * found.along[row, j] * 1e-6, f"band at {t.position[j] * 1e3:.4g} mm",
+                  f"series:{i}", dash="solid", markers=False)
+            for i, j in enumerate(chosen)
+        )  # fmt: skip
+        label = "largest tension up the fillet" if side == "tension" else "largest compression (magnitude)"
+        panels.append(Panel(Axis("face position", "mm"), Axis(label, "MPa/N", zero=True), curves, title=title))
+    return Figure(
+        f"root_stress_over_face_{name}",
+        f"Root stress of gear {name} along its face",
+        f"Gear {name}: largest tangential stress up each fillet along the face, per force on bands at radius "
+        f"{t.radius[row] * 1e3:.6g} mm.",
+        tuple(panels),
+        columns=2,
+    )
+
+
+def deformed_tooth(name: str, gear: Gear, t: SolidTable, force: float) -> Figure:
+    """The loaded tooth in space under the band that causes the largest root tension, and its neighbours as a field."""
+    from fegear.fem.solid.bands import bands
+    from fegear.fem.solid.field import solid_field
+
+    influence, m = t.influence, gear.module * 1e3
+    i, j = worst_band(t)
+    radius, place, before, after, width = (
+        x / gear.module for x in (t.radius[i], t.position[j], t.before[j], t.after[j], t.pressed_half_width[i])
+    )
+    slope = influence.fine.line_slope(radius)[0]
+    band = bands(radius, place, before, width, after=after, slope=slope)
+    layers = min(max(8, round(_LAYERS * influence.width)), _MOST_LAYERS)
+    fine = influence.fine
+    field = solid_field(
+        gear.tooth, fine.tau, influence.width, fine.poisson_ratio, fine.bore_radius, influence.settings, band,
+        np.linspace(-0.5, 0.5, layers + 1) * influence.width,
+    )  # fmt: skip
+    # Deflection x E x module over force; stress x module^2 over force.
+    moved = field.displacement[0] * force / (gear.material.young_modulus * gear.module) * 1e3
+    stress = field.von_mises[0] * force / gear.module**2 * 1e-6
+    scale = _DRAWN * m / float(np.sqrt((moved**2).sum(axis=0)).max())
+    rest = field.mesh.points * m
+    skin = _skin(field)
+    nodes, corners = np.unique(skin, return_inverse=True)
+    fillets = np.hstack([field.sector.edges["fillet"], field.sector.edges["back_fillet"]])
+    top = float(np.percentile(stress[field.mesh.nodes_of(fillets)], _TOP))
+    where = f"radius {t.radius[i] * 1e3:.4g} mm, face position {t.position[j] * 1e3:.4g} mm"
+    shown = Skin(
+        (rest + scale * moved)[:, nodes],
+        corners.reshape(skin.shape),
+        stress[nodes],
+        top,
+        "von Mises stress",
+        "MPa",
+        floor=(gear.tooth.root_radius - _DEPTH) * m,
+    )
+    camera = ((0.9, 0.75, 1.3), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    return Figure(
+        f"deformed_tooth_{name}",
+        f"Deformed tooth of gear {name}",
+        f"Gear {name} under {force:.4g} N on a band ({where}), displacements "
+        f"{scale:.3g} times as large. The colour scale ends at {top:.3g} MPa; under the band the stress is higher.",
+        (Panel(Axis(), Axis(), (shown,), height=1.5, camera=camera),),
+        field=SolidMeshField(f"{name}_tooth", rest, field.mesh.wedges, {"displacement": moved.T, "von_mises": stress}),
+        under=f"{force:.4g} N",
+    )
+
+
+def _skin(field: SolidField) -> Index:
+    """Triangles of the tooth's outline along the face and of both its ends, shape (3, M)."""
+    mesh, sector = field.mesh, field.sector
+    free = [edges for key, edges in sector.edges.items() if key not in ("bore", "side_a", "side_b")]
+    a, b, c, d, low, right, up, left = mesh.faces(np.hstack(free)).reshape(8, -1)
+    strips = [(a, low, left), (low, up, left), (up, d, left), (low, b, right), (low, right, up), (right, c, up)]
+    t = sector.triangles
+    four = np.hstack([t[[i, j, k]] for i, j, k in ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))])
+    ends = [mesh.at_station(four, station) for station in (0, mesh.layers)]
+    return np.hstack([*(np.stack(strip) for strip in strips), *ends])
+
+
+def needs_solid_solution(*gears: str) -> tuple[Task, ...]:
+    """The tasks of this stage for gears, each once."""
+    return tuple(Task("solid-solution", name) for name in dict.fromkeys(gears))
+
+
+def solid_solution_of(upstream: Upstream, gear: str) -> SolidInfluence:
+    """What this stage computed for a gear."""
+    return cast("SolidInfluence", upstream[Task("solid-solution", gear)])
+
+
+def _solve_gears(asked: SolidGearToSolve, _upstream: Upstream, work: Work) -> SolidInfluence:
+    return solve_solid_influence(asked, work.cache)
+
+
+def _present_solution(influence: SolidInfluence, _asked: SolidGearToSolve) -> Outcome:
+    return Outcome(influence, settings=solid_solution_settings(influence))
+
+
+def _solving_forecast(scene: Scene, name: str) -> Forecast:
+    settings, gear = solid_settings_of(scene, name), scene.gears[name]
+    return Forecast(asdict(settings), seconds_of_solid_gear(settings, gear.face_width / gear.module))
+
+
+SOLID_STIFFNESS = Stage(
+    subjects=_subjects,
+    needs=lambda _scene, name: needs_solid_solution(name),
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    cites=citing(*RING, Citation("iso-21771", "the transverse section, turned along the face")),
+    forecast=_forecast,
+)
+
+
+SOLID_SOLUTION = Stage(
+    subjects=lambda scene: tuple(scene.gears),
+    inputs=solid_gear_to_solve,
+    compute=_solve_gears,
+    present=_present_solution,
+    check=check_solid_gear,
+    cites=citing(*RING),
+    forecast=_solving_forecast,
+)

@@ -1,0 +1,1 @@
+"""Results of helical pairs: tooth contact, contact lines, generation, vibration on bearings."""

@@ -1,0 +1,1 @@
+"""Results of a loaded pair: load sharing, transmission error, root stress, pressure, losses."""

@@ -1,0 +1,311 @@
+"""Stages of the result ``flank-surface``: sliding, pressure, temperatures and lubricant film from A to E."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+from fegear.case.built.loaded_flanks import FLANK_EFFECTS
+from fegear.case.built.loaded_pair import check_relief
+from fegear.case.built.pair_surface import pair_surface, tip_reliefs
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage
+from fegear.results.pair.flank_surface_tables import surface_figures, surface_tables, surface_values
+from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
+from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair, needs_pair, plane_pairs
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.case.built.pair_surface import PairSurface
+    from fegear.case.reading import Scene
+    from fegear.contact.surface import FlankSurface
+    from fegear.contact.wide.loaded import LoadedFlanks
+    from fegear.engine.stage import Upstream, Work
+    from fegear.formulas.iso6336.part20_flash import FlashTemperatures
+    from fegear.formulas.iso6336.part21_integral import IntegralTemperature
+    from fegear.formulas.iso6336.part22_micropitting import RatedFilm
+    from fegear.geometry.pair import GearPair
+
+#: Places along the path of a plane pair, and along path and face of one with a width.
+_PATH, _WIDE_PATH, _FACE = 400, 121, 41
+#: Ends of path and face at which the load of a pair with a width is told by extrapolation alone, of their length.
+_MARGIN = 1e-3
+
+
+@dataclass(frozen=True)
+class FlankSurfaceInputs:
+    """What is read of the case beside the loaded pair.
+
+    Parameters
+    ----------
+    surface : PairSurface
+    name : str
+        Of the pair.
+    """
+
+    surface: PairSurface
+    name: str = field(compare=False)
+
+
+@dataclass(frozen=True)
+class FlankSurfaceData:
+    """Flanks of a pair by computed load and by the standards.
+
+    Parameters
+    ----------
+    pair : GearPair
+    computed : FlankSurface
+    wide : bool
+        Whether the load is that over the face.
+    flash : FlashTemperatures
+        ISO/TS 6336-20 with its own load sharing, at the same places.
+    film : RatedFilm
+        ISO/TS 6336-22, at the same places.
+    least_film : (float, str)
+        Its lambda_GF,min, and at which point.
+    integral : IntegralTemperature or None
+        ISO/TS 6336-21; None outside its range.
+    scuffing, scuffing_integral : float
+        Theta_S and theta_intS [degC]; NaN where the case gives no test.
+    permissible_film : float
+        lambda_GFP; NaN where the case gives no test.
+    share_outside : float
+        Largest share of the load that tip corners bear off the path.
+    why_not : str
+        Why there is no integral temperature.
+    """
+
+    pair: GearPair
+    computed: FlankSurface
+    wide: bool
+    flash: FlashTemperatures
+    film: RatedFilm
+    least_film: tuple[float, str]
+    integral: IntegralTemperature | None
+    scuffing: float
+    scuffing_integral: float
+    permissible_film: float
+    share_outside: float
+    why_not: str
+
+
+def _inputs(scene: Scene, name: str) -> FlankSurfaceInputs:
+    return FlankSurfaceInputs(pair_surface(scene, name, tip_reliefs(scene, name)), name)
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_relief(scene, name)
+    pair_surface(scene, name, tip_reliefs(scene, name))
+
+
+def _check_wide(scene: Scene, name: str) -> None:
+    pair_surface(scene, name, tip_reliefs(scene, name))
+
+
+def _standards(asked: PairSurface, computed: FlankSurface, *, wide: bool, outside: float) -> FlankSurfaceData:
+    from fegear.formulas.iso6336 import part20_flash, part21_integral, part22_micropitting
+
+    rated, tests = asked.rated, asked.tests
+    integral, why = None, ""
+    try:
+        integral = part21_integral.integral_temperature(rated)
+    except RangeError as error:
+        why = str(error)
+    scuffing = scuffing_integral = permissible = math.nan
+    if tests.scuffing_stage is not None:
+        scuffing = part20_flash.scuffing_temperature(rated, tests.scuffing_stage)
+        scuffing_integral = part21_integral.scuffing_integral_temperature(rated, tests.scuffing_stage)
+    elif tests.scuffing_temperature is not None:
+        scuffing = tests.scuffing_temperature
+    if tests.permissible_film is not None:
+        permissible = tests.permissible_film
+    elif tests.micropitting_stage is not None:
+        permissible = part22_micropitting.permissible_ratio(
+            rated.surface.oil, tests.micropitting_stage, tests.micropitting_temperature, tests.material_factor
+        )
+    return FlankSurfaceData(
+        rated.pair, computed, wide, part20_flash.flash_temperatures(rated, computed.x),
+        part22_micropitting.rated_film(rated, computed.x), part22_micropitting.least_ratio(rated), integral, scuffing,
+        scuffing_integral, permissible, outside, why,
+    )  # fmt: skip
+
+
+def _compute(inputs: FlankSurfaceInputs, upstream: Upstream, _work: Work) -> FlankSurfaceData:
+    from fegear.contact.plane.pair_history import pair_history
+    from fegear.contact.surface import flank_surface
+
+    asked, loaded = inputs.surface, loaded_pair(upstream, inputs.name)
+    rated, factors = asked.rated, asked.rated.factors
+    history = pair_history(loaded.engagement, [rated.load], _PATH)
+    pair = rated.pair
+    on = (history.x >= pair.x_start) & (history.x <= pair.x_end)
+    outside = float(np.where(on, 0.0, history.share[:, 0]).max(initial=0.0))
+    # uneven sharing is computed; load over the face, shocks and what machines add are not
+    scale = factors.application * factors.dynamic * factors.face
+    load = (history.load[on, 0] * scale / pair.face_width)[None, :]
+    law = asked.friction.of(pair, rated.speed, rated.load * scale) if asked.friction else None
+    computed = flank_surface(rated, history.x[on], np.zeros(1), load, law)
+    return _standards(asked, computed, wide=False, outside=outside)
+
+
+def _compute_wide(inputs: FlankSurfaceInputs, upstream: Upstream, _work: Work) -> FlankSurfaceData:
+    from fegear.contact.surface import flank_surface
+
+    asked, loaded = inputs.surface, loaded_flanks(upstream, inputs.name)
+    rated, factors, found = asked.rated, asked.rated.factors, loaded.found
+    pair, lines = rated.pair, found.lines
+    x = _between(pair.x_start, pair.x_end, _WIDE_PATH)
+    z = _between(lines.low, lines.high, _FACE)
+    scale = factors.application * factors.dynamic
+    load = np.maximum(found.spread(x, z, _without_edges(found, loaded.nominal)), 0.0) * scale
+    law = asked.friction.of(pair, rated.speed, rated.load * scale) if asked.friction else None
+    computed = flank_surface(rated, x, z, load, law)
+    return _standards(asked, computed, wide=True, outside=0.0)
+
+
+def _without_edges(found: LoadedFlanks, case: int) -> Array:
+    """Line load at the stations; at tips and form circles that of the station beside them, (P, M) [N/m].
+
+    An edge of an unrelieved tooth presses harder than smooth flanks do, and no formula of the surface is for edges.
+    """
+    lines, load = found.lines, found.line_load[:, :, case].copy()
+    for p in range(lines.roll.size):
+        for s in lines.at(p):
+            inner = s.start + np.flatnonzero(~lines.at_edge[p, s])
+            if inner.size:
+                load[p, s] = np.interp(lines.z[p, s], lines.z[p, inner], load[p, inner])
+    return np.asarray(load)
+
+
+def _between(low: float, high: float, count: int) -> Array:
+    """Places from end to end, those of the path with the pitch point among them."""
+    room = _MARGIN * (high - low)
+    places = np.linspace(low + room, high - room, count)
+    return np.unique(np.append(places, 0.0)) if low < 0.0 < high else places
+
+
+def _present(data: FlankSurfaceData, inputs: FlankSurfaceInputs) -> Outcome:
+    name, asked = inputs.name, inputs.surface
+    rated, tests = asked.rated, asked.tests
+    remarks = [*asked.remarks, *_remarks(name, data, asked)]
+    settings: dict[str, object] = {
+        "friction": "mean coefficients of the standards" if asked.friction is None else asked.friction.law,
+        "load_factors": rated.factors.product,
+        "speed": rated.speed,
+        "oil_temperature": rated.surface.temperature,
+    }
+    if tests.scuffing_stage is not None:
+        settings["scuffing_load_stage"] = tests.scuffing_stage
+    if tests.micropitting_stage is not None:
+        settings["micropitting_load_stage"] = tests.micropitting_stage
+    return Outcome(
+        data, surface_tables(name, data, asked), surface_values(name, data, asked), settings, tuple(remarks),
+        surface_figures(name, data, asked),
+    )  # fmt: skip
+
+
+def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]:
+    """What a reader must know of the numbers."""
+    told, pair = [], data.pair
+    if math.isnan(data.scuffing):
+        told.append(
+            f"Pair {name}: no safety against scuffing: lubricant gives neither scuffing_load_stage nor "
+            "scuffing_temperature."
+        )
+    oil = asked.rated.surface.temperature
+    if data.scuffing <= oil:
+        told.append(
+            f"Pair {name}: the oil of {oil:.4g} degC is no cooler than its scuffing temperature of {data.scuffing:.4g} "
+            "degC: S_B is not above zero, and says no more than that."
+        )
+    if math.isnan(data.permissible_film):
+        told.append(
+            f"Pair {name}: no safety against micropitting: lubricant gives neither micropitting_load_stage nor "
+            "permissible_film."
+        )
+    if data.why_not:
+        told.append(f"Pair {name}: no integral temperature: {data.why_not}")
+    if pair.contact_ratio >= 2.0 and pair.driver.helix_angle == 0.0:
+        told.append(
+            f"Pair {name}: the load sharing factors of ISO/TS 6336-20 and -22 are for contact ratios below 2; theirs "
+            "is 1 everywhere here, and the computed load sharing tells more."
+        )
+    told += _recalled(name, asked)
+    if data.share_outside > 0.0:
+        told.append(
+            f"Pair {name}: tip corners bear up to {data.share_outside:.1%} of the load off the path of contact, where "
+            "no temperature and no film is told."
+        )
+    if asked.rated.factors.product != 1.0:
+        told.append(
+            f"Pair {name}: loads are shared as at the nominal load and then multiplied by the load factors; what was "
+            f"computed replaces {'K_Hbeta and K_Halpha' if data.wide else 'K_Halpha'}."
+        )
+    for member in ("driver", "driven"):
+        gear = pair.gear(member)
+        reach = float(min(pair.flank_curvature_radius(np.array([pair.x_start, pair.x_end]), member)))
+        if reach < 0.02 * gear.base_radius:
+            told.append(
+                f"Pair {name}: contact comes close to the base circle of the {member} gear, where specific sliding "
+                "goes to minus infinity and film and curvature to zero."
+            )
+    return told
+
+
+def _recalled(name: str, asked: PairSurface) -> list[str]:
+    """Say which factors are those of no printed source."""
+    from fegear.formulas.iso6336.part22_micropitting import narrow
+
+    told = []
+    if narrow(asked.rated.pair):
+        told.append(
+            f"Pair {name}: X_Y of ISO/TS 6336-22 is recalled from memory for helical teeth with an overlap ratio of "
+            f"{asked.rated.pair.overlap_ratio:.3g}; printed numbers back it from 1.2 on."
+        )
+    if asked.tests.micropitting_stage is not None:
+        told.append(
+            f"Pair {name}: lambda_GFP takes the line load at A of the FZG gears in proportion to their torque; it is "
+            "printed for load stage 10 alone (236.3 N/mm)."
+        )
+    return told
+
+
+def _forecast(_scene: Scene, _name: str) -> Forecast:
+    return Forecast({"positions": _PATH}, 0.05)
+
+
+_CITES = citing(
+    Citation("iso-ts-6336-20", "flash temperature and scuffing safety S_B", "clauses 5 to 10"),
+    Citation("iso-ts-6336-21", "integral temperature and scuffing safety S_intS", "clause 6.1"),
+    Citation("iso-ts-6336-22", "film thickness and micropitting safety S_lambda", "clauses 5 to 11"),
+    Citation("blok", "flash temperature of sliding flanks"),
+)
+
+FLANK_SURFACE = Stage(
+    subjects=plane_pairs,
+    needs=needs_pair,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    effects=EFFECTS,
+    cites=_CITES,
+    forecast=_forecast,
+)
+
+WIDE_FLANK_SURFACE = Stage(
+    subjects=wide_pairs,
+    needs=needs_flanks,
+    inputs=_inputs,
+    compute=_compute_wide,
+    present=_present,
+    check=_check_wide,
+    effects=FLANK_EFFECTS,
+    cites=_CITES,
+    forecast=_forecast,
+)

@@ -1,0 +1,316 @@
+"""Stage ``loaded-flanks``: a pair of gears with a width under all its loads, for the stages that tell of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
+
+from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
+from fegear.case.built.pair_inputs import gear_name
+from fegear.case.built.solid_influence import flank_pairs
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.geometry.pair import MEMBERS
+from fegear.geometry.plausible import heavy_load
+from fegear.results.forecasts import HERTZ, INVOLUTE, RING
+from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.base.arrays import Array
+    from fegear.base.solution_cache import SolutionCache
+    from fegear.case.built.loaded_flanks import FlanksToLoad
+    from fegear.case.reading import Scene
+    from fegear.contact.wide.compliance import FlankCompliance
+    from fegear.contact.wide.error import FlankError
+    from fegear.contact.wide.gaps import FlankGaps
+    from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+    from fegear.contact.wide.over_pitch import OverPitch, Stated
+    from fegear.engine.stage import Upstream, Work
+    from fegear.fem.solid.flank_body import FlankBody
+    from fegear.geometry.pair import Member
+
+#: Effects that keep flanks apart.
+_OF_GAPS = ("relief", "spacing_errors", "misalignment")
+#: Share of the mean transmission error that gaps may be off by without a remark.
+_UNREMARKED = 0.02
+#: How often contact lines may be continued farther along tip edges that turn out to be loaded.
+_LONGER_EDGES = 3
+#: Roll positions that show what tip edges change.
+_FEW = 24
+#: So many loaded places at a roll position tell too little of the load along a contact line.
+_FEWEST = 3
+#: Seconds of one contact line on one gear, and of the contact at one roll position.
+_LINE, _CONTACT = 0.0023, 0.001
+
+
+@dataclass(frozen=True)
+class LoadedFlanksData:
+    """What the stage hands to those that stand on it.
+
+    Parameters
+    ----------
+    asked : FlanksToLoad
+        What the case says of the pair.
+    flanks : FlankPair
+        The pair, ready to be loaded again under other gaps and loads.
+    known : FlankCompliance
+        Its compliances at all roll positions, made for the nominal load.
+    gaps : FlankGaps
+        What keeps the flanks apart, of the effects that are on.
+    found : LoadedFlanks
+        Under every load of the case, ascending.
+    over : OverPitch
+        What is stated of the whole base pitch under every load, at as many roll positions as that needs.
+    error : FlankError
+        Estimated errors of `found`, and of what is stated.
+    nominal : int
+        Number of the nominal load among them.
+    neglected : mapping of str to (float, float)
+        By the effects that are off: what each of them would change, if it were on, of mean transmission error [m] and
+        K_Hbeta at the nominal load.
+    unloaded : ndarray, shape (P,)
+        Transmission error of the rigid flanks at the roll positions of `found` [m].
+    beside : float
+        By how much gaps are off because modified flanks touch beside the contact lines of unmodified ones [m].
+    missed : float
+        Share by which compliances of slices are known to be off; 0 for solids.
+    """
+
+    asked: FlanksToLoad
+    flanks: FlankPair
+    known: FlankCompliance
+    gaps: FlankGaps
+    found: LoadedFlanks
+    over: OverPitch
+    error: FlankError
+    nominal: int
+    neglected: Mapping[str, tuple[float, float]]
+    unloaded: Array
+    beside: float
+    missed: float
+
+    @cached_property
+    def stated(self) -> Stated:
+        """Numbers of the whole base pitch under every load."""
+        return self.over.stated
+
+
+def wide_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs with a width that carry a load; all of them where none does, so that the missing load is reported."""
+    return tuple(name for name in flank_pairs(scene) if name in scene.wide_pairs) or tuple(scene.wide_pairs)
+
+
+def needs_flanks(_scene: Scene, name: str) -> tuple[Task, ...]:
+    """The task of this stage for a pair."""
+    return (Task("loaded-flanks", name),)
+
+
+def loaded_flanks(upstream: Upstream, name: str) -> LoadedFlanksData:
+    """What this stage computed for a pair."""
+    return cast("LoadedFlanksData", upstream[Task("loaded-flanks", name)])
+
+
+def load_flanks(
+    asked: FlanksToLoad, bodies: Mapping[Member, FlankBody], cache: SolutionCache
+) -> tuple[FlankPair, FlankGaps, LoadedFlanks]:
+    """Load a pair of solved gears as its case says, along tip edges as far as these carry load.
+
+    Parameters
+    ----------
+    asked : FlanksToLoad
+    bodies : mapping of {"driver", "driven"} to FlankBody
+    cache : SolutionCache
+        Of compliances.
+
+    Returns
+    -------
+    flanks : FlankPair
+    gaps : FlankGaps
+        Of the effects that are on.
+    found : LoadedFlanks
+        Under all loads.
+    """
+    from fegear.contact.wide.lines import usual_gap
+    from fegear.contact.wide.loaded import FlankPair
+
+    effects = asked.effects
+    flanks = FlankPair(
+        asked.pair, bodies, effects.neighbour_coupling, effects.hertz, asked.panel, asked.positions,
+        usual_gap(asked.pair, max(asked.loads)) if effects.corner_contact else 0.0, cache,
+    )  # fmt: skip
+    gaps = asked.gaps(**{effect: effects.is_on(effect) for effect in _OF_GAPS})
+    found = flanks.solve(asked.loads, gaps, flanks.compliance(asked.nominal))
+    for _ in range(_LONGER_EDGES):
+        if not found.reaches_the_last_edges:
+            break
+        flanks = replace(flanks, most_gap=2.0 * flanks.most_gap)
+        found = flanks.solve(asked.loads, gaps, flanks.compliance(asked.nominal))
+    return flanks, gaps, found
+
+
+def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlanksData:
+    from fegear.contact.wide.error import flank_error, with_misses
+    from fegear.contact.wide.gaps import beside_the_lines, unloaded_error
+    from fegear.contact.wide.over_pitch import over_pitch
+    from fegear.fem.solid.slice_laws import missed_by_slices
+
+    effects = asked.effects
+    solved = [solid_solution_of(upstream, gear) for gear in asked.gears]
+    fine = {member: one.fine for member, one in zip(MEMBERS, solved, strict=True)}
+    coarse = {member: one.coarse or one.fine for member, one in zip(MEMBERS, solved, strict=True)}
+    flanks, gaps, found = load_flanks(asked, fine, work.cache)
+    known = found.known
+    missed = missed_by_slices(asked.pair.driver.twist)["contact"] if asked.width == "slices" else 0.0
+    over = over_pitch(flanks, found, gaps, asked.nominal)
+    error = with_misses(flank_error(flanks, found, coarse, gaps, over, asked.nominal), found, missed)
+    neglected = {
+        effect: _with_edges(asked, flanks, gaps, over.stated)
+        if effect == "corner_contact"
+        else _with(effect, asked, replace(flanks, positions=over.found.lines.roll.size), over.found, gaps)
+        for effect in FLANK_EFFECTS
+        if not effects.is_on(effect) and asked.has_data(effect)
+    }
+    unloaded = unloaded_error(asked.pair, gaps, found.lines.roll)
+    beside = beside_the_lines(asked.pair, gaps, found.lines)
+    nominal = asked.loads.index(asked.nominal)
+    return LoadedFlanksData(
+        asked, flanks, known, gaps, found, over, error, nominal, neglected, unloaded, beside, missed
+    )  # fmt: skip
+
+
+def _with_edges(asked: FlanksToLoad, flanks: FlankPair, gaps: FlankGaps, stated: Stated) -> tuple[float, float]:
+    """What contact along tip edges changes, at no more roll positions than means over a base pitch need."""
+    from fegear.contact.wide.lines import usual_gap
+
+    edged = replace(flanks, positions=_FEW, most_gap=usual_gap(asked.pair, asked.nominal))
+    found, i = edged.solve([asked.nominal], gaps), asked.loads.index(asked.nominal)
+    changes = found.mean_transmission_error[0] - stated.mean[i], found.face_load_factor[0] - stated.face_load_factor[i]
+    return float(changes[0]), float(changes[1])
+
+
+def _with(
+    effect: str, asked: FlanksToLoad, flanks: FlankPair, without: LoadedFlanks, gaps: FlankGaps
+) -> tuple[float, float]:
+    """What an effect that is off changes of mean transmission error and K_Hbeta, at the roll positions of both."""
+    known, i = without.known, asked.loads.index(asked.nominal)
+    if effect == "neighbour_coupling":
+        flanks = replace(flanks, coupling=True)
+        known = flanks.compliance(asked.nominal)
+    elif effect == "hertz":
+        known = replace(known, fixed_half_width=None)
+    else:
+        gaps = asked.gaps(**{one: asked.effects.is_on(one) or one == effect for one in _OF_GAPS})
+        if effect == "misalignment" and asked.misaligned != flanks.pair:
+            flanks = replace(flanks, pair=asked.misaligned)
+            known = flanks.compliance(asked.nominal)
+    found = flanks.solve([asked.nominal], gaps, known)
+    return (
+        float(found.mean_transmission_error[0] - without.mean_transmission_error[i]),
+        float(found.face_load_factor[0] - without.face_load_factor[i]),
+    )
+
+
+def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
+    found = data.found
+    settings = {
+        "width": asked.width, "positions": asked.positions, "panels": asked.panels,
+        "stations": int(found.lines.present.sum()), "newton_steps": found.contact.steps,
+        "hertz": asked.effects.hertz, "neighbour_coupling": asked.effects.neighbour_coupling,
+        "base_pitch": asked.base_pitch, "nominal_load": asked.nominal, "loads": list(asked.loads),
+        "positions_of_stated": data.over.found.lines.roll.size,
+        "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
+    }  # fmt: skip
+    remarks = (*_heavy(data), *_sliced(data), *_neglected(data), *_beside(data), *_short(data))
+    return Outcome(data, settings=settings, remarks=remarks)
+
+
+def _heavy(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say where no metal carries the load, spread over the face or where it stands."""
+    found = data.over.found
+    sentence = heavy_load(data.flanks.pair, float(found.load.max()), float(found.largest_pressure.max()))
+    return (f"Pair {data.asked.name}: {sentence}",) if sentence else ()
+
+
+def _sliced(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say what slices are."""
+    if not data.missed:
+        return ()
+    told = (
+        f"Pair {data.asked.name}: coupled slices of the plane section are used instead of solid gears. Their "
+        f"compliances miss those of solids by up to {data.missed:.0%}, which the estimated errors count."
+    )
+    return (told,)
+
+
+def _beside(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say where modifications or errors are too steep for the contact lines of unmodified flanks."""
+    mean = float(data.stated.mean[data.nominal])
+    if data.beside <= _UNREMARKED * mean:
+        return ()
+    remark = (
+        f"Pair {data.asked.name}: where modifications or errors are steep the flanks touch beside the contact lines of "
+        f"unmodified ones, which moves gaps by up to {data.beside * 1e6:.3g} um; the mean transmission error is "
+        f"{mean * 1e6:.4g} um. Column te_unloaded of load_distribution_roll_{data.asked.name} knows it, loads do not."
+    )
+    return (remark,)
+
+
+def _short(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say where the load stands on so few places that panels are too long for it."""
+    found = data.found
+    fewest = (found.contact.force > 0.0).sum(axis=1).min(axis=0)
+    if fewest.min() > _FEWEST:
+        return ()
+    i = int(fewest.argmin())
+    remark = (
+        f"Pair {data.asked.name}: under {found.load[i]:.4g} N the flanks touch at {fewest[i]} places of a roll "
+        "position, too few to tell how the load spreads between them. Raise load_distribution.panels."
+    )
+    return (remark,)
+
+
+def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
+    """Say how much the effects would change that are off."""
+    told = {
+        "neighbour_coupling": "coupling between tooth pairs is neglected",
+        "hertz": "contacts do not widen with their load",
+        "relief": "gears have a relief or lead modifications that are neglected",
+        "spacing_errors": "gears have spacing_errors that are neglected",
+        "corner_contact": "contact lines end at the tips instead of going on along their edges",
+        "misalignment": "the pair has a misalignment or line_error that is neglected",
+    }
+    i = data.nominal
+    mean, factor = float(data.stated.mean[i]), float(data.stated.face_load_factor[i])
+    return tuple(
+        f"Pair {data.asked.name}: {told[effect]} (effects.{effect}). With it the mean transmission error would be "
+        f"{(mean + te) * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {factor + k:.4g} for {factor:.4g}."
+        for effect, (te, k) in data.neglected.items()
+    )
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    return needs_solid_solution(gear_name(scene, name, "driver"), gear_name(scene, name, "driven"))
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    asked = flanks_to_load(scene, name)
+    lines = asked.positions * (1.0 + asked.pair.total_contact_ratio)
+    seconds = 2.0 * 2.0 * _LINE * lines + _CONTACT * asked.positions * (1 + len(asked.loads))
+    return Forecast({"positions": asked.positions, "panels": asked.panels}, seconds)
+
+
+LOADED_FLANKS = Stage(
+    subjects=wide_pairs,
+    inputs=flanks_to_load,
+    compute=_compute,
+    present=_present,
+    needs=_needs,
+    check=check_flanks_to_load,
+    effects=FLANK_EFFECTS,
+    cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
+    forecast=_forecast,
+)

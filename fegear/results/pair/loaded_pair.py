@@ -1,0 +1,223 @@
+"""Stage ``loaded-pair``: compliances, modifications and errors of a pair, for the stages that load it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.plain import content_key
+from fegear.case.built.loaded_pair import (
+    LoadedPair,
+    build_loaded_pair,
+    check_pair,
+    compliance_sources,
+    engagement_at_rest,
+    shifted_sources,
+)
+from fegear.case.built.neglected_effects import Neglected, neglected_effects, neglected_remarks, whole_ratio_remarks
+from fegear.case.built.pair_inputs import pair_inputs
+from fegear.engine.figure.figure import Axis
+from fegear.engine.figure.items import Mark, few, ramp
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.table import Column
+from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
+from fegear.results.gear.drawing import path_marks
+from fegear.results.gear.stiffness import needs_solution, solution_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from fegear.base.arrays import Array
+    from fegear.case.built.pair_inputs import PairInputs
+    from fegear.case.effects import EffectsPart
+    from fegear.case.reading import Scene
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.neglected_effects import Answer
+    from fegear.engine.citation import Citation
+    from fegear.engine.stage import Upstream, Work
+    from fegear.geometry.pair import GearPair
+
+#: Abscissa of figures over one base pitch.
+BASE_PITCH = Axis("roll position over one base pitch", "mm")
+#: Effects that load sharing knows.
+EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact")
+#: What the results that load a pair stand on; those of the train stand on its transmission error.
+_ANSWERS: dict[str, Answer] = {
+    "load-sharing": "load on a tooth pair",
+    "root-stress-history": "root tension",
+    **dict.fromkeys(
+        (
+            "transmission-error", "relief-curves", "relief-chart", "gear-train", "natural-modes", "campbell",
+            "dynamic-increments", "mesh-force-spectrum", "tooth-force", "dynamic-root-stress", "tooth-friction",
+            "dynamic-factor", "design-chart",
+        ),
+        "transmission error",
+    ),
+}  # fmt: skip
+#: Results that are for every load of the case.
+_FOR_ALL_LOADS = frozenset({"load-sharing", "transmission-error", "root-stress-history", "relief", "relief-chart"})
+
+
+def drawn_loads(loads: Sequence[float], nominal: float, word: str = "nominal") -> list[tuple[int, str, str]]:
+    """Index, label and role of the loads that are drawn: all, or evenly many with the nominal one."""
+    near = min(range(len(loads)), key=lambda i: abs(loads[i] - nominal))
+    chosen = few(len(loads), (near,))
+    labels = [f"{loads[i]:.5g} N" + (f" ({word})" if loads[i] == nominal and len(loads) > 1 else "") for i in chosen]
+    return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
+
+
+def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tuple[Column, ...]:
+    """Columns of one load each, joined below each other behind a column of the load."""
+    rows = [len(part[0]) for part in parts]
+    return (
+        Column("total_load", np.repeat(loads, rows), "N", "along the line of action"),
+        *(replace(same[0], si=np.concatenate([column.si for column in same])) for same in zip(*parts, strict=True)),
+    )
+
+
+def pitch_marks(pair: GearPair, x: Array) -> tuple[Mark, ...]:
+    """Marks of those points that a roll over one base pitch passes, between the ends of x [m]."""
+    low, high = float(x.min()) * 1e3, float(x.max()) * 1e3
+    room = 1e-6 * (high - low)
+    return tuple(m for m in path_marks(pair) if low - room <= m.at <= high + room)
+
+
+def plane_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs of plane teeth that carry a load; all of them where none does, so that the missing load is reported."""
+    pairs = scene.plane_pairs
+    loaded = tuple(name for name, pair in pairs.items() if scene.case.pair[name].normal_load(pair) is not None)
+    return loaded or tuple(pairs)
+
+
+def needs_pair(_scene: Scene, name: str) -> tuple[Task, ...]:
+    """The task of this stage for a pair."""
+    return (Task("loaded-pair", name),)
+
+
+def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
+    """What this stage computed for a pair."""
+    return cast("LoadedPairData", upstream[Task("loaded-pair", name)]).pair
+
+
+@dataclass(frozen=True)
+class LoadedPairData:
+    """A pair ready for load sharing, and what its case neglects."""
+
+    pair: LoadedPair
+    neglected: Neglected
+
+
+@dataclass(frozen=True)
+class LoadedPairInputs:
+    """What this stage reads.
+
+    Parameters
+    ----------
+    asked : PairInputs
+    answers : tuple of str
+        What the wanted results stand on, for the sizes of neglected effects.
+    loads : tuple of float
+        For which those are estimated [N].
+    tolerance : float
+        That they are held against.
+    effects : EffectsPart
+        All of the case, for the remedies.
+    estimates : bool
+        Whether errors and neglected effects are estimated.
+    """
+
+    asked: PairInputs
+    answers: tuple[Answer, ...]
+    loads: tuple[float, ...]
+    tolerance: float = field(compare=False)
+    effects: EffectsPart = field(compare=False)
+    estimates: bool = True
+
+
+def _inputs(scene: Scene, name: str) -> LoadedPairInputs:
+    asked, wanted = pair_inputs(scene, name), scene.case.results
+    answers = tuple(dict.fromkeys(_ANSWERS[result] for result in wanted if result in _ANSWERS))
+    if asked.compliance.source != "fe":  # knows no root stress: that of formulas follows the tooth's own load
+        answers = tuple(dict.fromkeys("load on a tooth pair" if a == "root tension" else a for a in answers))
+    loads = tuple(sorted({asked.loads[0], asked.nominal, asked.loads[-1]}))
+    if not _FOR_ALL_LOADS & set(wanted):
+        loads = (asked.nominal,)
+    tolerance, effects = scene.case.accuracy.tolerance, scene.case.effects
+    return LoadedPairInputs(asked, answers, loads, tolerance, effects, scene.estimates)
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    part = scene.case.pair[name]
+    return needs_solution(part.driver, part.driven) if part.compliance.source == "fe" else ()
+
+
+def _at_rest(asked: PairInputs, upstream: Upstream, work: Work) -> Engagement:
+    """The pair without modifications, the same one for every load and relief: it keeps what they do not change."""
+    influences = {gear: solution_of(upstream, gear) for gear in asked.gears} if upstream else {}
+    effects = asked.effects
+    key = content_key(
+        "pair at rest", asked.pair, asked.compliance, asked.table,
+        [effects.neighbour_coupling, effects.hertz, effects.corner_contact],
+        asked.nominal if effects.hertz == "linear" else None,
+        # what is kept holds them, so that no other can have their identity
+        [id(influences[gear]) for gear in asked.gears] if influences else [],
+    )  # fmt: skip
+    return work.cache.solve(key, lambda: engagement_at_rest(asked, compliance_sources(asked, influences))).value
+
+
+def _compute(inputs: LoadedPairInputs, upstream: Upstream, work: Work) -> LoadedPairData:
+    asked = inputs.asked
+    at_rest = _at_rest(asked, upstream, work)
+    shifted = shifted_sources(asked, (at_rest.compliance.driver, at_rest.compliance.driven)) if inputs.estimates else ()
+    pair = build_loaded_pair(asked, at_rest, shifted)
+    if not inputs.estimates:
+        return LoadedPairData(pair, Neglected({}, {}))
+    return LoadedPairData(pair, neglected_effects(asked, pair, inputs.answers, inputs.loads))
+
+
+def _present(data: LoadedPairData, inputs: LoadedPairInputs) -> Outcome:
+    asked, pair = inputs.asked, data.pair
+    settings: dict[str, object] = {
+        "compliance": "; ".join(pair.sources),
+        "hertz": asked.effects.hertz,
+        "neighbour_coupling": asked.effects.neighbour_coupling,
+        "corner_contact": asked.effects.corner_contact,
+        "face_width": pair.engagement.compliance.face_width,
+        "nominal_load": pair.nominal,
+        "loads": list(pair.loads),
+    }
+    neglected = neglected_remarks(asked.name, data.neglected, inputs.effects, inputs.tolerance, pair.nominal)
+    whole = whole_ratio_remarks(asked.name, pair.engagement, inputs.effects)
+    return Outcome(data, (), (), settings, tuple(dict.fromkeys((*asked.assumed, *whole, *neglected))))
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """Tables over the flank, from the influence functions of both gears or from closed forms."""
+    source = scene.case.pair[name].compliance.source
+    return Forecast({"compliance": source}, 0.1 if source == "fe" else 0.06)
+
+
+def _cites(scene: Scene, name: str) -> Iterator[Citation]:
+    source = scene.case.pair[name].compliance.source
+    if source == "fe":
+        yield from RING
+    yield from CLOSED_FORM_COMPLIANCES.get(source, ())
+    if scene.case.effects.hertz != "none":
+        yield HERTZ
+        yield PATCH
+
+
+LOADED_PAIR = Stage(
+    subjects=plane_pairs,
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=check_pair,
+    effects=EFFECTS,
+    cites=_cites,
+    forecast=_forecast,
+)

@@ -1,0 +1,499 @@
+"""Stages of the result ``tooth-loss``: friction loss, loss factors and efficiency of a pair and of a train.
+
+Stage ``train-loss`` of the result ``tooth-loss``: what the teeth of all meshes of a train take of its power.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+from fegear.case.built.loaded_flanks import FLANK_EFFECTS
+from fegear.case.built.loaded_pair import check_relief
+from fegear.case.built.pair_surface import check_speed, pair_friction, pair_speed
+from fegear.case.built.train import build_train, check_train, train_inputs, train_part
+from fegear.engine.citation import Citation
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Bars, Curve
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.table import Column, Table
+from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
+from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
+from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair, needs_pair, plane_pairs
+from fegear.results.train.gear_train import the_train
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.base.arrays import Array
+    from fegear.case.built.pair_surface import PairFriction
+    from fegear.case.reading import Scene
+    from fegear.contact.surface import FrictionLaw
+    from fegear.contact.tooth_loss import ToothLoss
+    from fegear.engine.stage import Upstream, Work
+    from fegear.geometry.pair import GearPair
+
+
+#: Places along the path, and half as many for the estimate of the error.
+_POSITIONS = 801
+
+
+#: Laws by the works that they stand in.
+_WORKS = {
+    "schlenk": "schlenk", "iso-6336-20": "iso-ts-6336-20", "iso-6336-21": "iso-ts-6336-21",
+    "iso-6336-22": "iso-ts-6336-22", "buckingham": "lin-huston-coy", "benedict-kelley": "lin-huston-coy",
+}  # fmt: skip
+
+
+_NEGLECTED = "bearings, churning, windage and seals are neglected"
+
+
+@dataclass(frozen=True)
+class ToothLossInputs:
+    """What is read of the case beside the loaded pair.
+
+    Parameters
+    ----------
+    friction : PairFriction
+    speed : float
+        Of the driver [rad/s].
+    loads : tuple of float
+        Of the case, ascending [N].
+    nominal : int
+        Number of the nominal one.
+    given : bool
+        Whether the case names the friction law.
+    name : str
+    """
+
+    friction: PairFriction
+    speed: float
+    loads: tuple[float, ...]
+    nominal: int
+    given: bool = field(compare=False)
+    name: str = field(compare=False)
+
+    @property
+    def load(self) -> float:
+        """The nominal load [N]."""
+        return self.loads[self.nominal]
+
+    def law(self, pair: GearPair, load: float) -> FrictionLaw:
+        """Friction law under a load [N]."""
+        return self.friction.of(pair, self.speed, load)
+
+
+@dataclass(frozen=True)
+class ToothLossData:
+    """Losses of a pair.
+
+    Parameters
+    ----------
+    pair : GearPair
+    over_loads : tuple of ToothLoss
+        By the computed load and the friction law, under every load.
+    nominal : int
+        Number of the nominal load.
+    error : float
+        Share by which loss and loss factor may be off, of integration and of the loads over the face.
+    ohlendorf, wimmer : float
+        H_V of both; NaN outside their ranges.
+    """
+
+    pair: GearPair
+    over_loads: tuple[ToothLoss, ...]
+    nominal: int
+    error: float
+    ohlendorf: float
+    wimmer: float
+
+    @property
+    def found(self) -> ToothLoss:
+        """Under the nominal load."""
+        return self.over_loads[self.nominal]
+
+
+def _inputs(scene: Scene, name: str) -> ToothLossInputs:
+    part = scene.case.pair[name]
+    load, loads = part.normal_load(scene.pairs[name]) or math.nan, part.all_loads(scene.pairs[name])
+    law, speed = pair_friction(scene, name, "tooth-loss"), pair_speed(scene, name)
+    return ToothLossInputs(law, speed, loads, loads.index(load), part.friction is not None, name)
+
+
+def _check_wide(scene: Scene, name: str) -> None:
+    check_speed(scene, name, "tooth-loss")
+    pair_friction(scene, name, "tooth-loss")
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_relief(scene, name)
+    _check_wide(scene, name)
+
+
+def _compute(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
+    from fegear.contact.plane.pair_history import pair_history
+    from fegear.contact.tooth_loss import loss_over_path
+
+    engagement = loaded_pair(upstream, inputs.name).engagement
+    pair = engagement.pair
+    fine, coarse = (pair_history(engagement, inputs.loads, count) for count in (_POSITIONS, _POSITIONS // 2))
+    found = tuple(
+        loss_over_path(pair, fine, i, inputs.speed, inputs.law(pair, load)) for i, load in enumerate(inputs.loads)
+    )
+    i = inputs.nominal
+    return _data(pair, found, i, loss_over_path(pair, coarse, i, inputs.speed, inputs.law(pair, inputs.load)))
+
+
+def _compute_wide(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
+    from fegear.contact.tooth_loss import loss_over_face
+
+    loaded = loaded_flanks(upstream, inputs.name)
+    pair = loaded.found.pair
+    found = tuple(
+        loss_over_face(loaded.found, i, inputs.speed, inputs.law(pair, load)) for i, load in enumerate(inputs.loads)
+    )
+    i = inputs.nominal
+    return _data(pair, found, i, loss_over_face(loaded.error.coarse, i, inputs.speed, inputs.law(pair, inputs.load)))
+
+
+def _data(pair: GearPair, losses: tuple[ToothLoss, ...], nominal: int, coarse: ToothLoss) -> ToothLossData:
+    from fegear.formulas.friction import ohlendorf, wimmer
+
+    closed = []
+    for formula in (ohlendorf, wimmer):
+        try:
+            closed.append(formula(pair))
+        except RangeError:
+            closed.append(math.nan)
+    found = losses[nominal]
+    error = abs(coarse.loss_factor / found.loss_factor - 1.0)
+    if found.loss:
+        error = max(error, abs(coarse.loss / found.loss - 1.0))
+    return ToothLossData(pair, losses, nominal, error, closed[0], closed[1])
+
+
+def _present(data: ToothLossData, inputs: ToothLossInputs) -> Outcome:
+    name, found, law = inputs.name, data.found, inputs.friction.law
+    table = Table(
+        f"tooth_loss_{name}",
+        (
+            Column("x", found.x, "mm", "of the tooth pair on the line of action, from the pitch point"),
+            Column("roll_angle", np.asarray(data.pair.roll_angle(found.x, "driver")), "deg", "of the driver"),
+            Column("load", found.load, "N", "on the tooth pair"),
+            Column("friction_coefficient", found.coefficient, "", f"law {law}"),
+            Column("power_loss", found.power, "W", "that this tooth pair takes"),
+        ),
+        f"Friction loss of a tooth pair of {name} along the path of contact",
+    )
+    error, share = data.error, found.loss / found.transmitted
+    values = [
+        Value(f"{name}.tooth_loss", found.loss, "W", error * found.loss, "mean power that tooth friction takes"),
+        Value(f"{name}.transmitted_power", found.transmitted, "W", 0.0, "load times speed of the base circle"),
+        Value(f"{name}.tooth_efficiency", found.efficiency, "", error * share, f"of the teeth alone: {_NEGLECTED}"),
+        Value(f"{name}.loss_factor", found.loss_factor, "", error * found.loss_factor, "H_V by the computed load"),
+        Value(f"{name}.loss_factor_wimmer", data.wimmer, "", 0.0, "H_V of rigid gears, load even along the lines"),
+        Value(f"{name}.loss_factor_ohlendorf", data.ohlendorf, "", 0.0, "H_V, two pairs share alike, spur gears"),
+        Value(f"{name}.mean_friction", found.mean_coefficient, "", None, f"coefficient that takes as much, law {law}"),
+    ]
+    remarks = [
+        f"Pair {name}: loss of sliding teeth only; {_NEGLECTED}. Loads are those without friction."
+    ]  # fmt: skip
+    if not inputs.given:
+        remarks.append(f"Pair {name}: no friction law is given, so it is Schlenk's with the lubricant of the case.")
+    outside = (found.x < data.pair.x_start) | (found.x > data.pair.x_end)
+    if data.pair.driver.helix_angle == 0.0 and (found.load[outside] > 0.0).any():
+        most = found.load[outside].max()
+        remarks.append(
+            f"Pair {name}: tip corners bear up to {most:.4g} N off the path of contact; they slide "
+            "as if the line of action went on there."
+        )
+    if math.isnan(data.ohlendorf):
+        remarks.append(f"Pair {name}: Ohlendorf's H_V is for contact ratios between 1 and 2.")
+    shown = tuple(value for value in values if not math.isnan(value.si))
+    settings = {"friction": law, "local": inputs.friction.local, "speed": inputs.speed}
+    tables, figures = [table], [_figure(data, inputs)]
+    if len(inputs.loads) > 1:
+        tables.append(_loads(data, inputs))
+        figures.append(_loads_figure(data, inputs))
+    return Outcome(data, tuple(tables), shown, settings, tuple(remarks), tuple(figures))
+
+
+def _loads(data: ToothLossData, inputs: ToothLossInputs) -> Table:
+    def column(name: str, attribute: str, unit: str, meaning: str) -> Column:
+        return Column(name, np.array([getattr(one, attribute) for one in data.over_loads]), unit, meaning)
+
+    columns = (
+        Column("load", np.array(inputs.loads), "N", "along the line of action"),
+        column("transmitted_power", "transmitted", "W", ""),
+        column("tooth_loss", "loss", "W", "mean power that tooth friction takes"),
+        column("loss_factor", "loss_factor", "", "H_V by the computed load"),
+        column("mean_friction", "mean_coefficient", "", "coefficient that takes as much everywhere"),
+        column("efficiency", "efficiency", "", "of the teeth alone"),
+    )
+    return Table(f"tooth_loss_loads_{inputs.name}", columns, f"Tooth loss of pair {inputs.name} under every load")
+
+
+def _loads_figure(data: ToothLossData, inputs: ToothLossInputs) -> Figure:
+    name, load = inputs.name, np.array(inputs.loads)
+    axis = Axis("load along the line of action", "N", zero=True)
+    factor = np.array([one.loss_factor for one in data.over_loads])
+    rigid = {"Ohlendorf": data.ohlendorf, "Wimmer": data.wimmer}
+    if math.isclose(data.ohlendorf, data.wimmer, rel_tol=1e-9):  # spur gears: one says what the other does
+        rigid = {"Ohlendorf and Wimmer": data.wimmer}
+    flat = [
+        Curve(load, np.full(load.size, value), who, role, dash="dash", markers=False)
+        for (who, value), role in zip(rigid.items(), ("series:1", "grey"), strict=False)
+        if not math.isnan(value)
+    ]
+    lost = np.array([1.0 - one.efficiency for one in data.over_loads]) * 100.0
+    return Figure(
+        f"tooth_loss_loads_{name}",
+        f"Tooth loss of pair {name} over the load",
+        f"Pair {name}: loss factor H_V by the computed load and of rigid gears, and share of the power "
+        f"that the teeth lose by the law {inputs.friction.law}. Under little load reliefs stay open, tips unloaded.",
+        (
+            Panel(axis, Axis("loss factor H_{V}"), (Curve(load, factor, "computed load", "series:0"), *flat)),
+            Panel(axis, Axis("power lost", "%", zero=True), (Curve(load, lost, "", "red", dash="solid"),)),
+        ),
+        under=f"{inputs.speed * 30.0 / math.pi:.5g} rpm",
+    )
+
+
+def _figure(data: ToothLossData, inputs: ToothLossInputs) -> Figure:
+    name, found = inputs.name, data.found
+    x, marks = found.x * 1e3, path_marks(data.pair)
+
+    def panel(label: str, unit: str, y: np.ndarray[tuple[int, ...], np.dtype[np.float64]], role: str) -> Panel:
+        curve = Curve(x, y, "", role, dash="solid", markers=False)
+        return Panel(LINE_OF_ACTION, Axis(label, unit, zero=True), (curve,), marks)
+
+    closed = {"Wimmer": data.wimmer, "Ohlendorf": data.ohlendorf}
+    beside = ", ".join(f"{who} {value:.4f}" for who, value in closed.items() if not math.isnan(value))
+    return Figure(
+        f"tooth_loss_{name}",
+        f"Friction loss of pair {name}",
+        f"Pair {name}: load on a tooth pair, friction coefficient (law {inputs.friction.law}) and the power that this "
+        f"pair loses from A to E. Loss factor H_V by the computed load {found.loss_factor:.4f} ({beside}); the teeth "
+        f"lose {found.loss:.4g} W of {found.transmitted:.5g} W.",
+        (
+            panel("load on the pair", "N", found.load, "blue"),
+            panel("friction coefficient", "", found.coefficient, "green"),
+            panel("power lost", "W", found.power, "red"),
+        ),
+        under=f"{inputs.load:.5g} N, {inputs.speed * 30.0 / math.pi:.5g} rpm",
+    )
+
+
+def _cites(scene: Scene, name: str) -> Iterator[Citation]:
+    yield Citation("ohlendorf", "loss factor H_V of equal sharing")
+    yield Citation("wimmer", "loss factor H_V of even load along contact lines")
+    part = scene.case.pair[name].friction
+    law = "schlenk" if part is None else part.name
+    if law in _WORKS:
+        yield Citation(_WORKS[law], "friction coefficient")
+
+
+def _forecast(_scene: Scene, _name: str) -> Forecast:
+    return Forecast({"positions": _POSITIONS}, 0.05)
+
+
+def loss_task(scene: Scene, pair: str) -> Task:
+    """The task that tells the loss of a pair."""
+    return Task("wide-tooth-loss" if pair in scene.wide_pairs else "tooth-loss", pair)
+
+
+def loss_of(upstream: Upstream, pair: str) -> ToothLossData:
+    """What it computed."""
+    for stage in ("tooth-loss", "wide-tooth-loss"):
+        if (task := Task(stage, pair)) in upstream:
+            return cast("ToothLossData", upstream[task])
+    raise KeyError(pair)
+
+
+#: Speeds of pair and train may differ by this share without a remark.
+_SAME = 1e-3
+
+
+@dataclass(frozen=True)
+class TrainLossInputs:
+    """Power flow of a train.
+
+    Parameters
+    ----------
+    meshes, pairs : tuple of str
+        Every mesh, and the pair whose teeth it has.
+    power : tuple of float
+        That each mesh transmits [W].
+    driving : float
+        Power that drives the train [W].
+    doubtful : tuple of str
+        Meshes whose pair gives another speed than the train.
+    """
+
+    meshes: tuple[str, ...]
+    pairs: tuple[str, ...]
+    power: tuple[float, ...]
+    driving: float
+    doubtful: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class TrainLossData:
+    """Losses of a train; arrays over its meshes.
+
+    Parameters
+    ----------
+    power, loss, factor, friction : ndarray
+        Power of each mesh [W], what its teeth lose [W], H_V, mean friction coefficient.
+    driving : float
+        [W].
+    error : float
+        Of the whole loss [W].
+    """
+
+    power: Array
+    loss: Array
+    factor: Array
+    friction: Array
+    driving: float
+    error: float
+
+    @property
+    def efficiency(self) -> float:
+        """Of the teeth of all meshes together."""
+        return 1.0 - float(self.loss.sum()) / self.driving
+
+
+def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
+    part = train_part(scene)
+    return tuple(loss_task(scene, pair) for pair in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh))
+
+
+def _train_inputs(scene: Scene, _subject: str) -> TrainLossInputs:
+    from fegear.dynamics.train.matrices import static_forces
+
+    part = train_part(scene)
+    asked = train_inputs(scene)
+    train = build_train(asked)
+    forces = np.abs(static_forces(train))
+    speed = scene.case.dynamics.one_speed / abs(float(train.ratios[train.dof[asked.speed_of]]))
+    if not speed > 0.0:  # by the first pair that gives one
+        for i, mesh in enumerate(part.mesh):
+            own = pair_speed(scene, part.pair_of(mesh))
+            if own > 0.0:
+                speed = own * asked.pairs[mesh].driver.teeth / float(train.mesh_orders[i])
+                break
+    frequency = train.mesh_frequencies(speed)
+    power, doubtful = [], []
+    for i, mesh in enumerate(part.mesh):
+        pair = asked.pairs[mesh]
+        power.append(float(forces[i]) * float(frequency[i]) * pair.base_pitch)
+        turns = 2.0 * math.pi * float(frequency[i]) / pair.driver.teeth
+        if abs(pair_speed(scene, part.loaded_pair_of(mesh)) / turns - 1.0) > _SAME:
+            doubtful.append(mesh)
+    shafts = np.asarray(train.torque) * np.asarray(train.ratios) * speed
+    return TrainLossInputs(
+        tuple(part.mesh), tuple(part.loaded_pair_of(mesh) for mesh in part.mesh), tuple(power),
+        float(np.abs(shafts[shafts * np.sign(shafts[np.argmax(np.abs(shafts))]) > 0.0]).sum()), tuple(doubtful),
+    )  # fmt: skip
+
+
+def _compute_train(asked: TrainLossInputs, upstream: Upstream, _work: Work) -> TrainLossData:
+    found = [loss_of(upstream, pair) for pair in asked.pairs]
+    power = np.array(asked.power)
+    share = np.array([one.found.loss / one.found.transmitted for one in found])
+    return TrainLossData(
+        power, power * share, np.array([one.found.loss_factor for one in found]),
+        np.array([one.found.mean_coefficient for one in found]), asked.driving,
+        float((power * share * np.array([one.error for one in found])).sum()),
+    )  # fmt: skip
+
+
+def _present_train(data: TrainLossData, asked: TrainLossInputs) -> Outcome:
+    efficiency = np.where(data.power > 0.0, 1.0 - data.loss / np.maximum(data.power, np.finfo(float).tiny), 1.0)
+    table = Table(
+        "train_loss",
+        (
+            Column("mesh", np.array(asked.meshes), "", "mesh of the train"),
+            Column("power", data.power, "W", "that it transmits"),
+            Column("tooth_loss", data.loss, "W", "that its teeth lose"),
+            Column("loss_factor", data.factor, "", "H_V by the computed load"),
+            Column("mean_friction", data.friction, "", "coefficient that takes as much everywhere"),
+            Column("efficiency", efficiency, "", "of its teeth"),
+        ),
+        "Tooth loss of every mesh of the train",
+    )
+    total = float(data.loss.sum())
+    values = (
+        Value("train.power", data.driving, "W", 0.0, "that drives the train"),
+        Value("train.tooth_loss", total, "W", data.error, "sum over all meshes"),
+        Value("train.tooth_efficiency", data.efficiency, "", data.error / data.driving,
+              "of the teeth alone: bearings, churning, windage and seals are neglected"),
+    )  # fmt: skip
+    remarks = [
+        "The train's efficiency is that of sliding teeth alone; each mesh transmits the power that it has without loss."
+    ]
+    remarks += [
+        f"Mesh {mesh}: its pair gives another speed than the train; its friction is that at its own speed."
+        for mesh in asked.doubtful
+    ]
+    places = np.arange(len(asked.meshes), dtype=float)
+    figure = Figure(
+        "train_loss",
+        "Tooth loss of the train",
+        f"What the teeth of every mesh lose of the {data.driving:.5g} W that drive the train: {total:.4g} W together, "
+        f"an efficiency of {data.efficiency:.5f}. Bearings, churning, windage and seals are neglected.",
+        (
+            Panel(
+                Axis("mesh", categories=asked.meshes), Axis("tooth loss", "W", zero=True),
+                (Bars(places, data.loss, "", "red"),),
+            ),
+        ),
+    )  # fmt: skip
+    return Outcome(data, (table,), values, {}, tuple(remarks), (figure,))
+
+
+def _check_train(scene: Scene, _subject: str) -> None:
+    check_train(scene)
+
+
+TOOTH_LOSS = Stage(
+    subjects=plane_pairs,
+    needs=needs_pair,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    effects=EFFECTS,
+    cites=_cites,
+    forecast=_forecast,
+)
+
+
+WIDE_TOOTH_LOSS = Stage(
+    subjects=wide_pairs,
+    needs=needs_flanks,
+    inputs=_inputs,
+    compute=_compute_wide,
+    present=_present,
+    check=_check_wide,
+    effects=FLANK_EFFECTS,
+    cites=_cites,
+    forecast=_forecast,
+)
+
+
+TRAIN_LOSS = Stage(
+    subjects=the_train,
+    needs=_needs,
+    inputs=_train_inputs,
+    compute=_compute_train,
+    present=_present_train,
+    check=_check_train,
+    forecast=lambda _scene, _subject: Forecast({}, 0.01),
+)

@@ -1,0 +1,422 @@
+"""Result ``flank-fracture``: exposure of surface-hardened flanks over depth, and the case depth that they need.
+
+Tables, values and remarks of the result ``flank-fracture``.
+
+Figures of the result ``flank-fracture``: exposure, stress and strength, and hardness over depth, for either gear.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+from fegear.case.part import at
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve, Mark
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.engine.table import Column, Table
+from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, PERMISSIBLE
+from fegear.formulas.iso6336.part5_case_depth import recommended
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.base.arrays import Array
+    from fegear.case.built.rated_pair import PairToRate
+    from fegear.case.reading import Scene
+    from fegear.engine.stage import Upstream, Work
+    from fegear.formulas.hardened_case import HardenedCase
+    from fegear.formulas.iso6336.part4_flank_fracture import Exposure
+    from fegear.geometry.pair import Member
+
+
+#: Places from A to E besides the named points, and depths.
+_PLACES, _DEPTHS = 61, 241
+
+
+#: How deep is looked: half the tooth at the pitch circle, in normal modules.
+_HALF_TOOTH = np.pi / 4.0
+
+
+#: Named points lie this far inside of the path's single contact, in base pitches, where sharing jumps.
+_INSIDE = 1e-9
+
+
+@dataclass(frozen=True)
+class FlankFractureInputs:
+    """What the stage reads.
+
+    Parameters
+    ----------
+    asked : PairToRate
+    cases : (HardenedCase, HardenedCase)
+        Of driver and driven.
+    materials, qualities : (str, str)
+        As `strength` names them, of driver and driven.
+    material_factor : float
+        K_material.
+    said : tuple of str
+    """
+
+    asked: PairToRate
+    cases: tuple[HardenedCase, HardenedCase]
+    materials: tuple[str, str]
+    qualities: tuple[str, str]
+    material_factor: float
+    said: tuple[str, ...] = field(compare=False)
+
+
+@dataclass(frozen=True)
+class GearExposure:
+    """One gear below its flank.
+
+    Parameters
+    ----------
+    depth : ndarray, shape (M,)
+        [m].
+    hardness, residual : ndarray, shape (M,)
+        [HV], [Pa].
+    found : Exposure
+    most : float
+        A_FF,max from the depth of the half-width on.
+    most_load : float
+        The same without residual stress.
+    place, at_depth : float
+        Where it is: on the path of contact, and how deep [m].
+    crushing, least_agma : float
+        Eht_c of ISO 6336-5 and h_e,min of AGMA 2101 [m]; NaN where there is none for the material.
+    """
+
+    depth: Array
+    hardness: Array
+    residual: Array
+    found: Exposure
+    most: float
+    most_load: float
+    place: float
+    at_depth: float
+    crushing: float
+    least_agma: float
+
+
+@dataclass(frozen=True)
+class FlankFractureData:
+    """What the stage finds.
+
+    Parameters
+    ----------
+    x : ndarray, shape (N,)
+        Places on the path of contact [m].
+    points : mapping of str to int
+        Named points A to E among these.
+    sharing, pressure, half_width, radius : ndarray, shape (N,)
+        X_CP, p_dyn,CP [Pa], b_H and relative radius [m].
+    gears : mapping of Member to GearExposure
+    load : float
+        Along the line of action, of the spectrum's largest level where there is one [N].
+    """
+
+    x: Array
+    points: dict[str, int]
+    sharing: Array
+    pressure: Array
+    half_width: Array
+    radius: Array
+    gears: dict[Member, GearExposure]
+    load: float
+
+
+def _inputs(scene: Scene, name: str) -> FlankFractureInputs:
+    from fegear.case.built.rated_case import gear_case
+    from fegear.case.built.rated_pair import pair_to_rate
+
+    said: list[str] = []
+    asked = pair_to_rate(scene, name)
+    one, other = (gear_case(scene, gear, said) for gear in asked.gears)
+    parts = [scene.case.gear[gear].strength for gear in asked.gears]
+    materials = tuple("" if part is None else part.material for part in parts)
+    qualities = tuple("MQ" if part is None else part.quality for part in parts)
+    return FlankFractureInputs(
+        asked, (one, other), (materials[0], materials[1]), (qualities[0], qualities[1]),
+        scene.case.pair[name].iso_6336.flank_fracture_material_factor, tuple(dict.fromkeys((*asked.assumed, *said))),
+    )  # fmt: skip
+
+
+def _compute(inputs: FlankFractureInputs, _upstream: Upstream, _work: Work) -> FlankFractureData:
+    from fegear.formulas.flash_temperature import flank_speeds, reduced_modulus
+    from fegear.formulas.iso6336.part4_flank_fracture import half_width
+    from fegear.formulas.iso6336.part22_micropitting import load_sharing, pressure
+    from fegear.formulas.iso6336.safety import rate_pair
+    from fegear.geometry.pair import path_points
+    from fegear.results.rating.rating import given, rated
+
+    asked = inputs.asked
+    try:
+        conditions = rated(asked)
+        level = max(asked.levels, key=lambda one: one.tangential, default=None)
+        if level is not None:
+            duty = replace(conditions.duty, tangential=level.tangential, speed=level.speed)
+            conditions = replace(conditions, duty=duty)
+        rating = rate_pair(conditions, given(asked))
+    except RangeError as error:
+        raise at(f"pair.{asked.name}", error) from None
+    pair, duty = asked.pair, conditions.duty
+    load = asked.load * duty.tangential / asked.conditions.duty.tangential
+    inside = _INSIDE * pair.base_pitch
+    shift = {"B": inside, "D": -inside}
+    named = {point.letter: point.x + shift.get(point.letter[0], 0.0) for point in path_points(pair)}
+    x = np.unique([*np.linspace(pair.x_start, pair.x_end, _PLACES), *named.values()])
+    factors = duty.application_factor * duty.mesh_load_factor
+    for symbol in ("K_v", "K_Hbeta", "K_Halpha"):
+        factors *= max(rating[symbol].values)
+    grade = max(one.grade for one in asked.conditions.quality)
+    sharing, speeds = load_sharing(pair, x, grade), flank_speeds(pair, x, 1.0)
+    one, other = pair.driver.material, pair.driven.material
+    modulus = reduced_modulus((one.young_modulus, other.young_modulus), (one.poisson_ratio, other.poisson_ratio))
+    pressed = pressure(speeds, sharing * factors * load / pair.face_width, modulus)
+    width = half_width(pressed, speeds.relative_radius, modulus)
+    stress = [rating.contact_stress[asked.of(member)] for member in MEMBERS]
+    gears = {member: _below(inputs, member, x, pressed, width, stress[i]) for i, member in enumerate(MEMBERS)}
+    return FlankFractureData(
+        x, {letter: int(np.searchsorted(x, place)) for letter, place in named.items()}, sharing, pressed, width,
+        speeds.relative_radius, gears, load,
+    )  # fmt: skip
+
+
+def _below(
+    inputs: FlankFractureInputs, member: Member, x: Array, pressed: Array, width: Array, stress: float
+) -> GearExposure:
+    """Exposure of one gear, and the case depths below which its case is crushed."""
+    from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, exposure
+    from fegear.formulas.iso6336.part5_case_depth import AGMA_CRUSHING, ISO_CRUSHING, crushing_depth
+
+    i, pair = MEMBERS.index(member), inputs.asked.pair
+    gear, case = pair.gear(member), inputs.cases[i]
+    deepest = _HALF_TOOTH * gear.module
+    depth = deepest * np.linspace(0.0, 1.0, _DEPTHS) ** 1.5  # finer where stresses change most
+    hardness, residual = case.hardness(depth), case.residual_stress(depth)
+    found = exposure(depth, pressed, width, hardness, residual, gear.material.poisson_ratio, inputs.material_factor)
+    deep_enough = depth >= width[:, None]
+    counted = np.where(deep_enough, found.exposure, -np.inf)
+    load = np.where(deep_enough, found.load_stress / found.strength + CALIBRATION, -np.inf)
+    place, deep = np.unravel_index(int(np.argmax(counted)), counted.shape)
+    treatment = {"case-hardened-steel": "carburized", "induction-hardened-steel": "induction-hardened"}
+    hardening = AGMA_CRUSHING.get(treatment.get(inputs.materials[i], ""), np.nan)
+    iso = ISO_CRUSHING[inputs.qualities[i]] if inputs.materials[i] == "case-hardened-steel" else np.nan
+    return GearExposure(
+        depth, hardness, residual, found, float(counted[place, deep]), float(load.max()), float(x[place]),
+        float(depth[deep]), crushing_depth(pair, stress, iso), crushing_depth(pair, stress, hardening),
+    )  # fmt: skip
+
+
+def _check(scene: Scene, name: str) -> None:
+    _inputs(scene, name)
+
+
+def _present(data: FlankFractureData, inputs: FlankFractureInputs) -> Outcome:
+    return Outcome(
+        data, fracture_tables(data, inputs), fracture_values(data, inputs), {"places": len(data.x), "depths": _DEPTHS},
+        fracture_remarks(data, inputs), fracture_figures(data, inputs),
+    )  # fmt: skip
+
+
+#: Depths in a table by point and depth: every so manyth.
+_EVERY = 4
+
+
+def fracture_tables(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[Table, ...]:
+    """Pressure and largest exposure over the path; both gears below the points A to E; case depths and their limits."""
+    return _path(data, inputs), *_table_below(data, inputs), _depths(data, inputs)
+
+
+def _path(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
+    name = inputs.asked.name
+    columns = [
+        Column("x", data.x, "mm", "on the line of action, from the pitch point"),
+        Column("load_sharing", data.sharing, "", "X_CP, that of ISO/TS 6336-22 without relief"),
+        Column("relative_radius", data.radius, "mm", "rho_red,CP in the normal section"),
+        Column("hertz_pressure", data.pressure, "MPa", "p_dyn,CP with all load factors"),
+        Column("half_width", data.half_width, "mm", "b_H of the contact"),
+    ]
+    for member in MEMBERS:
+        gear = data.gears[member]
+        counted = np.where(gear.depth >= data.half_width[:, None], gear.found.exposure, -np.inf)
+        columns.append(Column(f"exposure_{member}", counted.max(axis=1), "", f"A_FF, largest below b_H, {member} gear"))
+    return Table(f"flank_fracture_{name}", tuple(columns), f"Flank fracture of pair {name} over the path of contact")
+
+
+def _table_below(data: FlankFractureData, inputs: FlankFractureInputs) -> Iterator[Table]:
+    for member, gear_name in zip(MEMBERS, inputs.asked.gears, strict=True):
+        gear = data.gears[member]
+        shown = slice(0, None, _EVERY)
+        columns = [
+            Column("depth", gear.depth[shown], "mm", "y, below the flank"),
+            Column("hardness", gear.hardness[shown], "", "HV(y), Vickers"),
+            Column("residual_stress", gear.residual[shown], "MPa", "sigma_RS(y) along profile and face"),
+            Column("strength", gear.found.strength[shown], "MPa", "tau_per(y)"),
+        ]
+        for letter, i in data.points.items():
+            key = letter.translate(str.maketrans("", "", "_{}"))
+            columns += [
+                Column(f"load_stress_{key}", gear.found.load_stress[i, shown], "MPa", f"tau_eff,L below {letter}"),
+                Column(f"stress_{key}", gear.found.stress[i, shown], "MPa", f"tau_eff below {letter}"),
+                Column(f"exposure_{key}", gear.found.exposure[i, shown], "", f"A_FF below {letter}"),
+            ]
+        title = f"Below the flanks of gear {gear_name} ({member}) of pair {inputs.asked.name}"
+        yield Table(f"flank_fracture_{inputs.asked.name}_{member}", tuple(columns), title)
+
+
+def _depths(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
+    name, pair = inputs.asked.name, inputs.asked.pair
+    limits = [recommended(pair.gear(member).module) for member in MEMBERS]
+    least, most, largest = (np.array(values) for values in zip(*limits, strict=True))
+    gears = [data.gears[member] for member in MEMBERS]
+    columns = (
+        Column("gear", np.array(inputs.asked.gears), "", "driver, driven"),
+        Column("case_depth", np.array([case.case_depth for case in inputs.cases]), "mm", "CHD at 550 HV, of the case"),
+        Column("usual_from", least, "mm", "least usual one, .15 normal modules"),
+        Column("usual_to", most, "mm", "largest usual one, .25 normal modules"),
+        Column("largest", largest, "mm", "not to exceed: .4 normal modules, at most 6 mm"),
+        Column(
+            "crushing", np.array([one.crushing for one in gears]), "mm", "Eht_c of ISO 6336-5, least against crushing"
+        ),
+        Column(
+            "least_agma", np.array([one.least_agma for one in gears]), "mm", "h_e,min of AGMA 2101 with ISO's sigma_H"
+        ),
+    )
+    return Table(f"case_depth_{name}", columns, f"Case depths of pair {name} and their limits", printed=True)
+
+
+def fracture_values(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[Value, ...]:
+    """Largest exposure of either gear with its place, its safety, and case depth with what it needs."""
+    found = []
+    for member, case in zip(MEMBERS, inputs.cases, strict=True):
+        key, gear = f"{inputs.asked.name}.{member}", data.gears[member]
+        found += [
+            Value(f"{key}.A_FF", gear.most, "", None, f"largest material exposure, {PERMISSIBLE:g} at most"),
+            Value(f"{key}.S_FF", 1.0 / gear.most, "", None, f"its inverse, {1.0 / PERMISSIBLE:g} at least"),
+            Value(f"{key}.A_FF_load", gear.most_load, "", None, "largest exposure without residual stress, its bound"),
+            Value(f"{key}.A_FF_depth", gear.at_depth, "mm", None, "how deep the largest exposure is"),
+            Value(f"{key}.case_depth", case.case_depth, "mm", None, "at 550 HV, of the case"),
+            Value(f"{key}.case_depth_crushing", gear.crushing, "mm", None, "least against crushing, ISO 6336-5"),
+            Value(f"{key}.case_depth_agma", gear.least_agma, "mm", None, "least of AGMA 2101, with sigma_H of ISO"),
+        ]  # fmt: skip
+    return tuple(value for value in found if math.isfinite(value.si))
+
+
+def fracture_remarks(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[str, ...]:
+    """What falls short, then what is assumed and what is recalled."""
+    name, told = inputs.asked.name, []
+    for i, (member, gear) in enumerate(zip(MEMBERS, inputs.asked.gears, strict=True)):
+        found, case = data.gears[member], inputs.cases[i]
+        if found.most > PERMISSIBLE:
+            told.append(
+                f"Pair {name}: A_FF = {found.most:.4g} of gear {gear} ({member}) at a depth of "
+                f"{found.at_depth * 1e3:.3g} mm is above {PERMISSIBLE:g}."
+            )
+        largest = recommended(inputs.asked.pair.gear(member).module)[2]
+        needed = float(np.nanmax([found.crushing, found.least_agma, 0.0]))
+        if case.case_depth < needed:
+            told.append(
+                f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm is less than the {needed * 1e3:.3g} mm "
+                "needed against crushing."
+            )
+        if case.case_depth > largest:
+            told.append(
+                f"Gear {gear}: the case depth of {case.case_depth * 1e3:.3g} mm is more than {largest * 1e3:.3g} mm, "
+                ".4 normal modules and 6 mm at most."
+            )
+        if inputs.materials[i] != "case-hardened-steel":
+            told.append(
+                f"Gear {gear}: ISO/TS 6336-4 is for case-carburized steel; of {inputs.materials[i]} its exposure is an "
+                "extrapolation."
+            )
+        for what, measured, rule in (
+            ("hardness over depth", case.measured, "hardness_profile"),
+            ("residual stress", case.residual, "residual_stress"),
+        ):
+            if measured is None:
+                told.append(f"Gear {gear}: {what} is by Lang's rule, which is recalled ({rule} of strength).")
+    if inputs.asked.levels:
+        told.append(
+            f"Pair {name}: exposure and case depths are those of the largest level of the spectrum, "
+            f"{data.load / inputs.asked.load:.4g} times the load, for which they are meant as for endurance."
+        )
+    told += inputs.said
+    told.append(
+        f"Pair {name}: of ISO/TS 6336-4 print at hand backs the structure of A_FF, its symbols and the scope, "
+        f"case-carburized external gears. Recalled are K_tau,per = {HARDNESS_FACTOR * 1e-6:g} MPa per HV, c_1 = "
+        f"{CALIBRATION:g}, A_FF <= {PERMISSIBLE:g}, and that A_FF counts from the half-width on; K_material = "
+        f"{inputs.material_factor:g} (flank_fracture_material_factor of iso_6336). tau_eff is the mean shear over all "
+        "planes below a Hertzian contact without friction, in the place of the standard's fitted formulas. "
+        "What the residual stress takes off decides within the case: A_FF_load "
+        "is without it."
+    )
+    told.append(
+        f"Pair {name}: limits of the case depth are recalled: .15 to .25 and .4 m_n, U_H of ISO 6336-5 (66,000 N/mm^2 "
+        "of MQ and ME, 44,000 of ML) and of AGMA 2101 (44,000 carburized, 30,000 induction-hardened)."
+    )
+    return tuple(dict.fromkeys(told))
+
+
+_MPA = 1e-6
+
+
+def fracture_figures(data: FlankFractureData, inputs: FlankFractureInputs) -> tuple[Figure, ...]:
+    """One figure a gear."""
+    return tuple(_figure(member, data, inputs) for member in MEMBERS)
+
+
+def _figure(member: Member, data: FlankFractureData, inputs: FlankFractureInputs) -> Figure:
+    name, i, gear = inputs.asked.name, MEMBERS.index(member), data.gears[member]
+    depth, case = gear.depth * 1e3, inputs.cases[i]
+    abscissa = Axis("depth below the flank", "mm", zero=True)
+    marks = (Mark("x", case.case_depth * 1e3, "CHD"),) if case.case_depth == case.case_depth else ()
+    worst = int(abs(data.x - gear.place).argmin())
+    exposures = [
+        Curve(depth, gear.found.exposure[k], f"at {letter}", f"series:{n}", markers=False)
+        for n, (letter, k) in enumerate(data.points.items())
+    ]
+    stresses = [
+        Curve(depth, gear.found.load_stress[worst] * _MPA, "load alone", "series:1", dash="dash", markers=False),
+        Curve(depth, gear.found.stress[worst] * _MPA, "with residual stress", "series:0", markers=False),
+        Curve(depth, gear.found.strength * _MPA, "strength", "ink", markers=False),
+    ]
+    hardness = [Curve(depth, gear.hardness, "hardness", "ink", markers=False)]
+    caption = (
+        f"Gear {inputs.asked.gears[i]} ({member}) of pair {name}: material exposure A_FF over the depth below points "
+        f"A to E, {PERMISSIBLE:g} at most; equivalent shear stress where the exposure is largest, "
+        f"at {gear.place * 1e3:.3g} mm from the pitch point, with the local strength; and hardness."
+    )
+    return Figure(
+        f"flank_fracture_{name}_{member}", f"Flank fracture of gear {inputs.asked.gears[i]}", caption,
+        (
+            Panel(abscissa, Axis("material exposure A_FF", zero=True), tuple(exposures),
+                  (*marks, Mark("y", PERMISSIBLE, f"{PERMISSIBLE:g}"), Mark("x", gear.at_depth * 1e3, "largest"))),
+            Panel(abscissa, Axis("shear stress", "MPa", zero=True), tuple(stresses), marks),
+            Panel(abscissa, Axis("hardness HV"), tuple(hardness), marks),
+        ),
+    )  # fmt: skip
+
+
+FLANK_FRACTURE = Stage(
+    subjects=lambda scene: tuple(scene.pairs),
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    cites=citing(
+        Citation("iso-ts-6336-4", "material exposure over the depth below the contact"),
+        Citation("johnson", "stresses below a line contact", "Eqs. 4.47 to 4.49"),
+        Citation("iso-6336-5", "case depth"),
+        Citation("agma-2101", "least effective case depth"),
+    ),
+    forecast=lambda _scene, _name: Forecast({"places": _PLACES, "depths": _DEPTHS}, 0.05),
+)

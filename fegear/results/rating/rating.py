@@ -1,0 +1,494 @@
+"""Result ``rating``: safeties against pitting and tooth breakage by ISO 6336, computed ones and AGMA 2101 beside.
+
+Safeties of a pair for its gear data, where a rating was asked for.
+
+Remarks of the result ``rating``: what falls short first, then what is doubtful.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load
+from fegear.case.part import at
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.table import Column
+from fegear.geometry.pair import MEMBERS
+from fegear.results.forecasts import RING
+from fegear.results.gear.stiffness import needs_solution, solution_of
+from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.rating.rating_tables import (
+    agma_table,
+    factor_table,
+    rating_figures,
+    rating_values,
+    remark_of,
+    safety_table,
+    spectrum_table,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fegear.case.built.agma_pair import AgmaInputs
+    from fegear.case.built.rated_pair import PairToRate
+    from fegear.case.reading import Scene
+    from fegear.contact.wide.rated import Computed
+    from fegear.engine.outcome import Value
+    from fegear.engine.stage import Upstream, Work
+    from fegear.formulas.agma.agma2101 import AgmaRating
+    from fegear.formulas.iso6336.conditions import Conditions, Factor, PairRating, Replacement
+    from fegear.formulas.iso6336.rated import Both, Duty
+    from fegear.formulas.iso6336.safety import Curves, SpectrumRating
+
+
+#: Transverse contact ratio from which a plane pair has no point of single pair contact.
+_SINGLE = 2.0
+
+
+_NO_SINGLE = (
+    "plane teeth with a contact ratio of 2 and more have no single pair contact, at which their root stress would be "
+    'computed. Write width = "solid" for it.'
+)
+
+
+#: Seconds of the formulas, and of one load on computed flanks.
+_FORMULAS, _FLANKS = 0.02, 1.0
+
+
+@dataclass(frozen=True)
+class RatingInputs:
+    """What the stage reads.
+
+    Parameters
+    ----------
+    asked : PairToRate
+    agma : AgmaInputs or None
+    computed : bool
+        Whether load distribution and root stress are computed.
+    said : tuple of str
+        What AGMA 2101 assumes, or why there is nothing of it.
+    """
+
+    asked: PairToRate
+    agma: AgmaInputs | None
+    computed: bool
+    said: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class RatingData:
+    """What the stage finds.
+
+    Parameters
+    ----------
+    formula : PairRating
+        By ISO 6336 alone.
+    curves : Curves
+        S-N curves at the nominal speed.
+    spectrum : SpectrumRating or None
+    computed : Computed or None
+    by_computed : PairRating or None
+        With what was computed in the place of formulas.
+    spectrum_computed : SpectrumRating or None
+    agma : AgmaRating or None
+    why_not : tuple of str
+        Why something that was asked for is missing.
+    """
+
+    formula: PairRating
+    curves: Curves
+    spectrum: SpectrumRating | None
+    computed: Computed | None
+    by_computed: PairRating | None
+    spectrum_computed: SpectrumRating | None
+    agma: AgmaRating | None
+    why_not: tuple[str, ...]
+
+
+def _inputs(scene: Scene, name: str) -> RatingInputs:
+    from fegear.case.built.agma_pair import agma_inputs
+    from fegear.case.built.rated_pair import pair_to_rate
+
+    asked = pair_to_rate(scene, name)
+    beside = scene.case.rating.beside
+    agma, said = agma_inputs(scene, asked) if "agma-2101" in beside else (None, ())
+    return RatingInputs(asked, agma, "computed" in beside, said)
+
+
+def _check(scene: Scene, name: str) -> None:
+    from fegear.case.built.rated_pair import check_pair_to_rate
+
+    check_pair_to_rate(scene, name)
+    if "computed" in scene.case.rating.beside and _wide(scene, name):
+        check_flanks_to_load(scene, name)
+
+
+def _wide(scene: Scene, name: str) -> bool:
+    return scene.case.pair[name].width_in(scene.pairs[name]) != "plane"
+
+
+def rated(asked: PairToRate) -> Conditions:
+    """Conditions of a pair with the mean-stress factors Y_M: as given, or of teeth bent to either side, of Y_S."""
+    from fegear.formulas.iso6336.part3_strength import mean_stress_factor, mean_stress_ratio
+    from fegear.formulas.iso6336.safety import rate_pair
+
+    if asked.mean_stress is not None:
+        own = replace(asked.conditions.duty, mean_stress=asked.mean_stress, mean_stress_static=asked.mean_stress)
+        return replace(asked.conditions, duty=own)
+    if not any(asked.stress_ratio):
+        return asked.conditions
+    correction = rate_pair(asked.conditions, given(asked))["Y_S"].values
+
+    def factors(*, static: bool) -> Both:
+        one, two = (
+            mean_stress_factor(mean_stress_ratio(one.group, y_s, static=static), ratio) if ratio else 1.0
+            for one, y_s, ratio in zip(asked.conditions.strength, correction, asked.stress_ratio, strict=True)
+        )
+        return one, two
+
+    duty = replace(asked.conditions.duty, mean_stress=factors(static=False), mean_stress_static=factors(static=True))
+    return replace(asked.conditions, duty=duty)
+
+
+def given(asked: PairToRate) -> Replacement:
+    """Load factors that the case gives in the place of formulas."""
+    from fegear.formulas.iso6336.conditions import Replacement
+
+    k_v, across = asked.given.get("K_v"), asked.given.get("K_Halpha")
+    return Replacement(K_v=k_v, K_Halpha=across, K_Falpha=None if across is None else (across, across))
+
+
+def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingData:
+    try:
+        return _rate(inputs, upstream)
+    except RangeError as error:  # a formula's own words, under the name of the pair
+        raise at(f"pair.{inputs.asked.name}", error) from None
+
+
+def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
+    from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum, sn_curves
+
+    asked, own = inputs.asked, given(inputs.asked)
+    conditions = rated(asked)
+    formula = rate_pair(conditions, own)
+    levels = [(_duty(conditions, level.tangential, level.speed), level.cycles) for level in asked.levels]
+    spectrum = rate_spectrum(conditions, levels, own) if levels else None
+    found = by_found = spectrum_found = None
+    single = asked.width != "plane" or asked.pair.contact_ratio < _SINGLE
+    if inputs.computed and single:
+        found, of_levels = _computed(asked, formula, spectrum, upstream)
+        by_found = rate_pair(conditions, _standing(found, own))
+        stands = [None if one is None else _standing(one, own) for one in of_levels]
+        spectrum_found = rate_spectrum(conditions, levels, stands) if levels else None
+    agma, why_not = _agma(inputs)
+    reasons = [f"no rating by AGMA 2101: {why_not}"] if why_not else []
+    if inputs.computed and not single:
+        reasons.append(_NO_SINGLE)
+    return RatingData(
+        formula, sn_curves(conditions, own), spectrum, found, by_found, spectrum_found, agma, tuple(reasons)
+    )  # fmt: skip
+
+
+def _standing(found: Computed, own: Replacement) -> Replacement:
+    """What stands in for the formulas: the computed values, and those that the case gives where nothing is computed."""
+    stands = replace(found.replacement, K_v=own.K_v)
+    return stands if stands.K_Halpha is not None else replace(stands, K_Halpha=own.K_Halpha, K_Falpha=own.K_Falpha)
+
+
+def _duty(conditions: Conditions, tangential: float, speed: float) -> Duty | None:
+    return None if tangential == 0.0 else replace(conditions.duty, tangential=tangential, speed=speed)
+
+
+def _agma(inputs: RatingInputs) -> tuple[AgmaRating | None, str]:
+    from fegear.formulas.agma.agma2101 import rate
+
+    if inputs.agma is None:
+        return None, ""
+    try:
+        return rate(inputs.asked.pair, inputs.agma.service, inputs.agma.allowed), ""
+    except RangeError as error:
+        return None, str(error)
+
+
+def _computed(
+    asked: PairToRate, formula: PairRating, spectrum: SpectrumRating | None, upstream: Upstream
+) -> tuple[Computed, list[Computed | None]]:
+    """What is computed at the nominal load, and at that of every level of the spectrum; None for idle ones."""
+    from fegear.contact.wide.rated import SolvedFlanks, computed_flanks, computed_plane
+    from fegear.results.pair.flank_root_stress import places_along
+
+    members = asked.conditions.geometry.members
+    ratings = [] if spectrum is None else [level.rating for level in spectrum.levels]
+    if asked.width == "plane":
+        known = {member: solution_of(upstream, gear) for member, gear in zip(MEMBERS, asked.gears, strict=True)}
+        plane = computed_plane(asked.pair, members, known)
+        return plane, [None if one is None else plane for one in ratings]
+    loaded = loaded_flanks(upstream, asked.name)
+    solids = {member: solid_solution_of(upstream, gear) for member, gear in zip(MEMBERS, asked.gears, strict=True)}
+    solved = SolvedFlanks(
+        loaded.flanks, loaded.gaps, loaded.found.known, loaded.error.coarse.known, solids, places_along(loaded),
+        loaded.asked.effects.neighbour_coupling,
+    )  # fmt: skip
+    nominal = asked.conditions.duty.tangential
+    loads = [_applied(asked, formula, nominal)]
+    loads += [_applied(asked, one, of.tangential) for one, of in zip(ratings, asked.levels, strict=True) if one]
+    distinct = tuple(dict.fromkeys(loads))
+    found = dict(zip(distinct, computed_flanks(solved, members, distinct), strict=True))
+    if asked.width == "slices":
+        found = {load: _with_misses(one, asked) for load, one in found.items()}
+    rest = iter(loads[1:])
+    return found[loads[0]], [None if one is None else found[next(rest)] for one in ratings]
+
+
+def _applied(asked: PairToRate, rating: PairRating, tangential: float) -> Both:
+    """Load along the line of action and at the reference circle with K_A, K_gamma and K_v [N]."""
+    duty = asked.conditions.duty
+    load = tangential * duty.application_factor * duty.mesh_load_factor * rating["K_v"].value
+    return load * asked.load / duty.tangential, load
+
+
+def _with_misses(found: Computed, asked: PairToRate) -> Computed:
+    """The same with what slices are known to miss, which no coarser solution shows."""
+    from fegear.fem.solid.slice_laws import missed_by_slices
+
+    missed = missed_by_slices(asked.pair.driver.twist)
+    # Load factors follow the unevenness of the load, at most by what the compliances miss; stress follows their root.
+    uneven = sum(abs(1.0 - 1.0 / (k or 1.0)) for k in (found.replacement.K_Hbeta, found.replacement.K_Halpha))
+    one, other = found.bending_error
+    return replace(
+        found, contact_error=found.contact_error + 0.5 * missed["contact"] * uneven,
+        bending_error=(one + missed["root_tension"], other + missed["root_tension"]),
+    )  # fmt: skip
+
+
+def _present(data: RatingData, inputs: RatingInputs) -> Outcome:
+    tables = [factor_table(data, inputs.asked), safety_table(data, inputs.asked)]
+    if data.agma is not None:
+        tables.append(agma_table(data.agma, inputs.asked))
+    if data.spectrum is not None:
+        tables.append(spectrum_table(data.spectrum, inputs.asked, data.spectrum_computed))
+    return Outcome(
+        data, tuple(tables), rating_values(data, inputs.asked), _settings(data, inputs),
+        (*shortfalls(data, inputs.asked), *inputs.asked.assumed, *inputs.said, *rating_remarks(data, inputs.asked)),
+        rating_figures(data, inputs.asked),
+    )  # fmt: skip
+
+
+def _settings(data: RatingData, inputs: RatingInputs) -> dict[str, object]:
+    settings: dict[str, object] = {"edition": inputs.asked.conditions.edition}
+    if data.computed is not None and inputs.asked.width != "plane":
+        settings["computed_at_load"] = data.computed.load
+    return settings
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    if "computed" not in scene.case.rating.beside:
+        return ()
+    part = scene.case.pair[name]
+    if not _wide(scene, name):
+        return needs_solution(part.driver, part.driven)
+    return (*needs_flanks(scene, name), *needs_solid_solution(part.driver, part.driven))
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    computed = "computed" in scene.case.rating.beside and _wide(scene, name)
+    return Forecast({}, _FORMULAS + (_FLANKS if computed else 0.0))
+
+
+def _cites(scene: Scene, _name: str) -> tuple[Citation, ...]:
+    found = [
+        Citation("iso-6336-1", "load factors K", "clauses 5 to 9"),
+        Citation("iso-6336-2", "contact stress and what flanks bear"),
+        Citation("iso-6336-3", "root stress and what roots bear"),
+        Citation("iso-6336-5", "stress numbers of materials", "table 1"),
+        Citation("iso-1328-1", "deviations by tolerance class"),
+    ]
+    if any(part.operation.spectrum for part in scene.case.pair.values()):
+        found.append(Citation("iso-6336-6", "load spectra", "clauses 4 and 5, annex A"))
+    if "agma-2101" in scene.case.rating.beside:
+        found.append(Citation("agma-2101", "the same by AGMA"))
+    if "computed" in scene.case.rating.beside:
+        found += citing(*RING)(scene, _name)
+    return tuple(found)
+
+
+#: Values of the result ``rating`` that the data sheet shows, in its order.
+_SHOWN = {
+    "S_H": "safety against pitting S_H, ISO 6336",
+    "S_H_computed": "S_H, computed load distribution",
+    "S_H_spectrum": "S_H under the spectrum",
+    "S_H_agma": "S_H, AGMA 2101",
+    "S_F": "safety against tooth breakage S_F, ISO 6336",
+    "S_F_computed": "S_F, computed root stress",
+    "S_F_spectrum": "S_F under the spectrum",
+    "S_F_agma": "S_F, AGMA 2101",
+}
+
+
+def rated_columns(values: Iterable[Value], pair: str) -> tuple[Column, ...]:
+    """A column for every safety of driver and driven among the values of a run; none without a rating."""
+    known = {value.name: value.value for value in values}
+    rows = {key: [known.get(f"{pair}.{member}.{key}", np.nan) for member in MEMBERS] for key in _SHOWN}
+    return tuple(
+        Column(key, np.array([round(one, 3) for one in row]), "", _SHOWN[key])
+        for key, row in rows.items()
+        if not np.isnan(row).any()
+    )
+
+
+#: K_v above which the load is a trifle beside what flank deviations excite: teeth part and meet again.
+_SHAKEN = 10.0
+
+
+#: How near to an axial contact ratio of 1 the jump of AGMA's J is told, and from which size.
+_NEAR_ONE, _WORTH_SAYING = 0.1, 0.05
+
+
+#: Which S-N line the flanks have under a spectrum.
+_SPECTRUM_LINE = {
+    "part-2": (
+        "Pair {name}: under the spectrum the flanks have the S-N line of ISO 6336-2, whose film factors come in "
+        "between static strength and reference; that of annex C of ISO 6336-6 has them at all load "
+        "cycles and is the lower one where they are below 1 (operation.spectrum_line)."
+    ),
+    "annex-c": "Pair {name}: under the spectrum the flanks have the S-N line of the example in annex C of ISO 6336-6.",
+}
+
+
+def shortfalls(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
+    """What a reader must know before anything else: safeties below the required ones, and a load of no account."""
+    found, told = data.spectrum, []
+    if found is not None:
+        told = [
+            f"Pair {asked.name}: a level of the spectrum has the {what} of gear {gear} above their static strength."
+            for what, sums in (("flanks", found.contact_damage), ("roots", found.bending_damage))
+            for member, gear in zip(MEMBERS, asked.gears, strict=True)
+            if math.isinf(sums[asked.of(member)])
+        ]
+    contact = data.formula.contact_safety if found is None else found.contact_safety
+    bending = data.formula.bending_safety if found is None else found.bending_safety
+    under = "" if found is None else " under the spectrum"
+    for member, gear in zip(MEMBERS, asked.gears, strict=True):
+        for symbol, safety, least in zip(("S_H", "S_F"), (contact, bending), asked.conditions.required, strict=True):
+            value = safety[asked.of(member)]
+            if value < least:
+                told.append(
+                    f"Pair {asked.name}: {symbol} = {value:.4g} of gear {gear} ({member}){under} is below the required "
+                    f"{least:g}."
+                )
+    levels = [] if found is None else [one.rating for one in found.levels if one.rating is not None]
+    most = max(one["K_v"].value for one in (levels or [data.formula]))
+    if most > _SHAKEN and "K_v" not in asked.given:
+        told.append(
+            f"Pair {asked.name}: K_v = {most:.4g} of ISO 6336-1 is above {_SHAKEN:g}: flank deviations excite forces "
+            "many times the load, under which teeth part and for which its formula is not meant; check the load, or "
+            "give dynamic_factor (operation)."
+        )
+    return tuple(told)
+
+
+def rating_remarks(data: RatingData, asked: PairToRate) -> tuple[str, ...]:
+    """What lies outside a range, and what the computed safeties count."""
+    told = [f"Pair {asked.name}: {remark_of(one, asked)}." for one in data.formula.factors if _shown(one, asked)]
+    told += [f"Pair {asked.name}: {reason}" for reason in data.why_not]
+    told += _recalled(data, asked)
+    if data.spectrum is not None:
+        told.append(_SPECTRUM_LINE[asked.conditions.spectrum_line].format(name=asked.name))
+    if data.agma is not None:
+        told += _beside_the_jump(asked)
+    if data.computed is None:
+        return tuple(dict.fromkeys(told))
+    if asked.width == "plane":
+        told.append(
+            f"Pair {asked.name}: computed is the root stress of the plane teeth at the outer point of single pair "
+            "contact, in the place of Y_F Y_S Y_B; load factors are those of the formulas. Write width = "
+            '"solid" for a computed load distribution.'
+        )
+    else:
+        load, pressure = data.computed.load, data.computed.pressure * 1e-6
+        told.append(
+            f"Pair {asked.name}: load distribution and root stress were computed at {load:.5g} N along the line of "
+            f"action (K_A, K_gamma and K_v included), where the largest pressure is {pressure:.4g} MPa. The computed "
+            "root stress holds load sharing, face distribution and helix already: it stands for Y_F Y_S Y_beta Y_B "
+            "Y_DT K_Fbeta K_Falpha together."
+        )
+        told += _aligned(data, asked)
+    return tuple(dict.fromkeys(told))
+
+
+def _recalled(data: RatingData, asked: PairToRate) -> list[str]:
+    """Say which numbers of a rating are those of no printed source, beside those that a factor remarks on itself."""
+    if asked.mean_stress is not None or not any(asked.stress_ratio):
+        return []
+    values = ", ".join(f"{value:.3g}" for value in data.formula["Y_M"].values)
+    told = (
+        f"Pair {asked.name}: Y_M = {values} (pinion, wheel) takes mean stress ratios M of annex B of ISO 6336-3 which "
+        "are recalled: no printed source was at hand (operation.mean_stress_factor; .7 of idlers is printed)."
+    )
+    return [told]
+
+
+def _beside_the_jump(asked: PairToRate) -> list[str]:
+    """Say where J of AGMA 908 jumps near the pair's axial contact ratio."""
+    from fegear.formulas.agma.agma908 import jump_of_bending_factor
+
+    ratio = asked.pair.overlap_ratio
+    if ratio == 0.0 or abs(ratio - 1.0) > _NEAR_ONE:
+        return []
+    try:
+        jumps = {
+            gear: jump_of_bending_factor(asked.pair, member) - 1.0
+            for member, gear in zip(MEMBERS, asked.gears, strict=True)
+        }
+    except RangeError:  # a face that narrow or wide is none of its pairs
+        return []
+    if max(abs(jump) for jump in jumps.values()) < _WORTH_SAYING:
+        return []
+    sizes = ", ".join(f"{jump:+.0%} (gear {gear})" for gear, jump in jumps.items())
+    told = (
+        f"Pair {asked.name}: its axial contact ratio is {ratio:.3f}, and at 1 the J of AGMA 908, and S_F with it, "
+        f"jumps by {sizes} as the face widens: above it counts the load at the tip with C_h and K_psi, up to it that "
+        "of single tooth contact with C_psi."
+    )
+    return [told]
+
+
+def _aligned(data: RatingData, asked: PairToRate) -> list[str]:
+    """Say what misalignment the standard counts and the computed flanks do not have."""
+    counted = [one.value for one in data.formula.factors if one.symbol == "F_betay"]
+    if asked.misaligned or not counted:
+        return []
+    gap = f"{counted[0] * 1e6:.3g} um"
+    told = (
+        f"Pair {asked.name}: the computed flanks are aligned, while ISO 6336 counts a misalignment of F_betay = {gap} "
+        f'after running in. The same for both: pair.{asked.name}.line_error = {{ over_face = "{gap}" }} and '
+        "effects.misalignment = true."
+    )
+    return [told]
+
+
+def _shown(one: Factor, asked: PairToRate) -> bool:
+    """Whether a factor's remark is the reader's: not that the case gave it."""
+    return bool(one.remark) and remark_of(one, asked) == one.remark and "as given" not in one.remark
+
+
+RATING = Stage(
+    subjects=lambda scene: tuple(scene.pairs),
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    needs=_needs,
+    check=_check,
+    effects=FLANK_EFFECTS,
+    cites=_cites,
+    forecast=_forecast,
+)

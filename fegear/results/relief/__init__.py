@@ -1,0 +1,1 @@
+"""Results of profile relief: designs, charts, sensitivity, flanks."""

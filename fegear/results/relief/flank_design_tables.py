@@ -1,0 +1,177 @@
+"""Tables and single values of designed flanks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.outcome import Value
+from fegear.engine.table import Column, Table
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.design.flanks.flank_design import FlankDesign
+    from fegear.design.flanks.forms import GroundRelief
+    from fegear.geometry.pair import GearPair, Member
+    from fegear.results.relief.flank_design import FlankDesignData
+
+
+#: What is stated of every relief: head, which of `Judged`, unit, text.
+_JUDGED = (
+    ("te_peak_to_peak", "peak_to_peak", "um", "left at the design load"),
+    ("K_Hbeta", "face_load_factor", "", "at the design load"),
+    ("hertz_pressure", "pressure", "MPa", "largest, without tips and form circles"),
+    ("te_mean_over_scatter", "mean_over_scatter", "um", "peak to peak, mean over the misalignments of the scatter"),
+    ("te_p95_over_scatter", "most_over_scatter", "um", "peak to peak that 95 % of the misalignments do not exceed"),
+    ("K_Hbeta_p95_over_scatter", "factor_over_scatter", "", "K_Hbeta that 95 % of the misalignments do not exceed"),
+)
+
+
+def topography_table(name: str, gear: str, member: Member, share: float, data: FlankDesignData) -> Table:
+    """Exact topography of one gear, which a case reads back as its ``topography``."""
+    design, pair = data.design, data.pair
+    x, z = (grid.ravel() for grid in np.meshgrid(design.x, design.z, indexing="ij"))
+    own = z + pair.face_height(member)
+    task = design.task
+    columns = (
+        Column("roll_angle", np.asarray(pair.roll_angle(x, member)), "deg", "of the flank point"),
+        Column("z", own, "mm", "along the gear's face, from its middle"),
+        Column("removal", share * design.removal.ravel(), "um", "material to remove, along the normal in the section"),
+        Column("diameter", 2.0 * np.asarray(pair.radius(x, member)), "mm", "of the flank point"),
+        Column("x", x, "mm", "position on the line of action, positive toward the driver's tip"),
+        Column("line_load", task.load * task.loading.line_load(x, z), "N/mm", "design load on the pair per face width"),
+    )
+    return Table(f"flank_topography_{name}_{gear}", columns, f"Topographic relief of gear {gear} in pair {name}")
+
+
+def designs_table(name: str, data: FlankDesignData) -> Table:
+    """Every way to relieve the flanks, its numbers and what it leaves."""
+    design = data.design
+    states, found = design.states, design.found
+    zero = np.zeros(9)
+    numbers = np.array([zero if s.relief is None else s.relief.numbers for s in states]).T
+    counted = [found.get(s.label) for s in states]
+    columns = [Column("relief", np.array([s.label for s in states]), "", "what is ground")]
+    for key, attribute, unit, text in _JUDGED:
+        numbers_of = [getattr(s.judged, attribute) for s in states]
+        columns += [
+            Column(key, np.array([one.value for one in numbers_of]), unit, text),
+            Column(f"{key}_error", np.array([one.error for one in numbers_of]), unit, "estimated error"),
+        ]
+    told = (
+        ("driver_tip", "um", "tip relief of the driver"), ("driver_tip_length", "mm", "along the line of action"),
+        ("driven_tip", "um", "tip relief of the driven gear"), ("driven_tip_length", "mm", "along the line of action"),
+        ("crowning", "um", "of the lead, at both ends"), ("end_relief", "um", "at both ends of the face"),
+        ("end_relief_length", "mm", "along the face"), ("slope", "um", "of the helix, at +b/2 less at -b/2"),
+        ("bias", "um", "profile slope at +b/2 less at -b/2, of the driver"),
+    )  # fmt: skip
+    columns += [Column(key, values, unit, text) for (key, unit, text), values in zip(told, numbers, strict=True)]
+    columns += [
+        Column("combinations", np.array([one.candidates if one else 0 for one in counted]), "", "of the grid, tried"),
+        Column("loaded_exactly", np.array([one.exact if one else 0 for one in counted]), "", "of them"),
+        Column("best_on_grid", np.array([one.value_on_grid if one else 0.0 for one in counted]), "um",
+               "what the best combination of the grid leaves, before the descent; 0 where nothing is searched"),
+        Column("quick_error", np.array([one.quick_error if one else 0.0 for one in counted]), "um",
+               "by which the quick way that all combinations were tried in was too high, as far as seen"),
+        Column("proven", np.array([float(one.proven) if one else 1.0 for one in counted]), "",
+               "1: no other combination can be better with such an error"),
+    ]  # fmt: skip
+    return Table(f"flank_designs_{name}", tuple(columns), f"Reliefs of the flanks of pair {name} and what they leave")
+
+
+def map_table(name: str, design: FlankDesign) -> Table:
+    """Transmission error and K_Hbeta over misalignment and load."""
+    over_face, loads = np.array(design.task.map_over_face), np.array(design.task.map_loads)
+    per, states = over_face.size * loads.size, design.states
+    columns = (
+        Column("relief", np.repeat(np.array([s.label for s in states]), per), "", "what is ground"),
+        Column("over_face", np.tile(np.repeat(over_face, loads.size), len(states)), "um",
+               "misalignment besides the given one: gap at +b/2 less that at -b/2"),
+        Column("load", np.tile(loads, len(states) * over_face.size), "N", "along the line of action"),
+        Column("te_peak_to_peak", np.concatenate([s.mapped.peak_to_peak.ravel() for s in states]), "um", "left"),
+        Column("K_Hbeta", np.concatenate([s.mapped.face_load_factor.ravel() for s in states]), "",
+               "largest over mean load per face width"),
+        Column("hertz_pressure", np.concatenate([s.mapped.pressure.ravel() for s in states]), "MPa",
+               "largest, without tips and form circles"),
+    )  # fmt: skip
+    return Table(f"flank_map_{name}", columns, f"Reliefs of pair {name} over misalignment and load")
+
+
+def roll_table(name: str, design: FlankDesign) -> Table:
+    """Transmission error at the design load over the roll positions."""
+    columns = [Column("roll", design.roll, "mm", "roll position: x of pair 0 in the middle of the face")]
+    columns += [
+        Column(f"te_{state.label.replace('-', '_').replace(' ', '_')}", state.te, "um", f"with {state.label}")
+        for state in design.states
+    ]
+    return Table(f"flank_design_roll_{name}", tuple(columns), f"Transmission error of pair {name} at the design load")
+
+
+def values_of(name: str, design: FlankDesign) -> tuple[Value, ...]:
+    """Single values: without relief, of the exact topography, and of the best that can be ground."""
+    values = [
+        Value(f"{name}.topography_depth", float(np.ptp(design.removal)), "um", None,
+              "largest removal of the exact topography, by both gears together"),
+    ]  # fmt: skip
+    for state in design.states:
+        key = state.label.replace("-", "_").replace(" ", "_")
+        values += [
+            Value(f"{name}.{key}.{head}", getattr(state.judged, attribute).value, unit,
+                  getattr(state.judged, attribute).error, f"{text}: {state.label}")
+            for head, attribute, unit, text in (_JUDGED if design.task.deviation else _JUDGED[:3])
+        ]  # fmt: skip
+    return tuple(values)
+
+
+def keys_of(relief: GroundRelief, pair: GearPair, gears: Mapping[Member, str]) -> list[str]:
+    """The relief as keys of both gears; lead and bias are those of the first whose face is the common one.
+
+    Where both faces reach beyond the common one, lead and bias are given for the driver all the same, and count over
+    the common face.
+    """
+    lines = []
+    tips: tuple[tuple[Member, float, float, float], ...] = (
+        ("driver", relief.driver_tip, pair.x_end, pair.x_end - relief.driver_tip_length),
+        ("driven", relief.driven_tip, pair.x_start, pair.x_start + relief.driven_tip_length),
+    )
+    by_gear: dict[str, list[str]] = {gear: [] for gear in gears.values()}
+    for member, amount, end, start in tips:
+        if amount:
+            radii = [float(pair.radius(at, member)) for at in (start, end)]
+            by_gear[gears[member]].append(
+                f'relief = {{ tip = {{ amount = "{_um(amount)}", start_radius = "{_mm(radii[0])}", '
+                f'at_radius = "{_mm(radii[1])}" }} }}'
+            )
+    lead = [
+        f'{key} = "{_um(value)}"' for key, value in (("crowning", relief.crowning), ("slope", relief.slope)) if value
+    ]
+    if relief.end_relief:
+        ends = f'amount = "{_um(relief.end_relief)}", length = "{_mm(relief.end_relief_length)}"'
+        lead.append(f"end_relief = {{ {ends} }}")
+    bearer: Member = next((m for m in MEMBERS if _is_common(pair, m)), "driver")
+    if lead:
+        by_gear[gears[bearer]].append(f"lead = {{ {', '.join(lead)} }}")
+    if relief.bias:
+        # The driven gear's tip is where the driver's root is.
+        bias = relief.bias if bearer == "driver" else -relief.bias
+        by_gear[gears[bearer]].append(f'bias = "{_um(bias)}"')
+    for gear, keys in by_gear.items():
+        lines += [f"gear.{gear}.{key}" for key in keys]
+    return lines
+
+
+def _is_common(pair: GearPair, member: Member) -> bool:
+    """Whether a gear's face is the common one."""
+    slack = 1e-9 * pair.face_width
+    return abs(pair.gear(member).face_width - pair.face_width) <= slack and abs(pair.face_height(member)) <= slack
+
+
+def _um(value: float) -> str:
+    return f"{value * 1e6:.5g} um"
+
+
+def _mm(value: float) -> str:
+    return f"{value * 1e3:.7g} mm"

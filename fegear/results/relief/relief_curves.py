@@ -1,0 +1,218 @@
+"""Result ``relief-curves``: transmission error and load of a tooth pair over its engagement, relief by relief."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve, ramp
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.engine.table import Column, Table
+from fegear.results.gear.drawing import roll_marks
+from fegear.results.pair.loaded_pair import needs_pair
+from fegear.results.relief.relief import DESIGN_EFFECTS, design_pairs, design_part
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.case.built.loaded_pair import LoadedPair
+    from fegear.case.design import ChartPart
+    from fegear.case.reading import Scene
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.pair_history import PairHistory
+    from fegear.contact.plane.transmission_error import TransmissionError
+    from fegear.engine.stage import Upstream, Work
+
+_POSITIONS, _HARMONICS, _TOLD = 200, 12, 4
+#: Reliefs that one figure still tells apart.
+_MOST = 24
+#: One relief followed and integrated [s].
+_EACH = 0.02
+
+
+@dataclass(frozen=True)
+class CurvesInputs:
+    """Which reliefs are asked for."""
+
+    part: ChartPart
+    name: str = field(compare=False)
+
+
+@dataclass(frozen=True)
+class ReliefCurve:
+    """What one relief makes of the pair.
+
+    Parameters
+    ----------
+    amount : float
+        At both tips [m]; zero for perfect involutes.
+    length : float
+        L_n of TM-89901.
+    history : PairHistory
+        One tooth pair from first to last contact.
+    error : TransmissionError
+        Over the base pitch.
+    """
+
+    amount: float
+    length: float
+    history: PairHistory
+    error: TransmissionError
+
+
+@dataclass(frozen=True)
+class ReliefCurvesData:
+    """Every relief, perfect involutes first, and Welbourn's Delta [m]."""
+
+    pair: LoadedPair
+    delta: float
+    curves: tuple[ReliefCurve, ...]
+
+
+def _check(scene: Scene, name: str) -> None:
+    ratio = scene.pairs[name].contact_ratio
+    if not 1.0 <= ratio < 2.0:
+        raise InputError(
+            f"pair.{name}", f"contact ratio {ratio:.4f}", "has no highest point of single tooth contact, from which "
+            "lengths of relief count", "ask for relief-chart",
+        )  # fmt: skip
+    part = design_part(scene).chart
+    count = len(part.amounts or part.amounts_over_delta or [1.0]) * len(part.lengths or [1.0])
+    if count > _MOST:
+        raise InputError(
+            "design.chart", f"{count} reliefs", f"are more than the {_MOST} that relief-curves draws",
+            "give fewer amounts or lengths",
+        )  # fmt: skip
+
+
+def _inputs(scene: Scene, name: str) -> CurvesInputs:
+    return CurvesInputs(design_part(scene).chart, name)
+
+
+def _compute(inputs: CurvesInputs, upstream: Upstream, work: Work) -> ReliefCurvesData:
+    from fegear.design.charts import welbourn_amount
+    from fegear.geometry.relief import normalised_tip_relief
+
+    (found,) = upstream.values()
+    pair: LoadedPair = found.pair
+    plain, part = pair.engagement.unmodified(), inputs.part
+    delta = welbourn_amount(plain, pair.nominal)
+    amounts = part.amounts or [delta * share for share in part.amounts_over_delta or [1.0]]
+    curves = [_curve(plain, pair.nominal, 0.0, 0.0)]
+    wanted = list(product(sorted(amounts), sorted(part.lengths or [1.0])))
+    for amount, length in wanted:
+        relieved = replace(
+            plain,
+            driver_relief=normalised_tip_relief(plain.pair, "driver", amount, length, part.shape),
+            driven_relief=normalised_tip_relief(plain.pair, "driven", amount, length, part.shape),
+        )
+        curves.append(_curve(relieved, pair.nominal, amount, length))
+        work.progress(len(curves) / (1 + len(wanted)))
+    return ReliefCurvesData(pair, delta, tuple(curves))
+
+
+def _curve(engagement: Engagement, load: float, amount: float, length: float) -> ReliefCurve:
+    from fegear.contact.plane.pair_history import pair_history
+    from fegear.contact.plane.transmission_error import transmission_error
+
+    history = pair_history(engagement, [load], _POSITIONS)
+    return ReliefCurve(amount, length, history, transmission_error(engagement, load, _HARMONICS))
+
+
+def _present(data: ReliefCurvesData, inputs: CurvesInputs) -> Outcome:
+    name, curves = inputs.name, data.curves
+    rows = [curve.history.x.size for curve in curves]
+
+    def along(key: str) -> Array:
+        return np.concatenate([np.ravel(getattr(curve.history, key)) for curve in curves])
+
+    def of(key: str) -> Array:
+        return np.array([getattr(curve.error, key) for curve in curves])
+
+    amounts, lengths = np.array([c.amount for c in curves]), np.array([c.length for c in curves])
+    history = Table(
+        f"relief_curves_{name}",
+        (
+            Column("amount", np.repeat(amounts, rows), "um", "removal at both tips"),
+            Column("length", np.repeat(lengths, rows), "", "L_n, 1 from the tip to the HPSTC"),
+            Column("x", along("x"), "mm", "position of the pair on the line of action"),
+            Column("roll_angle", along("driver_roll_angle"), "deg", "of the contact point on the driver"),
+            Column("te", along("transmission_error"), "um", "loaded transmission error"),
+            Column("load", along("load"), "N", "on the pair along the line of action"),
+            Column("share", along("share"), "", "of the total load"),
+        ),
+        f"Transmission error and load of a tooth pair of {name}, relief by relief, {data.pair.nominal:.6g} N",
+    )
+    series = np.array([curve.error.series.amplitude[:_TOLD] for curve in curves])
+    summary = Table(
+        f"relief_curves_summary_{name}",
+        (
+            Column("amount", amounts, "um", "removal at both tips"),
+            Column("amount_over_delta", amounts / data.delta, "", "over Welbourn's Delta"),
+            Column("length", lengths, "", "L_n, 1 from the tip to the HPSTC"),
+            Column("te_peak_to_peak", of("peak_to_peak"), "um", "largest less smallest"),
+            Column("te_effective", of("effective_error"), "um", "A_e of NASA TM-89901"),
+            *(Column(f"amplitude_{n + 1}", series[:, n], "um", "harmonic, 0-peak") for n in range(_TOLD)),
+        ),
+        f"Transmission error of {name}, relief by relief",
+    )
+    value = Value(f"{name}.delta", data.delta, "um", None, "Welbourn's Delta: deflection at the HPSTC")
+    return Outcome(data, (history, summary), (value,), {"reliefs": len(curves) - 1}, figures=(_figure(name, data),))
+
+
+def _figure(name: str, data: ReliefCurvesData) -> Figure:
+    """Transmission error and load over the roll angle, one curve for each relief."""
+    roll = Axis("roll angle of the driver", "deg")
+    looks = [("no relief", "no relief")]
+    looks += [
+        (f"{curve.amount / data.delta:.3g} Δ, L_{{n}} = {curve.length:.3g}", role)
+        for curve, role in zip(data.curves[1:], ramp(len(data.curves) - 1), strict=True)
+    ]
+
+    def curves(key: str, factor: float) -> tuple[Curve, ...]:
+        return tuple(
+            Curve(
+                np.degrees(curve.history.driver_roll_angle), np.ravel(getattr(curve.history, key)) * factor, text, role,
+                markers=False,
+            )
+            for curve, (text, role) in zip(data.curves, looks, strict=True)
+        )  # fmt: skip
+
+    marks = roll_marks(data.pair.engagement.pair, "driver")
+    return Figure(
+        f"relief_curves_{name}",
+        f"Reliefs of pair {name}",
+        f"Pair {name}: static transmission error, and load on one tooth pair from its first to its last contact, with "
+        f"equal tip relief on both gears: amount over Δ = {data.delta * 1e6:.4g} µm, length 1 from tip to HPSTC.",
+        (
+            Panel(roll, Axis("transmission error", "um"), curves("transmission_error", 1e6), marks),
+            Panel(roll, Axis("load on the pair", "N", zero=True), curves("load", 1.0), marks),
+        ),
+        under=f"{data.pair.nominal:.5g} N",
+    )
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """Each relief alike; tip corners off the path cost three times as much."""
+    part = design_part(scene).chart
+    count = 1 + len(part.amounts or part.amounts_over_delta or [1.0]) * len(part.lengths or [1.0])
+    return Forecast({"reliefs": count}, count * _EACH * (3.0 if scene.case.effects.corner_contact else 1.0))
+
+
+RELIEF_CURVES = Stage(
+    subjects=design_pairs,
+    needs=needs_pair,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    effects=DESIGN_EFFECTS,
+    cites=citing(Citation("lin-townsend-oswald", "tip reliefs by amount over Delta and length L_n", "Figs. 3 to 6")),
+    forecast=_forecast,
+)

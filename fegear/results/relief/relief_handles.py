@@ -1,0 +1,137 @@
+"""The relief of a gear as it is changed by hand: its curve over the roll angle, and the points that can be moved."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.case.built.flank_modifications import described_relief
+from fegear.case.built.pair_inputs import gear_name
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve, Points
+from fegear.geometry.pair import active_profile
+from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief
+from fegear.results.gear.drawing import roll_marks
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.geometry.pair import Member
+
+#: Parts of a relief that can be moved, in the order in which `build_relief` takes them.
+ENDS: tuple[Literal["tip"], Literal["root"], Literal["crowning"]] = ("tip", "root", "crowning")
+#: Places at which the curve is drawn, and the least height of its axis [um].
+_PLACES, _LEAST = 201, 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Handle:
+    """A part of a relief that can be moved.
+
+    Parameters
+    ----------
+    end : {"tip", "root", "crowning"}
+    index : int
+        Which of several of that kind, as the case lists them.
+    start, at : float
+        Where it starts and where its amount is measured [deg]; a crowning's ends.
+    amount : float
+        [um].
+    """
+
+    end: Literal["tip", "root", "crowning"]
+    index: int
+    start: float
+    amount: float
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class HandledRelief:
+    """The relief of one gear of a pair.
+
+    Parameters
+    ----------
+    gear : str
+    low, high : float
+        Roll angles of the active profile [deg].
+    usual : dict
+        For each end, where a relief usually starts: the highest or lowest point of single contact [deg].
+    handles : tuple of Handle
+        Tip and root reliefs and crownings.
+    figure : Figure
+    """
+
+    gear: str
+    low: float
+    high: float
+    usual: dict[str, float]
+    handles: tuple[Handle, ...]
+    figure: Figure
+
+
+def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
+    """The relief of a gear of a pair, ready to be changed by hand.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Of the pair.
+    member : {"driver", "driven"}
+    """
+    pair, gear = scene.pairs[name], gear_name(scene, name, member)
+    ends = sorted(math.degrees(float(pair.roll_angle(x, member))) for x in (pair.x_start, pair.x_end))
+    try:
+        relief = described_relief(scene, gear).relief
+    except InputError:  # refused where it counts; the case's own sentence is told then
+        relief = None
+    roll = np.linspace(ends[0], ends[1], _PLACES)
+    removal = np.zeros(_PLACES) if relief is None else relief.removal(np.radians(roll)) * 1e6
+    handles = tuple(_handles(scene, gear, relief))
+    points = [(one.start, 0.0) for one in handles if one.end != "crowning"] + [(one.at, one.amount) for one in handles]
+    items: list[Curve | Points] = [Curve(roll, removal, "", "designed", markers=False)]
+    if points:
+        x, y = np.array(points).T
+        items.append(Points(x, y, "", "ink", symbol="circle", size=9.0))
+    top = max(_LEAST, 1.25 * float(removal.max()), *(1.25 * y for _, y in points)) if points else _LEAST
+    room = 0.06 * (ends[1] - ends[0])
+    axis = Axis("roll angle", "deg", limits=(ends[0] - room, ends[1] + room))
+    section = " in any section across the axes" if pair.driver.helix_angle else ""
+    figure = Figure(
+        f"relief_of_{name}_{member}",
+        f"Relief of gear {gear}",
+        f"Material that is removed from the {member}'s flanks over its active profile{section}; A to E: points of the "
+        f"path of contact.{' The points can be moved.' if points else ''}",
+        (Panel(axis, Axis("removal", "um", limits=(-0.06 * top, top)), tuple(items), roll_marks(pair, member)),),
+    )
+    alone = active_profile(pair, member)
+    usual = {
+        end: math.degrees(float(_roll(scene, gear, radius)))
+        for end, radius in (("tip", alone.highest_single), ("root", alone.lowest_single))
+        if math.isfinite(radius)
+    }
+    middle = 0.5 * (ends[0] + ends[1])
+    return HandledRelief(gear, ends[0], ends[1], {"tip": middle, "root": middle} | usual, handles, figure)
+
+
+def _roll(scene: Scene, gear: str, radius: float) -> float:
+    base = scene.gears[gear].base_radius
+    return math.sqrt(max((radius / base) ** 2 - 1.0, 0.0))
+
+
+def _handles(scene: Scene, gear: str, relief: object) -> list[Handle]:
+    part = scene.case.gear[gear].relief
+    if part is None or not isinstance(relief, CombinedRelief):
+        return []
+    kinds: list[tuple[Literal["tip", "root", "crowning"], int]] = []
+    for end in ENDS:
+        kinds += [(end, index) for index in range(len(getattr(part, end)))]
+    found = [one for one in relief.parts if isinstance(one, (EndRelief, Crowning))]  # in the order of the keys
+    return [
+        Handle(end, index, math.degrees(one.start), one.amount * 1e6, math.degrees(one.end))
+        for (end, index), one in zip(kinds, found, strict=True)
+    ]

@@ -1,0 +1,1 @@
+"""Results of a gear train: modes, forces, spectra, dynamic factor, motion."""

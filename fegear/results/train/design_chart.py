@@ -1,0 +1,376 @@
+"""Stage ``design-chart``: largest dynamic factor over speed, against amount and length of tip relief (TM-89901)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.errors import FegearError, InputError
+from fegear.case.built.pair_inputs import pair_inputs
+from fegear.case.built.tooth_influence import gear_to_solve
+from fegear.case.built.train import assemble, motion_inputs, steady_motions, train_inputs, train_part
+from fegear.dynamics.train.dynamic_factor import FactorLine, factor_between, factor_line
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Need, Stage, Task
+from fegear.geometry.pair import MEMBERS
+from fegear.results import forecasts
+from fegear.results.pair.loaded_pair import loaded_pair
+from fegear.results.train.design_chart_tables import chart_tables, chart_values, design_chart_figures, line_remark
+from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_speeds, own_meshes, the_train
+from fegear.results.train.motion import check_motion
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.case.built.pair_inputs import PairInputs
+    from fegear.case.built.tooth_influence import GearToSolve
+    from fegear.case.built.train import MotionInputs, TrainInputs
+    from fegear.case.dynamics import DesignChartPart
+    from fegear.case.reading import Scene
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.engine.stage import Upstream, Work
+    from fegear.geometry.relief import Shape
+
+#: Harmonics of the static transmission error that the chart keeps (TM-89901, Fig. 7).
+HARMONICS = 4
+#: Motions that are found here sooner than other processes start.
+_FEW = 300
+#: Largest factor over the least of an amount at which a length is as good as the best: its optimum is flat.
+_NEARLY = 1.01
+
+
+@dataclass(frozen=True)
+class ChartInputs:
+    """What the chart depends on.
+
+    Parameters
+    ----------
+    amounts, lengths : ndarray
+        Of tip relief, over Delta and in L_n.
+    unequal : tuple of (float, float, float)
+        Amounts on driver and driven gear and length of reliefs that stand alone.
+    shape : {"linear", "parabolic"}
+    mesh : str
+        That is relieved and looked at.
+    train : TrainInputs
+    motion : MotionInputs
+    teeth : PairInputs
+        Of that mesh.
+    gears : tuple of GearToSolve
+        Whose influence functions its compliances come from; empty for closed forms and tables.
+    """
+
+    amounts: Array
+    lengths: Array
+    unequal: tuple[tuple[float, float, float], ...]
+    shape: Shape
+    mesh: str
+    train: TrainInputs
+    motion: MotionInputs
+    teeth: PairInputs
+    gears: tuple[GearToSolve, ...]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One point of the chart: all that a process needs to compute it."""
+
+    inputs: ChartInputs
+    train: GearTrain
+    engagement: Engagement
+    mesh: int
+    amounts: tuple[float, float]
+    length: float
+    delta: float
+
+
+@dataclass(frozen=True)
+class UnequalRelief:
+    """A relief of its own on each gear; nan where there is no result.
+
+    Parameters
+    ----------
+    driver, driven, length : float
+        Amounts over Delta, and L_n.
+    dynamic_factor, speed, effective_error : float
+        Largest over the speeds, where [rad/s], and A_e [m].
+    between : float
+        Foretold from A_e between those of both amounts on both gears, at the same length (TM-89901, Fig. 11).
+    reason : str
+        Why there is no result.
+    """
+
+    driver: float
+    driven: float
+    length: float
+    dynamic_factor: float
+    speed: float
+    effective_error: float
+    between: float
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class DesignChartData:
+    """The chart; arrays of shape (amounts, lengths), nan where a point has no result.
+
+    Parameters
+    ----------
+    amounts, lengths : ndarray
+    dynamic_factor, effective_error, speed, contact_loss, unsteady : ndarray
+        Largest factor, A_e [m], speed of the largest [rad/s], share of the time without contact, unsteady speeds.
+    harmonics : ndarray, shape (4, amounts, lengths)
+        A_1 to A_4 of the static transmission error, 0-peak [m].
+    reasons : tuple of str
+        Why a point has no result, the last axis fastest; empty where it has one.
+    unequal : tuple of UnequalRelief
+    line : FactorLine or None
+        Of the dynamic factor over A_e, through all points of the chart.
+    unmodified, unmodified_error : float
+        Largest dynamic factor and A_e [m] of perfect involutes.
+    delta : float
+        Welbourn's Delta [m].
+    speed_of : str
+        Body that speeds refer to.
+    """
+
+    amounts: Array
+    lengths: Array
+    dynamic_factor: Array
+    effective_error: Array
+    speed: Array
+    contact_loss: Array
+    unsteady: Array
+    harmonics: Array
+    reasons: tuple[str, ...]
+    unequal: tuple[UnequalRelief, ...]
+    line: FactorLine | None
+    unmodified: float
+    unmodified_error: float
+    delta: float
+    speed_of: str
+
+    def best_for_all(self) -> tuple[float, float]:
+        """Length at which the worst of all amounts is least, and that factor; straight between the chart's lengths.
+
+        Nan where an amount has no results.
+        """
+        lengths = np.unique(np.concatenate([self.lengths, np.linspace(self.lengths[0], self.lengths[-1], 2001)]))
+        worst = np.max([np.interp(lengths, self.lengths, row) for row in self.dynamic_factor], axis=0)
+        k = int(np.argmin(worst))
+        return float(lengths[k]), float(worst[k])
+
+    def flat_range(self, amount: int) -> tuple[float, float]:
+        """Lengths around the best of one amount between which no factor of the chart is 1 % above the least.
+
+        Parameters
+        ----------
+        amount : int
+            Index of an amount with at least one result.
+        """
+        row = self.dynamic_factor[amount]
+        k = int(np.nanargmin(row))
+        off = np.flatnonzero(~(row <= _NEARLY * row[k]))
+        first, last = off[off < k], off[off > k]
+        return (
+            float(self.lengths[first[-1] + 1 if first.size else 0]),
+            float(self.lengths[last[0] - 1 if last.size else -1]),
+        )
+
+
+def chart_trial(trial: Trial) -> dict[str, float]:
+    """Compute one point: largest dynamic factor over the case's speeds, where, and A_e of the static error."""
+    from fegear.dynamics.train.charts import SpeedChart
+    from fegear.dynamics.train.excitation import effective_error
+    from fegear.dynamics.train.mesh_excitation import mesh_excitation
+    from fegear.geometry.relief import CombinedRelief, normalised_tip_relief
+
+    asked, i = trial.inputs, trial.mesh
+    pair = trial.engagement.pair
+    driver, driven = (
+        normalised_tip_relief(pair, member, amount * trial.delta, trial.length, asked.shape)
+        if amount > 0.0 else CombinedRelief()
+        for member, amount in zip(MEMBERS, trial.amounts, strict=True)
+    )  # fmt: skip
+    engagement = replace(trial.engagement, driver_relief=driver, driven_relief=driven)
+    mesh = trial.train.meshes[i]
+    found = mesh_excitation(engagement if mesh.a_drives else engagement.reversed(), mesh.force)
+    by_mesh = {name: one.excitation for name, one in zip(trial.train.names, trial.train.meshes, strict=True)}
+    by_mesh[trial.train.names[i]] = replace(found, phase=mesh.excitation.phase)
+    data = assemble(asked.train, by_mesh)
+    states = steady_motions(asked.motion, data)
+    curve = SpeedChart.of(asked.motion.speeds, states, i, float(data.forces[i]))
+    worst, where = curve.worst
+    error = data.errors[i]
+    amplitudes = 2.0 * np.abs(error.fourier(error.pitches * np.arange(1, HARMONICS + 1)))
+    return {
+        "dynamic_factor": worst,
+        "speed": where,
+        "contact_loss": float(curve.apart.max()),
+        "unsteady": float(np.count_nonzero(curve.periods == 0)),
+        "effective_error": effective_error(error),
+        **{f"amplitude_{n + 1}": float(a) for n, a in enumerate(amplitudes)},
+    }
+
+
+def trial_content(trial: Trial) -> object:
+    """All that a point's numbers depend on: not the chart that it belongs to, so that a larger one finds it again."""
+    asked = trial.inputs
+    return (
+        asked.shape, asked.mesh, asked.train, asked.motion, asked.teeth, asked.gears,
+        trial.amounts, trial.length, trial.delta,
+    )  # fmt: skip
+
+
+def _chart(scene: Scene) -> DesignChartPart:
+    found = scene.case.dynamics.chart
+    if found is None:
+        raise InputError(
+            "dynamics.chart", "(not given)", "is needed for design-chart",
+            "write chart = { amounts = [0.5, 1.0], lengths = [0.6, 0.8, 1.0] }",
+        )  # fmt: skip
+    return found
+
+
+def _mesh(scene: Scene) -> str:
+    own = own_meshes(scene)
+    name = _chart(scene).mesh or (own[0] if own else "")
+    if name not in own:
+        raise InputError("dynamics.chart.mesh", f'"{name}"', "is no mesh of this train with teeth of its own")
+    return name
+
+
+def _check(scene: Scene, subject: str) -> None:
+    needs_speeds(scene, subject)
+    check_motion(scene)
+    needs_plane_teeth(scene, _mesh(scene), "results", '"design-chart"')
+    pair = train_part(scene).pair_of(_mesh(scene))
+    ratio = scene.pairs[pair].contact_ratio
+    if not 1.0 <= ratio < 2.0:
+        raise InputError(
+            f"pair.{pair}", f"contact ratio {ratio:.4f}", "has no highest point of single tooth contact, from which "
+            "lengths of relief count",
+        )  # fmt: skip
+
+
+def _inputs(scene: Scene, _subject: str) -> ChartInputs:
+    part, mesh = _chart(scene), _mesh(scene)
+    pair = train_part(scene).loaded_pair_of(mesh)
+    teeth = pair_inputs(scene, pair)
+    solved = teeth.gears if teeth.compliance.source == "fe" else ()
+    return ChartInputs(
+        np.unique(part.amounts), np.unique(part.lengths), tuple((u.driver, u.driven, u.length) for u in part.unequal),
+        part.shape, mesh, train_inputs(scene), motion_inputs(scene),
+        teeth, tuple(gear_to_solve(scene, gear) for gear in solved),
+    )  # fmt: skip
+
+
+def _compute(asked: ChartInputs, upstream: Upstream, work: Work) -> DesignChartData:
+    from fegear.design.charts import welbourn_amount
+    from fegear.engine.executor import map_points
+    from fegear.engine.point_job import Failure
+
+    data = gear_train(upstream)
+    i = data.train.mesh_index(asked.mesh)
+    engagement = loaded_pair(upstream, asked.teeth.name).engagement
+    delta = welbourn_amount(engagement, float(data.forces[i]))
+    chart = [((float(a), float(a)), float(n)) for a in asked.amounts for n in asked.lengths]
+    # beside each unequal relief, both of its amounts on both gears
+    beside = [((a, b), n) for one, two, n in asked.unequal for a, b in ((one, two), (one, one), (two, two))]
+    reliefs = list(dict.fromkeys([((0.0, 0.0), 0.0), *chart, *(r if any(r[0]) else ((0.0, 0.0), 0.0) for r in beside)]))
+    points = [Trial(asked, data, engagement, i, amounts, length, delta) for amounts, length in reliefs]
+    executor = work.executor
+    if executor.scheduler is None and len(points) * asked.motion.speeds.size <= _FEW:
+        executor = replace(executor, here=True)
+    found_points = map_points(chart_trial, points, executor, work.cache, key=trial_content, progress=work.progress)
+    made = dict(zip(reliefs, found_points, strict=True))
+    plain, found = made[(0.0, 0.0), 0.0], [made[point] for point in chart]
+    if isinstance(plain, Failure):
+        raise FegearError(f"The unmodified gears of the design chart have no result: {plain.reason}")
+
+    def grid(key: str) -> Array:
+        return np.array([_number(one, key) for one in found]).reshape(asked.amounts.size, -1)
+
+    factor, error = grid("dynamic_factor"), grid("effective_error")
+    at = {point: made[point if any(point[0]) else ((0.0, 0.0), 0.0)] for point in beside}
+    return DesignChartData(
+        asked.amounts, asked.lengths, factor, error, grid("speed"), grid("contact_loss"), grid("unsteady"),
+        np.array([grid(f"amplitude_{n}") for n in range(1, HARMONICS + 1)]),
+        tuple(r.reason if isinstance(r, Failure) else "" for r in found),
+        tuple(_unequal(one, two, n, at) for one, two, n in asked.unequal), factor_line(error, factor),
+        _number(plain, "dynamic_factor"), _number(plain, "effective_error"), delta, data.speed_of,
+    )  # fmt: skip
+
+
+def _number(point: object, key: str) -> float:
+    """One number of a point; nan where it failed."""
+    return cast("dict[str, float]", point)[key] if isinstance(point, dict) else np.nan
+
+
+def _unequal(
+    driver: float, driven: float, length: float, at: dict[tuple[tuple[float, float], float], object]
+) -> UnequalRelief:
+    """A relief of its own on each gear, and its factor foretold from both amounts on both gears."""
+    point = at[(driver, driven), length]
+    known = [at[(amount, amount), length] for amount in (driver, driven)]
+    errors, factors = ([_number(one, key) for one in known] for key in ("effective_error", "dynamic_factor"))
+    error = _number(point, "effective_error")
+    return UnequalRelief(
+        driver, driven, length, _number(point, "dynamic_factor"), _number(point, "speed"), error,
+        factor_between(error, (errors[0], errors[1]), (factors[0], factors[1])), getattr(point, "reason", ""),
+    )  # fmt: skip
+
+
+def _present(chart: DesignChartData, asked: ChartInputs) -> Outcome:
+    failures = tuple(
+        f"amount {a:.4g} Delta, length {n:.4g}: {reason}"
+        for (a, n), reason in zip(product(chart.amounts, chart.lengths), chart.reasons, strict=True)
+        if reason
+    )
+    failures += tuple(
+        f"amounts {one.driver:.4g} and {one.driven:.4g} Delta, length {one.length:.4g}: {one.reason}"
+        for one in chart.unequal
+        if one.reason
+    )
+    settings: dict[str, object] = {
+        "points": 1 + chart.dynamic_factor.size + 3 * len(chart.unequal), "speeds": int(asked.motion.speeds.size)
+    }  # fmt: skip
+    return Outcome(
+        chart, chart_tables(chart, asked.mesh), chart_values(chart), settings, (*failures, *line_remark(chart)),
+        design_chart_figures(chart),
+    )  # fmt: skip
+
+
+def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
+    return (Task("gear-train"), Task("loaded-pair", train_part(scene).loaded_pair_of(_mesh(scene))))
+
+
+def _forecast(scene: Scene, _subject: str) -> Forecast:
+    """A motion over the speeds for each point of the chart."""
+    part = scene.case.dynamics
+    if part.chart is None:
+        return Forecast()
+    points = 1 + len(part.chart.amounts) * len(part.chart.lengths) + 3 * len(part.chart.unequal)
+    speeds = int(part.speed_values.size)
+    return Forecast({"points": points, "speeds": speeds}, points * (0.1 + speeds * forecasts.seconds_per_speed(scene)))
+
+
+DESIGN_CHART = Stage(
+    subjects=the_train,
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    effects=("contact_loss", "friction", "parametric"),
+    requires=(
+        Need("contact_loss", "reliefs are chosen for the forces at which teeth part"),
+        Need("parametric", "relief acts on single tooth pairs, and without it all are one spring"),
+    ),
+    cites=citing(Citation("lin-townsend-oswald", "design charts of tip relief by dynamic factor")),
+    forecast=_forecast,
+)

@@ -1,0 +1,244 @@
+"""Tables and values of a design chart of tip relief.
+
+Figures of a design chart of tip relief: TM-89901's Figs. 7 to 11.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.figure.figure import Axis, Figure, Panel, View
+from fegear.engine.figure.items import Curve, Mark, Points
+from fegear.engine.outcome import Value
+from fegear.engine.table import Column, Table
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.dynamics.train.dynamic_factor import FactorLine
+    from fegear.results.train.design_chart import DesignChartData
+
+
+def chart_tables(chart: DesignChartData, mesh: str) -> tuple[Table, ...]:
+    """The chart, and reliefs of their own on each gear where there are any."""
+    amounts, lengths = chart.amounts, chart.lengths
+    amount, length = np.repeat(amounts, lengths.size), np.tile(lengths, amounts.size)
+    tables = [
+        Table(
+            f"design_chart_{mesh}",
+            (
+                Column("amount", amount, "", "of tip relief over Delta"),
+                Column("length", length, "", "L_n, 1 from the tip to the HPSTC"),
+                Column("dynamic_factor", chart.dynamic_factor.ravel(), "", "largest over the speeds"),
+                Column("speed", chart.speed.ravel(), "rpm", f"of {chart.speed_of}, where it is largest"),
+                Column("effective_error", chart.effective_error.ravel(), "um", "A_e of the static transmission error"),
+                Column("contact_loss_fraction", chart.contact_loss.ravel(), "", "largest over the speeds"),
+                Column("unsteady_speeds", chart.unsteady.ravel(), "", "how many speeds have no repeating motion"),
+                *(
+                    Column(
+                        f"amplitude_{n + 1}", row.ravel(), "um", f"A_{n + 1} of the static transmission error, 0-peak"
+                    )
+                    for n, row in enumerate(chart.harmonics)
+                ),
+                *_foretold(chart.line, chart.effective_error.ravel()),
+                Column("failure", np.array(chart.reasons, dtype=str), "", "why a point has no result"),
+            ),
+            f"Dynamic factor of mesh {mesh} against tip relief",
+        )
+    ]
+    if chart.unequal:
+        tables.append(_unequal_table(chart, mesh))
+    return tuple(tables)
+
+
+def _foretold(line: FactorLine | None, error: Array) -> tuple[Column, ...]:
+    if line is None:
+        return ()
+    return (Column("foretold_factor", line(error), "", "by the straight line over A_e"),)
+
+
+def _unequal_table(chart: DesignChartData, mesh: str) -> Table:
+    def column(key: str, unit: str, meaning: str) -> Column:
+        return Column(key, np.array([getattr(one, key) for one in chart.unequal]), unit, meaning)
+
+    found = column("effective_error", "um", "A_e of the static transmission error")
+    return Table(
+        f"design_chart_unequal_{mesh}",
+        (
+            column("driver", "", "amount on the driver over Delta"),
+            column("driven", "", "amount on the driven gear over Delta"),
+            column("length", "", "L_n of both"),
+            column("dynamic_factor", "", "largest over the speeds"),
+            column("speed", "rpm", f"of {chart.speed_of}, where it is largest"),
+            found,
+            column("between", "", "foretold from A_e between both amounts on both gears (TM-89901, Fig. 11)"),
+            *_foretold(chart.line, np.asarray(found.si)),
+            Column("failure", np.array([one.reason for one in chart.unequal], dtype=str), "", "why there is no result"),
+        ),
+        f"Dynamic factor of mesh {mesh} with a relief of its own on each gear",
+    )
+
+
+def chart_values(chart: DesignChartData) -> tuple[Value, ...]:
+    """Best lengths and least factors, what A_e tells of the factor, and unequal reliefs."""
+    about = "Welbourn's Delta: deflection at the HPSTC under the mean force"
+    values = [
+        Value("design_chart.delta", chart.delta, "um", None, about),
+        Value("design_chart.unmodified", chart.unmodified, "", None, "largest dynamic factor of perfect involutes"),
+        Value("design_chart.unmodified_error", chart.unmodified_error, "um", None, "A_e of perfect involutes"),
+    ]
+    for number, (a, row) in enumerate(zip(chart.amounts, chart.dynamic_factor, strict=True)):
+        if np.isfinite(row).any():
+            k, (start, end) = int(np.nanargmin(row)), chart.flat_range(number)
+            values += [
+                Value(f"design_chart.best_length_{a:g}", float(chart.lengths[k]), "", None, f"L_n at {a:g} Delta"),
+                Value(f"design_chart.least_factor_{a:g}", float(row[k]), "", None, f"at {a:g} Delta"),
+                Value(
+                    f"design_chart.flat_from_{a:g}", start, "", None, f"L_n, factor within 1 % of least, {a:g} Delta"
+                ),
+                Value(f"design_chart.flat_to_{a:g}", end, "", None, f"L_n, factor within 1 % of least, {a:g} Delta"),
+            ]
+    if chart.amounts.size > 1 and chart.lengths.size > 1 and np.isfinite(chart.dynamic_factor).all():
+        length, factor = chart.best_for_all()
+        ends = f"{chart.amounts[0]:g} to {chart.amounts[-1]:g} Delta"
+        values += [
+            Value("design_chart.best_length_for_all", length, "", None, f"L_n with the least worst factor from {ends}"),
+            Value("design_chart.least_factor_for_all", factor, "", None, f"that factor, {ends}"),
+        ]
+    if chart.line is not None:
+        line = chart.line
+        values += [
+            Value("design_chart.line_constant", line.constant, "", None, "dynamic factor at no effective error"),
+            Value("design_chart.line_slope", line.slope, "1/mm", None, "of the dynamic factor over A_e"),
+            Value("design_chart.line_scatter", line.scatter, "", None, "root mean square of what it misses"),
+            Value("design_chart.line_correlation", line.correlation, "", None, "of dynamic factor and A_e"),
+        ]
+    values += [
+        Value(
+            f"design_chart.factor_{one.driver:g}_{one.driven:g}_{one.length:g}", one.dynamic_factor, "", None,
+            f"{one.driver:g} Delta on the driver, {one.driven:g} on the driven gear, L_n = {one.length:g}",
+        )
+        for one in chart.unequal if not one.reason
+    ]  # fmt: skip
+    return tuple(values)
+
+
+def line_remark(chart: DesignChartData) -> tuple[str, ...]:
+    """Say how well the effective error tells the dynamic factor, and where it misses most."""
+    if chart.line is None:
+        return ()
+    line, missed = chart.line, chart.dynamic_factor - chart.line(chart.effective_error)
+    a, n = np.unravel_index(int(np.nanargmax(np.abs(missed))), missed.shape)
+    found, error = chart.dynamic_factor[a, n], chart.effective_error[a, n]
+    sentence = (
+        f"Design chart: the line {line.constant:.3g} + {line.slope * 1e-6:.3g} A_e/um through all points leaves "
+        f"{line.scatter:.2g} of the dynamic factor (root mean square; correlation {line.correlation:.3f}). It misses "
+        f"most at {chart.amounts[a]:g} Delta, L_n = {chart.lengths[n]:g}: {found:.3g}, foretold {line(error):.3g}."
+    )
+    return (sentence,)
+
+
+_LENGTH = Axis("length of relief L_{n}")
+
+
+_FACTOR = Axis("largest dynamic factor")
+
+
+_ERROR = Axis("effective error A_{e}", "um", zero=True)
+
+
+def design_chart_figures(chart: DesignChartData) -> tuple[Figure, ...]:
+    """The chart, harmonics of the transmission error behind it, and how A_e tells the factor; none for one length."""
+    if chart.lengths.size < 2:
+        return ()
+    return (_chart(chart), _harmonics(chart), *_drawn_forecast(chart))
+
+
+def _chart(chart: DesignChartData) -> Figure:
+    """Largest dynamic factor and A_e over the length of relief for every amount."""
+
+    def curves(rows: Array) -> list[Curve | Points]:
+        return [
+            Curve(chart.lengths, row, f"{amount:.4g} Δ", f"series:{k}", markers=True)
+            for k, (amount, row) in enumerate(zip(chart.amounts, rows, strict=True))
+        ]
+
+    factor, error = curves(chart.dynamic_factor), curves(chart.effective_error * 1e6)
+    told = ""
+    if chart.amounts.size > 1 and np.isfinite(chart.dynamic_factor).all():
+        best = np.argmin(chart.dynamic_factor, axis=1)
+        least = chart.dynamic_factor[np.arange(best.size), best]
+        factor.append(Curve(chart.lengths[best], least, "least of each amount", "ink", dash="dash", markers=False))
+        length, worst = chart.best_for_all()
+        factor.append(Points([length], [worst], "least for all amounts", "ink", symbol="star", size=10.0))
+        told = f" The star is the length that is best for all amounts together, L_n = {length:.3g}."
+    return Figure(
+        "design_chart",
+        "Design chart of tip relief",
+        "Largest dynamic factor over the speeds, and effective error, against the length of tip relief (1 from the "
+        f"tip to the highest point of single contact), by amount over Δ = {chart.delta * 1e6:.4g} µm.{told}",
+        (
+            Panel(_LENGTH, _FACTOR, tuple(factor), (Mark("y", chart.unmodified, "unmodified"),)),
+            Panel(_LENGTH, _ERROR, tuple(error)),
+        ),
+        columns=2,
+    )
+
+
+def _harmonics(chart: DesignChartData) -> Figure:
+    """Dynamic factor, and A_1 to A_4 with A_e, over the length of relief."""
+    views = []
+    for k, amount in enumerate(chart.amounts):
+        below = [
+            Curve(chart.lengths, row[k] * 1e6, f"A_{{{n + 1}}}", f"series:{n}", markers=True)
+            for n, row in enumerate(chart.harmonics)
+        ]
+        below.append(Curve(chart.lengths, chart.effective_error[k] * 1e6, "A_{e}", "ink", markers=True, width=2.6))
+        views.append(
+            View(
+                f"{amount:.4g} Δ",
+                (
+                    Panel(_LENGTH, _FACTOR, (Curve(chart.lengths, chart.dynamic_factor[k], "", "blue", markers=True),)),
+                    Panel(_LENGTH, Axis("amplitude, 0-peak", "um", zero=True), tuple(below)),
+                ),
+            )
+        )
+    return Figure(
+        "design_chart_harmonics",
+        "Harmonics of the transmission error over the length of relief",
+        "Largest dynamic factor, and below it the first harmonics A_i of the static transmission error with the "
+        "effective error A_e, against the length of tip relief.",
+        views=tuple(views),
+    )
+
+
+def _drawn_forecast(chart: DesignChartData) -> tuple[Figure, ...]:
+    """Dynamic factor over effective error: the points, their line, and unequal reliefs."""
+    if chart.line is None:
+        return ()
+    items: list[Curve | Points] = [
+        Points(error * 1e6, factor, f"{amount:.4g} Δ", f"series:{k}", size=7.0)
+        for k, (amount, error, factor) in enumerate(
+            zip(chart.amounts, chart.effective_error, chart.dynamic_factor, strict=True)
+        )
+    ]
+    items.append(
+        Points([chart.unmodified_error * 1e6], [chart.unmodified], "unmodified", "grey", symbol="square", size=8.0)
+    )
+    there = [one for one in chart.unequal if not one.reason]
+    if there:
+        notes = tuple(f"{one.driver:g} and {one.driven:g} Δ, L_n = {one.length:g}" for one in there)
+        error = [one.effective_error * 1e6 for one in there]
+        factor = [one.dynamic_factor for one in there]
+        items.append(Points(error, factor, "unequal reliefs", "ink", symbol="star", size=11.0, notes=notes))
+    ends = np.array([0.0, max(chart.unmodified_error, float(np.nanmax(chart.effective_error)))])
+    items.append(Curve(ends * 1e6, chart.line(ends), "straight line", "ink", dash="dash", markers=False, width=1.2))
+    figure = Figure(
+        "design_chart_foretold",
+        "Dynamic factor over effective error",
+        "Largest dynamic factor over the speeds against the effective error A_e of the static transmission error, for "
+        f"every relief of the chart, and the line of least squares ({chart.line.scatter:.2g} root mean square).",
+        (Panel(Axis("effective error A_{e}", "um", zero=True), _FACTOR, tuple(items)),),
+    )
+    return (figure,)

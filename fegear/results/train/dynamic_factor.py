@@ -1,0 +1,233 @@
+"""Stage ``dynamic-factor``: largest tooth force over speed, with contact loss or from the linearised train."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.case.built.train import motion_inputs, train_part
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve, Points
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.engine.table import Column, Table
+from fegear.results.train.gear_train import carries_nothing, gear_train, meshes, needs_speeds, needs_train, pull_remarks
+
+if TYPE_CHECKING:
+    from fegear.case.built.train import MotionInputs
+    from fegear.case.reading import Scene
+    from fegear.dynamics.train.charts import SpeedChart
+    from fegear.dynamics.train.tooth_force import Pull
+    from fegear.engine.stage import Upstream, Work
+    from fegear.results.train.motion import SweepData
+
+
+_RPM = 30.0 / np.pi
+
+#: A change of the dynamic factor from one speed to the next that is too large to see peaks between them.
+_COARSE = 0.1
+
+
+@dataclass(frozen=True)
+class DynamicFactorData:
+    """Factors of one mesh over speed.
+
+    Parameters
+    ----------
+    chart : SpeedChart or None
+        Speeds in rad/s of the body that they refer to; None where the mesh carries no mean force.
+    speed_of : str
+        That body.
+    in_time : bool
+        Whether they come from motions in time; else from the linearised train.
+    pull : Pull or None
+        How far the force of the linearised mesh falls below zero.
+    """
+
+    chart: SpeedChart | None
+    speed_of: str
+    in_time: bool = False
+    pull: Pull | None = None
+
+
+@dataclass(frozen=True)
+class FactorInputs:
+    """What the factors of a mesh depend on besides train and motions.
+
+    Parameters
+    ----------
+    mesh : str
+    motion : MotionInputs
+    positions, harmonics : int
+        Of tooth forces in the linearised train.
+    """
+
+    mesh: str
+    motion: MotionInputs
+    positions: int
+    harmonics: int
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    return (*needs_train(scene, name), *((Task("motion"),) if motion_inputs(scene).in_time else ()))
+
+
+def _inputs(scene: Scene, name: str) -> FactorInputs:
+    part = scene.case.dynamics
+    return FactorInputs(name, motion_inputs(scene), part.positions, part.harmonics)
+
+
+def _compute(asked: FactorInputs, upstream: Upstream, work: Work) -> DynamicFactorData:
+    from fegear.dynamics.train.charts import SpeedChart
+    from fegear.dynamics.train.dynamic_factor import linear_chart
+    from fegear.dynamics.train.tooth_force import largest_pull
+
+    data, motion = gear_train(upstream), asked.motion
+    speeds, i = motion.speeds / data.speed_ratio, data.train.mesh_index(asked.mesh)
+    if carries_nothing(data, i):
+        return DynamicFactorData(None, data.speed_of)
+    pull = None
+    if motion.in_time:
+        sweep: SweepData = upstream[Task("motion")]
+        chart = SpeedChart.of(speeds, sweep.states, i, float(data.forces[i]))
+    else:
+        chart = linear_chart(data, i, speeds, asked.positions, asked.harmonics, work.progress)
+        pull = largest_pull(data, i, speeds, asked.harmonics)
+    chart = replace(chart, speeds=chart.speeds * data.speed_ratio)
+    return DynamicFactorData(chart, data.speed_of, motion.in_time, pull)
+
+
+def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
+    name, motion, chart = asked.mesh, asked.motion, found.chart
+    if chart is None:
+        return Outcome(found, remarks=(f"Mesh {name} carries no mean force, so it has no dynamic factor.",))
+    parting = motion.contact_loss and found.in_time
+    zero = "" if parting else "; zero, for nothing parts without effects.contact_loss"
+    table = Table(
+        f"dynamic_factor_{name}",
+        (
+            Column("speed", chart.speeds, "rpm", f"of {found.speed_of}"),
+            Column(
+                "dynamic_factor", chart.dynamic_factor, "", "largest force on one tooth pair over the mean mesh force"
+            ),
+            Column("contact_loss_fraction", chart.apart, "", f"share of the time without contact{zero}"),
+            Column("backside_fraction", chart.behind, "", f"share of the time on the back flanks{zero}"),
+            Column(
+                "periods", chart.periods, "", "periods of excitation after which the motion repeats; 0 if it does not"
+            ),
+            Column("mesh_force_factor", chart.mesh_force_factor, "", "largest mesh force over the mean mesh force"),
+            Column(
+                "motion",
+                np.array(chart.kinds, dtype=str),
+                "",
+                "periodic (and stable), quasi-periodic, chaotic, long-period, unsettled, or growing without bound",
+            ),
+            Column("median_factor", chart.median, "", "dynamic factor that half of the periods do not exceed"),
+            Column("factor_99_percent", chart.upper, "", "dynamic factor that 99 % of the periods do not exceed"),
+            Column("periods_measured", chart.measured, "", "periods of excitation that the largest forces come from"),
+            *(
+                (
+                    Column(
+                        "multiplier",
+                        chart.multiplier,
+                        "",
+                        "growth of a small disturbance over one period of excitation; above 1 in a motion that grows",
+                    ),
+                )
+                if found.in_time
+                else ()
+            ),
+        ),
+        f"Dynamic factor of mesh {name} over speed",
+    )
+    held = chart.at(~chart.growing) if not chart.growing.all() else chart
+    worst, where = held.worst
+    at = int(np.argmax(held.dynamic_factor))
+    repeats = held.kinds[at] == "periodic"
+    # what a motion that never repeats did over some periods is a sample: no tolerance holds for it
+    error = motion.tolerance * worst if found.in_time and repeats else None
+    sample = "" if repeats else f"; largest of {held.measured[at]} periods of a motion that does not repeat"
+    over = "over the speeds" if held is chart else "over the speeds at which the motion does not grow without bound"
+    values = [
+        Value(f"{name}.largest_dynamic_factor", worst, "", error, f"{over}, direction {motion.direction}{sample}"),
+        Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {found.speed_of}"),
+    ]
+    if parting:
+        lost = float(chart.apart.max())
+        values.append(Value(f"{name}.largest_contact_loss", lost, "", None, "share of the time"))
+    remarks = [*pull_remarks(found.pull)]
+    if found.in_time and not motion.parametric:
+        remarks.append(
+            f"Mesh {name}: effects.parametric is off, so all teeth in contact are one spring of mean stiffness and the "
+            "dynamic factor is that of the mesh force."
+        )
+    figures = (_figure(name, held, found.speed_of),) if held.speeds.size > 1 else ()
+    return Outcome(found, (table,), tuple(values), {}, tuple(remarks), figures)
+
+
+def _check(scene: Scene, name: str) -> None:
+    needs_speeds(scene, name)
+    if scene.case.effects.contact_loss is False and train_part(scene).mesh[name].backlash is not None:
+        raise InputError(
+            f"train.mesh.{name}.backlash", "(given)", "has a meaning only with effects.contact_loss = true",
+            "switch the effect on, or remove the backlash",
+        )  # fmt: skip
+
+
+def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
+    """Dynamic factor over speed, and the share of the time without contact where there is any."""
+    speed, x = chart.speeds * _RPM, Axis(f"speed of {speed_of}", "rpm")
+    items: list[Curve | Points] = [
+        Curve(speed, chart.dynamic_factor, "tooth force", "own force", markers=True, width=1.2),
+        Curve(speed, chart.mesh_force_factor, "mesh force", "mesh force", markers=True, width=0.9),
+    ]
+    odd = np.array([kind != "periodic" for kind in chart.kinds])
+    if odd.any():
+        notes = tuple(kind for kind in chart.kinds if kind != "periodic")
+        items.append(
+            Points(speed[odd], chart.dynamic_factor[odd], "motion that does not repeat", "red", notes=notes, size=7)
+        )
+    panels = [Panel(x, Axis("largest over mean force"), tuple(items), height=1.3)]
+    shares = (("no contact", "no contact", chart.apart), ("on the back flanks", "back flanks", chart.behind))
+    lost = tuple(Curve(speed, 100.0 * share, label, role) for label, role, share in shares if share.any())
+    if lost:
+        panels.append(Panel(x, Axis("time", "%", zero=True), lost, height=0.5))
+    worst, where = chart.worst
+    step = np.abs(np.diff(chart.dynamic_factor)) / np.minimum(chart.dynamic_factor[1:], chart.dynamic_factor[:-1])
+    at = int(np.argmax(step))
+    coarse = (
+        f" From {speed[at]:.6g} to {speed[at + 1]:.6g} rpm it changes by {step[at]:.0%}: peaks between neighbouring "
+        "speeds are not seen; take more speeds there."
+        if step[at] > _COARSE else ""
+    )  # fmt: skip
+    return Figure(
+        f"dynamic_factor_{name}",
+        f"Dynamic factor of mesh {name}",
+        f"Mesh {name}: largest force on one tooth pair (dynamic factor) and largest mesh force, both over the mean "
+        f"mesh force; points are the {speed.size} speeds computed. Largest dynamic factor {worst:.4g} at "
+        f"{where * _RPM:.6g} rpm.{coarse}",
+        tuple(panels),
+    )
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """Read from the motion, or the linearised train at each speed."""
+    speeds = int(scene.case.dynamics.speed_values.size)
+    return Forecast({"speeds": speeds}, 0.005 if motion_inputs(scene).in_time else 0.02 * speeds)
+
+
+DYNAMIC_FACTOR = Stage(
+    subjects=meshes,
+    needs=_needs,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=_check,
+    effects=("contact_loss", "friction", "parametric"),
+    cites=citing(Citation("lin-townsend-oswald", "dynamic factor over speed")),
+    forecast=_forecast,
+)

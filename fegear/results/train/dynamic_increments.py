@@ -1,0 +1,171 @@
+"""Result ``dynamic-increments``: what the motion of the train adds to the transmission error of its meshes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.engine.table import Column, Table
+from fegear.results import forecasts
+from fegear.results.train.gear_train import gear_train, needs_train, the_train
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array, Complex
+    from fegear.case.reading import Scene
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.engine.stage import Upstream, Work
+
+#: Most meshes of a train whose pairs each have a figure and asymptotes of their own.
+_MOST_MESHES = 3
+#: How far beyond an increment the ordinate of its parts goes.
+_ROOM = 1.15
+
+
+@dataclass(frozen=True)
+class FrequencyInputs:
+    """Frequencies of the static transmission error [Hz]."""
+
+    frequencies: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class IncrementsData:
+    """Q_ij over frequency, shape (meshes, meshes, F), with what each tends to; None for trains of many meshes."""
+
+    train: GearTrain
+    frequencies: NDArray[np.float64]
+    increments: Complex
+    low: Complex | None
+    high: Complex | None
+
+
+def _compute(asked: FrequencyInputs, upstream: Upstream, _work: Work) -> IncrementsData:
+    from fegear.dynamics.train.increments import dynamic_increments, high_frequency_increments, low_frequency_increments
+
+    data, omega = gear_train(upstream), 2.0 * math.pi * asked.frequencies
+    found = dynamic_increments(data.train, omega)
+    low = high = None
+    if len(data.names) <= _MOST_MESHES:
+        low, high = low_frequency_increments(data.train, omega), high_frequency_increments(data.train, omega)
+    return IncrementsData(data, asked.frequencies, found, low, high)
+
+
+def _present(known: IncrementsData, _asked: FrequencyInputs) -> Outcome:
+    names, frequencies, found = known.train.names, known.frequencies, known.increments
+    frequency = Column("frequency", frequencies, "Hz", "of the static transmission error")
+    columns, values = [frequency], []
+    for i, first in enumerate(names):
+        for j, second in enumerate(names):
+            q, name = found[i, j], f"Q_{first}_{second}"
+            meaning = f"dynamic increment of mesh {first} per static transmission error of mesh {second}"
+            columns += _parts(name, q, meaning)
+            at = int(np.argmax(np.abs(q)))
+            where = f"modulus, at {frequencies[at]:.6g} Hz of those asked for"
+            values.append(Value(f"{name}_largest", float(abs(q[at])), "", None, where))
+    tables = [Table("dynamic_increments", tuple(columns), "Dynamic increment functions")]
+    figures = [_overview(known)]
+    if known.low is not None and known.high is not None:
+        tables.append(_asymptotes(frequency, names, found, known.low, known.high))
+        figures += [
+            _figure(known, i, j, known.low[i, j], known.high[i, j])
+            for i in range(len(names))
+            for j in range(len(names))
+        ]
+    return Outcome(known, tuple(tables), tuple(values), figures=tuple(figures))
+
+
+def _parts(name: str, q: Complex, meaning: str) -> list[Column]:
+    return [Column(f"{name}_re", q.real, "", meaning), Column(f"{name}_im", q.imag, "", meaning)]
+
+
+def _asymptotes(frequency: Column, names: tuple[str, ...], found: Complex, low: Complex, high: Complex) -> Table:
+    """Modulus and both asymptotes for every pair of meshes; two that share no body have none at high frequency."""
+    columns = [frequency]
+    for i, first in enumerate(names):
+        for j, second in enumerate(names):
+            columns.append(Column(f"modulus_{first}_{second}", np.abs(found[i, j]), "", "of the dynamic increment"))
+            columns += _parts(f"low_{first}_{second}", low[i, j], "first power of the frequency (Mark 2.62, 2.65)")
+            if np.any(high[i, j]):
+                columns += _parts(f"high_{first}_{second}", high[i, j], "bodies turn as free inertias (2.64, 2.66)")
+    return Table(
+        "dynamic_increments_asymptotes", tuple(columns), "Moduli of the dynamic increments, and what they tend to"
+    )
+
+
+def _overview(data: IncrementsData) -> Figure:
+    names = data.train.names
+    panels = tuple(
+        Panel(
+            Axis("frequency", "Hz", log=True), Axis(f"|Q| of mesh {first}", log=True),
+            tuple(
+                Curve(data.frequencies, np.abs(data.increments[i, j]), f"error of mesh {second}", f"series:{j}")
+                for j, second in enumerate(names)
+            ),
+        )
+        for i, first in enumerate(names)
+    )  # fmt: skip
+    return Figure(
+        "dynamic_increments", "Dynamic increment functions",
+        "Dynamic increment functions: how much the force of one mesh, over its stiffness, differs from the "
+        "quasi-static one for a static transmission error of its own or of another mesh.",
+        panels,
+    )  # fmt: skip
+
+
+def _figure(data: IncrementsData, i: int, j: int, low: Complex, high: Complex) -> Figure:
+    """Modulus, real and imaginary part of one increment with its asymptotes."""
+    f, q = data.frequencies, data.increments[i, j]
+    first, second = data.train.names[i], data.train.names[j]
+    drawn = [("increment", q, "blue", ""), ("low-frequency asymptote", low, "orange", "dash")]
+    if np.any(high):
+        drawn.append(("high-frequency asymptote", high, "green", "dashdot"))
+
+    def curves(part: str) -> tuple[Curve, ...]:
+        shown: dict[str, Callable[[Complex], Array]] = {"|Q|": np.abs, "Re Q": np.real, "Im Q": np.imag}
+        rows = [(word, shown[part](z), role, dash) for word, z, role, dash in drawn]
+        return tuple(
+            Curve(f, y, word, role, dash=dash, markers=False, width=2.0 if word == "increment" else 1.3)
+            for word, y, role, dash in rows
+        )  # fmt: skip
+
+    top = _ROOM * float(np.abs(q).max()) or 1.0
+    x, least = Axis("frequency", "Hz", log=True), float(np.abs(q[np.abs(q) > 0.0]).min(initial=top))
+    panels = [Panel(x, Axis("|Q|", log=True, limits=(0.5 * least, 2.0 * top)), curves("|Q|"))]
+    panels += [Panel(x, Axis(part, limits=(-top, top)), curves(part)) for part in ("Re Q", "Im Q")]
+    whose = "its own" if i == j else f"that of mesh {second}"
+    return Figure(
+        f"dynamic_increment_{first}_{second}", f"Dynamic increment of mesh {first} by the error of mesh {second}",
+        f"Mesh {first}: complex amplitude that the motion of the train adds to its transmission error, per unit static "
+        f"transmission error, {whose}; exp(+i w t). Slowly the train turns as a rigid body, fast its bodies turn as "
+        "free inertias.",
+        tuple(panels),
+    )  # fmt: skip
+
+
+def _forecast(scene: Scene, _subject: str) -> Forecast:
+    """One small solution for each frequency and pair of meshes."""
+    count, (meshes, bodies) = scene.case.dynamics.frequencies.count, forecasts.sizes(scene)
+    return Forecast({"frequencies": count}, 0.005 + 1.3e-6 * count * meshes**2 * bodies)
+
+
+DYNAMIC_INCREMENTS = Stage(
+    subjects=the_train,
+    needs=needs_train,
+    inputs=lambda scene, _subject: FrequencyInputs(scene.case.dynamics.frequencies.array),
+    compute=_compute,
+    present=_present,
+    cites=citing(Citation("mark", "transmission-error dynamic increment functions", "Eqs. 2.57 to 2.66")),
+    forecast=_forecast,
+)

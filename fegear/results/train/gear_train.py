@@ -1,0 +1,269 @@
+"""Stage ``gear-train``: the train of the case with the stiffness and transmission error of its gear pairs.
+
+What several results of a train share: its meshes, the speeds that they need, and a sentence on teeth that part.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.case.built.loaded_pair import check_relief
+from fegear.case.built.neglected_effects import percent
+from fegear.case.built.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
+from fegear.dynamics.train.gear_train import a_drives
+from fegear.dynamics.train.matrices import static_forces
+from fegear.engine.citation import Citation, citing
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage, Task
+from fegear.results import forecasts
+from fegear.results.pair.loaded_flanks import loaded_flanks
+from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.dynamics.train.tooth_force import Pull
+    from fegear.engine.stage import Upstream, Work
+    from fegear.results.pair.loaded_flanks import LoadedFlanksData
+
+
+#: One mesh as springs [s]: tooth pairs that stand alone, and pairs that share.
+_ALONE, _SHARED = 0.05, 0.6
+
+
+def the_train(scene: Scene) -> tuple[str, ...]:
+    """The one train of a case that has one."""
+    return () if scene.case.train is None else ("",)
+
+
+def needs_train(_scene: Scene, _subject: str) -> tuple[Task, ...]:
+    """The task of this stage."""
+    return (Task("gear-train"),)
+
+
+def gear_train(upstream: Mapping[Task, object]) -> GearTrain:
+    """What this stage computed."""
+    return cast("GearTrain", upstream[Task("gear-train")])
+
+
+def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
+    part = train_part(scene)
+    names = dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh)
+    return tuple(Task("loaded-flanks" if name in scene.wide_pairs else "loaded-pair", name) for name in names)
+
+
+def _check(scene: Scene, _subject: str) -> None:
+    check_train(scene)
+    part = train_part(scene)
+    for name, mesh in part.mesh.items():
+        if mesh.like and part.loaded_pair_of(name) in scene.wide_pairs:
+            raise InputError(
+                f"train.mesh.{name}.like.pair", f'"{mesh.like.pair}"',
+                "is loaded over its face, and teeth of another width bear in another way", "describe a pair of its own",
+            )  # fmt: skip
+        _check_spacing(scene, part.loaded_pair_of(name))
+    for name in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh):
+        check_relief(scene, name)
+
+
+def _check_spacing(scene: Scene, name: str) -> None:
+    """Refuse spacing errors of teeth with a width: their flanks are loaded in one base pitch of all that differ."""
+    pair = scene.case.pair[name]
+    uneven = [gear for gear in (pair.driver, pair.driven) if scene.case.gear[gear].spacing_errors is not None]
+    if scene.case.effects.spacing_errors and name in scene.wide_pairs and uneven:
+        raise InputError(
+            f"gear.{uneven[0]}.spacing_errors", "(given)",
+            f"is not known to a train with the loaded flanks of pair {name}, which are solved in one base pitch",
+            "leave it out, or the effect spacing_errors",
+        )  # fmt: skip
+
+
+def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTrain:
+    """Springs and excitation of every mesh under its mean force, put into the train."""
+    from fegear.dynamics.train.mesh_excitation import mesh_excitation
+
+    part, train = asked.part, build_train(asked)
+    forces, forward = static_forces(train), a_drives(train)
+    excitations: dict[str, MeshExcitation] = {}
+    for number, (name, mesh) in enumerate(part.mesh.items()):
+        pair, force = part.loaded_pair_of(name), abs(float(forces[number]))
+        width = mesh.like.width_ratio if mesh.like else 1.0
+        if Task("loaded-flanks", pair) in upstream:
+            found = _of_flanks(loaded_flanks(upstream, pair), force, forward=forward[number])
+        else:
+            loaded = loaded_pair(upstream, pair)
+            engagement = loaded.engagement.unmodified() if mesh.like else loaded.engagement
+            found = mesh_excitation(
+                engagement if forward[number] else engagement.reversed(), force / width or loaded.nominal
+            )
+        excitations[name] = replace(found.widened(width), phase=mesh.phase)
+        work.progress((number + 1) / len(part.mesh))
+    made = assemble(asked, excitations)
+    flanks = {mesh: Task("loaded-flanks", part.loaded_pair_of(mesh)) for mesh in part.mesh}
+    meshes = tuple(
+        replace(one, doubt=_doubt(loaded_flanks(upstream, flanks[name].subject))) if flanks[name] in upstream else one
+        for name, one in zip(part.mesh, made.meshes, strict=True)
+    )
+    return replace(made, meshes=meshes)
+
+
+def _of_flanks(data: LoadedFlanksData, force: float, *, forward: bool) -> MeshExcitation:
+    """Springs of a pair with a width under a mean force [N]; under its nominal load where it idles."""
+    from fegear.dynamics.train.flank_excitation import flank_excitation
+
+    found = data.flanks.solve([force or data.asked.nominal], data.gaps, data.known)
+    return flank_excitation(data.flanks, found, forward=forward)
+
+
+def _doubt(data: LoadedFlanksData) -> tuple[float, float]:
+    """Estimated errors of mean stiffness [N/m] and peak-to-peak transmission error [m] under the nominal load."""
+    i, found, coarse = data.nominal, data.found, data.error.coarse
+    fine, other = (1.0 / float(one.lines.mean(1.0 / one.contact.stiffness[:, i])) for one in (found, coarse))
+    return abs(other - fine), float(data.error.peak_to_peak[i])
+
+
+def _reference_remarks(data: GearTrain, asked: TrainInputs) -> list[str]:
+    """Say whose speeds are meant, where bodies turn at different speeds and the order of tables alone tells."""
+    ratios = np.abs(data.train.ratios)
+    if not asked.assumed or float(np.ptp(ratios)) <= 1e-12 * float(ratios.max()):
+        return []
+    low, high = (float(ratio) / data.speed_ratio for ratio in (ratios.min(), ratios.max()))
+    said = (
+        f"No dynamics.speed_of was given; assumed default: speeds are those of {asked.speed_of}, the first table under "
+        f"[train.body]. Bodies turn at {low:.4g} to {high:.4g} times that; write speed_of under [dynamics]."
+    )
+    return [said]
+
+
+def _present(data: GearTrain, asked: TrainInputs) -> Outcome:
+    remarks = _reference_remarks(data, asked)
+    values: list[Value] = []
+    for (name, part), mesh, one in zip(asked.part.mesh.items(), data.train.meshes, data.meshes, strict=True):
+        if not one.a_drives:
+            remarks.append(
+                f"Mesh {name}: the torques make {part.driven} drive {part.driver}, so x counts toward the tip of the "
+                f"gear of {part.driven}."
+            )
+        if not one.excitation.slotted:
+            remarks.append(f"Mesh {name}: coupled teeth and contacts off the path are linear about the mean load.")
+        if part.like is None and one.error.pitches > 1:
+            remarks.append(
+                f"Mesh {name}: its excitation repeats after {one.error.pitches} base pitches (spacing errors)."
+            )
+        helix = one.pair.driver.base_helix_angle
+        if helix:
+            axial = one.force * math.tan(helix)
+            remarks.append(
+                f"Mesh {name}: its axial force of {axial:.5g} N is carried by bearings taken as rigid; the train turns "
+                "only. Ask for transmissibility with mesh.pair for motion along the axis and tilting."
+            )
+            values.append(Value(f"{name}.axial_force", axial, "N", None, "mean force along the axes, by the helix"))
+        s = np.linspace(0.0, 1.0, 2001)
+        stiffness, swing = one.doubt or (None, None)
+        values += [
+            Value(f"{name}.mean_force", one.force, "N", None, "along the line of action, from the torques"),
+            Value(f"{name}.mean_stiffness", mesh.stiffness, "N/um", stiffness, "1 over the mean compliance"),
+            Value(f"{name}.static_te_peak_to_peak", float(np.ptp(one.error(s))), "um", swing, "under the mean force"),
+        ]
+    settings: dict[str, object] = {body.name: body.inertia for body in data.train.bodies}
+    return Outcome(data, (), tuple(values), {"inertia": settings}, tuple(remarks))
+
+
+def _forecast(scene: Scene, _subject: str) -> Forecast:
+    """Springs of every mesh."""
+    effects, count = scene.case.effects, len(scene.case.train.mesh) if scene.case.train else 0
+    each = _SHARED if effects.corner_contact or effects.neighbour_coupling else _ALONE
+    return forecasts.constant(each * count)
+
+
+#: What every result of a train rests on.
+TRAIN_SOURCES = citing(
+    Citation("mark", "gear train of rotors, shafts and meshes", "section 2"),
+    Citation("lin-huston-coy", "four-inertia model, damping", "Eqs. 1 to 4 and 16"),
+)
+
+
+RPM = 30.0 / math.pi
+
+
+#: A mesh with less of the largest mean force carries none.
+_NO_SHARE = 1e-9
+
+
+def meshes(scene: Scene) -> tuple[str, ...]:
+    """All meshes of the train, by name."""
+    return () if scene.case.train is None else tuple(scene.case.train.mesh)
+
+
+def own_meshes(scene: Scene) -> tuple[str, ...]:
+    """Meshes whose teeth are described by their own pair."""
+    return tuple(name for name in meshes(scene) if train_part(scene).mesh[name].like is None)
+
+
+def carries_nothing(data: GearTrain, mesh: int) -> bool:
+    """Whether a mesh idles."""
+    return bool(data.forces[mesh] <= _NO_SHARE * float(np.max(np.abs(data.forces))))
+
+
+def needs_plane_teeth(scene: Scene, mesh: str, key: str, value: str) -> None:
+    """Refuse what follows one place of contact on the path where the teeth of a mesh touch along lines over the face.
+
+    Raises
+    ------
+    InputError
+    """
+    pair = train_part(scene).loaded_pair_of(mesh)
+    if pair in scene.wide_pairs:
+        helical = scene.pairs[pair].driver.helix_angle != 0.0
+        raise InputError(
+            key, value, f"follows one place of contact on the path, and the teeth of mesh {mesh} touch along the face",
+            "leave it out" if helical else f'leave it out, or write pair.{pair}.width = "plane"',
+        )  # fmt: skip
+
+
+def needs_one_speed(scene: Scene, _subject: str) -> None:
+    """Refuse histories without a speed."""
+    if math.isnan(scene.case.dynamics.one_speed):
+        raise InputError("dynamics.speed", "(not given)", "is needed for this result", 'write speed = "10000 rpm"')
+
+
+def needs_speeds(scene: Scene, _subject: str) -> None:
+    """Refuse sweeps without speeds."""
+    if not scene.case.dynamics.speed_values.size:
+        raise InputError(
+            "dynamics.speeds", "(not given)", "is needed for this result",
+            'write speeds = { start = "2000 rpm", stop = "16000 rpm", count = 57 }',
+        )  # fmt: skip
+
+
+def pull_remarks(pull: Pull | None) -> tuple[str, ...]:
+    """Say how far the linearised force of a mesh falls below zero, if it does."""
+    if pull is None:
+        return ()
+    where = f"{percent(pull.share)} of the mean force, at {pull.speed * RPM:.5g} rpm of {pull.speed_of}"
+    sentence = (
+        f"Mesh {pull.mesh}: the linearised mesh force falls to {pull.force:.4g} N ({where}), so teeth part, which this "
+        "result neglects; ask for dynamic-factor and write contact_loss = true under [effects]."
+    )
+    return (sentence,)
+
+
+GEAR_TRAIN = Stage(
+    subjects=the_train,
+    needs=_needs,
+    inputs=lambda scene, _subject: train_inputs(scene),
+    compute=compute_train,
+    present=_present,
+    check=_check,
+    effects=EFFECTS,
+    cites=TRAIN_SOURCES,
+    forecast=_forecast,
+)

@@ -1,0 +1,244 @@
+"""Stage ``mesh-force-spectrum``: lines of the mesh forces of the linearised train, at a speed and over speeds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Points, Stems
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.engine.table import Column, Table
+from fegear.results import forecasts
+from fegear.results.train.gear_train import RPM, gear_train, meshes, needs_one_speed, needs_train, pull_remarks
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.dynamics.train.spectra import MeshForceSpectrum
+    from fegear.dynamics.train.tooth_force import Pull
+    from fegear.engine.stage import Upstream, Work
+
+
+#: Harmonics of the waterfall at most.
+_WATERFALL_LINES = 64
+#: Lines weaker than these shares of the strongest are not drawn in spectrum and waterfall.
+_WEAKEST, _WEAKEST_OVER_SPEED = 1e-3, 1e-2
+#: Whole harmonics that are stronger than this share of the strongest line bear their number.
+_NUMBERED = 1e-2
+#: Lines are drawn until this share of the mean square is left, within these harmonics of the highest mesh frequency.
+_LEFT, _LEAST_HARMONICS, _MOST_HARMONICS = 1e-3, 8, 24
+#: Force that is none [N].
+_NO_FORCE = 1e-12
+
+
+@dataclass(frozen=True)
+class SpectrumData:
+    """Forces in one mesh at the case's speed, over its speeds (the waterfall) where it gives a range, and its pull."""
+
+    train: GearTrain
+    mesh: int
+    spectrum: MeshForceSpectrum
+    waterfall: MeshForceSpectrum | None
+    pull: Pull | None
+
+
+@dataclass(frozen=True)
+class SpectrumInputs:
+    """What the spectra of a mesh depend on besides the train.
+
+    Parameters
+    ----------
+    mesh : str
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    speeds : ndarray
+        Of the waterfall [rad/s]; fewer than two for none.
+    harmonics : int
+    """
+
+    mesh: str
+    speed: float
+    speeds: Array
+    harmonics: int
+
+
+def _inputs(scene: Scene, name: str) -> SpectrumInputs:
+    part = scene.case.dynamics
+    return SpectrumInputs(name, part.one_speed, part.speed_values, part.harmonics)
+
+
+def _compute(asked: SpectrumInputs, upstream: Upstream, _work: Work) -> SpectrumData:
+    from fegear.dynamics.train.spectra import mesh_force_spectrum
+    from fegear.dynamics.train.tooth_force import largest_pull
+
+    data = gear_train(upstream)
+    i, speed = data.train.mesh_index(asked.mesh), asked.speed / data.speed_ratio
+    found = mesh_force_spectrum(data.train, data.errors, [speed], asked.harmonics, rotational=True, phases=data.phases)
+    waterfall = None
+    if asked.speeds.size > 1:
+        harmonics = min(asked.harmonics, _WATERFALL_LINES)
+        waterfall = mesh_force_spectrum(data.train, data.errors, asked.speeds / data.speed_ratio, harmonics)
+    return SpectrumData(data, i, found, waterfall, largest_pull(data, i, [speed], asked.harmonics))
+
+
+def _present(made: SpectrumData, asked: SpectrumInputs) -> Outcome:
+    name, data, i, found = asked.mesh, made.train, made.mesh, made.spectrum
+    amplitude = found.amplitudes[i, :, :, 0]
+    table = Table(
+        f"mesh_force_spectrum_{name}",
+        (*_lines(found, data), Column("force", amplitude[found.present], "N", "0-peak"),
+         Column("power", found.power_lines[i, :, :, 0][found.present], "N^2", "one-sided power of the line")),
+        f"Spectrum of the force in mesh {name}",
+    )  # fmt: skip
+    values = tuple(
+        value for j, other in enumerate(data.names) for value in (
+            Value(f"{name}.largest_line_from_{other}", float(amplitude[j].max()), "N", None,
+                  f"0-peak, harmonic {found.orders[int(amplitude[j].argmax())]:.6g}"),
+            Value(f"{name}.rms_from_{other}", math.sqrt(found.power_lines[i, j, :, 0].sum()), "N", None,
+                  "root mean square of all its lines"),
+        )
+    )  # fmt: skip
+    tables = [table]
+    if made.waterfall is not None:
+        tables.append(_waterfall_table(name, i, made.waterfall, data))
+    settings: dict[str, object] = {"harmonics": asked.harmonics, "speed": asked.speed}
+    return Outcome(made, tuple(tables), values, settings, pull_remarks(made.pull), _spectrum_figures(made))
+
+
+def _lines(found: MeshForceSpectrum, data: GearTrain) -> tuple[Column, ...]:
+    """Number, excitation and frequency of the lines at the first speed; fractions are rotational harmonics."""
+    from_pair, line = np.nonzero(found.present)
+    order = found.orders[line]
+    whole = order.astype(int) if np.all(found.orders % 1.0 == 0.0) else order
+    return (
+        Column("n", whole, "", "harmonic of the mesh frequency of from_pair"),
+        Column("from_pair", np.array(data.names, dtype=str)[from_pair], "", "whose transmission error excites it"),
+        Column("frequency", found.frequencies[from_pair, line, 0], "Hz", "n times the mesh frequency"),
+    )
+
+
+def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrain) -> Table:
+    speeds = found.speeds.size
+    columns = (
+        Column("speed", np.tile(found.speeds * data.speed_ratio, found.present.sum()), "rpm", f"of {data.speed_of}"),
+        *(Column(c.name, np.repeat(c.si, speeds), c.unit, c.meaning) for c in _lines(found, data)[:2]),
+        Column("frequency", found.frequencies[found.present].ravel(), "Hz", "n times the mesh frequency"),
+        Column("force", found.amplitudes[i][found.present].ravel(), "N", "0-peak"),
+    )
+    return Table(f"mesh_force_waterfall_{name}", columns, f"Spectrum of the force in mesh {name} over speed")
+
+
+def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
+    train, found = data.train, data.spectrum
+    name, amplitudes = train.names[data.mesh], found.amplitudes[data.mesh, :, :, 0]
+    strongest = float(amplitudes.max())
+    top, left = _highest_shown(found, amplitudes)
+    lines = []
+    for j, other in enumerate(train.names):
+        shown = (amplitudes[j] > max(_WEAKEST * strongest, _NO_FORCE)) & (found.frequencies[j, :, 0] <= top)
+        orders, size = found.orders[shown], amplitudes[j, shown]
+        whole = (orders % 1.0 == 0.0) & (size > _NUMBERED * strongest)
+        lines.append(
+            Stems(found.frequencies[j, shown, 0] * 1e-3, size, f"from mesh {other}", f"series:{j}",
+                  tuple(f"harmonic {n:.6g}" for n in orders),
+                  tuple(f"{n:.0f}" if known else "" for n, known in zip(orders, whole, strict=True)))
+        )  # fmt: skip
+    above = f" Lines above {top * 1e-3:.4g} kHz hold {left:.2g} of the mean square; the table has them."
+    beyond = above if left > 0.0 else ""
+    force, rpm = Axis("mesh force, 0-peak", "N", log=True), float(found.speeds[0]) * train.speed_ratio * RPM
+    spectrum = Figure(
+        f"mesh_force_spectrum_{name}",
+        f"Spectrum of the force in mesh {name}",
+        f"Mesh {name} at {rpm:.6g} rpm of {train.speed_of}: lines by the mesh that excites them, with the number of "
+        f"the harmonic of its mesh frequency; drawn down to {_WEAKEST:g} of the strongest.{beyond}",
+        (Panel(Axis("frequency", "kHz", zero=True), force, tuple(lines)),),
+        under=f"{rpm:.6g} rpm",
+    )
+    figures = (spectrum, _power_figure(data, rpm))
+    over = data.waterfall
+    if over is None:
+        return figures
+    size = over.amplitudes[data.mesh]
+    strong = size > max(_WEAKEST_OVER_SPEED * float(size.max()), _NO_FORCE)
+    if not strong.any():
+        return figures
+    speed = np.broadcast_to(over.speeds * train.speed_ratio * RPM, size.shape)[strong]
+    points = Points(
+        over.frequencies[strong] * 1e-3, speed, shade=size[strong], shade_label="mesh force, 0-peak [N]", size=4.5,
+        notes=tuple(f"{force:.4g} N" for force in size[strong]),
+    )  # fmt: skip
+    waterfall = Figure(
+        f"mesh_force_waterfall_{name}",
+        f"Waterfall of the force in mesh {name}",
+        f"Mesh {name}: lines of the mesh force over speed, down to a hundredth of the strongest.",
+        (Panel(Axis("frequency", "kHz"), Axis(f"speed of {train.speed_of}", "rpm"), (points,)),),
+    )
+    return *figures, waterfall
+
+
+def _power_figure(data: SpectrumData, rpm: float) -> Figure:
+    """Every mesh harmonic as one-sided power, a panel for each exciting mesh: how the paper draws them."""
+    train, found = data.train, data.spectrum
+    name, panels = train.names[data.mesh], []
+    power = found.power_lines[data.mesh, :, :, 0]
+    mean = float(found.static[data.mesh]) ** 2
+    order = (data.mesh, *(j for j in range(len(train.names)) if j != data.mesh))
+    whole, top = found.orders % 1.0 == 0.0, float(found.frequencies[:, -1, 0].max())
+    between = "" if whole.all() else " Rotational harmonics between them, which spacing errors cause, are in the table."
+    ends = (-0.02 * top, 1.02 * top)  # the mean stands on the ordinate
+    for j in order:
+        shown = found.present[j] & (power[j] > _NO_FORCE**2) & whole
+        lines = Stems(found.frequencies[j, shown, 0], power[j, shown], f"from mesh {train.names[j]}", f"series:{j}",
+                      tuple(f"harmonic {n:.6g}" for n in found.orders[shown]))  # fmt: skip
+        steady = Points([0.0], [mean], "mean force", "ink", "x", notes=("mean force squared",))
+        items = (lines, steady) if j == data.mesh else (lines,)
+        hertz = Axis("frequency", "Hz", limits=ends)
+        panels.append(
+            Panel(hertz, Axis("power of the line", "N^2", log=True), items, title=f"From mesh {train.names[j]}")
+        )
+    return Figure(
+        f"mesh_force_power_{name}",
+        f"Power of the lines of the force in mesh {name}",
+        f"Mesh {name}: one-sided power of every mesh harmonic, by the mesh whose transmission error excites it; the "
+        f"cross at zero frequency is the square of the mean force.{between}",
+        tuple(panels),
+        under=f"{rpm:.6g} rpm",
+    )
+
+
+def _highest_shown(found: MeshForceSpectrum, amplitudes: Array) -> tuple[float, float]:
+    """Frequency up to which lines are drawn [Hz], and the share of the mean square that those above it hold."""
+    frequencies, power = found.frequencies[:, :, 0], amplitudes**2
+    total, pitch = float(power.sum()), float(np.max(frequencies[:, 0] / found.orders[0]))
+    order = np.argsort(frequencies, axis=None)
+    held = np.cumsum(power.ravel()[order])
+    enough = float(frequencies.ravel()[order][min(int(np.searchsorted(held, (1.0 - _LEFT) * total)), held.size - 1)])
+    top = min(max(enough, _LEAST_HARMONICS * pitch), _MOST_HARMONICS * pitch)
+    return top, float(power[frequencies > top].sum()) / total if total > 0.0 else 0.0
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """Harmonics at the one speed, and over all speeds."""
+    part, (meshes, bodies) = scene.case.dynamics, forecasts.sizes(scene)
+    over = part.speed_values.size * min(part.harmonics, 64)
+    seconds = 0.1 + 2e-6 * (over + part.harmonics) * meshes * bodies
+    return Forecast({"harmonics": part.harmonics, "speeds": int(part.speed_values.size)}, seconds)
+
+
+MESH_FORCE_SPECTRUM = Stage(
+    subjects=meshes,
+    needs=needs_train,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=needs_one_speed,
+    cites=citing(Citation("mark", "spectra of the mesh force", "Eqs. 3.1 to 3.11")),
+    forecast=_forecast,
+)

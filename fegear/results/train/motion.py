@@ -1,0 +1,180 @@
+"""Stage ``motion``: steady motions of the train over the speeds, for the results that are read from them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from fegear.base.errors import InputError
+from fegear.case.built.neglected_effects import NeglectedInMotion, motion_remarks, neglected_in_motion
+from fegear.case.built.train import MotionInputs, motion_inputs, steady_motions
+from fegear.engine.citation import Citation
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Forecast, Stage
+from fegear.results import forecasts
+from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_train, the_train
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fegear.case.effects import EffectsPart
+    from fegear.case.reading import Scene
+    from fegear.dynamics.motion.steady_state import SteadyState
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.engine.stage import Upstream, Work
+
+_RPM = 30.0 / math.pi
+
+
+@dataclass(frozen=True)
+class SweepData:
+    """Steady motions over speeds, in increasing order of speed, and what they neglect."""
+
+    train: GearTrain
+    states: tuple[SteadyState, ...]
+    neglected: NeglectedInMotion
+
+
+@dataclass(frozen=True)
+class SweepInputs:
+    """What the motions depend on besides the train.
+
+    Parameters
+    ----------
+    motion : MotionInputs
+    tolerance : float
+        That neglected effects are held against.
+    idle_friction : bool
+        Whether the case describes a friction that is off.
+    effects : EffectsPart
+        All of the case, for the remedies.
+    """
+
+    motion: MotionInputs
+    tolerance: float = field(compare=False)
+    idle_friction: bool = field(compare=False)
+    effects: EffectsPart = field(compare=False)
+
+
+def check_friction(scene: Scene, _subject: str = "") -> None:
+    """Refuse friction where teeth are coupled or touch off the path."""
+    effects = scene.case.effects
+    # whose teeth touch along the face cannot be mended by effects: first
+    if effects.friction and scene.case.train is not None:
+        for mesh in scene.case.train.mesh:
+            needs_plane_teeth(scene, mesh, "effects.friction", "true")
+    if effects.friction and (effects.neighbour_coupling or effects.corner_contact):
+        raise InputError(
+            "effects.friction", "true", "needs tooth pairs that stand alone, each at its place on the path",
+            "switch neighbour_coupling and corner_contact off",
+        )  # fmt: skip
+
+
+def check_motion(scene: Scene, subject: str = "") -> None:
+    """Refuse friction where teeth are lumped."""
+    check_friction(scene, subject)
+    effects = scene.case.effects
+    if effects.friction and not effects.parametric:
+        raise InputError(
+            "effects.friction", "true", "needs tooth pairs that come and go", "set effects.parametric = true"
+        )
+
+
+def _inputs(scene: Scene, _subject: str) -> SweepInputs:
+    effects = scene.case.effects
+    idle = "friction" in scene.case.dynamics.model_fields_set and not effects.friction
+    return SweepInputs(motion_inputs(scene), scene.case.accuracy.tolerance, idle, effects)
+
+
+def _compute(asked: SweepInputs, upstream: Upstream, work: Work) -> SweepData:
+    data = gear_train(upstream)
+    states = steady_motions(asked.motion, data, work.progress)
+    return SweepData(data, states, neglected_in_motion(asked.motion, data, states))
+
+
+def _present(found: SweepData, asked: SweepInputs) -> Outcome:
+    data, states, motion = found.train, found.states, asked.motion
+    remarks = [*motion_remarks(found.neglected, data, asked.effects, asked.tolerance)]
+    if asked.idle_friction:
+        remarks.append("dynamics.friction is given, but effects.friction is off: teeth slide without friction.")
+    remarks += _unsteady(data, states)
+    settings: dict[str, object] = {"direction": motion.direction, "tolerance": motion.tolerance}
+    return Outcome(found, settings=settings, remarks=tuple(remarks))
+
+
+def _unsteady(data: GearTrain, states: tuple[SteadyState, ...]) -> list[str]:
+    """What is to be known of motions that do not repeat, of those that grow, and of stable ones beside them."""
+
+    def rpm(state: SteadyState) -> str:
+        return f"{state.model.speed * data.speed_ratio * _RPM:.6g} rpm"
+
+    said = []
+    growing = [state for state in states if state.kind == "growing"]
+    if growing:
+        where = ", ".join(f"{rpm(s)} ({s.multiplier:.4g} times a period)" for s in growing)
+        said.append(
+            f"The motion grows without bound at {len(growing)} of {len(states)} speeds: {where}. There the varying "
+            "mesh stiffness feeds it more than damping takes. Give the meshes damping, let teeth part "
+            "(effects.contact_loss), or avoid these speeds."
+        )
+    odd = [state for state in states if state.kind not in ("periodic", "growing")]
+    if odd:
+        where = ", ".join(f"{rpm(s)} {s.kind}" for s in odd)
+        said.append(
+            f"The motion does not repeat at {len(odd)} of {len(states)} speeds: {where}. Its factors are the largest "
+            f"of {odd[0].measured} periods, a sample without a tolerance: more periods find larger ones. See the "
+            "quantiles in the table."
+        )
+    spreading = [f"{rpm(s)} ({s.drift:+.0%})" for s in odd if s.kind == "unsettled"]
+    if spreading:
+        said.append(
+            f"The motion still spread from one window of periods to the next when it was given up: "
+            f"{', '.join(spreading)}. Its largest force depends on how long one waits."
+        )
+    beside = [
+        f"{rpm(s)} of {other.periods} {'period' if other.periods == 1 else 'periods'}, dynamic factor "
+        + ", ".join(f"{f:.5g} of mesh {name}" for name, f in zip(data.names, _factors(data, other), strict=True) if f)
+        for s in odd
+        for other in s.coexisting
+    ]  # fmt: skip
+    if beside:
+        said.append(
+            f"Beside a motion that does not repeat a stable one exists, to which another start leads: "
+            f"{'; '.join(beside)}."
+        )
+    return said
+
+
+def _factors(data: GearTrain, state: SteadyState) -> list[float]:
+    """Largest tooth force of each mesh over its mean force; zero for meshes that carry nothing."""
+    return [
+        float(force / mean) if mean > 0.0 else 0.0 for force, mean in zip(state.tooth_force, data.forces, strict=True)
+    ]
+
+
+def _forecast(scene: Scene, _subject: str) -> Forecast:
+    """One steady motion for each speed; one that does not repeat takes ten times as long, which cannot be foreseen."""
+    speeds = int(scene.case.dynamics.speed_values.size)
+    settings = {"speeds": speeds, "periods": forecasts.periods(scene), "tolerance": scene.case.dynamics.tolerance}
+    neglected = sum(not scene.case.effects.is_on(effect) for effect in ("contact_loss", "friction"))
+    return Forecast(settings, forecasts.seconds_per_speed(scene) * speeds + 0.1 * neglected)
+
+
+def _sources(scene: Scene, _subject: str) -> Iterator[Citation]:
+    yield Citation("lin-huston-coy", "contact, its loss, and contact on the back flanks", "Eqs. 19 to 24")
+    if scene.case.effects.friction:
+        yield Citation("lin-huston-coy", "tooth friction", "Eqs. 17 and 18")
+
+
+MOTION = Stage(
+    subjects=the_train,
+    needs=needs_train,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=check_motion,
+    effects=("contact_loss", "friction", "parametric"),
+    cites=_sources,
+    forecast=_forecast,
+)

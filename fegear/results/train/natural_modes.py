@@ -1,0 +1,203 @@
+"""Stage ``natural-modes``: natural frequencies of the train and where harmonics of its meshes meet them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.colours import DASHES
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Bars, Curve, Mark, Points
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Stage
+from fegear.engine.table import Column, Table
+from fegear.results import forecasts
+from fegear.results.train.gear_train import TRAIN_SOURCES, gear_train, needs_train, the_train
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fegear.case.reading import Scene
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.dynamics.train.modes import Campbell, Modes
+    from fegear.engine.stage import Upstream, Work
+
+
+_RPM = 30.0 / math.pi
+#: A share of energy below this is none.
+_ROUND_OFF = 1e-6
+#: Share of the height of a Campbell diagram that the word of a mode takes.
+_ROOM_OF_MODES = 0.05
+
+
+@dataclass(frozen=True)
+class ModesData:
+    """Modes, and the Campbell diagram where the case gives speeds (in rad/s of the first body)."""
+
+    train: GearTrain
+    modes: Modes
+    campbell: Campbell | None
+
+
+@dataclass(frozen=True)
+class SpeedsInputs:
+    """Speeds of a Campbell diagram [rad/s of the body that speeds refer to], and how many harmonics it shows.
+
+    `speed` is the one at which the case runs; nan where it names none.
+    """
+
+    speeds: NDArray[np.float64]
+    lines: int
+    speed: float = math.nan
+
+
+def _speeds(scene: Scene, _subject: str) -> SpeedsInputs:
+    part = scene.case.dynamics
+    return SpeedsInputs(part.speed_values, part.lines, math.nan if part.speed is None else part.speed)
+
+
+def _modes(asked: SpeedsInputs, upstream: Upstream, _work: Work) -> ModesData:
+    from fegear.dynamics.train.modes import campbell, modes
+
+    data = gear_train(upstream)
+    speeds = asked.speeds / data.speed_ratio
+    return ModesData(data, modes(data.train), campbell(data.train, speeds, asked.lines) if speeds.size else None)
+
+
+def _present_modes(known: ModesData, asked: SpeedsInputs) -> Outcome:
+    data, found, diagram = known.train, known.modes, known.campbell
+    train = data.train
+    count = np.arange(found.frequencies.size)
+    columns = [
+        Column("mode", count, "", "0 is the rigid-body motion"),
+        Column("frequency", found.frequencies, "Hz", "undamped, with mean mesh stiffnesses"),
+    ]
+    columns += [
+        Column(f"energy_{mesh.name}", found.mesh_energy[:, m], "", "share of the mode's strain energy in this mesh")
+        for m, mesh in enumerate(train.meshes)
+    ]
+    turned = "rotation angle for unit modal mass [rad/(kg^0.5 m)]"
+    columns += [Column(f"shape_{body.name}", found.shapes[train.dof[body.name]], "", turned) for body in train.bodies]
+    tables = [Table("natural_modes", tuple(columns), "Natural frequencies and mode shapes")]
+    if diagram is not None:
+        rows = [
+            (mesh, line, mode, diagram.critical[m, line - 1, mode - 1] * data.speed_ratio)
+            for m, mesh in enumerate(data.names)
+            for line in range(1, asked.lines + 1)
+            for mode in range(1, found.frequencies.size)
+        ]
+        tables.append(
+            Table(
+                "critical_speeds",
+                (
+                    Column("mesh", np.array([row[0] for row in rows], dtype=str), "", "whose harmonic it is"),
+                    Column("n", np.array([row[1] for row in rows], dtype=int), "", "harmonic of the mesh frequency"),
+                    Column("mode", np.array([row[2] for row in rows], dtype=int), "", "natural mode that it meets"),
+                    Column(
+                        "speed", np.array([row[3] for row in rows], dtype=float), "rpm", f"speed of {data.speed_of}"
+                    ),
+                ),
+                "Speeds at which mesh harmonics meet natural frequencies",
+            )
+        )
+    values = tuple(
+        Value(f"natural_frequency_{k}", float(found.frequencies[k]), "Hz", None, "undamped") for k in count[1:]
+    )
+    return Outcome(known, tuple(tables), values, figures=_modes_figures(known, asked.speed))
+
+
+def _modes_figures(data: ModesData, speed: float) -> tuple[Figure, ...]:
+    """Where each mode deforms, and where harmonics of the meshes meet the modes; the rigid motion is not drawn."""
+    frequencies, energy = data.modes.frequencies[1:], data.modes.mesh_energy[1:]
+    if not frequencies.size:
+        return ()
+    place, shafts = np.arange(frequencies.size), 1.0 - energy.sum(axis=1)
+    bars = [Bars(place, energy[:, m], f"mesh {name}", f"series:{m}") for m, name in enumerate(data.train.names)]
+    if shafts.max() > _ROUND_OFF:
+        bars.append(Bars(place, shafts, "shafts", "grey"))
+    x = Axis(
+        "mode and its natural frequency", categories=tuple(f"{k + 1}\n{f:.5g} Hz" for k, f in enumerate(frequencies))
+    )
+    modes = Figure(
+        "natural_modes", "Natural modes",
+        "Where each mode of the train deforms: share of its strain energy in the meshes and in the shafts.",
+        (Panel(x, Axis("share of strain energy", limits=(0.0, 1.0)), tuple(bars), stacked=True),),
+    )  # fmt: skip
+    if data.campbell is None or data.campbell.speeds.size < 2:
+        return (modes,)
+    return modes, _campbell_figure(data.train, data.campbell, speed), *_critical_figure(data.train, data.campbell)
+
+
+def _campbell_figure(train: GearTrain, diagram: Campbell, operating: float) -> Figure:
+    speed = diagram.speeds * train.speed_ratio * _RPM
+    low, high, top = float(speed.min()), float(speed.max()), 1.25e-3 * float(diagram.natural.max())
+    items: list[Curve | Points] = []
+    for m, name in enumerate(train.names):
+        for h in range(diagram.lines.shape[1]):
+            label, dash = f"mesh {name}, harmonic {h + 1}", DASHES[h % len(DASHES)]
+            line = diagram.lines[m, h] * 1e-3
+            items.append(Curve(speed, line, label, f"series:{m}", dash=dash, width=1.4, markers=False))
+    for m, name in enumerate(train.names):
+        line, mode = np.indices(diagram.critical[m].shape)
+        met = diagram.critical[m] * train.speed_ratio * _RPM
+        inside = np.isfinite(met) & (met >= low) & (met <= high)
+        notes = tuple(
+            f"mesh {name}, harmonic {h + 1}, mode {k + 1}: {at:.5g} rpm"
+            for h, k, at in zip(line[inside], mode[inside], met[inside], strict=True)
+        )
+        natural = diagram.natural[mode[inside]] * 1e-3
+        items.append(Points(met[inside], natural, "", f"series:{m}", "circle", size=6.0, notes=notes))
+    marks = [Mark("y", at * 1e-3, word) for at, word in _mode_words(diagram.natural, _ROOM_OF_MODES * 1e3 * top)]
+    if low <= operating * _RPM <= high:
+        marks.append(Mark("x", operating * _RPM, f"operating speed {operating * _RPM:.5g} rpm"))
+    return Figure(
+        "campbell", "Campbell diagram",
+        "Where harmonics of the mesh frequencies (sloping) meet undamped natural frequencies (level): the points; "
+        "critical_speeds.csv has their speeds.",
+        (Panel(
+            Axis(f"speed of {train.speed_of}", "rpm", limits=(low, high)), Axis("frequency", "kHz", limits=(0.0, top)),
+            tuple(items), tuple(marks), height=1.3,
+        ),),
+    )  # fmt: skip
+
+
+def _mode_words(natural: NDArray[np.float64], room: float) -> list[tuple[float, str]]:
+    """Each natural frequency [Hz] with its word; modes closer than the room of a word share that of the highest."""
+    found, together = [], []
+    for k, at in enumerate(natural):
+        together.append(f"{k + 1}: {at:.4g} Hz")
+        last = k + 1 == natural.size or natural[k + 1] - at >= room
+        found.append((float(at), f"mode{'s' if len(together) > 1 else ''} {', '.join(together)}" if last else ""))
+        together = [] if last else together
+    return found
+
+
+def _critical_figure(train: GearTrain, diagram: Campbell) -> tuple[Figure, ...]:
+    points = []
+    for m, name in enumerate(train.names):
+        line, mode = np.indices(diagram.critical[m].shape)
+        speed = diagram.critical[m] * train.speed_ratio * _RPM
+        known = np.isfinite(speed) & (speed > 0.0)
+        notes = tuple(f"mode {k + 1}" for k in mode[known])
+        points.append(Points(speed[known], line[known] + 1, f"mesh {name}", f"series:{m}", size=8, notes=notes))
+    if not any(np.size(row.x) for row in points):
+        return ()
+    axes = Axis(f"speed of {train.speed_of}", "rpm", log=True), Axis("harmonic of the mesh frequency", whole=True)
+    return (Figure(
+        "critical_speeds", "Critical speeds",
+        "Speeds at which a harmonic of a mesh frequency meets a natural frequency.", (Panel(*axes, tuple(points)),),
+    ),)  # fmt: skip
+
+
+NATURAL_MODES = Stage(
+    subjects=the_train,
+    needs=needs_train,
+    inputs=_speeds,
+    compute=_modes,
+    present=_present_modes,
+    cites=TRAIN_SOURCES,
+    forecast=lambda _scene, _subject: forecasts.constant(0.005),
+)

@@ -1,0 +1,241 @@
+"""Stage ``tooth-force``: force on one tooth pair of the linearised train through its engagement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.engine.citation import Citation, citing
+from fegear.engine.figure.figure import Axis, Figure, Panel, Scale
+from fegear.engine.figure.items import Curve, Mark
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Forecast, Stage
+from fegear.engine.table import Column, Table
+from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
+from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, needs_train, own_meshes, pull_remarks
+
+if TYPE_CHECKING:
+    from fegear.case.reading import Scene
+    from fegear.dynamics.train.gear_train import GearTrain
+    from fegear.dynamics.train.single_tooth import MeshForce
+    from fegear.dynamics.train.tooth_force import Pull, ToothForce
+    from fegear.engine.stage import Upstream, Work
+
+
+@dataclass(frozen=True)
+class ToothForceData:
+    """Force on one tooth pair through its engagement.
+
+    Parameters
+    ----------
+    train : GearTrain
+    mesh : int
+        Its number.
+    force : ToothForce
+    number : int
+        Of the tooth pair; 0 is at the pitch point at phase zero.
+    harmonics : int
+        That it is summed from.
+    pull : Pull or None
+        How far the mesh force falls below zero.
+    together : MeshForce
+        What all tooth pairs in contact carry together.
+    """
+
+    train: GearTrain
+    mesh: int
+    force: ToothForce
+    number: int
+    harmonics: int
+    pull: Pull | None
+    together: MeshForce
+
+
+@dataclass(frozen=True)
+class ToothForceInputs:
+    """What the force on a tooth pair depends on besides the train.
+
+    Parameters
+    ----------
+    mesh : str
+    speed : float
+        Of the body that speeds refer to [rad/s].
+    positions, harmonics : int
+    """
+
+    mesh: str
+    speed: float
+    positions: int
+    harmonics: int
+
+
+def _inputs(scene: Scene, name: str) -> ToothForceInputs:
+    part = scene.case.dynamics
+    return ToothForceInputs(name, part.one_speed, part.positions, part.harmonics)
+
+
+def _compute(asked: ToothForceInputs, upstream: Upstream, _work: Work) -> ToothForceData:
+    from fegear.dynamics.train.single_tooth import force_history, heaviest_pair, mesh_force, summed_harmonics
+    from fegear.dynamics.train.tooth_force import largest_pull
+
+    data = gear_train(upstream)
+    i = data.train.mesh_index(asked.mesh)
+    number, harmonics = heaviest_pair(data, i), summed_harmonics(data, asked.harmonics)
+    force = force_history(data, i, asked.speed, asked.positions, harmonics, number)
+    pull = largest_pull(data, i, [asked.speed / data.speed_ratio], asked.harmonics)
+    together = mesh_force(data, i, asked.speed, asked.positions, harmonics, number)
+    return ToothForceData(data, i, force, number, harmonics, pull, together)
+
+
+def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
+    name, data, i, force = asked.mesh, made.train, made.mesh, made.force
+    table = Table(
+        f"tooth_force_{name}",
+        (
+            Column("t", force.time, "s", "from the mesh's phase zero"),
+            Column("x", force.x, "mm", "place of the tooth pair on the line of action"),
+            Column("force", force.total, "N", "on one tooth pair, without the other meshes' share"),
+            Column("force_with_others", force.with_others, "N", "with the other meshes' share, at the case's phases"),
+            Column("static", force.static, "N", "static part"),
+            Column("own_increment", force.own, "N", "from this mesh's transmission error"),
+            *(
+                Column(f"increment_from_{other}", force.cross[j], "N", "from the other mesh, at the case's phases")
+                for j, other in enumerate(data.names)
+                if j != i
+            ),
+        ),
+        f"Force on one tooth pair of mesh {name}",
+    )
+    alone = len(data.names) == 1
+    largest = [("", force.with_others, "" if alone else "with all meshes, at the case's phases, ")]
+    if not alone:
+        largest += [
+            ("_any_phase", force.at_worst_phases, "at most, whatever the phases of the other meshes, "),
+            ("_own_mesh", force.total, "without the other meshes, "),
+        ]
+    values = [
+        *(
+            Value(f"{name}.largest_tooth_force{end}", float(of.max()), "N", None,
+                  f"{meaning}at x = {force.x[int(np.argmax(of))] * 1e3:.5g} mm")
+            for end, of, meaning in largest
+        ),
+        Value(f"{name}.largest_static_tooth_force", float(force.static.max()), "N", None, "quasi-static"),
+        *(
+            Value(f"{name}.largest_increment_from_{other}", float(force.cross_peak[j]), "N", None,
+                  "over the engagement and all relative phases")
+            for j, other in enumerate(data.names) if j != i
+        ),
+        *_mesh_force_values(name, made.together),
+    ]  # fmt: skip
+    remarks = pull_remarks(made.pull)
+    uneven = data.meshes[i].error.pitches
+    if uneven > 1:
+        sentence = (
+            f"Mesh {name}: teeth stand unevenly; of the {uneven} tooth pairs that meet, the force is that on number "
+            f"{made.number}, which carries most at rest (number 0 is at the pitch point at phase zero)."
+        )
+        remarks = (*remarks, sentence)
+    settings: dict[str, object] = {"harmonics": made.harmonics, "speed": asked.speed}
+    figures = _tooth_force_figure(made, asked.speed), _mesh_force_figure(made, asked.speed)
+    tables = table, _mesh_force_table(name, made.together)
+    return Outcome(made, tables, tuple(values), settings, remarks, figures)
+
+
+def _mesh_force_values(name: str, found: MeshForce) -> tuple[Value, ...]:
+    about = "sum of the forces on the tooth pairs in contact, with all meshes, at the case's phases"
+    return (
+        Value(f"{name}.largest_mesh_force_of_teeth", float(found.of_teeth.max()), "N", None, about),
+        Value(f"{name}.least_mesh_force_of_teeth", float(found.of_teeth.min()), "N", None, about),
+        Value(f"{name}.largest_mesh_force_by_mean_stiffness", float(found.by_mean_stiffness.max()), "N", None,
+              "of the linearised train, whose lines the mesh force's spectrum has"),
+    )  # fmt: skip
+
+
+def _mesh_force_table(name: str, found: MeshForce) -> Table:
+    return Table(
+        f"mesh_force_of_teeth_{name}",
+        (
+            Column("t", found.time, "s", "from the mesh's phase zero"),
+            Column("phase", found.phase, "", "of the mesh, in base pitches"),
+            Column("force", found.of_teeth, "N", "sum of the forces on the tooth pairs in contact, with all meshes"),
+            Column("force_by_mean_stiffness", found.by_mean_stiffness, "N", "mean force and mean stiffness times the "
+                   "increments of the transmission error"),
+            Column("pairs", found.pairs, "", "tooth pairs in contact"),
+        ),
+        f"Force in mesh {name} over one base pitch, by its teeth and by its mean stiffness",
+    )  # fmt: skip
+
+
+def over_time(force: ToothForce) -> Axis:
+    """The line of action as abscissa, with the time on the far side."""
+    return replace(
+        LINE_OF_ACTION, second=Scale("time from the mesh's phase zero", "ms", force.x * 1e3, force.time * 1e3)
+    )
+
+
+def _while(data: ToothForceData) -> str:
+    """From when to when a tooth pair is followed."""
+    if data.train.meshes[data.mesh].pair.driver.helix_angle == 0.0:
+        return "from its first contact at A to its last at E"
+    return "while its contact line crosses the plane of action, at the position of the line's middle"
+
+
+def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
+    force, names = data.force, data.train.names
+    name, x, marks = names[data.mesh], force.x * 1e3, path_marks(data.train.meshes[data.mesh].pair)
+    top = [Curve(x, force.static, "static", "static"), Curve(x, force.total, "static and own increment", "own force")]
+    if len(names) > 1:
+        top.append(Curve(x, force.with_others, "with the other meshes", "with other meshes"))
+    parts = {j: force.own if j == data.mesh else force.cross[j] for j in range(len(names))}
+    below = [Curve(x, part, f"from mesh {names[j]}", f"series:{j}") for j, part in parts.items()]
+    mean = Mark("y", float(data.train.forces[data.mesh]))
+    return Figure(
+        f"tooth_force_{name}",
+        f"Force on one tooth pair of mesh {name}",
+        f"Mesh {name}: force on one tooth pair {_while(data)}; the level line "
+        "is the mean mesh force. Below: what the vibration adds, by the mesh that excites it.",
+        (
+            Panel(over_time(force), Axis("tooth force", "N", zero=True), tuple(top), (*marks, mean), height=1.2),
+            Panel(LINE_OF_ACTION, Axis("increment", "N"), tuple(below), marks, height=0.8),
+        ),
+        under=f"{speed * RPM:.6g} rpm",
+    )
+
+
+def _mesh_force_figure(data: ToothForceData, speed: float) -> Figure:
+    found, name = data.together, data.train.names[data.mesh]
+    curves = (
+        Curve(found.phase, found.by_mean_stiffness, "by the mean stiffness", "static", dash="dash", markers=False),
+        Curve(found.phase, found.of_teeth, "sum of the teeth", "own force", markers=False),
+    )
+    mean = Mark("y", float(data.train.forces[data.mesh]))
+    return Figure(
+        f"mesh_force_of_teeth_{name}",
+        f"Force in mesh {name} over one base pitch",
+        f"Mesh {name}: what the tooth pairs in contact carry together, and the force that the mean stiffness gives. "
+        "Both leave the mean force (level line) by the same increment of the transmission error; the teeth answer it "
+        "with the stiffness that they have at that moment.",
+        (Panel(Axis("phase", "base pitches"), Axis("mesh force", "N", zero=True), curves, (mean,)),),
+        under=f"{speed * RPM:.6g} rpm",
+    )
+
+
+def _forecast(scene: Scene, _name: str) -> Forecast:
+    """At least 256 harmonics at one speed."""
+    part = scene.case.dynamics
+    harmonics = max(part.harmonics, 256)
+    return Forecast({"harmonics": harmonics, "positions": part.positions}, 0.06 * harmonics / 256)
+
+
+TOOTH_FORCE = Stage(
+    subjects=own_meshes,
+    needs=needs_train,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    check=needs_one_speed,
+    cites=citing(Citation("mark", "force on a single tooth pair", "Eqs. 3.23 to 3.36")),
+    forecast=_forecast,
+)

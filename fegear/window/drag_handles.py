@@ -1,0 +1,152 @@
+"""What of a case is changed by hand beside its form: gears in mesh, reliefs over the roll angle, loads.
+
+Changes of a case's text by the hands on its reliefs: parts that move, gears that get a name of their own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Literal
+
+from fegear.output.draw_plotly.layout import darker, plotly_json
+from fegear.results.relief.relief_handles import handled_relief
+from fegear.window.case_text import literal, value_at, with_value
+from fegear.window.on_gears import gears_in_mesh
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fegear.case.reading import Scene
+    from fegear.window.case_text import Path
+
+
+_MEMBERS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
+
+
+def hands_of(scene: Scene) -> dict[str, Any]:
+    """For every pair: its gears in mesh, the reliefs, and the load.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    dict
+        By the pair's name: ``mesh``, ``reliefs``, ``load``, and ``designs``: whether reliefs are found by theory, which
+        is of plane teeth.
+    """
+    found: dict[str, Any] = {}
+    for name in scene.pairs:
+        found[name] = {
+            "mesh": gears_in_mesh(scene, name), "reliefs": _reliefs(scene, name), "load": _load(scene.document, name),
+            "designs": name in scene.plane_pairs,
+        }  # fmt: skip
+    return found
+
+
+def _reliefs(scene: Scene, name: str) -> list[dict[str, Any]]:
+    made: list[dict[str, Any]] = []
+    for member in _MEMBERS:
+        relief = handled_relief(scene, name, member)
+        if any(relief.gear == other["gear"] for other in made):  # a gear that meets its like has one relief
+            continue
+        document = value_at(scene.document, ("gear", relief.gear, "relief")) or {}
+        figure = relief.figure
+        made.append({
+            "gear": relief.gear, "low": relief.low, "high": relief.high, "usual": relief.usual,
+            "handles": [asdict(handle) for handle in relief.handles],
+            "given": sorted(document), "over_face": scene.case.gear[relief.gear].over_face,
+            "on": scene.case.effects.relief,
+            "figure": {"key": figure.key, "heading": figure.heading, "caption": figure.caption, **plotly_json(figure)},
+            "darker": darker([figure]),
+        })  # fmt: skip
+    return made
+
+
+def _load(document: Mapping[str, Any], name: str) -> dict[str, str] | None:
+    """The key of a pair's load that the case gives, and what it has."""
+    for key in ("torque", "load"):
+        given = value_at(document, ("pair", name, key))
+        if isinstance(given, str):
+            return {"key": key, "text": given}
+    return None
+
+
+#: Other ways to say where a relief starts and how much it removes.
+_OTHERWISE = ("start_radius", "length", "normalised_length", "amount_over_delta")
+
+
+#: Keys of a gear that modify its flanks.
+_MODIFIED = {"relief", "lead", "bias", "topography"}
+
+
+def moved_relief(
+    text: str, document: Mapping[str, Any], gear: str, end: str, start: float, amount: float, index: int = 0
+) -> str:
+    """The text of a case with one part of a relief elsewhere, or of another size; the others stay.
+
+    Parameters
+    ----------
+    text : str
+    document : mapping
+        The same as plain tables.
+    gear : str
+    end : str
+        ``tip``, ``root`` or ``crowning``.
+    start : float
+        Roll angle [deg]; a crowning keeps its ends.
+    amount : float
+        [um].
+    index : int
+        Which of several.
+
+    Raises
+    ------
+    InputError
+        If the text cannot be changed there.
+    """
+    table: Path = ("gear", gear, "relief", end)
+    new = {"amount": f"{amount:.2f} um"} | ({} if end == "crowning" else {"start_roll_angle": f"{start:.3f} deg"})
+    if isinstance(value_at(document, table), list):
+        table = (*table, str(index))
+    for key, value in new.items():
+        text = with_value(text, (*table, key), f'"{value}"')
+    for key in _OTHERWISE:
+        if end != "crowning":
+            text = with_value(text, (*table, key), None)
+    return with_value(text, ("effects", "relief"), "true")
+
+
+def without_relief(text: str, document: Mapping[str, Any], gear: str) -> str:
+    """The text of a case with a gear without relief, and without the effect where no flank is modified any more.
+
+    Raises
+    ------
+    InputError
+        If the text cannot be changed there.
+    """
+    left = {name: {key for key in one if name != gear or key != "relief"} for name, one in document["gear"].items()}
+    text = with_value(text, ("gear", gear, "relief"), None)
+    if any(keys & _MODIFIED for keys in left.values()) or any(
+        "modification" in one for one in document["pair"].values()
+    ):
+        return text
+    return with_value(text, ("effects", "relief"), None)
+
+
+def own_name(text: str, document: Mapping[str, Any], pair: str) -> str:
+    """The text with the driven gear of a pair as a gear of its own, where it was the driver as well.
+
+    Raises
+    ------
+    InputError
+        If the text cannot be changed there.
+    """
+    gears = document["gear"]
+    gear = value_at(document, ("pair", pair, "driven"))
+    name = next(n for n in (f"{gear}_driven", *(f"{gear}_driven_{i}" for i in range(2, 99))) if n not in gears)
+    text = with_value(text, ("pair", pair, "driven"), literal(name))
+    lines = [f"{key} = {literal(value)}" for key, value in gears[gear].items()]
+    end = text if text.endswith("\n") else f"{text}\n"
+    return "\n".join([f"{end}\n[gear.{name}]", *lines, ""])
