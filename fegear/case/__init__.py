@@ -1,1 +1,1 @@
-"""The parts of a case file, one file per part."""
+"""Case files: a schema for each table, what is checked in it, and the objects that it describes."""

@@ -1,1 +1,1 @@
-"""Loaded teeth: compliance sources, load sharing, transmission error, spacing errors, root-stress histories."""
+"""Teeth in contact: unloaded flanks, loaded plane and wide pairs, losses and the state of the surfaces."""

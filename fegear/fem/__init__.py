@@ -1,1 +1,1 @@
-"""Finite elements for gear teeth: influence functions of the whole ring at the cost of one tooth."""
+"""Finite elements for gear teeth, plane and solid: influence functions of the whole ring at the cost of one tooth."""

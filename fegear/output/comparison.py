@@ -19,7 +19,7 @@ from fegear.output.report.blocks import DataTable, Grid, Notes, Paragraph, Plot
 from fegear.output.report.page import Page, Section, write_page
 from fegear.output.tables import write_json, write_table
 from fegear.studies.comparison.compare import Side
-from fegear.studies.comparison.tables import comparison_figures
+from fegear.studies.comparison.joined import comparison_figures
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -316,7 +316,7 @@ class Worker:
         from fegear.output.report.blocks import DataTable, Plot
         from fegear.output.report.page import fragment
         from fegear.studies.comparison.compare import compare, side_of
-        from fegear.studies.comparison.tables import comparison_figures
+        from fegear.studies.comparison.joined import comparison_figures
 
         found = compare(side_of(self._results(job.first), "pinned"), side_of(self._results(job.second), "now"), 1e-9)
         figures = comparison_figures(found)

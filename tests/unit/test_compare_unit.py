@@ -15,7 +15,7 @@ from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
 from fegear.output.comparison import read_side
 from fegear.studies.comparison.compare import Side, compare, different_inputs, paired
-from fegear.studies.comparison.tables import comparison_figures, join
+from fegear.studies.comparison.joined import comparison_figures, join
 
 CASE = """
 results = ["geometry", "load-sharing"]

@@ -1,1 +1,1 @@
-"""Two runs held against each other: what went in, the single values, and the tables row by row."""
+"""Two runs compared: what went in, the single values, and the tables row by row."""

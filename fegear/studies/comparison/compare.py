@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from fegear.case.schema import flat, meaning_of
-from fegear.studies.comparison.tables import Joined, join
+from fegear.studies.comparison.joined import Joined, join
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
