@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fegear.base.errors import InputError
 from fegear.case.drafts.answers import KINDS, Answers
 from fegear.case.drafts.text import draft
-from fegear.window.case_text import literal, with_value
+from fegear.window.case_text import literal, with_value, with_values
 from fegear.window.computing import whole
 from fegear.window.document import Desk
 from fegear.window.drag_handles import moved_relief, own_name, without_relief
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fegear.results.relief.relief import How
+    from fegear.window.case_text import Path as KeyPath
     from fegear.window.computing import Computing
 
 #: Accuracy against time: factor of the case's own tolerance.
@@ -242,13 +243,12 @@ class Bench:
     def _take_reliefs(self, reliefs: dict[str, Any]) -> None:
         """Give gears other reliefs; the case before is pinned, so that both are shown over each other."""
         text = self._on_desk().text
-        for gear, relief in reliefs.items():
-            text = with_value(text, ("gear", gear, "relief"), None)
-            if relief is not None:
-                text = with_value(text, ("gear", gear, "relief"), literal(relief))
+        text = with_values(text, {("gear", gear, "relief"): None for gear in reliefs})
+        written: dict[KeyPath, str | None] = {("effects", "relief"): "true"}
+        written |= {("gear", name, "relief"): literal(one) for name, one in reliefs.items() if one is not None}
         if self.pinned is None:
             self.pin()
-        self._put(with_value(text, ("effects", "relief"), "true"), moving=False)
+        self._put(with_values(text, written), moving=False)
 
     def _on_desk(self) -> Desk:
         if self.desk is None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fegear.base.errors import InputError
 from fegear.engine.run import key_without_needs
 from fegear.results.relief.relief import relief_for_case, what_it_leaves
-from fegear.window.case_text import literal, value_at, with_value
+from fegear.window.case_text import literal, value_at, with_values
 from fegear.window.order import ANSWERS, in_order
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from fegear.engine.plan import Plan
     from fegear.engine.run import Results
     from fegear.results.relief.relief import How
+    from fegear.window.case_text import Path
     from fegear.window.job_queue import Asked
 
 
@@ -44,11 +45,10 @@ def design_asked(asked: Asked, pair: str, how: How) -> Asked:
         raise InputError(
             "design.grind", "[]", "allows no shape of relief to grind", 'write grind = ["linear", "parabolic"]'
         )
-    text = with_value(asked.text, ("results",), '["relief"]')
-    text = with_value(text, ("design", "pair"), literal(pair))
+    changes: dict[Path, str | None] = {("results",): '["relief"]', ("design", "pair"): literal(pair)}
     if how == "exact":
-        text = with_value(text, ("design", "grind"), "[]")
-    return asked._replace(text=text)
+        changes["design", "grind"] = "[]"
+    return asked._replace(text=with_values(asked.text, changes))
 
 
 def designed(results: Results, pair: str, how: How) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.output.draw_plotly.layout import darker, plotly_json
 from fegear.results.relief.relief_handles import handled_relief
-from fegear.window.case_text import literal, value_at, with_value
+from fegear.window.case_text import literal, value_at, with_value, with_values
 from fegear.window.on_gears import gears_in_mesh
 
 if TYPE_CHECKING:
@@ -110,12 +110,9 @@ def moved_relief(
     new = {"amount": f"{amount:.2f} um"} | ({} if end == "crowning" else {"start_roll_angle": f"{start:.3f} deg"})
     if isinstance(value_at(document, table), list):
         table = (*table, str(index))
-    for key, value in new.items():
-        text = with_value(text, (*table, key), f'"{value}"')
-    for key in _OTHERWISE:
-        if end != "crowning":
-            text = with_value(text, (*table, key), None)
-    return with_value(text, ("effects", "relief"), "true")
+    changes: dict[Path, str | None] = {(*table, key): f'"{value}"' for key, value in new.items()}
+    changes |= {(*table, key): None for key in _OTHERWISE if end != "crowning"}
+    return with_values(text, {**changes, ("effects", "relief"): "true"})
 
 
 def without_relief(text: str, document: Mapping[str, Any], gear: str) -> str:
@@ -127,12 +124,12 @@ def without_relief(text: str, document: Mapping[str, Any], gear: str) -> str:
         If the text cannot be changed there.
     """
     left = {name: {key for key in one if name != gear or key != "relief"} for name, one in document["gear"].items()}
-    text = with_value(text, ("gear", gear, "relief"), None)
-    if any(keys & _MODIFIED for keys in left.values()) or any(
+    changes: dict[Path, str | None] = {("gear", gear, "relief"): None}
+    if not any(keys & _MODIFIED for keys in left.values()) and not any(
         "modification" in one for one in document["pair"].values()
     ):
-        return text
-    return with_value(text, ("effects", "relief"), None)
+        changes["effects", "relief"] = None
+    return with_values(text, changes)
 
 
 def own_name(text: str, document: Mapping[str, Any], pair: str) -> str:

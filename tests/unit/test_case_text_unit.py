@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import copy
 import random
+import re
 import tomllib
 from pathlib import Path
 
 import pytest
 
 from fegear.base.errors import InputError
-from fegear.window.case_text import as_typed, literal, statements, value_at, with_value
+from fegear.window.case_text import as_typed, literal, value_at, with_value, with_values
 from fegear.window.inputs import stepped
 
 CASES = sorted((Path(__file__).parents[2] / "cases").rglob("*.toml"))
@@ -33,9 +35,9 @@ teeth = 3
 teeth = 4
 [[lists.inner]]
 x = 1 # mm
+[[lists.inner]]
 [lists.more]
 y = 2
-[[lists.inner]]
 
 [pair]
 I.load = "1 kN"
@@ -48,31 +50,74 @@ def solid(document):
     return {key: one for key, one in inside.items() if one != {}}
 
 
+def places(document, path=()):
+    """Paths of all values that are no tables, those in tables of lists included."""
+    for key, one in document.items() if isinstance(document, dict) else enumerate(document):
+        here = (*path, str(key))
+        tables = isinstance(one, dict) or (isinstance(one, list) and any(isinstance(part, dict) for part in one))
+        if isinstance(document, dict) and not tables:
+            yield here
+        if isinstance(one, (dict, list)):
+            yield from places(one, here)
+
+
+def alike(one, other):
+    """How many characters two texts have in common at their beginning."""
+    return next((i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
+
+
+def changed(document, path, value):
+    """The document with another value, by plain dictionaries."""
+    made = copy.deepcopy(document)
+    inside = made
+    for step in path[:-1]:
+        inside = inside[int(step)] if isinstance(inside, list) else inside[step]
+    inside[path[-1]] = value
+    return made
+
+
 @pytest.mark.parametrize(
     "text", [*(path.read_text("utf-8") for path in CASES), HARD], ids=[*(p.stem for p in CASES), "hard"]
 )
 def test_every_key_can_be_changed_and_removed_where_it_stands(text):
     document = tomllib.loads(text)
-    entries, _ = statements(text)
-    keys = [entry for entry in entries if not isinstance(value_at(document, entry.path), dict)]
-    assert keys
-    for entry in keys if len(keys) < 5 or text == HARD else random.Random(1).sample(keys, 4):  # noqa: S311
-        held = value_at(document, entry.path)
-        assert tomllib.loads(f"v = {text[entry.start : entry.end]}")["v"] == held
-        assert with_value(text, entry.path, literal(held)) == text
-        new = with_value(text, entry.path, '"new # [x]"')
-        assert new == text[: entry.start] + '"new # [x]"' + text[entry.end :]
-        gone = tomllib.loads(with_value(text, entry.path, None))
-        assert value_at(gone, entry.path) is None
-        back = tomllib.loads(with_value(with_value(text, entry.path, None), entry.path, literal(held)))
+    paths = list(places(document))
+    assert paths
+    for path in paths if len(paths) < 5 or text == HARD else random.Random(1).sample(paths, 4):  # noqa: S311
+        held = value_at(document, path)
+        assert with_value(text, path, literal(held)) == text
+        new = with_value(text, path, '"new # [x]"')
+        assert tomllib.loads(new) == changed(document, path, "new # [x]")
+        before = alike(text, new)
+        behind = alike(text[before:][::-1], new[before:][::-1])
+        assert new[before : len(new) - behind] in '"new # [x]"'  # nothing else is touched
+        gone = tomllib.loads(with_value(text, path, None))
+        assert value_at(gone, path) is None
+        back = tomllib.loads(with_value(with_value(text, path, None), path, literal(held)))
         assert solid(back) == solid(document)
+
+
+def test_tables_of_a_list_that_stand_apart_come_together_and_keep_what_they_hold():
+    text = "[[a]]\nx = 1 # one\n[[a.b]]\ny = 2 # two\n[a.c]\nz = 3\n[[a.b]]\ny = 4 # four\n"
+    made = with_value(text, ("a", "0", "x"), "5")
+    assert tomllib.loads(made) == changed(tomllib.loads(text), ("a", "0", "x"), 5)
+    assert sorted(re.findall("# \\w+", made)) == ["# four", "# one", "# two"]
+
+
+def test_several_keys_are_changed_one_after_the_other():
+    changes = {("pair", "J", "speed"): '"1 rpm"', ("title",): None, ("lists", "0", "teeth"): "5"}
+    one_by_one = HARD
+    for path, value in changes.items():
+        one_by_one = with_value(one_by_one, path, value)
+    assert with_values(HARD, changes) == one_by_one
+    assert with_values(HARD, {}) == HARD
 
 
 @pytest.mark.parametrize(
     ("path", "line"),
     [
         (("gear", "a b", "module"), 'module = "3 mm"'),
-        (("gear", "a b", "relief", "tip", "amount"), 'relief = { tip = { amount = "3 mm" } }'),
+        (("gear", "a b", "relief", "tip", "amount"), 'relief = {tip = {amount = "3 mm"}}'),
         (("effects", "relief"), '[effects]\nrelief = "3 mm"'),
         (("gear", "new", "teeth"), '[gear.new]\nteeth = "3 mm"'),
         (("pair", "I", "speed"), 'I.speed = "3 mm"'),
@@ -94,7 +139,7 @@ def test_a_new_key_stands_in_its_table_and_goes_without_a_trace(path, line):
 def test_a_new_key_stands_in_a_table_of_a_list():
     path = ("odd key", "a", "b", "3", "1", "g")
     made = with_value(HARD, path, "2")
-    assert made == HARD.replace("{ f = 1 }, {}", "{ f = 1 }, { g = 2 }")
+    assert made == HARD.replace("{ f = 1 }, {}", "{ f = 1 }, {g = 2}")
     assert tomllib.loads(with_value(made, path, None)) == tomllib.loads(HARD)
 
 
