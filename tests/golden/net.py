@@ -2,7 +2,7 @@
 
 Run it before and after a change of the program's structure:
 
-    python tests/golden/net.py [CASE ...] [--all] [--accept] [--jobs N]
+    python tests/golden/net.py [CASE ...] [--accept] [--jobs N]
 
 Every case is computed anew in a process and a store of its own. Compared are all columns, values, remarks, figure
 descriptions and the plan; neglected are seconds, dates, versions, paths, and where functions live. Columns and figures
@@ -27,8 +27,6 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES, KEPT = ROOT / "cases", Path(__file__).with_suffix("")
-#: Above 60 s of processor time; run with ``--all`` or by name.
-DEAR = frozenset()
 #: Digits of numbers, of those in sentences, and of errors.
 DIGITS, DIGITS_OF_WORDS, DIGITS_OF_ERRORS = 10, 6, 3
 #: Share of an array's largest number below which its digits are noise.
@@ -276,8 +274,7 @@ def _told(case):
 
 def main():
     wishes = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    wishes.add_argument("cases", nargs="*", metavar="CASE", help="names of cases; all that are not dear by default")
-    wishes.add_argument("--all", action="store_true", help=f"also the dear ones: {', '.join(sorted(DEAR)) or 'none'}")
+    wishes.add_argument("cases", nargs="*", metavar="CASE", help="names of cases; all by default")
     wishes.add_argument("--accept", action="store_true", help="keep what is found")
     wishes.add_argument("--jobs", type=int, default=1, metavar="N", help="cases at a time")
     wishes.add_argument("--one", metavar="CASE", help=argparse.SUPPRESS)
@@ -288,7 +285,7 @@ def main():
     known = cases()
     if unknown := sorted({*asked.cases} - {*known}):
         wishes.error(f"{unknown[0]} is no case; there are {', '.join(known)}")
-    chosen = asked.cases or [case for case in known if asked.all or case not in DEAR]
+    chosen = asked.cases or known
     changed = 0
     with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
         running = {pool.submit(checked, case, accept=asked.accept): case for case in chosen}
