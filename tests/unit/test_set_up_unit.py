@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -121,3 +123,51 @@ def test_what_is_set_up_for_development_serves_tests_and_site(machine, tmp_path)
     assert done.stderr.count("Setting up") == 1
     again = machine(script, tmp_path / "venv", pip="false")
     assert "Setting up" not in again.stderr
+
+
+@pytest.fixture
+def checked(tmp_path):
+    """A tree of two kinds of tests with what must pass before a change counts; its scripts print how they are called."""
+    for path in ("tests/unit/test_a.py", "tests/unit/test_b.py", "tests/hard/test_c.py", "tests/helpers/no_test.py"):
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).touch()
+    (tmp_path / ".ci").mkdir()
+    shutil.copy(ROOT / ".ci" / "run", tmp_path / ".ci" / "run")
+    for name in ("docs.sh", "test.sh", ".ci/versions", ".venv-ci/bin/mypy", ".venv-ci/bin/python"):
+        script = tmp_path / name
+        script.parent.mkdir(parents=True, exist_ok=True)
+        script.write_text(f"#!/bin/sh\necho {name} called: $*\ncase \"$*\" in *\"$FAILS\"*) exit 3 ;; esac\n")
+        script.chmod(0o755)
+
+    def run(*parts: str, fails: str = "nothing") -> subprocess.CompletedProcess:
+        environment = os.environ | {"FAILS": fails}
+        command = [str(tmp_path / ".ci" / "run"), *parts]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=60)
+
+    return run
+
+
+def test_parts_of_what_must_pass_are_the_kinds_of_tests_and_what_else_there_is(checked):
+    done = checked("no-such-part")
+    assert done.returncode != 0
+    (named,) = re.findall(r"there are: (.*)", done.stdout)
+    parts = named.split()
+    assert parts[:3] == ["site", "tests/hard", "tests/unit"]
+    assert {"last-bit-1", "last-bit-2", "last-bit-3", "versions", "types", "wheel"} == set(parts[3:])
+
+
+def test_parts_of_what_must_pass_skip_no_test_and_say_how_they_ended(checked):
+    done = checked("site", "tests/unit", "last-bit-2", "types")
+    assert done.returncode == 0, done.stdout
+    assert "docs.sh called:" in done.stdout
+    assert "test.sh called: -n 0 -p no:cacheprovider --no-skips tests/unit" in done.stdout
+    assert "test.sh called: -n 0 -p no:cacheprovider --last-bit 2" in done.stdout
+    assert len(re.findall(r"^== \S+: passed after \d+ s$", done.stdout, re.MULTILINE)) == 4
+
+
+@pytest.mark.parametrize(("part", "fails"), [("tests/unit", "tests/unit"), ("last-bit-2", "bit 2"), ("wheel", "wheel")])
+def test_a_part_that_fails_anywhere_on_its_way_fails_what_must_pass(checked, part, fails):
+    done = checked("types", part, fails=fails)
+    assert done.returncode != 0
+    assert f"== {part}: FAILED" in done.stdout
+    assert "== types: passed" in done.stdout
