@@ -127,7 +127,7 @@ def test_what_is_set_up_for_development_serves_tests_and_site(machine, tmp_path)
 
 @pytest.fixture
 def checked(tmp_path):
-    """A tree of two kinds of tests with what must pass before a change counts; its scripts print how they are called."""
+    """A tree of two kinds of tests with what must pass before a change counts; scripts print how they are called."""
     for path in ("tests/unit/test_a.py", "tests/unit/test_b.py", "tests/hard/test_c.py", "tests/helpers/no_test.py"):
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / path).touch()
@@ -136,7 +136,7 @@ def checked(tmp_path):
     for name in ("docs.sh", "test.sh", ".ci/versions", ".venv-ci/bin/mypy", ".venv-ci/bin/python"):
         script = tmp_path / name
         script.parent.mkdir(parents=True, exist_ok=True)
-        script.write_text(f"#!/bin/sh\necho {name} called: $*\ncase \"$*\" in *\"$FAILS\"*) exit 3 ;; esac\n")
+        script.write_text(f'#!/bin/sh\necho {name} called: $*\ncase "$*" in *"$FAILS"*) exit 3 ;; esac\n')
         script.chmod(0o755)
 
     def run(*parts: str, fails: str = "nothing") -> subprocess.CompletedProcess:
