@@ -42,7 +42,12 @@ LAYERS = {
 #: Where each heavy library may be imported.
 DOORS = {
     "gmsh": ["fegear.fem.plane.sector"],
-    "skfem": ["fegear.fem.plane.elements"],
+    "skfem": [
+        "fegear.fem.forms",
+        "fegear.fem.plane.curved_map",
+        "fegear.fem.plane.elements",
+        "fegear.fem.plane.scikit_fem_alone",
+    ],
     "meshio": ["fegear.fem.plane.imported_mesh"],
     "pint": ["fegear.base.units"],
     "pydantic": ["fegear.case", "fegear.case.*"],

@@ -1,7 +1,6 @@
 """Plane elasticity of one sector: the stiffness of every curved triangle, and the unknowns along named boundaries.
 
-Shape functions, quadrature, numbering and the map of the curved elements are scikit-fem's; element matrices are formed
-here, all at once.
+Shape functions, quadrature, numbering and maps are scikit-fem's, and it integrates the weak form of `fem.forms`.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ from fegear.fem.plane.elements import sector_elements
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
+    from fegear.fem.plane.elements import SectorElements
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Plane
 
@@ -83,14 +83,9 @@ def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -
     """
     elements = sector_elements(mesh, order)
     nodes, points = elements.element_nodes, elements.point_nodes
-    count, n = nodes.shape
-    stiffness = np.empty((count, 2 * n, 2 * n))
-    constants = lame(poisson_ratio, plane)
-    stiffness[~elements.curved] = _straight_stiffness(*elements.straight(), *constants)
-    if elements.curved.any():
-        stiffness[elements.curved] = _curved_stiffness(*elements.bent(), *constants)
+    count = nodes.shape[0]
     return SectorElasticity(
-        stiffness=stiffness,
+        stiffness=_stiffness(elements, *lame(poisson_ratio, plane)),
         element_dofs=(2 * nodes[:, :, None] + np.array([0, 1])).reshape(count, -1),
         inside=2 * int(elements.dofs.interior_dofs.shape[0]),
         centres=mesh.points[:, mesh.triangles[:3]].mean(axis=1),
@@ -105,32 +100,29 @@ def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -
     )
 
 
-def _straight_stiffness(
-    slope: Array, weight: Array, inverse: Array, determinant: Array, lam: float, mu: float
-) -> Array:
-    """Stiffness of straight elements, shape (m, 2 n, 2 n): their maps times integrals on the reference triangle."""
-    n = slope.shape[0]
-    reference = np.einsum("ikq,jlq,q->klij", slope, slope, weight)
-    metric = np.einsum("kam,lbm,m->mabkl", inverse, inverse, determinant)
-    trace = mu * (metric[:, 0, 0] + metric[:, 1, 1])
-    tensor = lam * metric + mu * metric.transpose(0, 2, 1, 3, 4)
-    tensor[:, 0, 0] += trace
-    tensor[:, 1, 1] += trace
-    # One product for all elements, with the components x and y in their places already.
-    spread = np.zeros((2, 2, 2, 2, n, 2, n, 2))
-    for a in range(2):
-        for b in range(2):
-            spread[a, b, :, :, :, a, :, b] = reference
-    return np.asarray(tensor.reshape(-1, 16) @ spread.reshape(16, -1)).reshape(-1, 2 * n, 2 * n)
+def _stiffness(elements: SectorElements, lam: float, mu: float) -> Array:
+    """Stiffness of every element, shape (M, 2 n, 2 n).
 
+    scikit-fem integrates over the curved elements and one straight one; the other straight ones are its affine images.
+    """
+    from fegear.fem.forms import coefficients, element_matrices, plane_elasticity, products
 
-def _curved_stiffness(gradient: Array, area: Array, lam: float, mu: float) -> Array:
-    """Stiffness of curved elements, shape (m, 2 n, 2 n), from the gradients at their quadrature points."""
-    count, n, _, points = gradient.shape
-    flat = gradient.reshape(count, 2 * n, points)
-    d = ((flat * area[:, None]) @ flat.transpose(0, 2, 1)).reshape(count, n, 2, n, 2)
-    stiffness = lam * d + mu * d.transpose(0, 1, 4, 3, 2)
-    trace = mu * (d[:, :, 0, :, 0] + d[:, :, 1, :, 1])
-    stiffness[:, :, 0, :, 0] += trace
-    stiffness[:, :, 1, :, 1] += trace
-    return stiffness.reshape(count, 2 * n, 2 * n)
+    curved, straight = np.flatnonzero(elements.curved), np.flatnonzero(~elements.curved)
+    weights = coefficients(plane_elasticity, 2, 2, lam=lam, mu=mu)[:, 1:, :, 1:]
+    matrix, inverse, area = elements.affine_maps(straight)
+    model = area.argsort()[-1:]
+    integrals = products(elements.basis(np.concatenate([curved, straight[model]])), (1, 2))
+    nodes = integrals.shape[-1]
+    found = np.empty((elements.curved.size, 2 * nodes, 2 * nodes))
+    found[curved] = element_matrices(weights, integrals[:, :, : curved.size])
+    if straight.size:
+        # Slopes on an image are those on the model times this matrix.
+        image = np.einsum("pr,rkm->pkm", matrix[:, :, model[0]], inverse)
+        tensor = np.einsum("akbl,pkm,qlm,m->mabpq", weights, image, image, area / area[model], optimize=True)
+        # One product for all elements, with the components x and y in their places already.
+        spread = np.zeros((2, 2, 2, 2, nodes, 2, nodes, 2))
+        for a in range(2):
+            for b in range(2):
+                spread[a, b, :, :, :, a, :, b] = integrals[:, :, -1]
+        found[straight] = (tensor.reshape(-1, 16) @ spread.reshape(16, -1)).reshape(-1, 2 * nodes, 2 * nodes)
+    return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -81,14 +80,13 @@ class SectorElements:
         inside = dofs.facet_dofs[:, self.edge_of_point[middle]]
         return np.concatenate([first[None], np.where(first < second, inside, inside[::-1]), second[None]])
 
-    def straight(self) -> tuple[Array, Array, Array, Array]:
-        """Shape functions on the reference triangle, and the maps of the elements with straight edges.
+    def affine_maps(self, chosen: Index) -> tuple[Array, Array, Array]:
+        """Maps of elements with straight edges.
 
         Returns
         -------
-        slope : ndarray, shape (n, 2, q)
-            Derivatives of the shape functions at points that integrate their products exactly.
-        weight : ndarray, shape (q,)
+        matrix : ndarray, shape (2, 2, m)
+            Derivatives of x and y along the reference coordinates [modules].
         inverse : ndarray, shape (2, 2, m)
             Derivatives of the reference coordinates along x and y [1/modules].
         determinant : ndarray, shape (m,)
@@ -96,63 +94,26 @@ class SectorElements:
         """
         from skfem import MappingAffine
 
-        mapping = MappingAffine(self.grid, tind=np.flatnonzero(~self.curved))
-        _, weight, slope = _reference(self.order, 2 * (self.order - 1))
-        return slope, weight, mapping.invA, np.abs(mapping.detA)
+        mapping = MappingAffine(self.grid, tind=chosen)
+        return mapping.A, mapping.invA, np.abs(mapping.detA)
 
-    def bent(self) -> tuple[Array, Array]:
-        """Shape functions of the elements with curved edges at their quadrature points.
-
-        Returns
-        -------
-        gradient : ndarray, shape (m, n, 2, q)
-            Along x and y [1/modules].
-        area : ndarray, shape (m, q)
-            That each point stands for [modules^2].
+    def basis(self, chosen: Index | None = None) -> Any:
+        """scikit-fem's basis of the shape functions on elements, by default all, for integrals over curved ones.
 
         Raises
         ------
         InputError
             If an element is turned inside out.
         """
-        from skfem import MappingIsoparametric
-
-        chosen, mapping = np.flatnonzero(self.curved), MappingIsoparametric(self.grid, self.grid.elem())
-        places, weight, slope = _reference(self.order, _CURVED_DEGREE)
-        determinant = mapping.detDF(places, tind=chosen)
-        _refuse_inverted(determinant, self.origin)
-        # The map once for all shape functions, which a Basis would ask for it one by one.
-        gradient = np.einsum("nkq,kamq->mnaq", slope, mapping.invDF(places, tind=chosen))
-        return np.ascontiguousarray(gradient), np.abs(determinant) * weight
-
-    def integration(self) -> tuple[Array, Array, Array, Array]:
-        """Shape functions, their gradients and the places of the quadrature points, for integrals of both.
-
-        Returns
-        -------
-        values : ndarray, shape (n, q)
-        gradient : ndarray, shape (M, n, 2, q)
-            [1/modules].
-        place : ndarray, shape (2, M, q)
-            From the gear's centre [modules].
-        area : ndarray, shape (M, q)
-            That each point stands for [modules^2].
-
-        Raises
-        ------
-        InputError
-            If an element is turned inside out.
-        """
-        basis = self._basis(intorder=_CURVED_DEGREE)
-        _refuse_inverted(basis.mapping.detDF(basis.X), self.origin)
-        values = np.stack([np.asarray(shape)[0] for (shape,) in basis.basis])
-        return values, _gradients(basis), basis.mapping.F(basis.X) + self.tip, basis.dx
+        basis = self._basis(intorder=_CURVED_DEGREE, elements=chosen)
+        _refuse_inverted(basis.mapping.detDF(basis.X, tind=chosen), self.origin)
+        return basis
 
     def node_places(self) -> Array:
         """Where the nodes lie, shape (2, N) [modules from the gear's centre]."""
-        from skfem import MappingIsoparametric
+        from fegear.fem.plane.curved_map import CurvedMap
 
-        at = MappingIsoparametric(self.grid, self.grid.elem()).F(_element(self.order).doflocs.T)
+        at = CurvedMap(self.grid).F(_element(self.order).doflocs.T)
         places = np.empty((2, int(self.dofs.N)))
         places[:, self.element_nodes] = at
         return places + self.tip[:, :, 0]
@@ -163,9 +124,11 @@ class SectorElements:
         return _gradients(self._basis(quadrature=(places, np.ones(places.shape[1]))))
 
     def _basis(self, **at: Any) -> Any:
-        from skfem import Basis, MappingIsoparametric
+        from skfem import Basis
 
-        mapping = MappingIsoparametric(self.grid, self.grid.elem())
+        from fegear.fem.plane.curved_map import CurvedMap
+
+        mapping = CurvedMap(self.grid)
         return Basis(self.grid, _element(self.order), mapping, dofs=self.dofs, disable_doflocs=True, **at)
 
 
@@ -217,14 +180,16 @@ def check_cubic_edges(mesh: SectorMesh) -> None:
     ------
     InputError
     """
-    from skfem import MappingIsoparametric
+    from skfem.quadrature import get_quadrature_tri
+
+    from fegear.fem.plane.curved_map import CurvedMap
 
     elements = sector_elements(mesh, order=3)
     chosen = np.flatnonzero(elements.curved)
     if chosen.size:
         # Not at the corners: where two smooth edges of one element meet the determinant is zero as it should be.
-        places = _reference(elements.order, _CURVED_DEGREE)[0]
-        mapping = MappingIsoparametric(elements.grid, elements.grid.elem())
+        places, _ = get_quadrature_tri(_CURVED_DEGREE)
+        mapping = CurvedMap(elements.grid)
         _refuse_inverted(mapping.detDF(places, tind=chosen), mesh.origin)
 
 
@@ -266,18 +231,6 @@ def _element(order: int) -> Any:
     from skfem import ElementTriP2, ElementTriP3, ElementTriP4
 
     return {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}[order]()
-
-
-@lru_cache
-def _reference(order: int, degree: int) -> tuple[Array, Array, Array]:
-    """Quadrature points (2, q) and weights (q,) of a degree; slopes of an order's shape functions there, (n, 2, q)."""
-    from skfem.quadrature import get_quadrature_tri
-
-    element, (places, weight) = _element(order), get_quadrature_tri(degree)
-    slope = np.stack([element.lbasis(places, i)[1] for i in range(element.doflocs.shape[0])])
-    for array in (places, weight, slope):
-        array.flags.writeable = False
-    return places, weight, slope
 
 
 def _bends(

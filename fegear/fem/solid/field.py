@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.one_thread import one_thread
+from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.gear_section import Section as PlaneSection
 from fegear.fem.plane.ring import closed_ring
@@ -16,14 +17,13 @@ from fegear.fem.solid.bands import loads_of
 from fegear.fem.solid.dissection import condense_solid
 from fegear.fem.solid.extruded import SolidMesh, extruded, planes_of
 from fegear.fem.solid.face import face_functions, solid_unknowns
-from fegear.fem.solid.section import hooke, make_section, strain_functions
+from fegear.fem.solid.section import make_section
 from fegear.fem.solid.solution import flank_nodes, section_flank
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array, Index
-    from fegear.fem.plane.elements import SectorElements
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.solid.bands import Bands
     from fegear.fem.solid.settings import SolidSettings
@@ -34,12 +34,12 @@ _SIX_NODE_EDGES = 0.7
 
 
 @dataclass(frozen=True)
-class _NodalStrains:
-    """Strains at the elements' own nodes from their displacement and its slope along the face."""
+class _AtNodes:
+    """What strains at the elements' own nodes follow from: nodes, gradients, places; at how many elements a node is."""
 
     nodes: Index
-    along_section: Array
-    along_face: Array
+    gradient: Array
+    place: Array
     times: Index
 
 
@@ -119,7 +119,8 @@ def solid_field(
         elements = sector_elements(sector, order=2)
         node = elements.point_nodes
         planes = planes_of(mesh)
-        strains = _nodal_strains(elements, section.places, tau)
+        nodes = elements.element_nodes
+        at = _AtNodes(nodes, elements.gradients_at_nodes(), section.places[:, nodes], np.bincount(nodes.ravel()))
         displacement, stress = {}, {}
         for k, u in response.items():
             waves = np.where(known.number >= 0, u[known.number, 0], 0.0).reshape(-1, 3, face.count)
@@ -131,25 +132,21 @@ def solid_field(
                 c, s = np.cos(tau * z), np.sin(tau * z)
                 x, y, axial = v[node[points]].T
                 moved.append(np.stack([c * x - s * y, s * x + c * y, axial]))
-                von_mises.append(_von_mises(strains, v, dv, poisson_ratio)[node[points]])
+                von_mises.append(_von_mises(at, v, dv, tau, poisson_ratio)[node[points]])
             displacement[k] = np.hstack(moved)
             stress[k] = np.concatenate(von_mises)
     return SolidField(sector, mesh, displacement, stress)
 
 
-def _nodal_strains(elements: SectorElements, places: Array, tau: float) -> _NodalStrains:
-    nodes = elements.element_nodes
-    here = places[:, nodes]  # (2, M, n)
-    b0, b1 = strain_functions(np.eye(nodes.shape[1]), elements.gradients_at_nodes(), here, tau)
-    return _NodalStrains(nodes, b0, b1, np.bincount(nodes.ravel()))
-
-
-def _von_mises(strains: _NodalStrains, v: Array, slope: Array, poisson_ratio: float) -> Array:
+def _von_mises(at: _AtNodes, v: Array, slope: Array, tau: float, poisson_ratio: float) -> Array:
     """Equivalent stress at the nodes of a section, averaged over the elements around each, shape (N,)."""
-    nodes = strains.nodes
-    found = np.einsum("mqsnc,mnc->mqs", strains.along_section, v[nodes], optimize=True)
-    found += np.einsum("mqsnc,mnc->mqs", strains.along_face, slope[nodes], optimize=True)
-    mean = np.stack([np.bincount(nodes.ravel(), found[:, :, s].ravel()) for s in range(found.shape[2])], axis=1)
-    xx, yy, zz, xy, xz, yz = ((mean / strains.times[:, None]) @ hooke(poisson_ratio)).T
+    from fegear.fem.forms import stresses, turned_strains
+
+    value, along = (part[at.nodes].transpose(2, 0, 1) for part in (v, slope))
+    x, y = np.einsum("mnkq,cmn->kcmq", at.gradient, value, optimize=True)
+    along = along + tau * (at.place[1] * x - at.place[0] * y)
+    strain = turned_strains(value, np.stack([x, y, along], axis=1), tau).reshape(6, -1)
+    mean = np.stack([np.bincount(at.nodes.ravel(), part) for part in strain]) / at.times
+    xx, yy, zz, xy, xz, yz = stresses(mean, *lame(poisson_ratio, "strain"))
     squares = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + xz**2 + yz**2)
     return np.asarray(np.sqrt(squares))

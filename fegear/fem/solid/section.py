@@ -1,16 +1,8 @@
 """The transverse section of one tooth sector: nodes, their axes, and the section's share of the stiffness.
 
-Strains of a twisted prism: the helicoid's own coordinates, in which every section is alike.
-
-The section at height z is the one at z = 0 turned by tau z, X = R(tau z)(xi, eta), and so are the components of the
-displacement, u = R v. With D = d/dz + tau (eta d/dxi - xi d/deta), the derivative along the axis, the strains in the
-turned axes are
-
-    e_xx = v_x,x   e_yy = v_y,y   g_xy = v_x,y + v_y,x
-    e_zz = D w   g_xz = w,x + D v_x - tau v_y   g_yz = w,y + D v_y + tau v_x.
-
-No coefficient depends on z: with a function N of the section times a function P along the face, every strain is
-B0 P + B1 P', and a stiffness is a short sum of products of section and face integrals.
+In the helicoid's own coordinates every section is alike (`fem.forms.turned_strains`): no coefficient depends on z. With
+a function N of the section times a function P along the face, every strain is B0 P + B1 P', and a stiffness is a short
+sum of products of section and face integrals.
 """
 
 from __future__ import annotations
@@ -21,10 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
+    from fegear.fem.plane.elements import SectorElements
     from fegear.fem.plane.mesh import SectorMesh
 
 
@@ -39,7 +33,7 @@ class Section:
     Parameters
     ----------
     stiffness : tuple of three ndarray, shape (M, 3 n, 3 n)
-        Integrals of B0' C B0, B0' C B1 and B1' C B1 (`strains`).
+        Integrals of B0' C B0, B0' C B1 and B1' C B1.
     element_dofs : ndarray of int, shape (M, 3 n)
     centres : ndarray, shape (2, M)
         Where the elements lie [modules].
@@ -144,21 +138,10 @@ def make_section(mesh: SectorMesh, order: int, tau: float, poisson_ratio: float,
     edge_nodes = {name: elements.nodes_along(edges) for name, edges in mesh.edges.items()}
     side_a, side_b = (_outward(edge_nodes[name], places) for name in ("side_a", "side_b"))
     _check_sides(side_a, side_b, places, mesh.teeth)
+    count = nodes.shape[0]
     axes = _axes(places, np.concatenate([side_a, side_b]), np.unique(edge_nodes["flank"]), base_radius, tau)
-    values, gradient, place, area = elements.integration()
-    c = hooke(poisson_ratio)
-    count, n = nodes.shape
-    functions = []
-    for b in strain_functions(values, gradient, place, tau):
-        turned = np.einsum("mqsnc,mncd->mqsnd", b, axes[nodes])
-        functions.append(turned.reshape(count, -1, 3 * n))
-    weighted = [
-        (np.einsum("st,mqtu->mqsu", c, b.reshape(count, -1, 6, 3 * n)) * area[:, :, None, None]).reshape(b.shape)
-        for b in functions
-    ]
-    b0, b1 = (b.transpose(0, 2, 1) for b in functions)
     return Section(
-        stiffness=(b0 @ weighted[0], b0 @ weighted[1], b1 @ weighted[1]),
+        stiffness=_stiffness(elements, axes[nodes], tau, poisson_ratio),
         element_dofs=(3 * nodes[:, :, None] + np.arange(3)).reshape(count, -1),
         centres=mesh.points[:, mesh.triangles[:3]].mean(axis=1),
         axes=axes,
@@ -215,49 +198,24 @@ def _axes(places: Array, sides: Index, flank: Index, base_radius: float, tau: fl
     return axes
 
 
-#: Order of the strains: e_xx, e_yy, e_zz, g_xy, g_xz, g_yz.
-STRAINS = 6
+def _stiffness(elements: SectorElements, axes: Array, tau: float, poisson_ratio: float) -> tuple[Array, Array, Array]:
+    """The section's matrices for unknowns along axes of shape (M, n, 3, 3)."""
+    from fegear.fem.forms import coefficients, element_matrices, products, turn, turned_elasticity
+
+    basis = elements.basis()
+    turn(basis, basis.mapping.F(basis.X) + elements.tip, tau)
+    integrals = products(basis, (0, 1, 2, 3))
+    lam, mu = lame(poisson_ratio, "strain")
+    weights = coefficients(turned_elasticity, 3, 3, lam=lam, mu=mu, tau=tau)
+    # What changes along the face adds P' times the function itself to its D.
+    in_section = element_matrices(weights, integrals)
+    mixed = element_matrices(weights[..., 3:], integrals[:, :1])
+    along_face = element_matrices(weights[:, 3:, :, 3:], integrals[:1, :1])
+    return _turned(in_section, axes), _turned(mixed, axes), _turned(along_face, axes)
 
 
-def hooke(poisson_ratio: float) -> Array:
-    """Isotropic stiffness for E = 1 between strains and stresses in the order of `STRAINS`, shape (6, 6)."""
-    nu = poisson_ratio
-    mu = 0.5 / (1.0 + nu)
-    matrix = np.zeros((STRAINS, STRAINS))
-    matrix[:3, :3] = nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
-    matrix[np.arange(3), np.arange(3)] += 2.0 * mu
-    matrix[np.arange(3, 6), np.arange(3, 6)] = mu
-    return matrix
-
-
-def strain_functions(values: Array, gradient: Array, place: Array, tau: float) -> tuple[Array, Array]:
-    """B0 and B1 of the functions of a section at its points.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n, q)
-        Shape functions.
-    gradient : ndarray, shape (M, n, 2, q)
-        [1/modules].
-    place : ndarray, shape (2, M, q)
-        From the gear's axis [modules].
-    tau : float
-        Twist [rad/module], positive for a right hand.
-
-    Returns
-    -------
-    along_section, along_face : ndarray, shape (M, q, 6, n, 3)
-        Strains per function and displacement component; times P, and times P'.
-    """
-    count, n, _, q = gradient.shape
-    dx, dy = gradient[:, :, 0].transpose(0, 2, 1), gradient[:, :, 1].transpose(0, 2, 1)
-    turning = tau * (place[1][:, :, None] * dx - place[0][:, :, None] * dy)
-    shape = values.T[None]
-    b0, b1 = np.zeros((2, count, q, STRAINS, n, 3))
-    b0[:, :, 0, :, 0] = b0[:, :, 3, :, 1] = b0[:, :, 4, :, 2] = dx
-    b0[:, :, 1, :, 1] = b0[:, :, 3, :, 0] = b0[:, :, 5, :, 2] = dy
-    b0[:, :, 2, :, 2] = b0[:, :, 4, :, 0] = b0[:, :, 5, :, 1] = turning
-    b0[:, :, 4, :, 1] = -tau * shape
-    b0[:, :, 5, :, 0] = tau * shape
-    b1[:, :, 2, :, 2] = b1[:, :, 4, :, 0] = b1[:, :, 5, :, 1] = shape
-    return b0, b1
+def _turned(matrices: Array, axes: Array) -> Array:
+    """Element matrices, shape (M, 3 n, 3 n), for unknowns along axes of shape (M, n, 3, 3)."""
+    count, n = axes.shape[:2]
+    rows = (axes.transpose(0, 1, 3, 2) @ matrices.reshape(count, n, 3, 3 * n)).reshape(count, 3 * n, n, 3)
+    return np.asarray(rows.transpose(0, 2, 1, 3) @ axes).transpose(0, 2, 1, 3).reshape(count, 3 * n, 3 * n)

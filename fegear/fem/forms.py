@@ -1,0 +1,154 @@
+"""The weak forms of elasticity, in the plane and in the coordinates of a turned prism, as scikit-fem integrates them.
+
+Each equation stands here once, for displacements with several components. On elements whose components have the same
+shape functions N_i it is a sum of integrals of products of two slopes, N_i,k N_j,l, which scikit-fem integrates
+(`products`) at a fifth of the cost of vector-valued functions; what each of them is multiplied by follows from the
+equation itself, evaluated for unit displacement gradients (`coefficients`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from skfem import BilinearForm
+from skfem.element import DiscreteField
+from skfem.helpers import ddot, div, sym_grad
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+
+
+class _Dotted(BilinearForm):  # type: ignore[misc]  # scikit-fem has no types
+    """A form whose sum over the quadrature points is one dot product: half the time of scikit-fem's own."""
+
+    def _kernel(self, u: Any, v: Any, w: Any, dx: Array) -> Array:
+        return np.vecdot(self.form(*u, *v, w), dx)
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def plane_elasticity(u: Any, v: Any, w: Any) -> Any:
+    """Work of the stresses of u on the strains of v, lambda div u div v + 2 mu eps(u) : eps(v)."""
+    return w["lam"] * div(u) * div(v) + 2.0 * w["mu"] * ddot(sym_grad(u), sym_grad(v))
+
+
+def turned_strains(value: Any, slope: Any, tau: float) -> Array:
+    """Strains of a twisted prism in its own coordinates, in which every section is alike.
+
+    The section at height z is the one at z = 0 turned by tau z, X = R(tau z)(xi, eta), and so are the components of
+    the displacement, u = R v. D = d/dz + tau (eta d/dxi - xi d/deta) is the derivative along the axis.
+
+    Parameters
+    ----------
+    value : array, shape (3, ...)
+        Components of v in the turned axes.
+    slope : array, shape (3, 3, ...)
+        Of each component along xi and eta, and its D [1/modules].
+    tau : float
+        Twist [rad/module], positive for a right hand.
+
+    Returns
+    -------
+    ndarray, shape (6, ...)
+        e_xx, e_yy, e_zz, g_xy, g_xz, g_yz.
+    """
+    x, y, z = slope
+    shear = y[0] + x[1], z[0] + x[2] - tau * value[1], z[1] + y[2] + tau * value[0]
+    return np.stack(np.broadcast_arrays(x[0], y[1], z[2], *shear))
+
+
+def stresses(strain: Array, lam: float, mu: float) -> Array:
+    """Isotropic stresses from strains, both in the order of `turned_strains`, shape (6, ...)."""
+    pressure = lam * strain[:3].sum(axis=0)
+    return np.concatenate([pressure + 2.0 * mu * strain[:3], mu * strain[3:]])
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def turned_elasticity(u: Any, v: Any, w: Any) -> Any:
+    """Work of the stresses of u on the strains of v in a twisted prism; gradients hold D as their third slope."""
+    stress = stresses(turned_strains(u, u.grad, w["tau"]), w["lam"], w["mu"])
+    return (stress * turned_strains(v, v.grad, w["tau"])).sum(axis=0)
+
+
+def coefficients(form: BilinearForm, components: int, slopes: int, **constants: float) -> Array:
+    """By what a form multiplies the values and slopes of the components of u and v.
+
+    Parameters
+    ----------
+    form : BilinearForm
+        With coefficients that are the same everywhere.
+    components, slopes : int
+        Of a displacement; of each component.
+    **constants : float
+        Parameters of the form.
+
+    Returns
+    -------
+    ndarray, shape (components, 1 + slopes, components, 1 + slopes)
+        Of component a and b of u and v and their values (0) or slopes (1, 2, ..), indexed [a, k, b, l].
+    """
+    shape = (components, 1 + slopes)
+    unit = np.eye(components * (1 + slopes)).reshape(*shape, -1)
+    u, v = (DiscreteField(part[:, 0], grad=part[:, 1:]) for part in (unit[..., None], unit[..., None, :]))
+    return np.asarray(form.form(u, v, constants)).reshape(shape + shape)
+
+
+def products(basis: Any, slots: tuple[int, ...]) -> Array:
+    """Integrals of N_i,k N_j,l over every element.
+
+    Parameters
+    ----------
+    basis : skfem.Basis
+        Of scalar shape functions.
+    slots : tuple of int
+        Which k and l: 0 for a function itself, 1, 2, .. for its slopes.
+
+    Returns
+    -------
+    ndarray, shape (slots, slots, M, n, n)
+        Indexed [k, l, element, i, j].
+    """
+    count, n = len(slots), basis.Nbfun
+    found = np.empty((count, count, basis.nelems, n, n))
+    for row, k in enumerate(slots):
+        for column, other in enumerate(slots[: row + 1]):
+            form = _Dotted(lambda u, v, _, k=k, m=other: _slot(u, k) * _slot(v, m))
+            # the first index of an element's matrix is the trial function's
+            found[row, column] = form.elemental(basis).tolocal()
+            found[column, row] = found[row, column].transpose(0, 2, 1)
+    return found
+
+
+def _slot(field: Any, k: int) -> Any:
+    return field.grad[k - 1] if k else np.asarray(field)
+
+
+def turn(basis: Any, place: Array, tau: float) -> None:
+    """Give the functions of a section's basis as third slope their D where nothing changes along the face.
+
+    Parameters
+    ----------
+    basis : skfem.Basis
+    place : ndarray, shape (2, M, q)
+        Of its quadrature points from the axis [modules].
+    tau : float
+        [rad/module].
+    """
+    for (field,) in basis.basis:
+        x, y = field.grad
+        field.grad = np.stack([x, y, tau * (place[1] * x - place[0] * y)])
+
+
+def element_matrices(weights: Array, integrals: Array) -> Array:
+    """Matrices of elements, shape (M, c n, c n), whose unknown c i + a is component a of function i.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (c, K, c, L)
+        Of `coefficients`.
+    integrals : ndarray, shape (K, L, M, n, n)
+        Of `products`.
+    """
+    c, (m, n) = weights.shape[0], integrals.shape[2:4]
+    pairs = np.tensordot(weights.transpose(0, 2, 1, 3), integrals, 2)
+    return np.asarray(pairs.transpose(2, 3, 0, 4, 1).reshape(m, c * n, c * n))
