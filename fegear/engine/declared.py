@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,13 @@ from fegear.engine.outcome import Value
 from fegear.engine.table import Column
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from fegear.base.arrays import Array
+
+
+def _class(owner: object) -> type:
+    return owner if isinstance(owner, type) else type(owner)
 
 
 def _si(found: object, attribute: str, load: int | None) -> Any:
@@ -40,7 +47,7 @@ def column_of(
     found: object, attribute: str, si: Any = None, *, load: int | None = None, name: str = "", meaning: str = ""
 ) -> Column:
     """One such column, of other numbers, under another name or with a meaning of its own where these are given."""
-    how = declared(found if isinstance(found, type) else type(found), attribute)
+    how = declared(_class(found), attribute)
     numbers = _si(found, attribute, load) if si is None else si
     return Column(name or how.name, np.asarray(numbers), how.unit, meaning or how.meaning)
 
@@ -50,26 +57,44 @@ def error_column(column: Column, si: Array, meaning: str = "") -> Column:
     return Column(f"{column.name}_error", si, column.unit, meaning or f"estimated error of {column.name}")
 
 
+def column_over(objects: Sequence[Any], attribute: str, *, name: str = "", meaning: str = "") -> Column:
+    """One row for each of several results of one class, at least one."""
+    return column_of(type(objects[0]), attribute, [getattr(one, attribute) for one in objects], name=name,
+                     meaning=meaning)  # fmt: skip
+
+
+def tiled(columns: Iterable[Column], times: int) -> tuple[Column, ...]:
+    """All rows of some columns, so many times one after the other."""
+    return tuple(replace(column, si=np.tile(column.si, times)) for column in columns)
+
+
+def repeated(columns: Iterable[Column], times: int) -> tuple[Column, ...]:
+    """Every row of some columns so many times."""
+    return tuple(replace(column, si=np.repeat(column.si, times)) for column in columns)
+
+
 def value_of(
     found: object, attribute: str, owner: str, error: float | None = None, *,
-    load: int | None = None, name: str = "", meaning: str = "",
+    load: int | None = None, name: str = "", meaning: str = "", si: Any = None,
 ) -> Value:  # fmt: skip
-    """A single value ``owner.name`` of a quantity that is a number, or one number for each load."""
-    how, si = declared(type(found), attribute), getattr(found, attribute)
+    """A single value ``owner.name`` of a quantity that is a number, or one number for each load; or another number."""
+    how = declared(_class(found), attribute)
+    si = getattr(found, attribute) if si is None else si
     number = float(si if load is None or np.ndim(si) == 0 else si[load])
     return Value(f"{owner}.{name or how.name}", number, how.unit, error, meaning or how.meaning)
 
 
-def axis_of(owner: type, attribute: str, label: str = "", **options: Any) -> Axis:
-    """An axis on which a quantity is drawn, in its unit."""
-    how = declared(owner, attribute)
+def axis_of(owner: object, attribute: str, label: str = "", **options: Any) -> Axis:
+    """An axis on which a quantity of a result, or of a class of results, is drawn, in its unit."""
+    how = declared(_class(owner), attribute)
     return Axis(label or how.label, how.unit, **options)
 
 
-def drawn(found: object, attribute: str, *, load: int | None = None) -> Array:
-    """Numbers of a quantity in its unit, as they are drawn."""
-    unit = declared(type(found), attribute).unit
-    return np.asarray(_si(found, attribute, load), dtype=float) * (from_si(unit) if unit else 1.0)
+def drawn(found: object, attribute: str, si: Any = None, *, load: int | None = None) -> Array:
+    """Numbers of a quantity, or others like it, in its unit, as they are drawn."""
+    unit = declared(_class(found), attribute).unit
+    numbers = _si(found, attribute, load) if si is None else si
+    return np.asarray(numbers, dtype=float) * (from_si(unit) if unit else 1.0)
 
 
 def curve_of(

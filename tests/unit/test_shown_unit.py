@@ -7,7 +7,18 @@ import numpy as np
 import pytest
 
 from fegear.base.shown import Shown, all_declared, declared, shown, shows
-from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
+from fegear.engine.declared import (
+    axis_of,
+    column_of,
+    column_over,
+    columns_of,
+    curve_of,
+    drawn,
+    error_column,
+    repeated,
+    tiled,
+    value_of,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -64,3 +75,19 @@ def test_values_axes_and_curves_are_in_the_declared_unit():
     assert curve.y.tolist() == [20.0, 40.0]
     assert curve.error is not None
     assert curve.error.tolist() == [1.0, 2.0]
+
+
+def test_columns_over_several_results_and_rows_many_times():
+    other = History(np.array([0.0]), np.array([[7.0, 9.0]]), np.array([1.0]))
+    column = column_over([FOUND, other], "peak_to_peak", meaning="of each")
+    assert (column.head, column.meaning, column.values.tolist()) == ("peak_to_peak [um]", "of each", [2.0, 2.0])
+    columns = columns_of(FOUND, "x", "share")
+    assert [one.values.tolist() for one in tiled(columns, 2)] == [[-1.0, 2.0, -1.0, 2.0], [0.5, 1.0, 0.5, 1.0]]
+    assert [one.values.tolist() for one in repeated(columns, 2)] == [[-1.0, -1.0, 2.0, 2.0], [0.5, 0.5, 1.0, 1.0]]
+    assert [(one.unit, one.meaning) for one in tiled(columns, 2)] == [(one.unit, one.meaning) for one in columns]
+
+
+def test_other_numbers_are_shown_as_the_declared_quantity():
+    assert value_of(History, "x", "I", si=0.004, name="pitch").value == 4.0
+    assert drawn(FOUND, "x", [0.001]).tolist() == [1.0]
+    assert axis_of(FOUND, "load").unit == "N"

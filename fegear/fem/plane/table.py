@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown
 from fegear.fem.plane.contact_width import check_half_widths
 from fegear.fem.plane.solution import solve_gear
 
@@ -32,44 +33,30 @@ _BLOCK = 512
 class StiffnessTable:
     """Compliance and root stress of a gear's tooth over load positions, per unit face width, SI; arrays of shape (P,).
 
-    Parameters
-    ----------
-    radius : ndarray
-        Load radius [m].
-    roll_angle : ndarray
-        [rad].
-    c_self, c_prev, c_next : ndarray
-        Deflection per unit line load [m^2/N] of the loaded tooth at its contact, and of its neighbours -1 and +1
-        at the same radius. Tooth +1 is the one that the loaded flank faces.
-    half_width : ndarray
-        Contact half-width that `c_self` is for [m].
-    root_tension, root_compression : ndarray
-        Largest tangential stress (tension: positive) of the fillet below the loaded flank, and the most negative of
-        the other fillet, per unit line load [1/m].
-    root_tension_radius, root_compression_radius : ndarray
-        Where they sit: distance from the gear's centre [m].
-    root_tension_angle, root_compression_angle : ndarray
-        Angle between the fillet's tangent there and the tooth's centre line [rad] (ISO 6336-3 looks at 30 deg).
-    errors : mapping of str to ndarray
-        Estimated absolute error of c_self, c_neighbour, root_tension, root_compression.
-    influence : GearInfluence
-        What the table was made from.
-    seconds : float
-        For the whole table.
+    Compliances are per unit line load; tooth +1 ("next") is the one that the loaded flank faces. Root stresses are
+    tangential, in the fillets of the loaded tooth. Errors are absolute: of c_self, c_neighbour, root_tension,
+    root_compression. `influence` is what the table was made from.
     """
 
-    radius: Array
-    roll_angle: Array
-    c_self: Array
-    c_prev: Array
-    c_next: Array
-    half_width: Array
-    root_tension: Array
-    root_tension_radius: Array
-    root_tension_angle: Array
-    root_compression: Array
-    root_compression_radius: Array
-    root_compression_angle: Array
+    radius: Array = shown("mm", "radius of the contact point", label="radius of the load")
+    roll_angle: Array = shown("deg", "roll angle of the contact point", label="roll angle of the load")
+    c_self: Array = shown("um.mm/N", "deflection of the loaded tooth at the contact per line load", label="compliance")
+    c_prev: Array = shown("um.mm/N", "deflection of the tooth before it at the same radius", label="compliance")
+    c_next: Array = shown(
+        "um.mm/N", "deflection of the tooth after it (which the loaded flank faces)", label="compliance"
+    )
+    half_width: Array = shown("mm", "half-width of the contact that c_self is for", name="contact_half_width")
+    root_tension: Array = shown(
+        "MPa.mm/N", "largest tangential stress of the fillet below the loaded flank",
+        label="largest root stress per line load",
+    )  # fmt: skip
+    root_tension_radius: Array = shown("mm", "where it sits")
+    root_tension_angle: Array = shown(
+        "deg", "fillet tangent to tooth centre line there", label="fillet tangent to centre line"
+    )
+    root_compression: Array = shown("MPa.mm/N", "most negative tangential stress of the other fillet")
+    root_compression_radius: Array = shown("mm", "where it sits")
+    root_compression_angle: Array = shown("deg", "the same on the other fillet")
     errors: Mapping[str, Array]
     influence: GearInfluence
     seconds: float

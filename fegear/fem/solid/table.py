@@ -11,6 +11,7 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown
 from fegear.fem.plane.root_stress import curves_apart, extreme
 from fegear.fem.solid.bands import bands, hats
 from fegear.fem.solid.contact import line_compliance
@@ -49,29 +50,19 @@ _PLACES_PER_MODULE, _FEWEST_PLACES = 5.0, 33
 
 @dataclass(frozen=True)
 class RootStressOfBands(ReadOnlyArrays):
-    """The largest tangential stress of one fillet under each band, per unit force [1/m^2]; shape (R, Z) but `along`.
+    """The largest tangential stress of one fillet under each band, per unit force, SI; shape (R, Z) but `along`.
 
-    Parameters
-    ----------
-    value : ndarray
-        Tangential stress in the transverse section, negative on the compressed side.
-    position, radius : ndarray
-        Where it sits along the face, from its middle, and from the gear's axis [m].
-    axial, shear : ndarray
-        Stress across it in the surface, all but along the axis, and the shear between both, at the same place.
-    places : ndarray, shape (S,)
-        Along the face [m].
-    along : ndarray, shape (R, Z, S)
-        The largest up the fillet at each of these places.
+    `value` is in the transverse section, negative on the compressed side; `position` from the middle of the face.
+    `places`, shape (S,), lie along the face, and `along`, shape (R, Z, S), is the largest up the fillet at each.
     """
 
-    value: Array
-    position: Array
-    radius: Array
-    axial: Array
-    shear: Array
-    places: Array
-    along: Array
+    value: Array = shown("MPa/N", "largest tangential stress of the fillet, anywhere along the face")
+    position: Array = shown("mm", "where it sits along the face")
+    radius: Array = shown("mm", "and its distance from the axis")
+    axial: Array = shown("MPa/N", "stress across it in the surface there")
+    shear: Array = shown("MPa/N", "shear between both there")
+    places: Array = shown("mm", "along the face, from its middle", label="face position")
+    along: Array = shown("MPa/N", "largest up the fillet at a place along the face")
 
 
 @dataclass(frozen=True)
@@ -81,37 +72,24 @@ class SolidTable(ReadOnlyArrays):
     Every number is per unit force along the transverse line of action. The force presses on a band about its place, on
     the contact line there: a hat along the face, half a hat at an end of it.
 
-    Parameters
-    ----------
-    radius, roll_angle : ndarray, shape (R,)
-        Of the bands' middles [m], [rad].
-    half_width, pressed_half_width : ndarray, shape (R,)
-        Of the contact that `c_self` is for, and of the pressure for all else, which the section resolves [m].
-    position, before, after : ndarray, shape (Z,)
-        Place along the face from its middle, and how far the band reaches to either side [m].
-    c_self, c_prev, c_next : ndarray
-        Approach per force [m/N] of the contact itself, and mean deflection of the same band on the teeth before and
-        after.
-    root : mapping of {"tension", "compression"} to RootStressOfBands
-    errors : mapping of str to ndarray
-        Estimated absolute error of c_self, c_neighbour, root_tension, root_compression: by what a coarser solution
-        differs (stress: along the face, where it is large), the worst along the face and over the radii beside each;
-        NaN without one.
-    influence : SolidInfluence
-        What the table was made from.
-    seconds : float
+    `radius`, `roll_angle` and both half-widths have shape (R,), places along the face shape (Z,). Errors are absolute,
+    of c_self, c_neighbour, root_tension, root_compression: by what a coarser solution differs (stress: along the face,
+    where it is large), the worst along the face and over the radii beside each; NaN without one. `influence` is what
+    the table was made from.
     """
 
-    radius: Array
-    roll_angle: Array
-    half_width: Array
-    pressed_half_width: Array
-    position: Array
-    before: Array
-    after: Array
-    c_self: Array
-    c_prev: Array
-    c_next: Array
+    radius: Array = shown("mm", "radius of the band's middle")
+    roll_angle: Array = shown("deg", "roll angle of the band's middle", label="roll angle of the load")
+    half_width: Array = shown("mm", "half-width of the contact that c_self is for", name="contact_half_width")
+    pressed_half_width: Array = shown("mm", "of the pressure that all else is for")
+    position: Array = shown(
+        "mm", "place of the band's top along the face, from its middle", name="face_position", label="face position"
+    )
+    before: Array = shown("mm", "how far the band reaches toward the face end at minus", name="band_before")
+    after: Array = shown("mm", "how far it reaches toward the other end", name="band_after")
+    c_self: Array = shown("um/N", "approach of the contact per force")
+    c_prev: Array = shown("um/N", "deflection of the same band on the tooth before")
+    c_next: Array = shown("um/N", "of the same band on the tooth after (which the flank faces)")
     root: Mapping[Side, RootStressOfBands]
     errors: Mapping[str, Array]
     influence: SolidInfluence

@@ -25,11 +25,12 @@ from fegear.case.built.tooth_influence import (
     solve_influence_functions,
 )
 from fegear.engine.citation import citing
+from fegear.engine.declared import axis_of, column_of, columns_of, drawn, error_column, value_of
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, Scale
 from fegear.engine.figure.items import Curve, Mark
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.engine.table import Column, Table
+from fegear.engine.table import Table
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ, PATCH, RING
 from fegear.results.gear.drawing import tooth_figure
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.built.tooth_influence import GearToSolve
     from fegear.case.reading import Scene
+    from fegear.engine.outcome import Value
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.table import StiffnessTable
@@ -53,34 +55,28 @@ _SECONDS_PER_POSITION = 3e-4
 _SECONDS_OF_TABLE = 0.05
 
 
-def _tables(name: str, t: StiffnessTable) -> tuple[Table, ...]:
-    compliance, stress = "um.mm/N", "MPa.mm/N"
-    columns = (
-        Column("radius", t.radius, "mm", "radius of the contact point"),
-        Column("roll_angle", t.roll_angle, "deg", "roll angle of the contact point"),
-        Column("c_self", t.c_self, compliance, "deflection of the loaded tooth at the contact per line load"),
-        Column("c_prev", t.c_prev, compliance, "deflection of the tooth before it at the same radius"),
-        Column("c_next", t.c_next, compliance, "deflection of the tooth after it (which the loaded flank faces)"),
-        Column("contact_half_width", t.half_width, "mm", "half-width of the contact that c_self is for"),
-        Column(
-            "root_tension", t.root_tension, stress, "largest tangential stress of the fillet below the loaded flank"
-        ),
-        Column("root_tension_radius", t.root_tension_radius, "mm", "where it sits"),
-        Column("root_compression", t.root_compression, stress, "most negative tangential stress of the other fillet"),
-        Column("root_compression_radius", t.root_compression_radius, "mm", "where it sits"),
-        Column("c_self_error", t.errors["c_self"], compliance, "estimated error of c_self"),
-        Column("c_neighbour_error", t.errors["c_neighbour"], compliance, "estimated error of c_prev and c_next"),
-        Column("root_tension_error", t.errors["root_tension"], stress, "estimated error of root_tension"),
-        Column("root_compression_error", t.errors["root_compression"], stress, "estimated error of root_compression"),
-        Column("root_tension_angle", t.root_tension_angle, "deg", "fillet tangent to tooth centre line there"),
-        Column("root_compression_angle", t.root_compression_angle, "deg", "the same on the other fillet"),
+_SIDES = ("root_tension", "root_compression")
+#: Columns of the table, before and behind the estimated errors.
+_COLUMNS = (
+    "radius", "roll_angle", "c_self", "c_prev", "c_next", "half_width", "root_tension", "root_tension_radius",
+    "root_compression", "root_compression_radius",
+)  # fmt: skip
+
+
+def _table(name: str, t: StiffnessTable) -> Table:
+    errors = {key: error_column(column_of(t, key), t.errors[key]) for key in ("c_self", *_SIDES)}
+    neighbour = column_of(
+        t, "c_next", t.errors["c_neighbour"], name="c_neighbour_error", meaning="estimated error of c_prev and c_next"
     )
-    return (Table(f"stiffness_{name}", columns, f"Compliance and root stress of gear {name}"),)
+    columns = (
+        *columns_of(t, *_COLUMNS), errors.pop("c_self"), neighbour, *errors.values(),
+        *columns_of(t, "root_tension_angle", "root_compression_angle"),
+    )  # fmt: skip
+    return Table(f"stiffness_{name}", columns, f"Compliance and root stress of gear {name}")
 
 
 def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
-    tension, compression = int(np.argmax(t.root_tension)), int(np.argmin(t.root_compression))
-    stress, found = "MPa.mm/N", []
+    found = []
     if gear.form_radius <= gear.pitch_radius <= gear.involute_tip_radius:
         known, at = t.influence, np.array([gear.pitch_radius])
         b = np.interp(gear.pitch_radius, t.radius[np.argsort(t.radius)], t.half_width[np.argsort(t.radius)])
@@ -89,13 +85,12 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
             ("c_prev", known.neighbour(-1, at, at)[0, 0], known.neighbour_error(-1, at, at)[0, 0], "tooth before"),
             ("c_next", known.neighbour(1, at, at)[0, 0], known.neighbour_error(1, at, at)[0, 0], "tooth after"),
         ):
-            found.append(Value(f"{name}.{key}_at_pitch", c, "um.mm/N", error, f"{meaning}, load on the pitch circle"))
-    for key, i, value, error in (
-        ("largest_root_tension", tension, t.root_tension, t.errors["root_tension"]),
-        ("largest_root_compression", compression, t.root_compression, t.errors["root_compression"]),
-    ):
-        where = f"load at radius {t.radius[i] * 1e3:.6g} mm"
-        found.append(Value(f"{name}.{key}", float(value[i]), stress, float(error[i]), f"per line load, {where}"))
+            words = f"{meaning}, load on the pitch circle"
+            found.append(value_of(t, key, name, error, si=c, name=f"{key}_at_pitch", meaning=words))
+    for key, largest in zip(_SIDES, (np.argmax(t.root_tension), np.argmin(t.root_compression)), strict=True):
+        words = f"per line load, load at radius {t.radius[largest] * 1e3:.6g} mm"
+        error, value = float(t.errors[key][largest]), getattr(t, key)[largest]
+        found.append(value_of(t, key, name, error, si=value, name=f"largest_{key}", meaning=words))
     return tuple(found)
 
 
@@ -168,7 +163,7 @@ def _present(table: StiffnessTable, asked: StiffnessInputs) -> Outcome:
     name = asked.name
     return Outcome(
         table,
-        _tables(name, table),
+        (_table(name, table),),
         _values(name, asked.gear, table),
         solution_settings(table.influence),
         _remarks(asked, table),
@@ -188,15 +183,12 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
     return Forecast({"positions": positions}, _SECONDS_OF_TABLE + _SECONDS_PER_POSITION * positions)
 
 
-_COMPLIANCE_AXIS = Axis("compliance", "um.mm/N")
-
-
-def _roll_axis(gear: Gear, roll: Array) -> Axis:
+def _roll_axis(gear: Gear, t: StiffnessTable, roll: Array) -> Axis:
     """Roll angle of the load, with the radius that belongs to it on the far side."""
     room = 0.05 * float(np.ptp(roll))
-    shown = np.linspace(max(float(roll.min()) - room, 0.0), float(roll.max()) + room, 200)
-    radius = gear.base_radius * 1e3 * np.hypot(1.0, np.deg2rad(shown))
-    return Axis("roll angle of the load", "deg", second=Scale("load radius", "mm", shown, radius))
+    at = np.linspace(max(float(roll.min()) - room, 0.0), float(roll.max()) + room, 200)
+    radius = gear.base_radius * 1e3 * np.hypot(1.0, np.deg2rad(at))
+    return axis_of(t, "roll_angle", second=Scale("load radius", "mm", at, radius))
 
 
 def _pitch_mark(gear: Gear, roll: Array) -> tuple[Mark, ...]:
@@ -207,13 +199,13 @@ def _pitch_mark(gear: Gear, roll: Array) -> tuple[Mark, ...]:
 def stiffness_figures(name: str, t: StiffnessTable) -> tuple[Figure, ...]:
     """Compliances and root stresses of a gear over the roll angle of the load."""
     gear, order = t.influence.gear, np.argsort(t.roll_angle)
-    roll = np.rad2deg(t.roll_angle[order])
-    x, marks = _roll_axis(gear, roll), _pitch_mark(gear, roll)
+    roll = drawn(t, "roll_angle")[order]
+    x, marks = _roll_axis(gear, t, roll), _pitch_mark(gear, roll)
 
-    def curve(values: Array, error: str, label: str, role: str, scale: float) -> Curve:
-        return Curve(roll, values[order] * scale, label, role, t.errors[error][order] * scale)
+    def curve(key: str, error: str, label: str, role: str, sign: float = 1.0) -> Curve:
+        return Curve(roll, sign * drawn(t, key)[order], label, role, drawn(t, key, t.errors[error])[order])
 
-    compliance, stress = 1e9, 1e-3
+    compliance = axis_of(t, "c_self")
     width = f"{t.half_width.min() * 1e3:.4g}"
     if t.half_width.max() > 1.0001 * t.half_width.min():
         width += f" to {t.half_width.max() * 1e3:.4g}"
@@ -226,12 +218,10 @@ def stiffness_figures(name: str, t: StiffnessTable) -> tuple[Figure, ...]:
             f"Gear {name}: deflection per line load of the loaded tooth and of its neighbours at the same radius, "
             f"whole ring, contact half-width {width} mm. Bands: estimated error, for c_0 at most {worst:.1e} of it.",
             (
-                Panel(x, _COMPLIANCE_AXIS, (
-                    curve(t.c_self, "c_self", "c_{0}, loaded tooth", "loaded tooth", compliance),
-                ), marks),
-                Panel(replace(x, second=None), _COMPLIANCE_AXIS, (
-                    curve(t.c_next, "c_neighbour", "c_{+1}, next tooth", "next tooth", compliance),
-                    curve(t.c_prev, "c_neighbour", "c_{−1}, previous tooth", "previous tooth", compliance),
+                Panel(x, compliance, (curve("c_self", "c_self", "c_{0}, loaded tooth", "loaded tooth"),), marks),
+                Panel(replace(x, second=None), compliance, (
+                    curve("c_next", "c_neighbour", "c_{+1}, next tooth", "next tooth"),
+                    curve("c_prev", "c_neighbour", "c_{−1}, previous tooth", "previous tooth"),
                 ), marks),
             ),
         ),
@@ -242,10 +232,10 @@ def stiffness_figures(name: str, t: StiffnessTable) -> tuple[Figure, ...]:
             f"{t.root_tension_radius[i] * 1e3:.5g} mm, where the fillet's tangent makes "
             f"{np.rad2deg(t.root_tension_angle[i]):.1f} deg with the tooth's centre line (ISO 6336-3 looks at 30 deg).",
             (
-                Panel(x, Axis("largest root stress per line load", "MPa.mm/N", zero=True), (
-                    curve(t.root_tension, "root_tension", "tension, fillet below the loaded flank", "tension", stress),
-                    curve(-t.root_compression, "root_compression", "compression, other fillet (magnitude)",
-                          "compression", stress),
+                Panel(x, axis_of(t, "root_tension", zero=True), (
+                    curve("root_tension", "root_tension", "tension, fillet below the loaded flank", "tension"),
+                    curve("root_compression", "root_compression", "compression, other fillet (magnitude)",
+                          "compression", sign=-1.0),
                 ), marks),
             ),
         ),

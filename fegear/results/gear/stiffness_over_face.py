@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.shown import declared
 from fegear.case.built.rated_duty import bore_remarks
 from fegear.case.built.solid_influence import (
     check_solid_gear,
@@ -24,11 +25,21 @@ from fegear.case.built.solid_influence import (
     solve_solid_influence,
 )
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import (
+    axis_of,
+    column_of,
+    columns_of,
+    drawn,
+    error_column,
+    repeated,
+    tiled,
+    value_of,
+)
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel, SolidMeshField
 from fegear.engine.figure.items import Curve, HeatMap, Skin
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.engine.table import Column, Table
+from fegear.engine.table import Table
 from fegear.results.forecasts import RING
 from fegear.results.gear.stiffness import USUAL_HALF_WIDTH, check_contacts_of, contact_half_width, load_radii
 
@@ -36,6 +47,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.case.built.solid_influence import SolidGearToSolve
     from fegear.case.reading import Scene
+    from fegear.engine.outcome import Value
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.influence import Side
     from fegear.fem.solid.field import SolidField
@@ -59,58 +71,45 @@ _SIDES: tuple[tuple[Side, str], ...] = (
 
 
 def _table(name: str, t: SolidTable) -> Table:
-    compliance, stress = "um/N", "MPa/N"
     rows, places = t.c_self.shape
-
-    def up(values: Array) -> Array:
-        return np.repeat(values, places)
-
-    def along(values: Array) -> Array:
-        return np.tile(values, rows)
-
     columns = [
-        Column("radius", up(t.radius), "mm", "radius of the band's middle"),
-        Column("roll_angle", up(t.roll_angle), "deg", "roll angle of the band's middle"),
-        Column("face_position", along(t.position), "mm", "place of the band's top along the face, from its middle"),
-        Column("c_self", t.c_self.ravel(), compliance, "approach of the contact per force"),
-        Column("c_prev", t.c_prev.ravel(), compliance, "deflection of the same band on the tooth before"),
-        Column("c_next", t.c_next.ravel(), compliance, "of the same band on the tooth after (which the flank faces)"),
-        Column("contact_half_width", up(t.half_width), "mm", "half-width of the contact that c_self is for"),
-        Column("pressed_half_width", up(t.pressed_half_width), "mm", "of the pressure that all else is for"),
-        Column("band_before", along(t.before), "mm", "how far the band reaches toward the face end at minus"),
-        Column("band_after", along(t.after), "mm", "how far it reaches toward the other end"),
+        *repeated(columns_of(t, "radius", "roll_angle"), places),
+        *tiled(columns_of(t, "position"), rows),
+        *(column_of(t, key, getattr(t, key).ravel()) for key in ("c_self", "c_prev", "c_next")),
+        *repeated(columns_of(t, "half_width", "pressed_half_width"), places),
+        *tiled(columns_of(t, "before", "after"), rows),
     ]
+    errors = [error_column(column_of(t, "c_self"), t.errors["c_self"].ravel())]
+    errors.append(column_of(
+        t, "c_next", t.errors["c_neighbour"].ravel(), name="c_neighbour_error",
+        meaning="estimated error of c_prev and c_next",
+    ))  # fmt: skip
     for side, meaning in _SIDES:
         found = t.root[side]
+        root = column_of(found, "value", found.value.ravel(), name=f"root_{side}", meaning=meaning)
+        columns.append(root)
         columns += [
-            Column(f"root_{side}", found.value.ravel(), stress, meaning),
-            Column(f"root_{side}_position", found.position.ravel(), "mm", "where it sits along the face"),
-            Column(f"root_{side}_radius", found.radius.ravel(), "mm", "and its distance from the axis"),
-            Column(f"root_{side}_axial", found.axial.ravel(), stress, "stress across it in the surface there"),
-            Column(f"root_{side}_shear", found.shear.ravel(), stress, "shear between both there"),
+            column_of(found, key, getattr(found, key).ravel(), name=f"root_{side}_{key}")
+            for key in ("position", "radius", "axial", "shear")
         ]
-    columns += [
-        Column("c_self_error", t.errors["c_self"].ravel(), compliance, "estimated error of c_self"),
-        Column("c_neighbour_error", t.errors["c_neighbour"].ravel(), compliance, "of c_prev and c_next"),
-        Column("root_tension_error", t.errors["root_tension"].ravel(), stress, "of root_tension"),
-        Column("root_compression_error", t.errors["root_compression"].ravel(), stress, "of root_compression"),
-    ]
+        errors.append(error_column(root, t.errors[root.name].ravel()))
     title = f"Compliance and root stress of gear {name} over its face, per force on a band"
-    return Table(f"stiffness_over_face_{name}", tuple(columns), title)
+    return Table(f"stiffness_over_face_{name}", (*columns, *errors), title)
 
 
 def _values(name: str, t: SolidTable) -> tuple[Value, ...]:
     found = []
-    for key, values, error, unit, pick in (
-        ("largest_band_c_self", t.c_self, t.errors["c_self"], "um/N", np.argmax),
-        ("smallest_band_c_self", t.c_self, t.errors["c_self"], "um/N", np.argmin),
-        ("largest_band_root_tension", t.root["tension"].value, t.errors["root_tension"], "MPa/N", np.argmax),
-        ("largest_band_root_compression", t.root["compression"].value, t.errors["root_compression"], "MPa/N",
-         np.argmin),
-    ):  # fmt: skip
+    for key, owner, attribute, error, pick in (
+        ("largest_band_c_self", t, "c_self", "c_self", np.argmax),
+        ("smallest_band_c_self", t, "c_self", "c_self", np.argmin),
+        ("largest_band_root_tension", t.root["tension"], "value", "root_tension", np.argmax),
+        ("largest_band_root_compression", t.root["compression"], "value", "root_compression", np.argmin),
+    ):
+        values = getattr(owner, attribute)
         i, j = np.unravel_index(int(pick(values)), values.shape)
         where = f"per force on a band at radius {t.radius[i] * 1e3:.6g} mm, face position {t.position[j] * 1e3:.6g} mm"
-        found.append(Value(f"{name}.{key}", float(values[i, j]), unit, float(error[i, j]), where))
+        off = float(t.errors[error][i, j])
+        found.append(value_of(owner, attribute, name, off, si=values[i, j], name=key, meaning=where))
     return tuple(found)
 
 
@@ -273,12 +272,13 @@ def worst_band(t: SolidTable) -> tuple[int, int]:
 
 def _map(name: str, t: SolidTable) -> Figure:
     """c_self and the largest root tension over the flank."""
-    x, y = Axis("face position", "mm"), Axis("roll angle of the load", "deg")
+    x, y = axis_of(t, "position"), axis_of(t, "roll_angle")
     order, sequence = np.argsort(t.roll_angle), np.argsort(t.position)
-    at = t.position[sequence] * 1e3, np.rad2deg(t.roll_angle[order])
+    at = drawn(t, "position")[sequence], drawn(t, "roll_angle")[order]
 
-    def over(values: np.ndarray, label: str, unit: str) -> Panel:
-        return Panel(x, y, (HeatMap(*at, values[np.ix_(order, sequence)], label, unit),), title=label)
+    def over(owner: object, attribute: str, label: str) -> Panel:
+        values, unit = drawn(owner, attribute)[np.ix_(order, sequence)], declared(type(owner), attribute).unit
+        return Panel(x, y, (HeatMap(*at, values, label, unit),), title=label)
 
     worst = float(np.max(t.errors["c_self"] / t.c_self))
     return Figure(
@@ -286,10 +286,7 @@ def _map(name: str, t: SolidTable) -> Figure:
         f"Flank of gear {name}",
         f"Gear {name}, per force on a band: approach of the contact, and the largest tension that it causes in the "
         f"fillet. Estimated error of c_0 at most {worst:.1e} of it.",
-        (
-            over(t.c_self * 1e6, "c_{0} of the contact", "um/N"),
-            over(t.root["tension"].value * 1e-6, "largest root tension", "MPa/N"),
-        ),
+        (over(t, "c_self", "c_{0} of the contact"), over(t.root["tension"], "value", "largest root tension")),
         columns=2,
     )
 
@@ -300,18 +297,19 @@ def _along(name: str, t: SolidTable) -> Figure:
     count = t.position.size
     chosen = np.unique(np.round(np.linspace(0, count - 1, min(count, _MOST_CURVES))).astype(int))
     panels = []
-    for side, sign, title in (
-        ("tension", 1.0, "Fillet below the loaded flank"),
-        ("compression", -1.0, "Fillet of the other flank"),
+    for side, sign, title, label in (
+        ("tension", 1.0, "Fillet below the loaded flank", "largest tension up the fillet"),
+        ("compression", -1.0, "Fillet of the other flank", "largest compression (magnitude)"),
     ):
         found = t.root[side]  # type: ignore[index]
+        places, along = drawn(found, "places"), sign * drawn(found, "along")[row]
         curves = tuple(
-            Curve(found.places * 1e3, sign * found.along[row, j] * 1e-6, f"band at {t.position[j] * 1e3:.4g} mm",
+            Curve(places, along[j], f"band at {t.position[j] * 1e3:.4g} mm",
                   f"series:{i}", dash="solid", markers=False)
             for i, j in enumerate(chosen)
         )  # fmt: skip
-        label = "largest tension up the fillet" if side == "tension" else "largest compression (magnitude)"
-        panels.append(Panel(Axis("face position", "mm"), Axis(label, "MPa/N", zero=True), curves, title=title))
+        axes = axis_of(found, "places"), axis_of(found, "along", label, zero=True)
+        panels.append(Panel(*axes, curves, title=title))
     return Figure(
         f"root_stress_over_face_{name}",
         f"Root stress of gear {name} along its face",
