@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.shown import shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,8 +46,8 @@ class Ramp:
         r, odd and at least 3, of the polynomial family (4.14); None for the sinusoidal family (4.12).
     """
 
-    slope: float = 1.0
-    exponent: int | None = None
+    slope: float = shown("", "s at initiation", default=1.0)
+    exponent: int | None = shown("", "r; 0: sinusoidal family", default=None)
 
     def __post_init__(self) -> None:
         """Refuse loadings that are not monotone."""
@@ -118,7 +119,7 @@ class LoadingFunction:
     centre: float = 0.0
     ramp: Ramp = Ramp()
     inner_ramp: Ramp = Ramp()
-    peak: float = math.nan
+    peak: float = shown("", "F, largest load over the design load", default=math.nan)
 
     def __post_init__(self) -> None:
         """Refuse loadings that cannot carry the load at every position."""
@@ -311,21 +312,14 @@ _PIECES, _TOGETHER = 2000, 64
 
 @dataclass(frozen=True, slots=True)
 class ToothResponse:
-    """Deflection of a tooth without damping, over that under the design load at rest; arrays of shape (G,).
+    """Deflection of a tooth without damping, over that under the design load at rest; arrays of shape (G,)."""
 
-    Parameters
-    ----------
-    residual : ndarray
-        Amplitude (0-peak) of the vibration that is left when contact ends.
-    envelope : ndarray
-        What that does not exceed at high frequency (4.22).
-    largest : ndarray
-        Largest deflection during contact; 1 is that at rest for contact ratios up to 2.
-    """
-
-    residual: Array
-    envelope: Array
-    largest: Array
+    residual: Array = shown(
+        "", "0-peak, left when contact ends, without damping, over the deflection under the design load",
+        label="vibration left, 0-peak",
+    )  # fmt: skip
+    envelope: Array = shown("", "what it does not exceed at high frequency (4.22)")
+    largest: Array = shown("", "largest deflection during contact", label="largest deflection")
 
 
 def tooth_response(function: LoadingFunction, orders: ArrayLike) -> ToothResponse:

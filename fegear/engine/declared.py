@@ -77,11 +77,15 @@ def value_of(
     found: object, attribute: str, owner: str, error: float | None = None, *,
     load: int | None = None, name: str = "", meaning: str = "", si: Any = None,
 ) -> Value:  # fmt: skip
-    """A single value ``owner.name`` of a quantity that is a number, or one number for each load; or another number."""
+    """A single value ``owner.name``: a quantity that is a number, or one for each load, or `si` in its place.
+
+    Without an owner it is one of the whole case.
+    """
     how = declared(_class(found), attribute)
     si = getattr(found, attribute) if si is None else si
     number = float(si if load is None or np.ndim(si) == 0 else si[load])
-    return Value(f"{owner}.{name or how.name}", number, how.unit, error, meaning or how.meaning)
+    full = ".".join(filter(None, (owner, name or how.name)))
+    return Value(full, number, how.unit, error, meaning or how.meaning)
 
 
 def axis_of(owner: object, attribute: str, label: str = "", **options: Any) -> Axis:

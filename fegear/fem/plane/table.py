@@ -38,6 +38,9 @@ class StiffnessTable:
     root_compression. `influence` is what the table was made from.
     """
 
+    errors: Mapping[str, Array]
+    influence: GearInfluence
+    seconds: float
     radius: Array = shown("mm", "radius of the contact point", label="radius of the load")
     roll_angle: Array = shown("deg", "roll angle of the contact point", label="roll angle of the load")
     c_self: Array = shown("um.mm/N", "deflection of the loaded tooth at the contact per line load", label="compliance")
@@ -57,9 +60,6 @@ class StiffnessTable:
     root_compression: Array = shown("MPa.mm/N", "most negative tangential stress of the other fillet")
     root_compression_radius: Array = shown("mm", "where it sits")
     root_compression_angle: Array = shown("deg", "the same on the other fillet")
-    errors: Mapping[str, Array]
-    influence: GearInfluence
-    seconds: float
 
 
 def stiffness_table(
@@ -114,7 +114,7 @@ def stiffness_table(
     errors = {name.removeprefix("error_of_"): found.pop(name) for name in tuple(found) if name.startswith("error_of_")}
     angle = np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
     return StiffnessTable(
-        r, angle, half_width=b, errors=errors, influence=known, seconds=time.perf_counter() - started, **found
+        errors, known, time.perf_counter() - started, radius=r, roll_angle=angle, half_width=b, **found
     )
 
 

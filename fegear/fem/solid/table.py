@@ -78,6 +78,10 @@ class SolidTable(ReadOnlyArrays):
     the table was made from.
     """
 
+    root: Mapping[Side, RootStressOfBands]
+    errors: Mapping[str, Array]
+    influence: SolidInfluence
+    seconds: float
     radius: Array = shown("mm", "radius of the band's middle")
     roll_angle: Array = shown("deg", "roll angle of the band's middle", label="roll angle of the load")
     half_width: Array = shown("mm", "half-width of the contact that c_self is for", name="contact_half_width")
@@ -90,10 +94,6 @@ class SolidTable(ReadOnlyArrays):
     c_self: Array = shown("um/N", "approach of the contact per force")
     c_prev: Array = shown("um/N", "deflection of the same band on the tooth before")
     c_next: Array = shown("um/N", "of the same band on the tooth after (which the flank faces)")
-    root: Mapping[Side, RootStressOfBands]
-    errors: Mapping[str, Array]
-    influence: SolidInfluence
-    seconds: float
 
 
 def solid_table(
@@ -149,8 +149,8 @@ def solid_table(
     }
     roll = np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
     return SolidTable(
-        r, roll, b, asked.pressed_half_width * m, z, before, after, c["c_self"], c["c_prev"], c["c_next"],
-        root, errors, influence, time.perf_counter() - started,
+        root, errors, influence, time.perf_counter() - started, r, roll, b, asked.pressed_half_width * m, z, before,
+        after, **c,
     )  # fmt: skip
 
 

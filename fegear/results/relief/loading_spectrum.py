@@ -5,18 +5,21 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.shown import shown
 from fegear.case.loading import LoadingPart
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of, column_of, column_over, repeated, tiled, value_of
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Curve, Mark, few, ramp
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
-from fegear.results.relief.drawn_loading import loading_figures
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -35,6 +38,12 @@ _HIGHEST_Q = 30.0
 _LARGEST_RATIO = 100.0
 #: Exponent of the polynomial family where the case names none.
 _EXPONENT = 7
+#: Spectra are drawn down to this share of their value at zero.
+_LEAST = 1e-6
+#: Panels of one figure.
+_MOST_PANELS = 8
+#: Functions that are drawn: number, words and role of each.
+_Chosen: TypeAlias = "list[tuple[int, str, str]]"
 
 
 @dataclass(frozen=True)
@@ -70,66 +79,42 @@ class LoadingInputs:
 class OwnVibration:
     """What the teeth of one gear of the pair do by themselves at the case's speed.
 
-    Parameters
-    ----------
-    member : {"driver", "driven"}
-    frequency : float
-        Lowest natural frequency of a tooth [Hz].
-    order : float
-        The same over the tooth-mesh frequency.
-    response : tuple of ToothResponse
-        To each loading function, arrays of shape (1,).
+    `response` is that to each loading function, arrays of shape (1,).
     """
 
-    member: Member
-    frequency: float
-    order: float
     response: tuple[ToothResponse, ...]
+    member: Member = shown("", "driver or driven", name="gear")
+    frequency: float = shown("Hz", "lowest natural frequency of a tooth")
+    order: float = shown("", "natural frequency of the tooth over the tooth-mesh frequency")
 
 
 @dataclass(frozen=True)
 class LoadingData:
-    """Loading functions with their loads and spectra.
+    """F loading functions with their loads and spectra.
 
-    Parameters
-    ----------
-    functions : tuple of LoadingFunction
-        F of them.
-    x : ndarray, shape (P,)
-        [m].
-    load : ndarray, shape (F, P)
-        W / W_d.
-    order : ndarray, shape (G,)
-        Frequencies g A [tooth-mesh orders], positive.
-    spectrum, asymptote, envelope : ndarray, shape (F, G)
-        Moduli over W_d A.
-    q : ndarray, shape (G,)
-        Frequencies g (L - A).
-    factor, factor_asymptote : ndarray, shape (F, G)
-        The braces of (4.15b) and (4.16), and s sinc(q).
-    trade_off : SlopeTradeOff
-    response : tuple of ToothResponse
-        Of a tooth to each function, over its natural frequency in `order`.
-    teeth : tuple of OwnVibration
-        Of both gears at the case's speed; empty without one.
-    sum_misfit : float
-        Largest difference of the loads of all pairs together from W_d, over W_d.
+    `x` has shape (P,) [m], `load` (F, P) as shares of the design load, `order` and `q` (G,), spectra (F, G) as moduli.
+    `factor` and `factor_asymptote` are the braces of (4.15b) and (4.16). `response` is that of a tooth to each function
+    over its natural frequency in `order`; `teeth` are those of both gears at the case's speed, empty without one.
     """
 
     functions: tuple[LoadingFunction, ...]
     x: Array
     load: Array
-    order: Array
-    spectrum: Array
-    asymptote: Array
-    envelope: Array
-    q: Array
-    factor: Array
-    factor_asymptote: Array
     trade_off: SlopeTradeOff
     response: tuple[ToothResponse, ...]
     teeth: tuple[OwnVibration, ...]
-    sum_misfit: float
+    order: Array = shown("", "frequency over the tooth-mesh frequency")
+    spectrum: Array = shown(
+        "", "modulus over design load times base pitch", label="spectrum over design load and base pitch"
+    )
+    asymptote: Array = shown("", "what it tends to at high frequency (4.20)")
+    envelope: Array = shown("", "largest size of that (4.22)")
+    q: Array = shown("", "cycles over the width of the ramp", label="q = (L - A) g")
+    factor: Array = shown("", "1 at q = 0", label="modulus of the factor")
+    factor_asymptote: Array = shown("", "s sinc(q)", name="asymptote")
+    sum_misfit: float = shown(
+        "", "largest difference of the loads of all pairs from the design load, over it", name="loading_sum_misfit"
+    )
 
 
 def _subjects(scene: Scene) -> tuple[str, ...]:
@@ -201,11 +186,11 @@ def _compute(asked: LoadingInputs, _upstream: Upstream, _work: Work) -> LoadingD
         return np.stack([np.abs(getattr(f, what)(order / pitch)) / pitch for f in functions])
 
     return LoadingData(
-        functions, x, np.stack([f.fraction(x) for f in functions]), order, moduli("spectrum"), moduli("asymptote"),
-        moduli("envelope"), q, np.stack([f.ramp.spectrum_factor(q) for f in functions]),
-        np.stack([f.ramp.asymptotic_factor(q) for f in functions]),
+        functions, x, np.stack([f.fraction(x) for f in functions]),
         slope_trade_off(functions, asked.part.content_above), tuple(tooth_response(f, order) for f in functions),
-        _own_vibrations(asked, functions), misfit,
+        _own_vibrations(asked, functions), order, moduli("spectrum"), moduli("asymptote"), moduli("envelope"), q,
+        np.stack([f.ramp.spectrum_factor(q) for f in functions]),
+        np.stack([f.ramp.asymptotic_factor(q) for f in functions]), misfit,
     )  # fmt: skip
 
 
@@ -220,7 +205,7 @@ def _own_vibrations(asked: LoadingInputs, functions: tuple[LoadingFunction, ...]
     for member in MEMBERS:
         frequency = part.tooth_frequency or tooth_frequency(pair.gear(member))
         order = frequency / mesh
-        found.append(OwnVibration(member, frequency, order, tuple(tooth_response(f, [order]) for f in functions)))
+        found.append(OwnVibration(tuple(tooth_response(f, [order]) for f in functions), member, frequency, order))
     return tuple(found)
 
 
@@ -231,47 +216,49 @@ def _frequencies(top: float) -> Array:
 
 def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
     end, first, shares = f"_{asked.name}" if asked.name else "", data.functions[0], not asked.name
-    length = "" if shares else "mm"
+    length, x = "" if shares else "mm", np.linspace(-1.0, 1.0, _RAMP)
+    ramps = np.concatenate([f.ramp.load(x) for f in data.functions])
+    base_pitches = " in base pitches, from the middle of contact" if shares else ""
+
+    def all_of(*attributes: str) -> tuple[Column, ...]:
+        return tuple(column_of(data, key, getattr(data, key).ravel()) for key in attributes)
+
+    def answers(*attributes: str) -> tuple[Column, ...]:
+        return tuple(
+            column_of(data.response[0], key, np.concatenate([getattr(r, key) for r in data.response]))
+            for key in attributes
+        )
+
     tables = [
-        _long(data, f"loading_families{end}", "Loading of a ramp, from -1 to 1", (
-            ("x", np.linspace(-1.0, 1.0, _RAMP), "", "roll distance over half the ramp, from its middle"),
-        ), (
-            ("load", [f.ramp.load(np.linspace(-1.0, 1.0, _RAMP)) for f in data.functions], "",
-             "twice the load over the design load, less 1"),
-        )),
-        _long(data, f"loading_functions{end}", "Load of one tooth pair", (
-            ("x", data.x, length, "roll distance" + (" in base pitches, from the middle of contact" if shares else "")),
-        ), (
-            ("load", list(data.load * asked.load), "" if shares else "N", "over the design load" if shares else ""),
-        )),
-        _long(data, f"loading_spectrum_factors{end}", "Spectrum of the ramp: the braces of Mark's (4.15b) and (4.16)", (
-            ("q", data.q, "", "cycles over the width of the ramp"),
-        ), (
-            ("factor", list(data.factor), "", "1 at q = 0"),
-            ("asymptote", list(data.factor_asymptote), "", "s sinc(q)"),
-        )),
-        _long(data, f"loading_spectra{end}", "Spectrum of the load of one tooth pair", (
-            ("order", data.order, "", "frequency over the tooth-mesh frequency"),
-        ), (
-            ("spectrum", list(data.spectrum), "", "modulus over design load times base pitch"),
-            ("asymptote", list(data.asymptote), "", "what it tends to at high frequency (4.20)"),
-            ("envelope", list(data.envelope), "", "largest size of that (4.22)"),
-        )),
-        _long(data, f"loading_tooth_response{end}", "Answer of a tooth by itself, over its deflection at rest", (
-            ("order", data.order, "", "natural frequency of the tooth over the tooth-mesh frequency"),
-        ), (
-            ("residual", [r.residual for r in data.response], "", "0-peak, left when contact ends, without damping"),
-            ("envelope", [r.envelope for r in data.response], "", "what it does not exceed at high frequency (4.22)"),
-            ("largest", [r.largest for r in data.response], "", "largest deflection during contact"),
-        )),
+        _long(
+            data, f"loading_families{end}", "Loading of a ramp, from -1 to 1",
+            Column("x", x, "", "roll distance over half the ramp, from its middle"),
+            Column("load", ramps, "", "twice the load over the design load, less 1"),
+        ),
+        _long(
+            data, f"loading_functions{end}", "Load of one tooth pair",
+            Column("x", data.x, length, f"roll distance{base_pitches}"),
+            Column("load", data.load.ravel() * asked.load, *(("", "over the design load") if shares else ("N", ""))),
+        ),
+        _long(
+            data, f"loading_spectrum_factors{end}", "Spectrum of the ramp: the braces of Mark's (4.15b) and (4.16)",
+            column_of(data, "q"), *all_of("factor", "factor_asymptote"),
+        ),
+        _long(
+            data, f"loading_spectra{end}", "Spectrum of the load of one tooth pair",
+            column_of(data, "order"), *all_of("spectrum", "asymptote", "envelope"),
+        ),
+        _long(
+            data, f"loading_tooth_response{end}", "Answer of a tooth by itself, over its deflection at rest",
+            column_of(OwnVibration, "order", data.order), *answers("residual", "envelope", "largest"),
+        ),
         _trade_off_table(f"loading_trade_off{end}", data, asked, length),
         *_own_table(f"loading_tooth_vibration{end}", data),
     ]  # fmt: skip
     ratio, of = asked.length / asked.base_pitch, f"{asked.name}." if asked.name else ""
     values = [
         Value(f"{of}loading_contact_ratio", ratio, "", 0.0, "length of the loaded path over the base pitch"),
-        Value(f"{of}loading_sum_misfit", data.sum_misfit, "", 0.0,
-              "largest difference of the loads of all pairs from the design load, over it"),
+        value_of(data, "sum_misfit", asked.name, 0.0),
     ]  # fmt: skip
     if asked.name:
         outer = first.terms[0][2]
@@ -300,53 +287,32 @@ def _present(data: LoadingData, asked: LoadingInputs) -> Outcome:
             "The loaded path is a whole number of base pitches, so the load starts with a jump: its initial slope is "
             "infinite and its spectrum falls with the frequency only."
         )
-    figures = loading_figures(data, asked)
+    figures = _figures(data, asked)
     return Outcome(data, tuple(tables), tuple(values), {"load": asked.load}, tuple(remarks), figures)
 
 
-def _long(
-    data: LoadingData,
-    name: str,
-    title: str,
-    over: tuple[tuple[str, Array, str, str], ...],
-    columns: tuple[tuple[str, list[Array], str, str], ...],
-) -> Table:
+def _long(data: LoadingData, name: str, title: str, over: Column, *columns: Column) -> Table:
     """All functions below each other, each over the same abscissa."""
-    ((head, at, unit, meaning),) = over
-    return Table(
-        name,
-        (
-            *_which(data, at.size),
-            Column(head, np.tile(at, len(data.functions)), unit, meaning),
-            *(Column(word, np.concatenate(parts), u, m) for word, parts, u, m in columns),
-        ),
-        title,
-    )
+    return Table(name, (*_which(data, len(over)), *tiled((over,), len(data.functions)), *columns), title)
 
 
 def _which(data: LoadingData, rows: int) -> tuple[Column, ...]:
     """Slope, exponent and peak of each function, so many times."""
-    f = data.functions
-    return (
-        Column("slope", np.repeat([one.ramp.slope for one in f], rows), "", "s at initiation"),
-        Column("exponent", np.repeat([one.ramp.exponent or 0 for one in f], rows), "", "r; 0: sinusoidal family"),
-        Column("peak", np.repeat([one.peak for one in f], rows), "", "F, largest load over the design load"),
-    )
+    ramps = [one.ramp for one in data.functions]
+    exponents = column_of(ramps[0], "exponent", [one.exponent or 0 for one in ramps])
+    return repeated((column_over(ramps, "slope"), exponents, column_over(data.functions, "peak")), rows)
 
 
 def _own_table(name: str, data: LoadingData) -> tuple[Table, ...]:
     """Every function's answer by the teeth of both gears at the case's speed; none without one."""
     if not data.teeth:
         return ()
-    rows, count = [(own, response) for own in data.teeth for response in own.response], len(data.teeth)
-    which = (Column(c.name, np.tile(c.si, count), c.unit, c.meaning) for c in _which(data, 1))
+    responses = [response for own in data.teeth for response in own.response]
+    gear, order = (column_over(data.teeth, key) for key in ("member", "order"))
+    each = len(data.functions)
     columns = (
-        Column("gear", np.array([own.member for own, _ in rows]), "", "driver or driven"),
-        *which,
-        Column("order", np.array([own.order for own, _ in rows]), "", "natural frequency over tooth-mesh frequency"),
-        Column("residual", np.array([r.residual[0] for _, r in rows]), "", "left when contact ends, 0-peak, over the "
-               "deflection under the design load"),
-        Column("largest", np.array([r.largest[0] for _, r in rows]), "", "largest deflection during contact"),
+        *repeated((gear,), each), *tiled(_which(data, 1), len(data.teeth)), *repeated((order,), each),
+        *(column_of(responses[0], key, [getattr(r, key)[0] for r in responses]) for key in ("residual", "largest")),
     )  # fmt: skip
     return (Table(name, columns, "Answer of the teeth by themselves at the case's speed"),)
 
@@ -367,6 +333,135 @@ def _trade_off_table(name: str, data: LoadingData, asked: LoadingInputs, unit: s
                    f"root mean square of the spectrum from order {above:g} to {10.0 * above:g}"),
         ),
         "What the slope at initiation buys and costs",
+    )  # fmt: skip
+
+
+def _figures(data: LoadingData, asked: LoadingInputs) -> tuple[Figure, ...]:
+    """Every figure; a contact ratio above 2 has two ramps, whose spectra only count together."""
+    end, of = (f"_{asked.name}", f" of pair {asked.name}") if asked.name else ("", "")
+    drawn = few(len(data.functions))
+    roles, words = ramp(len(drawn)), _labels(data.functions)
+    chosen = [(i, words[i], role) for i, role in zip(drawn, roles, strict=True)]
+    figures = [_families(data, chosen, end), _functions(data, asked, chosen, end, of)]
+    if data.functions[0].order == 1 and data.functions[0].terms[0][2] > 0.0:
+        figures.append(_factors(data, words, end))
+    return (*figures, _spectra(data, chosen, end, of), _response(data, chosen, end, of))
+
+
+def _labels(functions: tuple[LoadingFunction, ...]) -> list[str]:
+    """What tells the functions apart; all of it where there is only one."""
+    rows = [
+        (f"s = {f.ramp.slope:g}", f"r = {f.ramp.exponent}" if f.ramp.exponent else "", f"F = {f.peak:.4g}")
+        for f in functions
+    ]
+    differ = [len({row[k] for row in rows}) > 1 for k in range(3)]
+    keep = [k for k in range(3) if differ[k]] or [k for k in range(3) if k < 2 or functions[0].order > 1]
+    return [", ".join(row[k] for k in keep if row[k]) for row in rows]
+
+
+def _families(data: LoadingData, chosen: _Chosen, end: str) -> Figure:
+    x = np.linspace(-1.0, 1.0, 401)
+    curves = tuple(
+        Curve(x, data.functions[i].ramp.load(x), word, role, markers=False) for i, word, role in chosen
+    )  # fmt: skip
+    panel = Panel(
+        Axis("normalised roll distance", limits=(-1.0, 1.0)), Axis("normalised load", limits=(-1.0, 1.0)), curves,
+    )  # fmt: skip
+    family = "polynomial" if data.functions[0].ramp.exponent else "sinusoidal"
+    return Figure(
+        f"loading_families{end}", f"Normalised tooth loading, {family} family",
+        "How a tooth pair takes over load where two pairs share it: from none (-1) to all (1), with slope s at both "
+        "ends; s = 1 is the straight line.",
+        (panel,),
+    )  # fmt: skip
+
+
+def _functions(data: LoadingData, asked: LoadingInputs, chosen: _Chosen, end: str, of: str) -> Figure:
+    scale, pitch, first = (1e3 if asked.name else 1.0), asked.base_pitch, data.functions[0]
+    x = Axis("roll distance", "mm") if asked.name else Axis("roll distance from the middle of contact", "base pitches")
+    y = Axis("load of a tooth pair", "N", zero=True) if asked.name else Axis("load over the design load", zero=True)
+    items = []
+    for i, word, role in chosen:
+        items.append(Curve(data.x * scale, data.load[i] * asked.load, word, role, width=2.4, markers=False))
+    for side in (-1, 1):
+        at = (data.x + side * pitch) * scale
+        near = np.abs(data.x + side * pitch - first.centre) <= 0.5 * (first.length + pitch)
+        load = np.where(near, data.load[chosen[0][0]] * asked.load, np.nan)
+        items.append(Curve(at, load, "next pairs", "grey", dash="dash", width=1.2, markers=False))
+    marks = (Mark("x", first.x_start * scale, "initiation"), Mark("x", first.x_end * scale, "end"))
+    return Figure(
+        f"loading_functions{end}", f"Tooth loading functions{of}",
+        f"Load of one tooth pair over its path, contact ratio {asked.length / pitch:.4g}; dashed: the pairs before "
+        f"and behind it, with the loading {chosen[0][1]}. All pairs together carry the design load at every position.",
+        (Panel(x, y, tuple(items), marks),),
+    )  # fmt: skip
+
+
+def _factors(data: LoadingData, words: list[str], end: str) -> Figure:
+    q, panels = data.q, []
+    for i in few(len(data.functions), most=_MOST_PANELS):
+        slope = data.functions[i].ramp.slope
+        curves = []
+        if slope > 0.0:
+            curves = [
+                Curve(
+                    q, np.abs(data.factor_asymptote[i]), "asymptote", "orange", dash="dash", width=2.2, markers=False
+                ),
+                Curve(q, slope / (np.pi * q), "its envelope", "grey", dash="dot", width=1.3, markers=False),
+            ]
+        curves.append(Curve(q, np.abs(data.factor[i]), "spectrum factor", "blue", width=1.4, markers=False))
+        panels.append(Panel(
+            axis_of(data, "q", log=True, limits=(float(q[0]), float(q[-1]))),
+            axis_of(data, "factor", log=True, limits=(1e-4, 3.0)), tuple(curves), title=words[i],
+        ))  # fmt: skip
+    return Figure(
+        f"loading_spectrum_factors{end}", "Spectrum factors of the tooth loading functions",
+        "What the shape of the ramp adds to the spectrum of a tooth's load (the braces of Mark's 4.15b and 4.16), over "
+        "the frequency in cycles per width of the ramp. At high frequency only the slope s at initiation counts.",
+        tuple(panels), columns=2 if len(panels) > 1 else 1,
+    )  # fmt: skip
+
+
+def _spectra(data: LoadingData, chosen: _Chosen, end: str, of: str) -> Figure:
+    curves = []
+    for i, word, role in chosen:
+        curves.append(Curve(data.order, data.spectrum[i], word, role, markers=False, width=1.4))
+        if np.any(data.envelope[i] > 0.0):
+            inside = data.envelope[i] <= data.spectrum[i].max()
+            curves.append(Curve(
+                data.order[inside], data.envelope[i][inside], "", role, dash="dash", width=1.1, markers=False
+            ))  # fmt: skip
+    top = 2.0 * float(max(data.spectrum[i].max() for i, _, _ in chosen))
+    return Figure(
+        f"loading_spectra{end}", f"Spectra of the tooth loading functions{of}",
+        "Spectrum of the load of one tooth pair over frequency, in units of design load times base pitch; dashed: the "
+        "envelope of its high-frequency asymptote (Mark 4.22). At whole orders it vanishes, for the loads of all pairs "
+        "add up to a constant.",
+        (Panel(
+            axis_of(data, "order", log=True),
+            axis_of(data, "spectrum", log=True, limits=(_LEAST * top, top)), tuple(curves),
+        ),),
+    )  # fmt: skip
+
+
+def _response(data: LoadingData, chosen: _Chosen, end: str, of: str) -> Figure:
+    left, largest = (
+        tuple(
+            Curve(data.order, getattr(data.response[i], key), word, role, markers=False, width=1.4)
+            for i, word, role in chosen
+        )
+        for key in ("residual", "largest")
+    )
+    order, answer = axis_of(OwnVibration, "order", log=True), data.response[0]
+    marks = tuple(Mark("x", own.order, own.member) for own in data.teeth)
+    return Figure(
+        f"loading_tooth_response{end}", f"Answer of a tooth by itself{of}",
+        "A tooth as an oscillator without damping under the load of one passage: the vibration left when contact ends, "
+        "and the largest deflection during contact, both over the deflection under the design load at rest.",
+        (
+            Panel(order, axis_of(answer, "residual", log=True, limits=(1e-4, 4.0)), left, marks),
+            Panel(order, axis_of(answer, "largest", zero=True), largest, marks),
+        ),
     )  # fmt: skip
 
 
