@@ -103,6 +103,79 @@ class State:
         return np.einsum("jk,qjk->kq", self.weight if weight is None else weight, self.by_number)
 
 
+@dataclass(frozen=True)
+class Bends:
+    """K places at which the slope of the transmission error over the roll position jumps.
+
+    Parameters
+    ----------
+    x, jump : ndarray, shape (K,)
+        Place [m] and jump.
+    where : ndarray of int, shape (3, K)
+        Candidate, position before, and load.
+    moved, grown : ndarray, shape (K, 4)
+        Derivatives of place and jump by the numbers of a candidate; pairs that part or touch are taken to keep theirs.
+    """
+
+    x: Floats
+    jump: Floats
+    where: Index
+    moved: Floats
+    grown: Floats
+
+
+@dataclass(frozen=True)
+class _HandOver:
+    """K places where a pair parts or touches.
+
+    Parameters
+    ----------
+    at : Places
+    found : State
+        Load sharing without that pair.
+    pair : ndarray of int, shape (K,)
+    leaves : ndarray of bool, shape (K,)
+        Whether it parts, in rolling on.
+    weight : ndarray, shape (n, K)
+        Derivatives of the transmission error by removals, that pair bearing.
+    """
+
+    at: Places
+    found: State
+    pair: Index
+    leaves: Mask
+    weight: Floats
+
+    @cached_property
+    def together(self) -> Floats:
+        """Slope of the transmission error with that pair, shape (K,); without it, see `found`."""
+        return np.asarray((self.weight * self.found.rises).sum(axis=0))
+
+    @cached_property
+    def met(self) -> Mask:
+        """Where the place was found."""
+        return np.asarray(np.abs(self.found.off[self.pair, np.arange(self.pair.size)]) < 1e-6 * self.found.error)
+
+    def peaks(self) -> tuple[Mask, Floats]:
+        """Which are peaks, and the weights with which these change as if they stayed."""
+        together, apart = self.together, self.found.rise
+        peak = np.where(self.leaves, (together > 0.0) & (apart < 0.0), (apart > 0.0) & (together < 0.0)) & self.met
+        part = np.where(peak, -together / np.where(peak, apart - together, 1.0), 1.0)
+        return peak, part * self.found.weight + (1.0 - part) * self.weight
+
+    def bends(self) -> Bends:
+        """What the slope does there."""
+        found, k = self.found, np.arange(self.pair.size)
+        y, *by = _solved(found.tangent, self.at.on, np.ones_like(found.loads), *found.by_number)
+        loads = found.slope().T[:, None] * y - np.array(by)
+        off = np.einsum("jk,qjk->kq", np.where(self.at.on, found.tangent[self.pair, :, k].T, 0.0), loads)
+        off += found.by_number[:, self.pair, k].T - found.slope()
+        rise = found.off_rise[self.pair, k]
+        moved = -off / np.where(rise == 0.0, 1.0, rise)[:, None]
+        jump = np.where(self.leaves, 1.0, -1.0) * (found.rise - self.together)
+        return Bends(self.at.x, np.where(self.met, jump, 0.0), self.at.where, moved, np.zeros_like(moved))
+
+
 def removed(depths: Floats, p: Floats, power: float) -> tuple[Floats, Floats]:
     """Removal at depths, and its derivatives by the numbers.
 
@@ -186,7 +259,9 @@ class Between:
     @cached_property
     def _first(self) -> Index:
         """First of the four positions about every interval, shape (P - 1,); -1 where there are none."""
-        ends = np.flatnonzero(np.append(~self.positions.whole, True)) + 1
+        breaks, x = self.bench.points.breaks, self.positions.x
+        across = np.searchsorted(breaks, x[1:]) > np.searchsorted(breaks, x[:-1])
+        ends = np.flatnonzero(np.append(across | ~self.positions.whole, True)) + 1
         starts = np.append(0, ends[:-1])
         first = np.full(self.positions.x.size - 1, -1)
         for start, end in zip(starts, ends, strict=True):
@@ -258,8 +333,8 @@ class Between:
             found = self._step(replace(at, loads=found.loads), p)
         return found
 
-    def _handing_over(self, on: Mask, loads: Floats, p: Floats) -> tuple[Places, State, Floats, Mask]:
-        """Where pairs part or touch: places, load sharing there, weights of the pairs at peaks, which are peaks."""
+    def _handing_over(self, on: Mask, loads: Floats, p: Floats) -> _HandOver:
+        """Where pairs part or touch."""
         differs = (on[:, :, 1:] != on[:, :, :-1]) & (self._first >= 0)[:, None]
         j, *where = np.nonzero(differs)
         c, i, load = where
@@ -280,17 +355,12 @@ class Between:
         just = at.on.copy()
         just[j, k] = True
         (y,) = _solved(found.tangent, just, np.ones_like(found.loads))
-        weight = y / y.sum(axis=0)
-        apart, together = found.rise, (weight * found.rises).sum(axis=0)
-        peak = np.where(leaves, (together > 0.0) & (apart < 0.0), (apart > 0.0) & (together < 0.0))
-        peak &= np.abs(found.off[j, k]) < 1e-6 * found.error
-        part = np.where(peak, -together / np.where(peak, apart - together, 1.0), 1.0)
-        return at, found, part * found.weight + (1.0 - part) * weight, peak
+        return _HandOver(at, found, j, leaves, y / y.sum(axis=0))
 
     def _starting(
         self, on: Mask, loads: Floats, p: Floats, hand_over: Floats
-    ) -> tuple[Places, State, Index, Floats, Mask]:
-        """At starts of straight reliefs: places, load sharing there, gear, slopes by the numbers, which are troughs."""
+    ) -> tuple[Places, State, Index, Floats, Bends]:
+        """At starts of straight reliefs: places, load sharing there, gear, slopes by the numbers, and what bends."""
         pair = self.bench.engagement.pair
         count, loaded = p.shape[0], self.totals.size
         path = pair.path_length
@@ -311,10 +381,12 @@ class Between:
         slopes = found.slope()
         outward = np.where(gear == 0, -1.0, 1.0)
         slopes[k, 2 * gear + 1] += found.rise * outward * path
-        bend = found.weight[j, k] * p[c, 2 * gear] / p[c, 2 * gear + 1] * np.abs(found.depth_rise[gear, j, k])
-        trough = np.where(gear == 0, (found.rise < 0.0) & (found.rise + bend > 0.0),
-                          (found.rise > 0.0) & (found.rise - bend < 0.0))  # fmt: skip
-        return at, found, gear, slopes, trough
+        by_amount = found.weight[j, k] * np.abs(found.depth_rise[gear, j, k]) / p[c, 2 * gear + 1]
+        bend = by_amount * p[c, 2 * gear]
+        moved, grown = np.zeros((x.size, 4)), np.zeros((x.size, 4))
+        moved[k, 2 * gear + 1] = outward * path
+        grown[k, 2 * gear], grown[k, 2 * gear + 1] = by_amount, -bend / p[c, 2 * gear + 1]
+        return at, found, gear, slopes, Bends(x, bend, at.where, moved, grown)
 
     def _turning(
         self, te: Floats, on: Mask, loads: Floats, p: Floats, kinks: tuple[Mask, Mask], kinked: Mask
@@ -376,9 +448,10 @@ class Between:
         on = loads > 0.0
         count, positions, loaded = te.shape
         shape = (count, positions - 1, loaded)
-        at, found, weight, peak = self._handing_over(on, loads, p)
-        hand_over, peaked, kinked = np.full(shape, np.inf), np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
-        hand_over[tuple(at.where)] = at.x
+        met = self._handing_over(on, loads, p)
+        at, found = met.at, met.found
+        peak, weight = met.peaks()
+        peaked, kinked = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
         peaked[tuple(at.where[:, peak])] = True
         kinked[tuple(at.where)] = True
         peaks = Kinks(at.where, found.error, found.slope(weight)).of(peak)
@@ -386,8 +459,10 @@ class Between:
         low = np.zeros(shape, dtype=bool)
         kinks = Kinks(np.zeros((3, 0), dtype=int), np.empty(0), np.empty((0, 4)))
         if self.power == 1.0:
-            at, found, gear, by_number, trough = self._starting(on, loads, p, hand_over)
+            at, found, gear, by_number, bends = self._starting(on, loads, p, self._places(met, shape))
             c, _, load = at.where
+            before = np.where(gear == 0, found.rise, found.rise - bends.jump)
+            trough = (before < 0.0) & (before + bends.jump > 0.0)
             starts[c, gear, load], slopes[c, :, gear, load] = found.error, by_number
             kinks = Kinks(at.where, found.error, by_number).of(trough)
             low[tuple(kinks.where)] = True
@@ -400,3 +475,26 @@ class Between:
             np.concatenate([peaks.slopes, turned.slopes]),
         )
         return peaks, troughs, kinks, starts, slopes
+
+    @staticmethod
+    def _places(met: _HandOver, shape: tuple[int, ...]) -> Floats:
+        """Where pairs part or touch in every interval, infinite where they do not."""
+        hand_over = np.full(shape, np.inf)
+        hand_over[tuple(met.at.where)] = met.at.x
+        return hand_over
+
+    def bends(self, p: Floats, loads: Floats) -> tuple[Bends, ...]:
+        """Where the slope jumps within intervals: pairs part or touch, and straight reliefs start.
+
+        Parameters
+        ----------
+        p : ndarray, shape (C, 4)
+        loads : ndarray, shape (n, C, P, L)
+            Of the pairs [N].
+        """
+        on = loads > 0.0
+        met = self._handing_over(on, loads, p)
+        if self.power != 1.0:
+            return (met.bends(),)
+        _, count, positions, loaded = loads.shape
+        return met.bends(), self._starting(on, loads, p, self._places(met, (count, positions - 1, loaded)))[4]

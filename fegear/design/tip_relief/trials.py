@@ -12,12 +12,14 @@ import numpy as np
 from fegear.contact.plane.load_sharing import SharedLoad, share_load
 from fegear.design.quick_sharing import QuickSharing, quick_sharing
 from fegear.design.tip_relief.extremes import Between, removed
+from fegear.design.tip_relief.kink_quadrature import KinkQuadrature
 from fegear.design.tip_relief.kinks import Positions
 from fegear.geometry.relief import roll_of_radius
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Floats, Index, Mask
     from fegear.design.charts import Bench
+    from fegear.design.tip_relief.extremes import Bends
 
 _HARMONICS = 12
 
@@ -150,6 +152,21 @@ class Trials:
             te if self.loads.size == 1 else np.asarray(te * (self.loads.max() / self.loads)[:, None].astype(te.dtype))
         )
 
+    @cached_property
+    def _of_kinks(self) -> KinkQuadrature:
+        return KinkQuadrature(self.bench.points, self._kernel)
+
+    def _corrected(self, parts: Floats, slopes: Floats, bends: Bends) -> None:
+        """Take from harmonics, and their derivatives, what quadrature across kinks adds to them."""
+        c, _, load = bends.where
+        more, rise = self._of_kinks.errors(bends.x)
+        moved = (
+            bends.moved[:, :, None] * (bends.jump[:, None] * rise)[:, None] + bends.grown[:, :, None] * more[:, None]
+        )
+        part = self.loads.max() / self.loads[load]
+        np.subtract.at(parts, (c, load), (part * bends.jump)[:, None] * more)
+        np.subtract.at(np.moveaxis(slopes, 2, 1), (c, load), part[:, None, None] * moved)
+
     def left(self, seen: Floats, low: Floats | None = None) -> Floats:
         """Worst metric over the loads, shape (...) [m], of what it looks at, see `Tried`."""
         if self.metric == "peak_to_peak":
@@ -203,6 +220,9 @@ class Trials:
         slope = np.einsum("cjpl,ckjp->ckpl", weight, by_number)
         if self.metric == "effective_error":
             parts, by_number = self.seen(zeta), self.seen(slope)
+            if pairs is not None:
+                for bends in self._between.bends(p, pairs):
+                    self._corrected(parts, by_number, bends)
             return Tried(parts, by_number, parts[..., :0], by_number[..., :0])
         count, positions, loads = zeta.shape
         v = self.quick.every_set[1].reshape(by_set.shape[1], -1, positions, loads)
