@@ -12,13 +12,12 @@ import logging
 import os
 import re
 import shutil
-import subprocess
-import sys
 import tomllib
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from case_run import run_case
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from pygments.formatters import HtmlFormatter
@@ -71,10 +70,8 @@ def _run(path: Path) -> None:
     log.info("Running cases/%s.toml", case_name(path))
     stamp.parent.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(out, ignore_errors=True)
-    command = [sys.executable, "-c", "from fegear.cli import main; main()", "run", str(path), "--out", str(out)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise PluginError(f"the case {path.name} does not run: {done.stderr.strip()}")
+    if fault := run_case(path, out):
+        raise PluginError(f"the case {path.name} does not run: {fault}")
     stamp.write_text(key)
 
 

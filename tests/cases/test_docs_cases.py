@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -228,7 +229,9 @@ def test_every_name_of_the_python_reference_exists_once():
     ]
     assert len(names) == len(set(names))
     modules = [name.rpartition(".") for name in names]
-    assert [".".join((m, n)) for m, _, n in modules if not hasattr(importlib.import_module(m), n)] == []
+    missing = [(m, n) for m, _, n in modules if not hasattr(importlib.import_module(m), n)]
+    # a module is an attribute of its package only once somebody has imported it
+    assert [f"{m}.{n}" for m, n in missing if importlib.util.find_spec(f"{m}.{n}") is None] == []
 
 
 def test_the_python_page_names_every_result_and_functions_that_exist():
@@ -281,3 +284,18 @@ def test_without_a_browser_the_page_of_the_window_says_that_it_has_no_film(monke
     assert 'src="window_files/window.webp"' in film.on_page_markdown(
         text.replace("*", "") + film._LINE, page, files=shown
     )
+
+
+def test_a_case_of_the_gallery_that_does_not_run_says_why_and_others_have_run_beside_it(tmp_path, monkeypatch):
+    """Two threads, as the site has them: each has the end of its own case."""
+    monkeypatch.syspath_prepend(DOCS)
+    case_run = importlib.import_module("case_run")
+    (tmp_path / "drive.toml").write_text('results = ["geometry"]\n[gear.a]\nteeth = 30\nmodule = "2 mm"\n')
+    (tmp_path / "wrong.toml").write_text('results = ["nonsense"]\n')
+    names = ("drive", "wrong", "drive", "wrong")
+    with ThreadPoolExecutor(2) as pool:
+        out = [tmp_path / f"{name}_{number}" for number, name in enumerate(names)]
+        said = list(pool.map(case_run.run_case, [tmp_path / f"{name}.toml" for name in names], out))
+    assert [bool(words) for words in said] == [False, True, False, True], said
+    assert "nonsense" in said[1]
+    assert all((folder / "report.html").is_file() for folder in out[::2])
