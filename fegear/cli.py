@@ -19,7 +19,7 @@ from fegear.commands.new import new
 from fegear.commands.open import open  # noqa: A004  (the name of the command)
 from fegear.commands.run import plan, run
 from fegear.commands.schema import results, schema
-from fegear.commands.studies import compare, cost, effects, sweep
+from fegear.commands.studies import check, compare, cost, effects, sweep
 
 app = typer.Typer(
     help="Finite-element workbench for gear teeth.",
@@ -57,6 +57,7 @@ COMMANDS = (
     (sweep, "A case over a grid of values."),
     (effects, "What each effect changes in a case."),
     (cost, "What accuracy costs in time."),
+    (check, "Spur gears solved whole by scikit-fem alone, compared with the stated errors."),
     (export, "Drawings and meshes for other programs."),
     (schema, "What editors need to complete and check case files."),
 )

@@ -18,7 +18,7 @@ from fegear.geometry.curves import Curve, arc_length
 from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from fegear.base.arrays import Array
     from fegear.fem.plane.settings import MeshSettings
@@ -50,6 +50,8 @@ _SHARPEST_TURN = 0.26
 #: tip all but reaches the flank. Short edges cost little: a fillet that turns by 70 degrees takes as many of them
 #: however small its radius. With a tenth, two levels missed root tension alike (a radius of .005 modules: 3 %).
 _SHARPEST = 1e-3
+#: Edges below a pressure that the mesh is to resolve, as a share of its half-width.
+_RESOLVED = 0.35
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,9 @@ def _mirrored(chain: Chain, name: str) -> Chain:
     return Chain(name, vertices, middles, (-flip * chain.tangents)[:, ::-1])
 
 
-def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) -> list[Chain]:
+def sector_boundary(
+    tooth: Tooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
+) -> list[Chain]:
     """Discretise the closed boundary of one sector, counterclockwise from the bore on side A.
 
     Parameters
@@ -128,6 +132,9 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
         [modules].
     settings : MeshSettings
         Edge lengths in modules.
+    contacts : sequence of (float, float)
+        Place (arc length from the start of the flank) and half-width of pressures that the loaded flank's edges are to
+        resolve [modules].
 
     Returns
     -------
@@ -148,7 +155,7 @@ def sector_boundary(tooth: Tooth, bore_radius: float, settings: MeshSettings) ->
         if tooth.root_land is None or short
         else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings))]
     )
-    front_laws = _front_sizes(tooth, settings)
+    front_laws = _front_sizes(tooth, settings, contacts)
     fewest = _fewest_edges(tooth, settings)
     short_fillet = _length(tooth.fillet) < _SHORT_FILLET
     front = [
@@ -301,7 +308,7 @@ def _back_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
     }
 
 
-def _front_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
+def _front_sizes(tooth: Tooth, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()) -> dict[str, Law]:
     """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""
     grow, root, corner = settings.growth, _fillet_size(tooth, settings), settings.tip_edge_length
     fillet, flank = _length(tooth.fillet), _length(tooth.involute)
@@ -312,6 +319,9 @@ def _front_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
 
     def flank_size(s: Array) -> Array:
         by_ends = np.minimum(joint + settings.tip_growth * s, corner + settings.tip_growth * (flank - s))
+        for place, half_width in contacts:
+            off = np.maximum(np.abs(s - place) - 1.2 * half_width, 0.0)
+            by_ends = np.minimum(by_ends, _RESOLVED * half_width + grow * off)
         return np.minimum(settings.flank_edge_length, by_ends)
 
     return {

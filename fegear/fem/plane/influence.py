@@ -45,7 +45,7 @@ _BESIDE_TIP = 0.15
 _STEP, _STEP_SHARE = 0.05, 0.25
 #: How far below the edge of a contact root tension begins [modules]: nearer, stress is what the contact itself leaves,
 #: and a coarse mesh does not resolve it.
-_CLEARANCE = 0.05
+CLEARANCE = 0.05
 #: Mean distance of two points of a semi-elliptic pressure over its half-width.
 _MEAN = 256.0 / (45.0 * np.pi**2)
 
@@ -322,9 +322,9 @@ class Influence:
         fillet = self.fillets[side]
         loads, above, width = self._fillet_loads(radius_q, half_width)
         beside = k == 0 and side == "tension"
-        end = search_end(fillet.length, above, width, _CLEARANCE) if beside else np.full(above.shape, fillet.length)
+        end = search_end(fillet.length, above, width, CLEARANCE) if beside else np.full(above.shape, fillet.length)
         sign, stress = 1.0 if side == "tension" else -1.0, (loads @ self.stress[k, side].T).T
-        return extreme(stress, fillet.arc, sign, end, _CLEARANCE if beside else math.inf)
+        return extreme(stress, fillet.arc, sign, end, CLEARANCE if beside else math.inf)
 
 
 @tallied("tooth shapes")

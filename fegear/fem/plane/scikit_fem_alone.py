@@ -1,0 +1,296 @@
+"""The whole gear by scikit-fem alone, which `fegear check` compares the condensed ring with.
+
+All teeth are meshed, assembled from vector-valued elements, condensed at the bore and factored at once: nothing is
+shared with `ring` and `condensation`, and of the mesh only the sectors. Tooth 0 has edges half as long, and still
+shorter ones below the pressures, which are as wide as the contacts themselves: none is widened, no corner gets a wedge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse.linalg import splu
+from skfem import (
+    Basis,
+    Dofs,
+    ElementTriP4,
+    ElementVector,
+    LinearForm,
+    MappingAffine,
+    MappingIsoparametric,
+    asm,
+    condense,
+    solve,
+)
+from skfem.helpers import dot
+from skfem.models.elasticity import linear_elasticity  # the equation is not fegear's either
+
+from fegear.fem.plane.boundary import sector_boundary
+from fegear.fem.plane.elasticity import lame
+from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.influence import CLEARANCE
+from fegear.fem.plane.mesh import SectorMesh
+from fegear.fem.plane.root_stress import search_end
+from fegear.fem.plane.sector import mesh_inside, mesh_sector
+from fegear.fem.plane.settings import COARSEST_LEVEL, settings_at
+from fegear.geometry.outline import turned
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from fegear.base.arrays import Array, Index
+    from fegear.fem.plane.settings import MeshSettings
+    from fegear.geometry.gear import Plane
+    from fegear.geometry.tooth import Tooth
+
+#: Edges of tooth 0, as a share of those that the gear was solved with; those of other teeth are longer by as much.
+_FINER = 0.5
+#: Degrees of the quadrature on straight elements of fourth order and on curved ones, whose integrands are rational.
+_STRAIGHT_DEGREE, _CURVED_DEGREE = 6, 12
+#: The reference triangle's edges: a point on each, and the direction along it.
+_EDGES = (((0.0, 0.0), (1.0, 0.0)), ((1.0, 0.0), (-1.0, 1.0)), ((0.0, 0.0), (0.0, 1.0)))
+_GAUSS = np.polynomial.legendre.leggauss(20)
+
+
+@dataclass(frozen=True)
+class WholeGearAlone:
+    """What P contacts on tooth 0 do, per unit line load; module 1, E = 1.
+
+    Parameters
+    ----------
+    c_self : ndarray, shape (P,)
+        Mean deflection weighted with the pressure, and a quarter of the half-plane's logarithm (`Influence`).
+    c_next, c_prev : ndarray, shape (P,)
+        Deflection at the same place of the teeth clockwise and counterclockwise.
+    root_tension, root_compression : ndarray, shape (P,)
+        Largest and smallest tangential stress along the fillets of tooth 0.
+    unknowns : int
+    """
+
+    c_self: Array
+    c_next: Array
+    c_prev: Array
+    root_tension: Array
+    root_compression: Array
+    unknowns: int
+
+
+def solve_alone(
+    tooth: Tooth,
+    bore_radius: float,
+    poisson_ratio: float,
+    plane: Plane,
+    settings: MeshSettings,
+    radius: Array,
+    half_width: float,
+) -> WholeGearAlone:
+    """Mesh, assemble, condense and solve the whole gear.
+
+    Parameters
+    ----------
+    tooth : Tooth
+    bore_radius : float
+        [modules].
+    poisson_ratio : float
+    plane : {"strain", "stress"}
+    settings : MeshSettings
+        That the gear was solved with.
+    radius : ndarray, shape (P,)
+        Of contacts that lie on the flank with all of their width [modules].
+    half_width : float
+        [modules].
+    """
+    arc = _flank_arc(tooth, radius)
+    mesh = _whole_gear(tooth, bore_radius, settings.refined(_FINER), [(s, half_width) for s in arc])
+    ring = _Ring(mesh)
+    lam, mu = lame(poisson_ratio, plane)
+    stiffness = asm(linear_elasticity(lam, mu), ring.bases())
+    own = [ring.pressure(tooth, s, half_width) for s in arc]
+    at = {k: [ring.at_flank(k, r) for r in radius] for k in (-1, 0, 1)}
+    loads = np.stack([*own, *at[0]], axis=1)
+    held = ring.dofs.get_facet_dofs(np.unique(ring.facets("bore"))).all()
+    moved = solve(*condense(stiffness, loads, x=np.zeros_like(loads), D=held), solver=_factored)
+    by_pressure, by_point = np.hsplit(moved, 2)
+    modulus = 1.0 / (1.0 - poisson_ratio**2) if plane == "strain" else 1.0
+    place, tension = ring.along("fillet:0", by_pressure, modulus)
+    _, compression = ring.along("back_fillet:0", by_pressure, modulus)
+    ends = search_end(place[-1], arc, half_width, CLEARANCE)
+    return WholeGearAlone(
+        c_self=np.einsum("pi,ip->p", np.stack(own), by_pressure) + 0.5 / (np.pi * modulus),
+        c_next=np.einsum("pi,ip->p", np.stack(at[1]), by_point),
+        c_prev=np.einsum("pi,ip->p", np.stack(at[-1]), by_point),
+        root_tension=np.where(place[:, None] <= ends, tension, -np.inf).max(axis=0),
+        root_compression=compression.min(axis=0),
+        unknowns=int(ring.dofs.N),
+    )
+
+
+def _factored(matrix: Any, right: Array) -> Array:
+    options = {"SymmetricMode": True}
+    return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options).solve(right)
+
+
+def _flank_arc(tooth: Tooth, radius: Array) -> Array:
+    """Arc length of radii from the start of the flank."""
+    roll = tooth.roll(np.maximum(np.append(radius, tooth.form_radius), tooth.base_radius))
+    arc = 0.5 * tooth.base_radius * np.asarray(roll) ** 2
+    return arc[:-1] - arc[-1]
+
+
+def _whole_gear(
+    tooth: Tooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]]
+) -> SectorMesh:
+    """All sectors joined, boundaries by name and tooth: ``flank:1`` is that of the tooth clockwise of tooth 0."""
+    coarse = min(settings_at(COARSEST_LEVEL), settings.refined(_FINER**-2), key=lambda s: s.root_edge_length)
+    plain = mesh_sector(tooth, bore_radius, coarse)
+    body = {c.name: c for c in sector_boundary(tooth, bore_radius, coarse) if c.name in ("bore", "side_a", "side_b")}
+    chains = [body.get(c.name, c) for c in sector_boundary(tooth, bore_radius, settings, contacts)]
+    loaded = mesh_inside(chains, tooth.teeth, growth=settings.side_growth)
+    z = tooth.teeth
+    sectors = [loaded] + [plain] * (z - 1)
+    points: list[Array] = []
+    triangles: list[Index] = []
+    number: list[Index] = []
+    count = 0
+    edges: dict[str, Index] = {}
+    bends: dict[str, Array] = {}
+    for k, mesh in enumerate(sectors):
+        own = np.full(mesh.points.shape[1], -1)
+        if k:
+            own[_side(mesh, "side_a")] = number[-1][_side(sectors[k - 1], "side_b")]
+        if k == z - 1:
+            own[_side(mesh, "side_b")] = number[0][_side(loaded, "side_a")]
+        new = np.flatnonzero(own < 0)
+        own[new] = count + np.arange(new.size)
+        count += new.size
+        number.append(own)
+        points.append(turned(mesh.points[:, new], 2.0 * np.pi * k / z))
+        triangles.append(own[mesh.triangles])
+        tooth_number = k if 2 * k <= z else k - z
+        for name in mesh.edges.keys() - {"side_a", "side_b"}:
+            edges[f"{name}:{tooth_number}"] = own[mesh.edges[name]]
+            bend = mesh.bends[name]
+            bends[f"{name}:{tooth_number}"] = turned(bend.reshape(2, -1), 2.0 * np.pi * k / z).reshape(bend.shape)
+    every, six = np.hstack(points), np.hstack(triangles)
+    rank = np.ones(count, dtype=bool)
+    rank[six[:3]] = False
+    order = np.argsort(rank, kind="stable")  # vertices first
+    place = np.argsort(order)
+    named = {name: place[e] for name, e in edges.items()}
+    return SectorMesh(every[:, order], place[six], named, 1, loaded.origin, bends=bends)
+
+
+def _side(mesh: SectorMesh, name: str) -> Index:
+    nodes = np.unique(mesh.edges[name])
+    return nodes[np.argsort(np.hypot(*mesh.points[:, nodes]))]
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """scikit-fem's functions at points on boundary edges that are the same edge of their triangles.
+
+    Parameters
+    ----------
+    basis : skfem.Basis
+    place, normal, tangent : ndarray, shape (2, m, q)
+        From the centre; unit vectors, the normal out of the material.
+    length : ndarray, shape (m, q)
+        Derivative of the arc length along the reference edge.
+    """
+
+    basis: Any
+    place: Array
+    normal: Array
+    tangent: Array
+    length: Array
+
+    def work(self, weight: Array) -> Array:
+        """Nodal forces that press against the material with weights at the points, shape (m, q)."""
+        share = weight / self.basis.dx
+        pressed = LinearForm(lambda v, w: -w.share * dot(w.normal, v))
+        return np.asarray(asm(pressed, self.basis, share=share, normal=self.normal))
+
+
+class _Ring:
+    """The whole gear's grid, numbering and functions."""
+
+    def __init__(self, mesh: SectorMesh) -> None:
+        self._elements, self._mesh = sector_elements(mesh, 4), mesh
+        self._grid = self._elements.grid
+        self._curves = MappingIsoparametric(self._grid, self._grid.elem())
+        self._vector = ElementVector(ElementTriP4())
+        self.dofs = Dofs(self._grid, self._vector)
+
+    def _basis(self, mapping: Any, chosen: Index, **at: Any) -> Any:
+        return Basis(self._grid, self._vector, mapping, elements=chosen, dofs=self.dofs, disable_doflocs=True, **at)
+
+    def bases(self) -> list[Any]:
+        """Functions on all elements, curved and straight."""
+        curved = self._elements.curved
+        return [
+            self._basis(self._curves, np.flatnonzero(curved), intorder=_CURVED_DEGREE),
+            self._basis(MappingAffine(self._grid), np.flatnonzero(~curved), intorder=_STRAIGHT_DEGREE),
+        ]
+
+    def facets(self, name: str) -> Index:
+        """Facets of a boundary, of one tooth (``flank:1``) or of all."""
+        found = [edges[2] for known, edges in self._mesh.edges.items() if name in (known, known.partition(":")[0])]
+        return self._elements.edge_of_point[np.concatenate(found)]
+
+    def edges(self, facets: Index, t: Array, weight: Array) -> Iterator[_Edges]:
+        """Functions at places t of [0, 1] along facets, shape (q,)."""
+        grid = self._grid
+        owner = grid.f2t[0, facets]
+        for number, (start, along) in enumerate(_EDGES):
+            chosen = owner[grid.t2f[number, owner] == facets]
+            if not chosen.size:
+                continue
+            direction = np.array(along)
+            at = np.array(start)[:, None] + direction[:, None] * t
+            basis = self._basis(self._curves, chosen, quadrature=(at, weight))
+            tangent = np.einsum("ikmq,k->imq", self._curves.DF(at, tind=chosen), direction)
+            length = np.hypot(*tangent)
+            tangent = tangent / length
+            place = self._curves.F(at, tind=chosen) + self._elements.tip
+            normal = np.stack([tangent[1], -tangent[0]])
+            inward = grid.p[:, grid.t[(2, 0, 1)[number], chosen]][:, :, None] + self._elements.tip - place
+            normal = np.where((normal * inward).sum(axis=0) > 0.0, -normal, normal)
+            yield _Edges(basis, place, normal, tangent, length)
+
+    def pressure(self, tooth: Tooth, arc: float, half_width: float) -> Array:
+        """Nodal forces of a semi-elliptic pressure of unit load on tooth 0."""
+        forces, total = np.zeros(self.dofs.N), 0.0
+        for edges in self.edges(self.facets("flank:0"), 0.5 + 0.5 * _GAUSS[0], 0.5 * _GAUSS[1]):
+            off = (_flank_arc(tooth, np.hypot(*edges.place).ravel()).reshape(edges.length.shape) - arc) / half_width
+            share = np.sqrt(np.maximum(1.0 - off * off, 0.0)) * edges.length * 0.5 * _GAUSS[1]
+            forces += edges.work(share)
+            total += share.sum()
+        return forces / total
+
+    def at_flank(self, number: int, radius: float) -> Array:
+        """Nodal forces of a unit point load on the flank of a tooth: they read its deflection there, too."""
+        facets = self.facets(f"flank:{number}")
+        ends = self._grid.p[:, self._grid.facets[:, facets]] + self._elements.tip
+        chosen = facets[[np.diff(np.hypot(*ends) > radius, axis=0)[0].argmax()]]
+        t = np.linspace(0.0, 1.0, 2001)
+        (edges,) = self.edges(chosen, t, np.ones(t.size))
+        rising = np.hypot(*edges.place[:, 0])
+        order = np.argsort(rising)
+        (edges,) = self.edges(chosen, np.array([np.interp(radius, rising[order], t[order])]), np.ones(1))
+        return edges.work(np.ones((1, 1)))
+
+    def along(self, name: str, moved: Array, modulus: float) -> tuple[Array, Array]:
+        """Arc length from the root and tangential stress along a fillet, shape (n,) and (n, P)."""
+        t = np.linspace(0.0, 1.0, 13)
+        places, stresses = [], []
+        for edges in self.edges(self.facets(name), t, np.ones(t.size)):
+            slopes = [edges.basis.interpolate(u).grad for u in moved.T]
+            found = [modulus * np.einsum("imq,ijmq,jmq->mq", edges.tangent, g, edges.tangent) for g in slopes]
+            places.append(edges.place.reshape(2, -1))
+            stresses.append(np.stack(found, axis=-1).reshape(-1, len(found)))
+        place, stress = np.hstack(places), np.vstack(stresses)
+        order = np.argsort(np.hypot(*place), kind="stable")
+        arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(place[:, order])))])
+        return arc, stress[order]

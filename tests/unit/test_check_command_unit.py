@@ -1,0 +1,97 @@
+"""``fegear check``: gears solved whole by scikit-fem alone, compared with the stated errors."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import InputError
+from fegear.cli import app
+from fegear.fem.plane import ring
+from fegear.studies import check
+
+CASES = Path(__file__).parents[2] / "cases"
+CASE = """
+results = ["stiffness"]
+[gear.a]
+teeth = 12
+module = "3 mm"
+face_width = "20 mm"
+bore_radius = "9 mm"
+profile_shift = 0.4
+"""
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    path = tmp_path_factory.mktemp("check") / "pinion.toml"
+    path.write_text(CASE, encoding="utf-8")
+    return path
+
+
+def said(capsys, *arguments):
+    """Exit code, output and errors of a command."""
+    with pytest.raises(SystemExit) as end:
+        app(["check", *map(str, arguments)])
+    out, err = capsys.readouterr()
+    return end.value.code or 0, out, err
+
+
+def test_the_whole_gear_by_scikit_fem_agrees_within_the_stated_errors(case, capsys, monkeypatch):
+    """Neither ring nor condensation of fegear takes part in what it is compared with."""
+    solved = []
+    close = ring._coupling
+    monkeypatch.setattr(ring, "_coupling", lambda *given: solved.append(1) or close(*given))
+    code, out, _ = said(capsys, case, "--json", "--positions", "2")
+    found = json.loads(out)
+    rows = found["gears"]["a"]["compared"]
+    assert code == 0
+    assert len(solved) == 2  # the solution and the coarser one of its estimate
+    assert (found["compared"], found["covered"]) == (10, 10)
+    assert [row["quantity"] for row in rows[::2]] == ["c_self", "c_next", "c_prev", "root_tension", "root_compression"]
+    for row in rows:
+        assert 0.0 < row["difference"] <= row["stated_error"] < 2e-3
+        assert abs(row["scikit_fem"] / row["fegear"] - 1.0) < 1e-3
+    assert found["gears"]["a"]["unknowns"] > 50_000
+    assert rows[0]["radius"] < rows[1]["radius"]
+
+
+def test_what_an_error_does_not_cover_is_said_and_ends_in_one(case, capsys, monkeypatch):
+    row = check.Compared("c_self", 20.0, 1.0, 1.002, "um.mm/N", 2e-3, 1e-3)
+    monkeypatch.setattr(check, "check_gear", lambda _scene, name, _positions: check.Checked(name, (row,), 7, 0.1))
+    code, out, _ = said(capsys, case)
+    assert code == 1
+    assert "NOT COVERED" in out
+    assert "0 of 1 differences are covered by the stated error." in out
+
+
+def test_cases_without_spur_gears_are_refused_in_a_sentence():
+    with pytest.raises(InputError, match=r"gear = .*: has no spur gear, whose section could be solved whole; check a "):
+        app(["check", str(CASES / "khbeta_helical.toml")], standalone_mode=False)
+
+
+def test_a_gear_with_a_mesh_of_its_own_is_refused_in_a_sentence(case):
+    (case.parent / "own.msh").touch()
+    with pytest.raises(InputError, match=r"gear.a.tooth_mesh = .*own.msh.*: replaces the outline"):
+        app(["check", str(case), "--set", 'gear.a.tooth_mesh="own.msh"'], standalone_mode=False)
+
+
+@pytest.mark.long
+def test_each_number_of_the_whole_gear_moves_with_what_it_depends_on():
+    """A softer body, a load nearer the tip: directions that both solutions must show."""
+    from fegear.fem.plane.scikit_fem_alone import solve_alone
+    from fegear.fem.plane.settings import settings_at
+    from fegear.geometry.rack import BasicRack
+    from fegear.geometry.tooth import Tooth
+
+    tooth = Tooth(8, BasicRack(1.0, 1.25, 0.25), 0.4)
+    radius = np.sqrt(np.linspace(tooth.form_radius**2, tooth.involute_tip_radius**2, 6)[2:5:2])
+    settings = settings_at(-3).scaled(3.0)
+    strain, stress = (solve_alone(tooth, 1.5, 0.3, plane, settings, radius, 0.05) for plane in ("strain", "stress"))
+    assert (stress.c_self > strain.c_self).all()
+    for found in (strain, stress):
+        assert (np.diff(found.c_self) > 0.0).all()
+        assert (found.c_self > found.c_next).all()
+        assert found.c_next == pytest.approx(found.c_prev, rel=1e-4)  # reciprocal, at one radius
+        assert (np.diff(found.root_compression) < 0.0).all()
