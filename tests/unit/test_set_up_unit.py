@@ -141,8 +141,10 @@ def checked(tmp_path):
 
     def run(*parts: str, fails: str = "nothing") -> subprocess.CompletedProcess:
         environment = os.environ | {"FAILS": fails}
-        command = [str(tmp_path / ".ci" / "run"), *parts]
-        return subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=60)
+        command = ["./run", *parts]
+        return subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=False, cwd=tmp_path / ".ci", timeout=60
+        )
 
     return run
 
