@@ -38,7 +38,7 @@ from fegear.fem.plane.settings import COARSEST_LEVEL, settings_at
 from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.settings import MeshSettings
@@ -260,26 +260,39 @@ class _Ring:
             yield _Edges(basis, place, normal, tangent, length)
 
     def pressure(self, tooth: Tooth, arc: float, half_width: float) -> Array:
-        """Nodal forces of a semi-elliptic pressure of unit load on tooth 0."""
-        forces, total = np.zeros(self.dofs.N), 0.0
-        for edges in self.edges(self.facets("flank:0"), 0.5 + 0.5 * _GAUSS[0], 0.5 * _GAUSS[1]):
-            off = (_flank_arc(tooth, np.hypot(*edges.place).ravel()).reshape(edges.length.shape) - arc) / half_width
-            share = np.sqrt(np.maximum(1.0 - off * off, 0.0)) * edges.length * 0.5 * _GAUSS[1]
-            forces += edges.work(share)
-            total += share.sum()
-        return forces / total
+        """Nodal forces of a semi-elliptic pressure of unit load on tooth 0, exact below its ends inside an edge."""
+        forces = np.zeros(self.dofs.N)
+        for facet in self.facets("flank:0"):
+            t, along = self._finely(facet, lambda place: _flank_arc(tooth, np.hypot(*place)))
+            low, high = np.arcsin(np.clip((along[[0, -1]] - arc) / half_width, -1.0, 1.0))
+            if low < high:
+                # s = arc + b sin(theta) takes (2 / pi) cos^2(theta) dtheta of the load.
+                theta = 0.5 * (low + high) + 0.5 * (high - low) * _GAUSS[0]
+                share = 0.5 * (high - low) * _GAUSS[1] * (2.0 / np.pi) * np.cos(theta) ** 2
+                forces += self._pressed(facet, np.interp(arc + half_width * np.sin(theta), along, t), share)
+        return forces
 
     def at_flank(self, number: int, radius: float) -> Array:
         """Nodal forces of a unit point load on the flank of a tooth: they read its deflection there, too."""
         facets = self.facets(f"flank:{number}")
         ends = self._grid.p[:, self._grid.facets[:, facets]] + self._elements.tip
-        chosen = facets[[np.diff(np.hypot(*ends) > radius, axis=0)[0].argmax()]]
+        (facet,) = facets[[np.diff(np.hypot(*ends) > radius, axis=0)[0].argmax()]]
+        t, along = self._finely(facet, lambda place: np.hypot(*place))
+        return self._pressed(facet, np.array([np.interp(radius, along, t)]), np.ones(1))
+
+    def _finely(self, facet: int, measure: Callable[[Array], Array]) -> tuple[Array, Array]:
+        """Places of [0, 1] along a facet and what is measured there, which ascends."""
         t = np.linspace(0.0, 1.0, 2001)
-        (edges,) = self.edges(chosen, t, np.ones(t.size))
-        rising = np.hypot(*edges.place[:, 0])
-        order = np.argsort(rising)
-        (edges,) = self.edges(chosen, np.array([np.interp(radius, rising[order], t[order])]), np.ones(1))
-        return edges.work(np.ones((1, 1)))
+        owner = self._grid.f2t[0, facet]
+        number = int((self._grid.t2f[:, owner] == facet).argmax())
+        start, along = (np.array(one)[:, None] for one in _EDGES[number])
+        measured = measure(self._curves.F(start + along * t, tind=np.array([owner]))[:, 0] + self._elements.tip[:, 0])
+        order = np.argsort(measured)
+        return t[order], measured[order]
+
+    def _pressed(self, facet: int, t: Array, share: Array) -> Array:
+        (edges,) = self.edges(np.array([facet]), t, np.ones(t.size))
+        return edges.work(share[None])
 
     def along(self, name: str, moved: Array, modulus: float) -> tuple[Array, Array]:
         """Arc length from the root and tangential stress along a fillet, shape (n,) and (n, P)."""
