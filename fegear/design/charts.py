@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.contact.fourier import Panels, effective_error, fourier_series, panels
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.load_sharing import share_load
@@ -53,26 +54,21 @@ def harris_map(engagement: Engagement, loads: ArrayLike, positions: int = 200) -
 class ReliefChart:
     """Excitation over amount, length and load of equal tip reliefs on both gears.
 
-    Parameters
-    ----------
-    amounts : ndarray, shape (A,)
-        Removal at the tips [m].
-    lengths : ndarray, shape (B,)
-        Lengths in the unit that `unit_length` gives.
-    loads : ndarray, shape (L,)
-        [N].
-    unit_length : float
-        Roll length [m] of length 1: tip to HPSTC of the driver.
-    effective_error, peak_to_peak : ndarray, shape (A, B, L)
-        [m].
+    Amounts have shape (A,), lengths (B,), loads (L,), both errors (A, B, L). Length 1 is from tip to HPSTC of the
+    driver.
     """
 
-    amounts: Array
-    lengths: Array
-    loads: Array
-    unit_length: float
-    effective_error: Array
-    peak_to_peak: Array
+    amounts: Array = shown("um", "removal at both tips", name="amount", label="amount at both tips")
+    lengths: Array = shown(
+        "", "in lengths from tip to HPSTC along the line of action", name="length",
+        label="length of tip relief (1: tip to HPSTC)",
+    )  # fmt: skip
+    loads: Array = shown("N", "along the line of action", name="total_load")
+    unit_length: float = shown("mm", "length 1 of the chart on the line of action")
+    effective_error: Array = shown(
+        "um", "A_e of NASA TM-89901, 0-peak", name="te_effective", label="effective transmission error A_{e}"
+    )
+    peak_to_peak: Array = shown("um", "largest less smallest", name="te_peak_to_peak")
 
     def optimum_lengths(self, metric: Metric = "effective_error") -> Array:
         """Length with the least excitation for each amount and load, shape (A, L); parabola through the lowest three.
@@ -175,21 +171,14 @@ def unit_amount(engagement: Engagement, load: float) -> float:
 class Robustness:
     """Excitation over every combination of the deviations asked for.
 
-    Parameters
-    ----------
-    load_factors, spacing_errors, relief_errors : ndarray, shapes (A,), (B,), (C,)
-        Load over its nominal value; spacing error of every second pair [m]; relative error of the relief's depth.
-    values : ndarray, shape (A, B, C)
-        The metric [m].
-    nominal : float
-        Without deviations [m].
+    Shapes (A,), (B,), (C,) of the deviations, and (A, B, C) of the metric.
     """
 
-    load_factors: Array
-    spacing_errors: Array
-    relief_errors: Array
-    values: Array
-    nominal: float
+    load_factors: Array = shown("", "load over design load", name="load_factor", label="load over design load")
+    spacing_errors: Array = shown("um", "of every second pair", name="spacing_error")
+    relief_errors: Array = shown("", "relative error of the relief's depth", name="relief_error")
+    values: Array = shown("um", "excitation")
+    nominal: float = shown("um", "without deviations")
 
     @property
     def worst(self) -> float:

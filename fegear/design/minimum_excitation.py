@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.shown import shown
 from fegear.design.relief_bound import refuse_deeper_than_the_tooth
 from fegear.geometry.relief import TabulatedRelief
 
@@ -212,26 +213,16 @@ def minimum_excitation(
 
 @dataclass(frozen=True, slots=True)
 class ReliefTable:
-    """Relief of one gear over its path, as a drawing gives it; arrays of shape (P,).
+    """Relief of one gear over its path, as a drawing gives it; arrays of shape (P,)."""
 
-    Parameters
-    ----------
-    x, radius, roll_angle : ndarray
-        [m], [m], [rad].
-    load : ndarray
-        Design load on the pair there [N].
-    relief : ndarray
-        Removal [m].
-    deflection : ndarray
-        Of this gear's flank under the design loads [m].
-    """
-
-    x: Array
-    radius: Array
-    roll_angle: Array
-    load: Array
-    relief: Array
-    deflection: Array
+    x: Array = shown("mm", "position on the line of action, positive toward the driver's tip")
+    radius: Array = shown("mm", "radius of the flank point")
+    roll_angle: Array = shown("deg", "roll angle of the flank point", label="roll angle")
+    load: Array = shown("N", "design load on the pair there", label="load")
+    relief: Array = shown("um", "material to remove, along the normal", label="material to remove")
+    deflection: Array = shown(
+        "um", "of this flank under the design loads, which the relief makes up for", label="deflection of the flank"
+    )
 
     def relieved(self) -> TabulatedRelief:
         """The relief that straight lines between the nodes make."""

@@ -52,9 +52,9 @@ def column_of(
     return Column(name or how.name, np.asarray(numbers), how.unit, meaning or how.meaning)
 
 
-def error_column(column: Column, si: Array, meaning: str = "") -> Column:
+def error_column(column: Column, si: Any, meaning: str = "") -> Column:
     """The estimated error of a column, in its unit."""
-    return Column(f"{column.name}_error", si, column.unit, meaning or f"estimated error of {column.name}")
+    return Column(f"{column.name}_error", np.asarray(si), column.unit, meaning or f"estimated error of {column.name}")
 
 
 def column_over(objects: Sequence[Any], attribute: str, *, name: str = "", meaning: str = "") -> Column:

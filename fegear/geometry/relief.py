@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal, Protocol
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.base.tally import note
 
 if TYPE_CHECKING:
@@ -49,19 +50,13 @@ class Relief(Protocol):
 class EndRelief:
     """Tip or root relief: nothing up to `start`, `amount` at `end`, growing with the given power of the roll angle.
 
-    Parameters
-    ----------
-    amount : float
-        Removal at `end` [m].
-    start, end : float
-        Roll angles [rad]; end > start is a tip relief, end < start a root relief. The curve goes on beyond `end`.
-    power : float
-        1 for linear, 2 for parabolic relief.
+    With end > start it is a tip relief, with end < start a root relief; the curve goes on beyond `end`. `power` is 1
+    for linear, 2 for parabolic relief.
     """
 
-    amount: float
-    start: float
-    end: float
+    amount: float = shown("um", "removal where the relief ends")
+    start: float = shown("deg", "roll angle at which the relief starts", name="start_roll_angle")
+    end: float = shown("deg", "roll angle at which the relief ends", name="end_roll_angle")
     power: float = 1.0
 
     def __post_init__(self) -> None:

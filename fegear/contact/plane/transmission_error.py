@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.shown import shows
 from fegear.contact.fourier import FourierSeries, Panels, effective_error, fourier_series, panels
 from fegear.contact.plane.load_sharing import share_load
 
@@ -55,16 +56,19 @@ class TransmissionError:
         return np.asarray(self.loaded.transmission_error[:, 0])
 
     @property
+    @shows("um", "mean transmission error over the base pitch", name="te_mean")
     def mean(self) -> float:
         """[m]."""
         return float(self.series.mean)
 
     @property
+    @shows("um", "largest less smallest", name="te_peak_to_peak")
     def peak_to_peak(self) -> float:
         """Largest less smallest value [m]."""
         return float(np.ptp(self.values))
 
     @property
+    @shows("um", "A_e of NASA TM-89901, 0-peak", name="te_effective")
     def effective_error(self) -> float:
         """A_e of TM-89901 [m]."""
         return float(effective_error(self.series))

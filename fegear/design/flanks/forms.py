@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.shown import shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,32 +27,21 @@ if TYPE_CHECKING:
 class GroundRelief:
     """Modification of both flanks together, the same along the face or along the profile but for the bias.
 
-    Parameters
-    ----------
-    driver_tip, driver_tip_length : float
-        Straight tip relief of the driver: removal at the end of the path of contact, and length along it [m].
-    driven_tip, driven_tip_length : float
-        The driven gear's, at the start of the path.
-    crowning : float
-        Of the lead: a parabola, nothing in the middle, removal at both ends of the face [m].
-    end_relief, end_relief_length : float
-        Removal at both ends of the face, growing as a straight line over a length [m].
-    slope : float
-        Of the helix: removal at the end of the face at +b/2 less that at -b/2 [m].
-    bias : float
-        Twist of the flank: growth of the driver's profile slope from one end of the face to the other [m]; a quarter
-        of it is taken from the driver's tip at +b/2 and from its root at -b/2, and left at the two other corners.
+    Tip reliefs are straight lines, the driver's to the end of the path of contact and the driven gear's to its start.
+    The crowning of the lead is a parabola, nothing in the middle of the face; the end relief grows as a straight line.
+    Of the bias (twist of the flank) a quarter is taken from the driver's tip at +b/2 and from its root at -b/2, and
+    left at the two other corners.
     """
 
-    driver_tip: float = 0.0
-    driver_tip_length: float = 0.0
-    driven_tip: float = 0.0
-    driven_tip_length: float = 0.0
-    crowning: float = 0.0
-    end_relief: float = 0.0
-    end_relief_length: float = 0.0
-    slope: float = 0.0
-    bias: float = 0.0
+    driver_tip: float = shown("um", "tip relief of the driver", default=0.0)
+    driver_tip_length: float = shown("mm", "along the line of action", default=0.0)
+    driven_tip: float = shown("um", "tip relief of the driven gear", default=0.0)
+    driven_tip_length: float = shown("mm", "along the line of action", default=0.0)
+    crowning: float = shown("um", "of the lead, at both ends", default=0.0)
+    end_relief: float = shown("um", "at both ends of the face", default=0.0)
+    end_relief_length: float = shown("mm", "along the face", default=0.0)
+    slope: float = shown("um", "of the helix, at +b/2 less at -b/2", default=0.0)
+    bias: float = shown("um", "profile slope at +b/2 less at -b/2, of the driver", default=0.0)
 
     @property
     def numbers(self) -> Array:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.one_thread import one_thread
+from fegear.base.shown import shown
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.lines import contact_lines, roll_points
 from fegear.design.flanks.trials import NOMINAL, FlankTrials, Scatter, Tried
@@ -52,26 +53,20 @@ class Number(NamedTuple):
 
 @dataclass(frozen=True)
 class Judged:
-    """What a relief leaves at the design load.
+    """What a relief leaves at the design load; what holds "over the scatter" is `PERCENTILE` of the misalignments."""
 
-    Parameters
-    ----------
-    peak_to_peak : Number
-        Of the transmission error [m].
-    face_load_factor, pressure : Number
-        K_Hbeta, and the largest Hertzian pressure away from tips and form circles [Pa].
-    mean_over_scatter, most_over_scatter : Number
-        Of the peak to peak over the misalignments: mean, and what `PERCENTILE` of them do not exceed [m].
-    factor_over_scatter : Number
-        K_Hbeta that as many do not exceed.
-    """
-
-    peak_to_peak: Number
-    face_load_factor: Number
-    pressure: Number
-    mean_over_scatter: Number
-    most_over_scatter: Number
-    factor_over_scatter: Number
+    peak_to_peak: Number = shown("um", "left at the design load", name="te_peak_to_peak")
+    face_load_factor: Number = shown("", "at the design load", name="K_Hbeta")
+    pressure: Number = shown("MPa", "largest, without tips and form circles", name="hertz_pressure")
+    mean_over_scatter: Number = shown(
+        "um", "peak to peak, mean over the misalignments of the scatter", name="te_mean_over_scatter"
+    )
+    most_over_scatter: Number = shown(
+        "um", "peak to peak that 95 % of the misalignments do not exceed", name="te_p95_over_scatter"
+    )
+    factor_over_scatter: Number = shown(
+        "", "K_Hbeta that 95 % of the misalignments do not exceed", name="K_Hbeta_p95_over_scatter"
+    )
 
 
 @dataclass(frozen=True)

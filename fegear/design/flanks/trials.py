@@ -19,6 +19,7 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.errors import ConvergenceError
+from fegear.base.shown import shows
 from fegear.contact.wide.complementarity import (
     approach_by_gap,
     deflection,
@@ -58,11 +59,13 @@ class Tried(ReadOnlyArrays):
         return np.stack([one.transmission_error for one in self.found])
 
     @property
+    @shows("um", "left", name="te_peak_to_peak", label="peak to peak")
     def peak_to_peak(self) -> Array:
         """Shape (S, L) [m]."""
         return np.asarray(np.ptp(self.te, axis=1))
 
     @cached_property
+    @shows("", "largest over mean load per face width", name="K_Hbeta", label="K_{Hβ}")
     def face_load_factor(self) -> Array:
         """K_Hbeta, shape (S, L); all misalignments are swept over the face in one go."""
         first = self.found[0]
@@ -72,6 +75,7 @@ class Tried(ReadOnlyArrays):
         return np.asarray(largest / (first.load / (first.lines.high - first.lines.low)))
 
     @cached_property
+    @shows("MPa", "largest, without tips and form circles", name="hertz_pressure")
     def pressure(self) -> Array:
         """Largest Hertzian pressure away from tips and form circles, shape (S, L) [Pa]."""
         inner = self.found[0].lines.present & ~self.found[0].lines.at_edge

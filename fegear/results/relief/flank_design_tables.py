@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import declared
+from fegear.engine.declared import column_of, column_over, error_column, value_of
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
@@ -19,15 +21,10 @@ if TYPE_CHECKING:
     from fegear.results.relief.flank_design import FlankDesignData
 
 
-#: What is stated of every relief: head, which of `Judged`, unit, text.
+#: What is stated of every relief; the last three where misalignment scatters.
 _JUDGED = (
-    ("te_peak_to_peak", "peak_to_peak", "um", "left at the design load"),
-    ("K_Hbeta", "face_load_factor", "", "at the design load"),
-    ("hertz_pressure", "pressure", "MPa", "largest, without tips and form circles"),
-    ("te_mean_over_scatter", "mean_over_scatter", "um", "peak to peak, mean over the misalignments of the scatter"),
-    ("te_p95_over_scatter", "most_over_scatter", "um", "peak to peak that 95 % of the misalignments do not exceed"),
-    ("K_Hbeta_p95_over_scatter", "factor_over_scatter", "", "K_Hbeta that 95 % of the misalignments do not exceed"),
-)
+    "peak_to_peak", "face_load_factor", "pressure", "mean_over_scatter", "most_over_scatter", "factor_over_scatter"
+)  # fmt: skip
 
 
 def topography_table(name: str, gear: str, member: Member, share: float, data: FlankDesignData) -> Table:
@@ -49,26 +46,18 @@ def topography_table(name: str, gear: str, member: Member, share: float, data: F
 
 def designs_table(name: str, data: FlankDesignData) -> Table:
     """Every way to relieve the flanks, its numbers and what it leaves."""
+    from fegear.design.flanks.forms import NUMBERS, GroundRelief
+
     design = data.design
     states, found = design.states, design.found
-    zero = np.zeros(9)
-    numbers = np.array([zero if s.relief is None else s.relief.numbers for s in states]).T
     counted = [found.get(s.label) for s in states]
     columns = [Column("relief", np.array([s.label for s in states]), "", "what is ground")]
-    for key, attribute, unit, text in _JUDGED:
-        numbers_of = [getattr(s.judged, attribute) for s in states]
-        columns += [
-            Column(key, np.array([one.value for one in numbers_of]), unit, text),
-            Column(f"{key}_error", np.array([one.error for one in numbers_of]), unit, "estimated error"),
-        ]
-    told = (
-        ("driver_tip", "um", "tip relief of the driver"), ("driver_tip_length", "mm", "along the line of action"),
-        ("driven_tip", "um", "tip relief of the driven gear"), ("driven_tip_length", "mm", "along the line of action"),
-        ("crowning", "um", "of the lead, at both ends"), ("end_relief", "um", "at both ends of the face"),
-        ("end_relief_length", "mm", "along the face"), ("slope", "um", "of the helix, at +b/2 less at -b/2"),
-        ("bias", "um", "profile slope at +b/2 less at -b/2, of the driver"),
-    )  # fmt: skip
-    columns += [Column(key, values, unit, text) for (key, unit, text), values in zip(told, numbers, strict=True)]
+    for key in _JUDGED:
+        numbers = [getattr(s.judged, key) for s in states]
+        column = column_of(states[0].judged, key, [one.value for one in numbers])
+        columns += [column, error_column(column, [one.error for one in numbers])]
+    ground = [s.relief or GroundRelief() for s in states]
+    columns += [column_over(ground, key) for key in NUMBERS]
     columns += [
         Column("combinations", np.array([one.candidates if one else 0 for one in counted]), "", "of the grid, tried"),
         Column("loaded_exactly", np.array([one.exact if one else 0 for one in counted]), "", "of them"),
@@ -91,11 +80,10 @@ def map_table(name: str, design: FlankDesign) -> Table:
         Column("over_face", np.tile(np.repeat(over_face, loads.size), len(states)), "um",
                "misalignment besides the given one: gap at +b/2 less that at -b/2"),
         Column("load", np.tile(loads, len(states) * over_face.size), "N", "along the line of action"),
-        Column("te_peak_to_peak", np.concatenate([s.mapped.peak_to_peak.ravel() for s in states]), "um", "left"),
-        Column("K_Hbeta", np.concatenate([s.mapped.face_load_factor.ravel() for s in states]), "",
-               "largest over mean load per face width"),
-        Column("hertz_pressure", np.concatenate([s.mapped.pressure.ravel() for s in states]), "MPa",
-               "largest, without tips and form circles"),
+        *(
+            column_of(states[0].mapped, key, np.concatenate([getattr(s.mapped, key).ravel() for s in states]))
+            for key in ("peak_to_peak", "face_load_factor", "pressure")
+        ),
     )  # fmt: skip
     return Table(f"flank_map_{name}", columns, f"Reliefs of pair {name} over misalignment and load")
 
@@ -118,11 +106,11 @@ def values_of(name: str, design: FlankDesign) -> tuple[Value, ...]:
     ]  # fmt: skip
     for state in design.states:
         key = state.label.replace("-", "_").replace(" ", "_")
-        values += [
-            Value(f"{name}.{key}.{head}", getattr(state.judged, attribute).value, unit,
-                  getattr(state.judged, attribute).error, f"{text}: {state.label}")
-            for head, attribute, unit, text in (_JUDGED if design.task.deviation else _JUDGED[:3])
-        ]  # fmt: skip
+        for attribute in _JUDGED if design.task.deviation else _JUDGED[:3]:
+            number = getattr(state.judged, attribute)
+            words = f"{declared(type(state.judged), attribute).meaning}: {state.label}"
+            owner = f"{name}.{key}"
+            values.append(value_of(state.judged, attribute, owner, number.error, si=number.value, meaning=words))
     return tuple(values)
 
 

@@ -18,6 +18,7 @@ from fegear.case.built.neglected_effects import design_remarks, neglected_in_des
 from fegear.case.built.pair_inputs import gear_name, pair_inputs
 from fegear.case.design import DesignPart
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, Zone
 from fegear.engine.outcome import Outcome, Value
@@ -39,9 +40,8 @@ from fegear.results.relief.relief_tables import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
-    from fegear.base.arrays import Array
     from fegear.case.built.loaded_pair import LoadedPair
     from fegear.case.built.pair_inputs import PairInputs
     from fegear.case.effects import EffectsPart
@@ -316,7 +316,8 @@ def relief_figures(name: str, data: ReliefData, tables: Sequence[Table], gears: 
 
 def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: Sequence[str]) -> Figure:
     """Reliefs of both gears (`tables` and `gears` of driver and driven) and the loads that they were designed for."""
-    x, reliefs, loads = Axis("roll angle", "deg"), [], []
+    some = next(iter(data.design.reliefs.values())).table
+    x, reliefs, loads = axis_of(some, "roll_angle"), [], []
     for member, table, gear in zip(data.design.reliefs, tables, gears, strict=True):
         shown = {column.name: np.asarray(column.values, dtype=float) for column in table.columns}
         roll = shown["roll_angle"]
@@ -330,11 +331,11 @@ def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: 
         points = roll_marks(data.pair.engagement.pair, member)
         loaded = roll[shown["load"] > 0.0]
         zone = Zone("x", float(loaded.min()), float(loaded.max()))
-        reliefs.append(
-            Panel(x, Axis("material to remove", "um"), tuple(curves), (zone, *points), f"{member}: gear {gear}")
-        )
+        reliefs.append(Panel(x, axis_of(some, "relief"), tuple(curves), (zone, *points), f"{member}: gear {gear}"))
         load = Curve(roll, shown["load"], "load of the design", "grey", dash="solid", markers=False)
-        loads.append(Panel(x, Axis("load", "N", zero=True), (load,), (zone, *points), f"{member}: load", height=0.6))
+        loads.append(
+            Panel(x, axis_of(some, "load", zero=True), (load,), (zone, *points), f"{member}: load", height=0.6)
+        )
     return Figure(
         f"relief_{name}",
         f"Profile relief of pair {name}",
@@ -350,19 +351,21 @@ def _relief_figure(name: str, data: ReliefData, tables: Sequence[Table], gears: 
 def _points_figure(name: str, data: ReliefData, gears: Sequence[str]) -> Figure:
     """Load, deflection and relief at the roll angles that the case asks for."""
     roll = Axis("roll angle of the gear", "deg")
-    rows: list[tuple[Axis, Callable[[ReliefTable], Array]]] = [
-        (Axis("load", "N", zero=True), lambda t: t.load),
-        (Axis("deflection of the flank", "um", zero=True), lambda t: t.deflection * 1e6),
-        (Axis("relief from the least", "um", zero=True), lambda t: (t.relief - t.relief.min()) * 1e6),
-    ]
     both = list(zip(data.points.items(), gears, strict=True))
-    panels = tuple(
-        Panel(roll, y, tuple(
-            Curve(np.degrees(t.roll_angle), of(t), f"{member}: gear {gear}", member, markers=True)
+    some = both[0][0][1]
+
+    def curves(key: str, *, from_least: bool = False) -> tuple[Curve, ...]:
+        return tuple(
+            Curve(drawn(t, "roll_angle"), drawn(t, key) - (drawn(t, key).min() if from_least else 0.0),
+                  f"{member}: gear {gear}", member, markers=True)
             for (member, t), gear in both
-        ))
-        for y, of in rows
-    )  # fmt: skip
+        )  # fmt: skip
+
+    panels = (
+        Panel(roll, axis_of(some, "load", zero=True), curves("load")),
+        Panel(roll, axis_of(some, "deflection", zero=True), curves("deflection")),
+        Panel(roll, axis_of(some, "relief", "relief from the least", zero=True), curves("relief", from_least=True)),
+    )
     return Figure(
         f"relief_points_{name}", f"Loads, deflections and relief of pair {name}",
         f"Pair {name}: at the roll angles asked for, the load of the design, the deflection of the flank under it, and "

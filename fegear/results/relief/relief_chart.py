@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import declared
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of, column_of, drawn, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
@@ -28,6 +30,10 @@ if TYPE_CHECKING:
     from fegear.design.charts import Metric, ReliefChart, Robustness
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.stage import Upstream, Work
+
+
+#: Abscissas of a chart, and how its single best is found.
+_GRID, _BEST = ("amounts", "lengths", "loads"), "equal tip reliefs, worst load, by A_e"
 
 
 @dataclass(frozen=True)
@@ -91,22 +97,28 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
         Table(
             f"relief_chart_{name}",
             (
-                Column("amount", a.ravel(), "um", "removal at both tips"),
-                Column("length", b.ravel(), "", "in lengths from tip to HPSTC along the line of action"),
-                Column("total_load", w.ravel(), "N", "along the line of action"),
-                Column("te_effective", chart.effective_error.ravel(), "um", "A_e of NASA TM-89901"),
-                Column("te_peak_to_peak", chart.peak_to_peak.ravel(), "um", "largest less smallest"),
+                *(column_of(chart, key, grid.ravel()) for key, grid in zip(_GRID, (a, b, w), strict=True)),
+                *(column_of(chart, key, getattr(chart, key).ravel()) for key in optimum),
             ),
             f"Excitation of {name} over amount, length and load",
         ),
         Table(
             f"relief_optimum_{name}",
             (
-                Column("amount", aa.ravel(), "um", "removal at both tips"),
-                Column("total_load", ww.ravel(), "N", "along the line of action"),
-                Column("length_effective", optimum["effective_error"].ravel(), "", "length with the least A_e"),
-                Column(
-                    "length_peak_to_peak", optimum["peak_to_peak"].ravel(), "", "length with the least peak to peak"
+                column_of(chart, "amounts", aa.ravel()),
+                column_of(chart, "loads", ww.ravel()),
+                *(
+                    column_of(
+                        chart,
+                        "lengths",
+                        optimum[key].ravel(),
+                        name=f"length_{head}",
+                        meaning=f"length with the {words}",
+                    )
+                    for key, head, words in (
+                        ("effective_error", "effective", "least A_e"),
+                        ("peak_to_peak", "peak_to_peak", "least peak to peak"),
+                    )
                 ),
             ),
             f"Optimum lengths of tip relief of {name}",
@@ -115,9 +127,9 @@ def _present_chart(data: ReliefChartData, inputs: ChartInputs) -> Outcome:
     amount, length = chart.best()
     values = [
         Value(f"{name}.delta", delta, "um", None, "largest transmission error without relief (Welbourn's Delta)"),
-        Value(f"{name}.unit_length", chart.unit_length, "mm", 0.0, "length 1 of the chart on the line of action"),
-        Value(f"{name}.best_amount", amount, "um", None, "equal tip reliefs, worst load, by A_e"),
-        Value(f"{name}.best_length", length, "", None, "equal tip reliefs, worst load, by A_e"),
+        value_of(chart, "unit_length", name, 0.0),
+        value_of(chart, "amounts", name, si=amount, name="best_amount", meaning=_BEST),
+        value_of(chart, "lengths", name, si=length, name="best_length", meaning=_BEST),
     ]
     for member in MEMBERS:
         values += tip_values(f"{name}.{member}.optimum_", best, member)
@@ -192,15 +204,16 @@ def _present_robustness(data: RobustnessData, inputs: RobustnessInputs) -> Outco
         values.append(
             Value(f"{name}.worst_{metric}.{label.replace(' ', '_')}", r.worst, "um", None, f"{label}, {where}")
         )
-    columns = list(zip(*rows, strict=True))
+    columns, some = list(zip(*rows, strict=True)), next(iter(data.candidates.values()))
     table = Table(
         f"robustness_{name}",
         (
             Column("candidate", np.array(columns[0]), "", "which relief"),
-            Column("load_factor", np.array(columns[1]), "", "load over design load"),
-            Column("spacing_error", np.array(columns[2]), "um", "of every second pair"),
-            Column("relief_error", np.array(columns[3]), "", "relative error of the relief's depth"),
-            Column(metric, np.array(columns[4]), "um", "excitation"),
+            *(
+                column_of(some, key, column)
+                for key, column in zip(("load_factors", "spacing_errors", "relief_errors"), columns[1:4], strict=True)
+            ),
+            column_of(some, "values", columns[4], name=metric),
         ),
         f"Robustness of the reliefs of {name}",
     )
@@ -213,17 +226,18 @@ def _chart_figures(name: str, data: ReliefChartData) -> tuple[Figure, ...]:
     chart = data.chart
     if chart.amounts.size < 2 or chart.lengths.size < 3:
         return ()
-    best, error, views = chart.optimum_lengths(), chart.effective_error * 1e6, []
+    best, error, amounts, views = chart.optimum_lengths(), drawn(chart, "effective_error"), drawn(chart, "amounts"), []
+    effective = declared(type(chart), "effective_error")
     for i in sorted(range(len(chart.loads)), key=lambda i: float(chart.loads[i]) != data.pair.nominal):
         load = chart.loads[i]
         inside = (best[:, i] > chart.lengths[0]) & (best[:, i] < chart.lengths[-1])
         length = np.where(inside, best[:, i], np.nan)
         items = (
-            HeatMap(chart.lengths, chart.amounts * 1e6, error[:, :, i],
-                    "effective transmission error A_{e}", "um", limits=(float(error.min()), float(error.max()))),
-            Curve(length, chart.amounts * 1e6, "length of least A_{e}", "over map", width=2.2, markers=False),
+            HeatMap(chart.lengths, amounts, error[:, :, i], effective.label, effective.unit,
+                    limits=(float(error.min()), float(error.max()))),
+            Curve(length, amounts, "length of least A_{e}", "over map", width=2.2, markers=False),
         )  # fmt: skip
-        axes = Axis("length of tip relief (1: tip to HPSTC)"), Axis("amount at both tips", "um")
+        axes = axis_of(chart, "lengths"), axis_of(chart, "amounts")
         word = " (nominal)" if float(load) == data.pair.nominal else ""
         views.append(View(f"{load:.5g} N{word}", (Panel(*axes, items, (Mark("y", data.delta * 1e6, "Δ"),)),)))
     figure = Figure(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.declared import column_of, column_over, columns_of, error_column, value_of
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
@@ -53,20 +54,12 @@ def relief_tables(name: str, design: ReliefDesign, inputs: ReliefInputs) -> list
     for member, label in inputs.labels.items():
         found = design.reliefs[member]
         t = found.table
-        columns = [
-            Column("x", t.x, "mm", "position on the line of action, positive toward the driver's tip"),
-            Column("radius", t.radius, "mm", "radius of the flank point"),
-            Column("roll_angle", t.roll_angle, "deg", "roll angle of the flank point"),
-            Column("load", t.load, "N", "design load on the pair there"),
-            Column("relief", t.relief, "um", "material to remove, along the normal"),
-            Column(
-                "deflection", t.deflection, "um", "of this flank under the design loads, which the relief makes up for"
-            ),
-        ]
+        columns = [*columns_of(t, "x", "radius", "roll_angle", "load", "relief", "deflection")]
         if found.diagonal is not None:
-            columns.append(Column("relief_diagonal", found.diagonal, "um", "without the neighbours' loads (Mark 5.4)"))
+            meaning = "without the neighbours' loads (Mark 5.4)"
+            columns.append(column_of(t, "relief", found.diagonal, name="relief_diagonal", meaning=meaning))
         if found.error is not None:
-            columns.append(Column("relief_error", found.error, "um", "estimated error of relief"))
+            columns.append(error_column(column_of(t, "relief"), found.error))
         title = f"Relief of gear {inputs.gears[member]} in pair {name}"
         tables.append(Table(f"relief_{label}", tuple(columns), title))
     return tables
@@ -74,14 +67,10 @@ def relief_tables(name: str, design: ReliefDesign, inputs: ReliefInputs) -> list
 
 def points_table(name: str, label: str, gear: str, t: ReliefTable) -> Table:
     """Relief at the roll angles that a case asks for, also counted from the least of them."""
+    above = t.relief - t.relief.min()
     columns = (
-        Column("roll_angle", t.roll_angle, "deg", "roll angle of the flank point"),
-        Column("radius", t.radius, "mm", "radius of the flank point"),
-        Column("x", t.x, "mm", "position on the line of action, positive toward the driver's tip"),
-        Column("load", t.load, "N", "design load on the pair there"),
-        Column("deflection", t.deflection, "um", "of this flank under the design loads"),
-        Column("relief", t.relief, "um", "material to remove, along the normal"),
-        Column("relief_over_least", t.relief - t.relief.min(), "um", "less the least of these rows"),
+        *columns_of(t, "roll_angle", "radius", "x", "load", "deflection", "relief"),
+        column_of(t, "relief", above, name="relief_over_least", meaning="less the least of these rows"),
     )
     return Table(f"relief_points_{label}", columns, f"Relief of gear {gear} in pair {name} at the angles asked for")
 
@@ -91,48 +80,57 @@ def grindable_table(
 ) -> Table:
     """Tip reliefs that come nearest, and what they leave."""
     # What is left comes from the same evaluation as the single values, not from the search's coarser one.
-    rows = [(shape, m, te[f"{shape} tip relief"], getattr(g, m)) for shape, g in ground.items() for m in MEMBERS]
-    bands = [getattr(g, f"{m}_band") for g in ground.values() for m in MEMBERS]
+    rows = [(shape, m, g) for shape, g in ground.items() for m in MEMBERS]
+    reliefs = [getattr(g, m) for _, m, g in rows]
+    first, last = zip(*(getattr(g, f"{m}_band") for _, m, g in rows), strict=True)
+    left = [te[f"{shape} tip relief"] for shape, *_ in rows]
+    start, base = np.array([r.start for r in reliefs]), np.array([p.gear(m).base_radius for _, m, _ in rows])
     errors = np.concatenate(
         [np.vstack([g.error, g.band_error]).reshape(3, 2, 2).swapaxes(0, 1) for g in ground.values()]
     )
-    start = np.array([r.start for *_, r in rows])
-    runner_up = np.array([ground[shape].runner_up for shape, *_ in rows])
-    doubt = np.array([ground[shape].runner_up_error for shape, *_ in rows])
-    left_off = np.array([ground[shape].objective_error for shape, *_ in rows])
-    base = np.array([p.gear(m).base_radius for _, m, *_ in rows])
+    amount, begin, ripple = (
+        column_over(reliefs, "amount"), column_over(reliefs, "start"),
+        column_over(left, "peak_to_peak", meaning="left at design load"),
+    )  # fmt: skip
+    ends = [
+        column_over(one, key, name=name, meaning=meaning)
+        for one, key, name, meaning in (
+            (first, "amount", "amount_from", "equally good: up to 1 % above the least"),
+            (last, "amount", "amount_to", "equally good"),
+            (last, "start", "start_from", "equally good, roll angle"),
+            (first, "start", "start_to", "equally good, roll angle"),
+        )
+    ]
+    ends_off = [
+        error_column(end, errors[:, which, what], f"how much {how} {end.name} may be")
+        for end, which, what, how in zip(ends, (1, 2, 2, 1), (0, 0, 1, 1), ("less", "more") * 2, strict=True)
+    ]
+
+    def of(key: str, unit: str, meaning: str) -> Column:
+        return Column(key, np.array([getattr(g, key) for *_, g in rows]), unit, meaning)
+
     return Table(
         f"grindable_{name}",
         (
             Column("shape", np.array([shape for shape, *_ in rows]), "", "of the tip relief"),
-            Column("gear", np.array([m for _, m, *_ in rows]), "", "driver or driven"),
-            Column("amount", np.array([r.amount for *_, r in rows]), "um", "removal at the tip"),
-            Column("amount_error", errors[:, 0, 0], "um", "estimated error of amount"),
-            Column("start_roll_angle", start, "deg", "where the relief starts"),
-            Column("start_roll_angle_error", errors[:, 0, 1], "deg", "estimated error of start_roll_angle"),
+            Column("gear", np.array([m for _, m, _ in rows]), "", "driver or driven"),
+            amount, error_column(amount, errors[:, 0, 0]), begin, error_column(begin, errors[:, 0, 1]),
             Column("start_radius", base * np.hypot(1.0, start), "mm", "the same as a radius"),
-            Column("te_peak_to_peak", np.array([t.peak_to_peak for _, _, t, _ in rows]), "um", "left at design load"),
-            Column("te_peak_to_peak_error", left_off, "um", "estimated error of te_peak_to_peak and te_effective"),
-            Column("te_effective", np.array([t.effective_error for _, _, t, _ in rows]), "um", "A_e left"),
-            Column("least", np.array([ground[shape].least for shape, *_ in rows]), "um", "left by the best of all"),
-            Column(
-                "amount_from", np.array([a.amount for a, _ in bands]), "um", "equally good: up to 1 % above the least"
+            ripple,
+            error_column(
+                ripple, [g.objective_error for *_, g in rows], "estimated error of te_peak_to_peak and te_effective"
             ),
-            Column("amount_to", np.array([b.amount for _, b in bands]), "um", "equally good"),
-            Column("amount_from_error", errors[:, 1, 0], "um", "how much less amount_from may be"),
-            Column("amount_to_error", errors[:, 2, 0], "um", "how much more amount_to may be"),
-            Column("start_from", np.array([b.start for _, b in bands]), "deg", "equally good, roll angle"),
-            Column("start_to", np.array([a.start for a, _ in bands]), "deg", "equally good, roll angle"),
-            Column("start_from_error", errors[:, 2, 1], "deg", "how much less start_from may be"),
-            Column("start_to_error", errors[:, 1, 1], "deg", "how much more start_to may be"),
-            Column("candidates", np.array([ground[shape].candidates for shape, *_ in rows]), "", "reliefs scanned"),
-            Column("starts", np.array([ground[shape].starts for shape, *_ in rows]), "", "valleys searched to the end"),
-            Column("agreeing", np.array([ground[shape].agreeing for shape, *_ in rows]), "", "of them, within 5 %"),
-            Column("runner_up", runner_up, "um", "the least that the other valleys leave"),
-            Column("runner_up_error", doubt, "um", "how much less runner_up may be"),
+            column_over(left, "effective_error", meaning="A_e left"),
+            of("least", "um", "left by the best of all"),
+            *ends[:2], *ends_off[:2], *ends[2:], *ends_off[2:],
+            of("candidates", "", "reliefs scanned"),
+            of("starts", "", "valleys searched to the end"),
+            of("agreeing", "", "of them, within 5 %"),
+            of("runner_up", "um", "the least that the other valleys leave"),
+            of("runner_up_error", "um", "how much less runner_up may be"),
         ),
         f"Tip reliefs of {name} that a shop can grind",
-    )
+    )  # fmt: skip
 
 
 def tip_values(key: str, ground: TipReliefPair, member: Member) -> list[Value]:
@@ -148,11 +146,12 @@ def tip_values(key: str, ground: TipReliefPair, member: Member) -> list[Value]:
     relief, (first, last) = getattr(ground, member), getattr(ground, f"{member}_band")
     low, high = (math.degrees(one.start) for one in (last, first))
     own = ground.error[:2] if member == "driver" else ground.error[2:]
-    starts = f"{low:.5g} to {high:.5g} deg"
-    amounts = f"{first.amount * 1e6:.4g} to {last.amount * 1e6:.4g} um"
+    amounts = f"to grind; equally good with the rest: {first.amount * 1e6:.4g} to {last.amount * 1e6:.4g} um"
+    starts = f"roll angle; equally good: {low:.5g} to {high:.5g} deg"
+    owner, _, head = key.rpartition(".")
     return [
-        Value(f"{key}amount", relief.amount, "um", float(own[0]), f"to grind; equally good with the rest: {amounts}"),
-        Value(f"{key}start", relief.start, "deg", float(own[1]), f"roll angle; equally good: {starts}"),
+        value_of(relief, "amount", owner, float(own[0]), name=f"{head}amount", meaning=amounts),
+        value_of(relief, "start", owner, float(own[1]), name=f"{head}start", meaning=starts),
     ]
 
 
@@ -177,15 +176,24 @@ def relief_values(name: str, design: ReliefDesign) -> list[Value]:
         key = label.replace(" ", "_")
         shape = next((one for one in design.ground if label == f"{one} tip relief"), None)
         error = design.left if label == "designed" else None if shape is None else design.ground[shape].objective_error
-        values.append(Value(f"{name}.te_peak_to_peak.{key}", t.peak_to_peak, "um", error, f"{label}, design load"))
-        values.append(Value(f"{name}.te_effective.{key}", t.effective_error, "um", None, f"A_e, {label}, design load"))
-    about = "designed, its relief tables read back linearly, design load"
-    values.append(Value(f"{name}.te_peak_to_peak.relief_tables", design.tables_leave, "um", None, about))
-    values.append(Value(f"{name}.te_mean.designed", design.te["designed"].mean, "um", None, "design load"))
+        values += [
+            value_of(t, "peak_to_peak", name, error, name=f"te_peak_to_peak.{key}", meaning=f"{label}, design load"),
+            value_of(t, "effective_error", name, name=f"te_effective.{key}", meaning=f"A_e, {label}, design load"),
+        ]
+    te = design.te["designed"]
+    values += [
+        value_of(
+            te, "peak_to_peak", name, si=design.tables_leave, name="te_peak_to_peak.relief_tables",
+            meaning="designed, its relief tables read back linearly, design load",
+        ),
+        value_of(te, "mean", name, name="te_mean.designed", meaning="design load"),
+    ]  # fmt: skip
     for shape, ground in design.ground.items():
         for member in MEMBERS:
             values += tip_values(f"{name}.{member}.{shape}_tip_", ground, member)
     for member, found in design.reliefs.items():
-        largest = float(found.table.relief.max())
-        values.append(Value(f"{name}.{member}.largest_relief", largest, "um", None, "over the path"))
+        largest = found.table.relief.max()
+        values.append(value_of(
+            found.table, "relief", f"{name}.{member}", si=largest, name="largest_relief", meaning="over the path"
+        ))  # fmt: skip
     return values
