@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from fegear.base.errors import GeometryError, InputError
+from fegear.base.shown import shown, shows
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
 
 if TYPE_CHECKING:
@@ -84,9 +85,9 @@ class Gear:
     """
 
     tooth: Tooth
-    module: float
-    bore_radius: float
-    face_width: float = 1e-3
+    module: float = shown("mm", "module")
+    bore_radius: float = shown("mm", "radius at which the body is held")
+    face_width: float = shown("mm", "face width", default=1e-3)
     material: Material = field(default_factory=Material)
     plane: Literal["strain", "stress", "auto"] = "strain"
     hand: Hand = "spur"
@@ -137,6 +138,7 @@ class Gear:
         return "strain" if self.plane == "strain" else "stress"
 
     @property
+    @shows("", "number of teeth")
     def teeth(self) -> int:
         """Number of teeth z."""
         return self.tooth.teeth
@@ -201,31 +203,37 @@ class Gear:
         return self.tooth.pressure_angle
 
     @property
+    @shows("mm", "pitch circle")
     def pitch_radius(self) -> float:
         """Pitch radius r [m]."""
         return self.tooth.pitch_radius * self.module
 
     @property
+    @shows("mm", "base circle")
     def base_radius(self) -> float:
         """r_b [m]."""
         return self.tooth.base_radius * self.module
 
     @property
+    @shows("mm", "root circle")
     def root_radius(self) -> float:
         """r_f [m]."""
         return self.tooth.root_radius * self.module
 
     @property
+    @shows("mm", "tip circle")
     def tip_radius(self) -> float:
         """r_a [m]."""
         return self.tooth.tip_radius * self.module
 
     @property
+    @shows("mm", "where the involute starts")
     def form_radius(self) -> float:
         """r_Ff, where the involute starts [m]."""
         return self.tooth.form_radius * self.module
 
     @property
+    @shows("mm", "where the involute ends")
     def involute_tip_radius(self) -> float:
         """r_Fa, where the involute ends [m]."""
         return self.tooth.involute_tip_radius * self.module

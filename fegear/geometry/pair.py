@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from fegear.base.errors import GeometryError
+from fegear.base.shown import shown, shows
 from fegear.geometry.involute import inv, pressure_angle_of_inv
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ class GearPair:
 
     driver: Gear
     driven: Gear
-    centre_distance: float = math.nan
+    centre_distance: float = shown("mm", "working centre distance", default=math.nan)
     axial_offset: float = 0.0
 
     def __post_init__(self) -> None:
@@ -138,16 +139,19 @@ class GearPair:
         return (self.driver.base_radius + self.driven.base_radius) / math.cos(self._working_angle(allowance=True))
 
     @cached_property
+    @shows("deg", "working pressure angle")
     def working_pressure_angle(self) -> float:
         """alpha_wt [rad]."""
         return math.acos(min((self.driver.base_radius + self.driven.base_radius) / self.centre_distance, 1.0))
 
     @cached_property
+    @shows("deg", "working helix angle")
     def working_helix_angle(self) -> float:
         """beta_w on the working pitch cylinders [rad]: tan(beta_w) = tan(beta_b) / cos(alpha_wt)."""
         return math.atan(math.tan(self.driver.base_helix_angle) / math.cos(self.working_pressure_angle))
 
     @property
+    @shows("mm", "backlash normal to the flanks")
     def normal_backlash(self) -> float:
         """j_bn, gap between the back flanks along their normal when the front flanks touch [m] (ISO 21771, 5.4.6)."""
         turn = float(inv(self.working_pressure_angle)) - float(inv(self._working_angle(allowance=True)))
@@ -157,11 +161,13 @@ class GearPair:
         return along * math.cos(self.driver.base_helix_angle)
 
     @property
+    @shows("mm", "backlash on the working pitch circle")
     def circumferential_backlash(self) -> float:
         """j_wt, the same as an arc of the working pitch circles [m]: j_bn / (cos(alpha_wt) cos(beta_b))."""
         return self.normal_backlash / (math.cos(self.working_pressure_angle) * math.cos(self.driver.base_helix_angle))
 
     @property
+    @shows("mm", "base pitch")
     def base_pitch(self) -> float:
         """p_bt [m], the distance of successive contacts along the line of action."""
         return self.driver.base_pitch
@@ -224,11 +230,13 @@ class GearPair:
         return min(by_tip, by_form)
 
     @property
+    @shows("mm", "length of the path of contact")
     def path_length(self) -> float:
         """g_alpha [m]."""
         return self.x_end - self.x_start
 
     @property
+    @shows("", "transverse contact ratio")
     def contact_ratio(self) -> float:
         """Transverse contact ratio epsilon_alpha."""
         return self.path_length / self.base_pitch
@@ -251,11 +259,13 @@ class GearPair:
         return 0.5 * (low + high) - (0.0 if member == "driver" else self.axial_offset)
 
     @property
+    @shows("", "overlap ratio, faces middle to middle")
     def overlap_ratio(self) -> float:
         """epsilon_beta: how many pitches the helix advances over the common face; zero for spur gears."""
         return self.face_width * abs(self.driver.twist) / self.driver.angular_pitch
 
     @property
+    @shows("", "total contact ratio")
     def total_contact_ratio(self) -> float:
         """epsilon_gamma = epsilon_alpha + epsilon_beta."""
         return self.contact_ratio + self.overlap_ratio

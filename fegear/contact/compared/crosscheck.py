@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.shown import shown, shows
 from fegear.formulas import hertz
 from fegear.formulas.outcome import attempt
 from fegear.formulas.root_section import load_line
@@ -53,42 +54,33 @@ class RootStressAnswers:
 
 @dataclass(frozen=True, slots=True)
 class ComplianceAnswers:
-    """One compliance formula over load positions, shape (N,) [m^2/N].
+    """One compliance formula over load positions, shape (N,); its parts have shape (K, N).
 
-    Parameters
-    ----------
-    total : ndarray
-        NaN exactly where `reasons` has words.
-    parts : ndarray, shape (K, N)
-        What it is the sum of.
-    reasons : tuple of str
+    The total is NaN exactly where `reasons` has words.
     """
 
-    total: Array
-    parts: Array
-    reasons: tuple[str, ...]
+    total: Array = shown(
+        "um.mm/N", "by the formula, deflection along the line of action per line load", name="compliance",
+        label="deflection per line load",
+    )  # fmt: skip
+    parts: Array = shown("um.mm/N", "part of the formula's sum")
+    reasons: tuple[str, ...] = shown("", "why the formula gives nothing; empty where it does", name="reason")
 
 
 @dataclass(frozen=True, slots=True)
 class PairReference(ReadOnlyArrays):
-    """Finite elements of one tooth pair over contact positions, shape (N,).
+    """Finite elements of one tooth pair over contact positions, shape (N,); compliances per unit line load."""
 
-    Parameters
-    ----------
-    x : ndarray
-        Distance from the pitch point along the line of action [m].
-    driver, driven : ndarray
-        Compliance of each tooth with its body and its side of the contact [m^2/N].
-    half_width : ndarray
-        Hertzian half-width of the contact [m].
-    """
-
-    x: Array
-    driver: Array
-    driven: Array
-    half_width: Array
+    x: Array = shown(
+        "mm", "contact point from the pitch point, positive toward the driver's tip",
+        label="contact point from the pitch point",
+    )  # fmt: skip
+    driver: Array = shown("um.mm/N", "FE, the driver's tooth with its side of the contact", name="driver_fe")
+    driven: Array = shown("um.mm/N", "FE, the driven tooth with its side of the contact", name="driven_fe")
+    half_width: Array = shown("mm", "Hertz's half-width under the line load", name="contact_half_width")
 
     @property
+    @shows("um.mm/N", "FE, one tooth pair with its contact", name="compliance_fe")
     def total(self) -> Array:
         """Deflection of the pair per unit line load [m^2/N]."""
         return self.driver + self.driven

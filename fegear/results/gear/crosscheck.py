@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_of, columns_of, error_column, tiled
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark, Zone
 from fegear.engine.outcome import Outcome, Value
@@ -29,8 +30,6 @@ from fegear.results.gear.stiffness import chosen_gears, needs_solution, solution
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from numpy.typing import NDArray
 
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
@@ -48,6 +47,10 @@ if TYPE_CHECKING:
 
 #: Line load of the pairs when the case names none [N/m].
 USUAL_LINE_LOAD = 100e3
+
+
+#: What formulas answer, by their names.
+_Answers: TypeAlias = "Mapping[str, RootStressAnswers] | Mapping[str, ComplianceAnswers]"
 
 
 #: The whole case is one subject: gears and pairs share the tables of sources and the remarks.
@@ -263,9 +266,6 @@ class CrosscheckData:
     iso: Mapping[str, RatedPair]
 
 
-COMPLIANCE, STRESS = "um.mm/N", "MPa.mm/N"
-
-
 def root_stress_table(
     name: str, gear: Gear, fe: StiffnessTable, answers: Mapping[str, RootStressAnswers]
 ) -> tuple[Table, tuple[Value, ...]]:
@@ -273,35 +273,40 @@ def root_stress_table(
     count, m = fe.radius.size, gear.module
     times = len(answers)
 
-    def tiled(values: Array) -> Array:
-        return np.tile(values, times)
-
     def joined(attribute: str, scale: float) -> Array:
         return np.concatenate([getattr(a, attribute) for a in answers.values()]) * scale
 
     stress = joined("stress", 1.0 / m)
-    ratio = stress / tiled(fe.root_tension)
+    ratio = stress / np.tile(fe.root_tension, times)
+    of_fe = column_of(
+        fe, "root_tension", name="root_tension_fe", meaning="largest tangential stress of the fillet by FE"
+    )
     columns = (
-        Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources"),
-        Column("radius", tiled(fe.radius), "mm", "radius of the contact point"),
-        Column("roll_angle", tiled(fe.roll_angle), "deg", "roll angle of the contact point"),
-        Column("root_tension", stress, STRESS, "by the formula, per line load normal to the flank"),
-        Column("root_tension_fe", tiled(fe.root_tension), STRESS, "largest tangential stress of the fillet by FE"),
-        Column("root_tension_fe_error", tiled(fe.errors["root_tension"]), STRESS, "estimated error of FE"),
+        _formulas(answers, count),
+        *tiled(columns_of(fe, "radius", "roll_angle"), times),
+        column_of(fe, "root_tension", stress, meaning="by the formula, per line load normal to the flank"),
+        *tiled((of_fe, error_column(of_fe, fe.errors["root_tension"], "estimated error of FE")), times),
         Column("ratio_to_fe", ratio, "", "formula over FE"),
-        Column("place_radius", joined("radius", m), "mm", "where the formula puts it"),
-        Column("place_radius_fe", tiled(fe.root_tension_radius), "mm", "where FE puts it"),
-        Column("place_angle", joined("tangent_angle", 1.0), "deg", "fillet tangent to tooth centre line there"),
-        Column("place_angle_fe", tiled(fe.root_tension_angle), "deg", "the same by FE"),
-        Column("reason", _words(answers), "", "why the formula gives nothing; empty where it does"),
+        column_of(
+            fe, "root_tension_radius", joined("radius", m), name="place_radius", meaning="where the formula puts it"
+        ),
+        *tiled((column_of(fe, "root_tension_radius", name="place_radius_fe", meaning="where FE puts it"),), times),
+        column_of(fe, "root_tension_angle", joined("tangent_angle", 1.0), name="place_angle"),
+        *tiled((column_of(fe, "root_tension_angle", name="place_angle_fe", meaning="the same by FE"),), times),
+        _reasons(answers),
     )
     title = f"Root stress of gear {name}: closed forms over finite elements"
     values = _extremes(f"{name}.root_stress", ratio.reshape(times, count), tuple(answers))
     return Table(f"crosscheck_root_stress_{name}", columns, title), values
 
 
-def _words(answers: Mapping[str, RootStressAnswers] | Mapping[str, ComplianceAnswers]) -> NDArray[np.str_]:
-    return np.array([reason for a in answers.values() for reason in a.reasons], dtype=np.str_)
+def _formulas(answers: _Answers, count: int) -> Column:
+    return Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources")
+
+
+def _reasons(answers: _Answers) -> Column:
+    words = np.array([reason for a in answers.values() for reason in a.reasons], dtype=np.str_)
+    return Column("reason", words, "", "why the formula gives nothing; empty where it does")
 
 
 def _extremes(prefix: str, ratio: Array, names: tuple[str, ...]) -> tuple[Value, ...]:
@@ -336,14 +341,15 @@ def _compliance_table(
         np.concatenate([a.parts[i] if len(a.parts) > i else a.parts[0] for a in answers.values()])
         for i in range(len(parts))
     ]
+    some = next(iter(answers.values()))
     columns = (
-        Column("formula", np.repeat(list(answers), count), "", "name of the formula, see crosscheck_sources"),
-        *(Column(c.name, np.tile(c.si, times), c.unit, c.meaning) for c in first),
-        Column("compliance", total, COMPLIANCE, "by the formula, deflection along the line of action per line load"),
-        *(Column(c.name, np.tile(c.si, times), c.unit, c.meaning) for c in reference),
+        _formulas(answers, count),
+        *tiled(first, times),
+        column_of(some, "total", total),
+        *tiled(reference, times),
         Column("ratio_to_fe", ratio, "", "formula over FE"),
-        *(Column(p, s, COMPLIANCE, "part of the formula's sum") for p, s in zip(parts, split, strict=True)),
-        Column("reason", _words(answers), "", "why the formula gives nothing; empty where it does"),
+        *(column_of(some, "parts", s, name=p) for p, s in zip(parts, split, strict=True)),
+        _reasons(answers),
     )
     table = Table(f"crosscheck_compliance_{name}", columns, f"{what}: closed forms over finite elements")
     return table, _extremes(f"{name}.compliance", ratio.reshape(times, count), tuple(answers))
@@ -352,30 +358,25 @@ def _compliance_table(
 def gear_compliance_table(name: str, gear: Gear, found: GearAnswers) -> tuple[Table, tuple[Value, ...]]:
     """Every compliance formula of one tooth, without its contact, over the finite elements."""
     fe, zone = found.table, found.contact_zone
-    first = (
-        Column("radius", fe.radius, "mm", "radius of the contact point"),
-        Column("roll_angle", fe.roll_angle, "deg", "roll angle of the contact point"),
+    tooth = column_of(
+        fe, "c_self", fe.c_self - zone, name="compliance_fe", meaning="FE, the loaded tooth without its contact zone"
     )
+    taken_off = "half-plane approach that was taken off from FE"
     reference = (
-        Column("compliance_fe", fe.c_self - zone, COMPLIANCE, "FE, the loaded tooth without its contact zone"),
-        Column("compliance_fe_error", fe.errors["c_self"], COMPLIANCE, "estimated error of FE"),
-        Column("contact_zone", zone, COMPLIANCE, "half-plane approach that was taken off from FE"),
+        tooth,
+        error_column(tooth, fe.errors["c_self"], "estimated error of FE"),
+        column_of(fe, "c_self", zone, name="contact_zone", meaning=taken_off),
     )
     parts = ("bending", "shear", "axial", "foundation")
     what = f"Compliance of one tooth of gear {name} without its contact, plane {gear.plane_assumption}"
+    first = columns_of(fe, "radius", "roll_angle")
     return _compliance_table(name, what, first, reference, found.compliance, parts)
 
 
 def pair_table(name: str, check: PairCheck, found: PairAnswers) -> tuple[Table, tuple[Value, ...], str]:
     """Table and values of a pair, and what is to be remarked about ISO's c'; empty if nothing."""
     fe, w = found.reference, check.line_load
-    first = (Column("x", fe.x, "mm", "contact point from the pitch point, positive toward the driver's tip"),)
-    reference = (
-        Column("compliance_fe", fe.total, COMPLIANCE, "FE, one tooth pair with its contact"),
-        Column("driver_fe", fe.driver, COMPLIANCE, "FE, the driver's tooth with its side of the contact"),
-        Column("driven_fe", fe.driven, COMPLIANCE, "FE, the driven tooth with its side of the contact"),
-        Column("contact_half_width", fe.half_width, "mm", "Hertz's half-width under the line load"),
-    )
+    first, reference = columns_of(fe, "x"), columns_of(fe, "total", "driver", "driven", "half_width")
     what = f"Compliance of one tooth pair of pair {name} under {w * 1e-3:.6g} N/mm"
     parts = ("driver", "driven", "contact")
     table, values = _compliance_table(name, what, first, reference, found.compliance, parts)
@@ -430,7 +431,8 @@ def crosscheck_figure(table: Table) -> Figure:
         return tuple(drawn)
 
     x = Axis(*label)
-    key, unit = ("root_tension", STRESS) if stress else ("compliance", COMPLIANCE)
+    key = "root_tension" if stress else "compliance"
+    unit = table.column(key).unit
     title = "root stress per line load" if stress else "deflection per line load"
     panels = [
         Panel(x, Axis(title, unit, zero=not stress), curves(key, f"{key}_fe"), height=1.2),

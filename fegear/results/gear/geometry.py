@@ -14,6 +14,7 @@ import numpy as np
 
 from fegear.base.errors import GeometryError
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_over, value_of
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
@@ -34,6 +35,15 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair
 
 
+#: Of a pair, as single values.
+_OF_PAIR = ("contact_ratio", "centre_distance", "working_pressure_angle", "path_length", "base_pitch")
+#: Of a gear, in the table of all gears.
+_SHOWN = (
+    "teeth", "module", "tip_radius", "involute_tip_radius", "pitch_radius", "base_radius", "form_radius",
+    "root_radius", "bore_radius", "face_width",
+)  # fmt: skip
+
+
 def _everything(scene: Scene) -> tuple[str, ...]:
     return ("",) if scene.gears else ()
 
@@ -43,24 +53,11 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
     names = list(gears)
     measures = {column.name: column for column in measurement_columns(drawing, names)}
 
-    def column(name: str, attribute: str, meaning: str) -> Column:
-        values = np.array([getattr(gear, attribute) for gear in gears.values()])
-        return Column(name, values, "mm", meaning)
-
     table = Table(
         "geometry",
         (
             Column("gear", np.array(names), "", "name of the gear"),
-            Column("teeth", np.array([gear.teeth for gear in gears.values()]), "", "number of teeth"),
-            column("module", "module", "module"),
-            column("tip_radius", "tip_radius", "tip circle"),
-            column("involute_tip_radius", "involute_tip_radius", "where the involute ends"),
-            column("pitch_radius", "pitch_radius", "pitch circle"),
-            column("base_radius", "base_radius", "base circle"),
-            column("form_radius", "form_radius", "where the involute starts"),
-            column("root_radius", "root_radius", "root circle"),
-            column("bore_radius", "bore_radius", "radius at which the body is held"),
-            column("face_width", "face_width", "face width"),
+            *(column_over(tuple(gears.values()), attribute) for attribute in _SHOWN),
             *(measures[name] for name in ("span_teeth", "span", "ball_diameter", "over_balls")),
             *(measures[name] for name in ("tooth_thickness", "tip_thickness")),
         ),
@@ -265,26 +262,15 @@ def lone_table(drawing: Drawing) -> Table | None:
 
 def pair_values(name: str, pair: GearPair) -> tuple[Value, ...]:
     """The numbers of a pair as a whole."""
-    more: tuple[Value, ...] = ()
-    if pair.driver.helix_angle != 0.0:
-        more = (
-            Value(f"{name}.overlap_ratio", pair.overlap_ratio, "", 0.0, "overlap ratio, faces middle to middle"),
-            Value(f"{name}.total_contact_ratio", pair.total_contact_ratio, "", 0.0, "total contact ratio"),
-            Value(f"{name}.working_helix_angle", pair.working_helix_angle, "deg", 0.0, "working helix angle"),
-            Value(f"{name}.circumferential_backlash", pair.circumferential_backlash, "mm", 0.0,
-                  "backlash on the working pitch circle"),
-        )  # fmt: skip
+    helical = pair.driver.helix_angle != 0.0
+    backlash = "" if helical else "backlash along the line of action"
+    more = ("overlap_ratio", "total_contact_ratio", "working_helix_angle", "circumferential_backlash")
     return (
-        Value(f"{name}.contact_ratio", pair.contact_ratio, "", 0.0, "transverse contact ratio"),
-        Value(f"{name}.centre_distance", pair.centre_distance, "mm", 0.0, "working centre distance"),
-        Value(f"{name}.working_pressure_angle", pair.working_pressure_angle, "deg", 0.0, "working pressure angle"),
-        Value(f"{name}.path_length", pair.path_length, "mm", 0.0, "length of the path of contact"),
-        Value(f"{name}.base_pitch", pair.base_pitch, "mm", 0.0, "base pitch"),
-        Value(f"{name}.normal_backlash", pair.normal_backlash, "mm", 0.0, "backlash along the line of action"
-              if pair.driver.helix_angle == 0.0 else "backlash normal to the flanks"),
-        *more,
+        *(value_of(pair, attribute, name, 0.0) for attribute in _OF_PAIR),
+        value_of(pair, "normal_backlash", name, 0.0, meaning=backlash),
+        *(value_of(pair, attribute, name, 0.0) for attribute in more if helical),
         *_losses(name, pair),
-    )  # fmt: skip
+    )
 
 
 def _losses(name: str, pair: GearPair) -> tuple[Value, ...]:
