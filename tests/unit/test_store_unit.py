@@ -232,7 +232,7 @@ def test_a_closed_pipe_is_an_error_after_meshing_too():
         "import os\n"
         "from fegear.fem.plane.sector import mesh_sector\n"
         "from fegear.fem.plane.settings import MeshSettings\n"
-        "from fegear.geometry import Tooth\n"
+        "from fegear.geometry.tooth import Tooth\n"
         "mesh_sector(Tooth(20), 5.0, MeshSettings().scaled(3.0))\n"
         "reader, writer = os.pipe()\n"
         "os.close(reader)\n"

@@ -3,6 +3,7 @@
 import itertools
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fegear.base.solution_cache import SolutionCache
@@ -12,8 +13,10 @@ from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
 from fegear.engine.stage import Task
 from fegear.fem.plane import solution
+from fegear.fem.plane.influence import Influence
 from fegear.fem.plane.settings import MeshSettings, settings_at
-from fegear.fem.plane.solution import level_for, solve_to_tolerance
+from fegear.fem.plane.solution import level_for, solve_gear, solve_to_tolerance
+from fegear.fem.plane.table import stiffness_table
 from fegear.geometry.gear import Gear
 from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
@@ -62,6 +65,27 @@ def test_a_missed_tolerance_is_refined_and_no_solution_is_wasted(monkeypatch):
     sizes = [one.unknowns for one in known.rounds]
     assert sizes == sorted(sizes)
     assert known.seconds["total"] == pytest.approx(sum(one.seconds for one in known.rounds))
+
+
+def test_errors_are_looked_for_once_for_tolerance_and_table(monkeypatch):
+    """And with them what is usual over the flank, which every table needs: each load is integrated once."""
+    known = solve_to_tolerance(steel_gear(), 1e-2)
+    asked, own = [], Influence.self_compliance
+    monkeypatch.setattr(Influence, "self_compliance", lambda self, *args: asked.append(self) or own(self, *args))
+    radii = [1.1e-2, 1.15e-2, 1.2e-2]
+    table = stiffness_table(known.gear, radii, 2e-5, influence=known)
+    assert [one is known.coarse for one in asked] == [True]
+    np.testing.assert_array_equal(table.c_self, known.self_compliance(radii, 2e-5))
+    assert (table.errors["c_self"] >= known.self_error(radii, 2e-5)).all()
+    np.testing.assert_array_equal(table.errors["root_tension"], known.root_stress_error(0, "tension", radii, 2e-5))
+
+
+def test_a_gear_without_a_second_solution_knows_no_error():
+    known = solve_gear(steel_gear(), settings_at(-3), estimate_error=False)
+    assert np.isnan(list(known.largest_errors().values())).all()
+    assert all(np.isnan(one).all() for one in (known.self_error(1.1e-2, 2e-5), known.contact(1.1e-2, 2e-5)[1]))
+    assert np.isnan(known.root_stress_error(0, "tension", 1.1e-2)).all()
+    assert known.neighbour_error(1, [1.1e-2, 1.2e-2], [1.1e-2]).shape == (2, 1)
 
 
 def test_refinement_ends_at_the_finest_level_and_says_so(monkeypatch, tmp_path):

@@ -126,12 +126,16 @@ class Influence:
         """
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
         width = np.broadcast_to(np.asarray(half_width, dtype=float), arc.shape)
+        return self._placed(arc, width), width
+
+    def _placed(self, arc: Array, width: Array) -> Array:
+        """Arc positions as of `place`."""
         low, high = self.flank.flank_start, self.flank.flank_end
         check_half_widths(width, np.minimum(arc - low, high - arc))
         arc = np.minimum(arc, high - np.maximum(width - self.flank.beyond, 0.0))
         if self.flank.lower_corner:
             arc = np.maximum(arc, low + width)
-        return arc, width
+        return arc
 
     def _remote(self, radius: ArrayLike, patch: float) -> Array:
         """Loads in their exact place for effects away from the contact, where a narrow patch needs no resolution.
@@ -206,18 +210,10 @@ class Influence:
         if wanted.ndim > 1:  # several widths at every radius
             at, widths = np.broadcast_arrays(np.asarray(radius, dtype=float), wanted)
             return self.self_compliance(at.ravel(), patch, widths.ravel()).reshape(at.shape)
-        arc, width = self.place(radius, wanted)
-        regular = self._regular(arc, width, patch)
-        for corner, inward, angle in self._corners:
-            distance = inward * (arc - corner)
-            near = distance < self.corner_distance
-            if near.any():
-                regular[near] = self._beside_corner(corner, inward, angle, distance[near], width[near], patch)
-        bend = self.curvature_slope * _MEAN * self._curvature(arc)
-        return regular - self.log_slope * np.log(width) + bend * width
+        return self._deflection(*self.place(radius, wanted), patch)
 
-    def tip_shift(self, radius: ArrayLike, patch: float, half_width: ArrayLike) -> Array:
-        """How much less a true contact beside the tip gives way than Hertz's pressure in its place, shape (P,) [1/E].
+    def contact(self, radius: ArrayLike, patch: float, half_width: ArrayLike) -> tuple[Array, Array]:
+        """`self_compliance`, and how much less a true contact beside the tip gives way, shape (P,) each [1/E].
 
         Towards the tip a tooth grows softer, so a convex body pressed on it carries more of its load below the place
         where it was aimed at, and gives way less. With c' the slope of c_0 and R the body's radius, the load W moves by
@@ -233,9 +229,35 @@ class Influence:
         off = np.maximum(end - arc, width)
         step = np.minimum(_STEP_SHARE * off, _STEP)
         below = np.maximum(arc - step, self.flank.flank_start + np.minimum(width, 0.5 * (arc - self.flank.flank_start)))
-        at, lower = (self.self_compliance(self.flank.radius_of_arc(s), patch, width) for s in (arc, below))
+        both = np.concatenate([arc, self._placed(below, width)]), np.concatenate([width, width])
+        at, lower = np.split(self._deflection(*both, patch), 2)
         slope = (at - lower) / np.maximum(arc - below, _POINT)
-        return np.asarray(0.1875 * slope**2 * width**2 / self.log_slope / (1.0 + (off / _BESIDE_TIP) ** 2))
+        return at, np.asarray(0.1875 * slope**2 * width**2 / self.log_slope / (1.0 + (off / _BESIDE_TIP) ** 2))
+
+    def _deflection(self, arc: Array, width: Array, patch: float) -> Array:
+        """`self_compliance` of contacts as they were placed: these, and those that stand for some, are loaded at once.
+
+        Nearer to a corner than the mesh resolves scaled contacts on a wedge differ by a logarithm alone. What is left
+        of first order in the distance follows from contacts at once and twice the corner distance.
+        """
+        d, beside = self.corner_distance, []
+        places, widths = [arc], [width]
+        for corner, inward, angle in self._corners:
+            near = np.flatnonzero(inward * (arc - corner) < d)
+            distance = np.maximum(inward * (arc[near] - corner), 1e-6 * d)
+            beside.append((near, distance / d, angle))
+            for n in (1.0, 2.0):
+                places.append(np.full(near.shape, corner + inward * n * d))
+                widths.append(n * d * width[near] / distance)
+        regular, *others = np.split(
+            self._regular(np.concatenate(places), np.concatenate(widths), patch),
+            np.cumsum([one.size for one in places[:-1]]),
+        )
+        for (near, share, angle), once, twice in zip(beside, others[::2], others[1::2], strict=True):
+            slope = (wedge_slope(angle) - 2.0 / np.pi) * self.log_slope * np.pi / 2.0
+            regular[near] = once - slope * np.log(share) + (share - 1.0) * (twice - once + slope * np.log(2.0))
+        bend = self.curvature_slope * _MEAN * self._curvature(arc)
+        return regular - self.log_slope * np.log(width) + bend * width
 
     @property
     def _corners(self) -> list[tuple[float, float, float]]:
@@ -246,22 +268,6 @@ class Influence:
         if self.flank.beyond < self.corner_distance:
             found.append((self.flank.flank_end + self.flank.beyond, -1.0, upper))
         return found
-
-    def _beside_corner(
-        self, corner: float, inward: float, angle: float, distance: Array, width: Array, patch: float
-    ) -> Array:
-        """`_regular` nearer to a corner than the mesh resolves: scaled contacts on a wedge differ by a logarithm alone.
-
-        What is left of first order in the distance follows from contacts at once and twice the corner distance.
-        """
-        d = self.corner_distance
-        distance = np.maximum(distance, 1e-6 * d)
-        slope = (wedge_slope(angle) - 2.0 / np.pi) * self.log_slope * np.pi / 2.0
-        near, twice = (
-            self._regular(np.full(distance.shape, corner + inward * n * d), n * d * width / distance, patch)
-            for n in (1.0, 2.0)
-        )
-        return near - slope * np.log(distance / d) + (distance / d - 1.0) * (twice - near + slope * np.log(2.0))
 
     def _regular(self, arc: Array, width: Array, patch: float) -> Array:
         """What contacts leave of c_0 beside what depends on their width in closed form, shape (P,)."""

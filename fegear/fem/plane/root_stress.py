@@ -8,6 +8,7 @@ converges one order faster than elsewhere (superconvergence), and needs no inter
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -152,7 +153,7 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike, clearance: f
     ends = np.broadcast_to(np.asarray(end, dtype=float), values.shape[1:])
     if clearance < math.inf:
         values = _without_contact(values, arc, ends, clearance)
-    smoothing, slopes = _smoothing(arc)
+    smoothing, slopes = _smoothing(np.ascontiguousarray(arc).tobytes())
     height, step = sign * (smoothing @ values), np.diff(arc)[:, None]
     rise = sign * (slopes @ values)
     a, p, q = height[:-1], rise[:-1] * step, rise[1:] * step
@@ -201,13 +202,16 @@ def curves_apart(values: Array, others: Array) -> Array:
     return np.asarray(np.where(counts, np.abs(others - values), 0.0).max(axis=-1))
 
 
-def _smoothing(arc: Array) -> tuple[csr_array, csr_array]:
+@functools.lru_cache(maxsize=16)
+def _smoothing(points: bytes) -> tuple[csr_array, csr_array]:
     """Matrices from values at points to a smooth curve's values and slopes there, shape (points, points).
 
-    Sparse, for their products then have the same bits for one column as for many.
+    Sparse, for their products then have the same bits for one column as for many. Those of the last few fillets are
+    kept, by the content of their points' arc lengths: a fillet is asked about for loads of every kind.
     """
     from scipy.sparse import csr_array
 
+    arc = np.frombuffer(points)
     chebyshev, count = np.polynomial.chebyshev, min(_POINTS, arc.size)
     first = np.clip(np.arange(arc.size) - count // 2, 0, arc.size - count)
     column = first[:, None] + np.arange(count)

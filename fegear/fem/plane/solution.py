@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from fegear.base.plain import code_version, content_key, pack, read_only, unpack
+from fegear.base.plain import code_version, content_key, pack, unpack
 from fegear.base.solution_cache import Codec, SolutionCache
 from fegear.fem.plane.boundary import check_bore
+from fegear.fem.plane.estimate import Estimate
 from fegear.fem.plane.gear import GearInfluence
 from fegear.fem.plane.influence import Influence, solve_influence
 from fegear.fem.plane.mesh import SectorMesh
@@ -26,12 +27,11 @@ from fegear.fem.plane.root_stress import FilletStrain
 from fegear.fem.plane.sector import mesh_sector
 from fegear.fem.plane.settings import COARSEST_LEVEL, FINEST_LEVEL, LEVEL_RATIO, MeshSettings, settings_at
 from fegear.fem.plane.trace import LoadedFlank
-from fegear.geometry.gear import Gear, Material
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from fegear.geometry.gear import Plane
+    from fegear.geometry.gear import Gear, Plane
     from fegear.geometry.tooth import Tooth
 
     Progress = Callable[[str], None]
@@ -172,7 +172,10 @@ def solve_gear(
             say("influence functions on a coarser mesh, for the error")
             coarse = influence_of_shape(*shape, coarser, reach, cache)
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
-    return GearInfluence(gear, fine, coarse, replace(settings), coarser.patch_half_width, seconds)
+    estimate: Estimate | None = None
+    if coarse is not None:
+        estimate = Estimate(fine, coarse, settings.patch_half_width, coarser.patch_half_width)
+    return GearInfluence(gear, fine, estimate, replace(settings), seconds)
 
 
 def solve_to_tolerance(
@@ -209,7 +212,8 @@ def solve_to_tolerance(
         started = time.perf_counter()
         settings, coarser = settings_at(level), settings_at(level - 1)
         known = solve_gear(gear, settings, reach=reach, coarser=coarser, progress=progress, cache=cache)
-        errors = _errors_of_shape(_shape(gear), settings, coarser, reach, cache)
+        known = _with_errors(known, content_key("largest errors", _shape(gear), settings, coarser, reach), cache)
+        errors = known.largest_errors()
         rounds.append(Round(settings, known.fine.unknowns, errors, time.perf_counter() - started))
         if rounds[-1].error <= tolerance or level >= FINEST_LEVEL or len(rounds) == _MOST_ROUNDS:
             seconds = {**known.seconds, "total": sum(one.seconds for one in rounds)}
@@ -217,22 +221,14 @@ def solve_to_tolerance(
         level += 1
 
 
-def _errors_of_shape(
-    shape: tuple[Tooth, float, float, Plane],
-    settings: MeshSettings,
-    coarser: MeshSettings,
-    reach: int,
-    cache: SolutionCache,
-) -> Mapping[str, float]:
-    """`GearInfluence.largest_errors`, which neither size nor steel change: a sweep over loads asks again and again."""
-    tooth, bore_radius, nu, plane = shape
+def _with_errors(known: GearInfluence, key: str, cache: SolutionCache) -> GearInfluence:
+    """Look for errors over the flank, which neither size nor steel change: a sweep over loads asks again and again."""
 
-    def largest() -> Mapping[str, float]:
-        gear = Gear(tooth, 1.0, bore_radius, material=Material(1.0, nu), plane=plane)
-        solved = solve_gear(gear, settings, reach=reach, coarser=coarser, cache=cache)
-        return read_only(solved.largest_errors())
+    def looked_for() -> Estimate | None:
+        known.largest_errors()
+        return known.estimate
 
-    return cache.solve(content_key("largest errors", shape, settings, coarser, reach), largest).value
+    return replace(known, estimate=cache.solve(key, looked_for).value)
 
 
 def _shape(gear: Gear) -> tuple[Tooth, float, float, Plane]:

@@ -11,6 +11,7 @@ import numpy as np
 from fegear.base.errors import RangeError
 from fegear.base.shown import shown
 from fegear.fem.plane.contact_width import check_half_widths
+from fegear.fem.plane.influence import SIDES
 from fegear.fem.plane.solution import solve_gear
 
 if TYPE_CHECKING:
@@ -121,20 +122,22 @@ def stiffness_table(
 def _columns(known: GearInfluence, r: Array, b: Array) -> dict[str, Array]:
     """Every column over some of the load positions, and each error as ``error_of_<column>``."""
     module = known.gear.module
+    c_self, c_self_error = known.contact(r, b)
+    c_next, c_neighbour_error = known.neighbour_with_error(1, r, r)
     found = {
-        "c_self": known.self_compliance(r, b),
+        "c_self": c_self,
         "c_prev": np.diagonal(known.neighbour(-1, r, r)),
-        "c_next": np.diagonal(known.neighbour(1, r, r)),
-        "error_of_c_self": known.contact_error(r, b),
-        "error_of_c_neighbour": np.diagonal(known.neighbour_error(1, r, r)),
+        "c_next": np.diagonal(c_next),
+        "error_of_c_self": c_self_error,
+        "error_of_c_neighbour": np.diagonal(c_neighbour_error),
     }
-    for side in ("tension", "compression"):
-        value, arc = known.largest_root_stress(0, side, r, b)
+    for side in SIDES:
+        value, arc, error = known.root_stress_with_error(0, side, r, b)
         fillet = known.fine.fillets[side]
         found[f"root_{side}"] = value
         found[f"root_{side}_radius"] = np.interp(arc / module, fillet.arc, fillet.radius) * module
         found[f"root_{side}_angle"] = np.interp(arc / module, fillet.arc, fillet.tangent_angle)
-        found[f"error_of_root_{side}"] = known.root_stress_error(0, side, r, b)
+        found[f"error_of_root_{side}"] = error
     return found
 
 

@@ -80,13 +80,13 @@ def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
     if gear.form_radius <= gear.pitch_radius <= gear.involute_tip_radius:
         known, at = t.influence, np.array([gear.pitch_radius])
         b = np.interp(gear.pitch_radius, t.radius[np.argsort(t.radius)], t.half_width[np.argsort(t.radius)])
-        for key, c, error, meaning in (
-            ("c_self", known.self_compliance(at, b)[0], known.contact_error(at, b)[0], "self compliance"),
-            ("c_prev", known.neighbour(-1, at, at)[0, 0], known.neighbour_error(-1, at, at)[0, 0], "tooth before"),
-            ("c_next", known.neighbour(1, at, at)[0, 0], known.neighbour_error(1, at, at)[0, 0], "tooth after"),
+        for key, (c, off), meaning in (
+            ("c_self", known.contact(at, b), "self compliance"),
+            ("c_prev", known.neighbour_with_error(-1, at, at), "tooth before"),
+            ("c_next", known.neighbour_with_error(1, at, at), "tooth after"),
         ):
             words = f"{meaning}, load on the pitch circle"
-            found.append(value_of(t, key, name, error, si=c, name=f"{key}_at_pitch", meaning=words))
+            found.append(value_of(t, key, name, off.item(), si=c.item(), name=f"{key}_at_pitch", meaning=words))
     for key, largest in zip(_SIDES, (np.argmax(t.root_tension), np.argmin(t.root_compression)), strict=True):
         words = f"per line load, load at radius {t.radius[largest] * 1e3:.6g} mm"
         error, value = float(t.errors[key][largest]), getattr(t, key)[largest]

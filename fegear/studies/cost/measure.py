@@ -145,12 +145,7 @@ def finite_elements(asked: Asked, configuration: Configuration, solved: Mapping[
     if settings is None:
         raise ValueError(f"{configuration.label} is no finite-element configuration")
     gears = asked.scene.gears
-    return FiniteElements(
-        {
-            name: GearInfluence(gears[name], one, None, settings, settings.patch_half_width, {})
-            for name, one in solved.items()
-        }
-    )
+    return FiniteElements({name: GearInfluence(gears[name], one, None, settings, {}) for name, one in solved.items()})
 
 
 def _record(found: Found, configuration: Configuration, source: Source, seconds: Mapping[str, Seconds]) -> None:

@@ -1,0 +1,188 @@
+"""How far two solutions of one tooth shape are apart, and what error of the finer one follows; dimensionless."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.plain import read_only
+from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH
+from fegear.fem.plane.influence import SIDES, Influence, Side
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from fegear.base.arrays import Array
+
+#: What errors are estimated of.
+QUANTITIES = ("c_self", "c_neighbour", "root_tension", "root_compression")
+#: Part of the difference from the coarser solution of the error estimate that is taken for the error of the finer one:
+#: of c_0, of neighbours, of stresses, learned from random gears (docs/numerics.md). Smooth errors of order four
+#: leave a third; but gmsh draws every mesh anew, positions differ, pressures narrow less than edges, and a neighbour's
+#: deflection, a small error anyway, differs least regularly.
+_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 2.1, 2.4, 1.0
+#: What is modelled nearer to an end of the flank than the mesh resolves is wrong by the first power of the edges'
+#: length, of which neighbouring levels differ by two fifths.
+_END_SHARE = 3.0
+#: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
+#: times what the difference usually is over the flank.
+_USUAL = 1.5
+#: Positions over the flank, evenly in roll angle, at which usual errors are looked for; for the largest, twice as many
+#: and these distances from its ends [modules].
+_SAMPLES = 17
+_BESIDE_ENDS = (0.005, 0.01, 0.02, 0.035, 0.05, 0.075, 0.1)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Values of a solution with their errors, from what another one of the same shape gives; module 1, E = 1.
+
+    Parameters
+    ----------
+    fine : Influence
+        The solution that every number comes from.
+    coarse : Influence
+        A cheaper (or, on a user's own mesh, a higher-order) one.
+    patch, coarse_patch : float
+        Half-width of the wider pressure that loads each of them [modules].
+
+    Notes
+    -----
+    What is usual over the flank is looked for once, at all positions together: a tolerance and a table both need it.
+    """
+
+    fine: Influence
+    coarse: Influence
+    patch: float
+    coarse_patch: float
+
+    def contact(self, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
+        """c_0, its error, and how much less a true contact gives way (`Influence.contact`), shape (P,) each."""
+        value, shift = self.fine.contact(radius, self.patch, half_width)
+        difference = self._self_difference(value, radius, half_width)
+        return value, self._self_estimate(radius, half_width, difference), shift
+
+    def self_error(self, radius: Array, half_width: Array) -> Array:
+        """Error of c_0, shape (P,)."""
+        value = self.fine.self_compliance(radius, self.patch, half_width)
+        return self._self_estimate(radius, half_width, self._self_difference(value, radius, half_width))
+
+    def neighbour(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
+        """c_k(p, q) and its error, shape (P, Q) each."""
+        self._neighbour_at_samples(k)  # first: at the same positions tooth after tooth is asked for
+        value, difference = self._neighbour_difference(k, p, q)
+        return value, self._neighbour_estimate(k, difference)
+
+    def root_stress(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
+        """Largest root stress, where it sits, and its error, shape (P,) each."""
+        self._stress_at_samples(k)  # first: at the same positions side after side is asked for
+        value, place, difference = self._stress_difference(k, side, radius, half_width)
+        return value, place, self._stress_estimate(k, side, radius, half_width, value, difference)
+
+    @cached_property
+    def largest(self) -> Mapping[str, float]:
+        """Largest relative error over the flank of c_self, c_neighbour (over c_self), root_tension, root_compression.
+
+        Of contacts .02 modules wide to either side.
+        """
+        r, b = self._samples, np.asarray(REFERENCE_HALF_WIDTH)
+        own, difference = self._self_at_samples
+        errors = {"c_self": self._self_estimate(r, b, difference) / own}
+        if self.fine.reach:
+            difference = np.diagonal(self._neighbour_at_samples(1))
+            errors["c_neighbour"] = self._neighbour_estimate(1, difference) / own
+        for side in SIDES:
+            value, difference = self._stress_at_samples(0)[side]
+            errors[f"root_{side}"] = self._stress_estimate(0, side, r, b, value, difference) / np.abs(value)
+        return read_only({key: float(np.max(values)) for key, values in errors.items()})
+
+    def _self_difference(self, value: Array, radius: Array, half_width: Array) -> Array:
+        return np.abs(value - self.coarse.self_compliance(radius, self.coarse_patch, half_width))
+
+    @cached_property
+    def _self_at_samples(self) -> tuple[Array, Array]:
+        """Value, and its difference from the other solution's."""
+        r, b = self._samples, np.asarray(REFERENCE_HALF_WIDTH)
+        value = self.fine.self_compliance(r, self.patch, b)
+        return value, self._self_difference(value, r, b)
+
+    def _self_estimate(self, radius: Array, half_width: Array, difference: Array) -> Array:
+        share = np.where(self._at_an_end(radius, half_width), _END_SHARE, _SHARE)
+        usual = _root_mean_square(self._self_at_samples[1][:_SAMPLES])
+        return np.maximum(share * difference, _SHARE * _USUAL * usual)
+
+    def _neighbour_difference(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
+        value = self.fine.neighbour(k, p, q, self.patch)
+        return value, np.abs(value - self.coarse.neighbour(k, p, q, self.coarse_patch))
+
+    def _neighbour_at_samples(self, k: int) -> Array:
+        if k not in self._neighbours:
+            self._neighbours[k] = self._neighbour_difference(k, self._samples, self._samples)[1]
+        return self._neighbours[k]
+
+    def _neighbour_estimate(self, k: int, difference: Array) -> Array:
+        usual = _root_mean_square(self._neighbour_at_samples(k)[:_SAMPLES, :_SAMPLES])
+        return _NEIGHBOUR_SHARE * np.maximum(difference, _USUAL * usual)
+
+    def _stress_difference(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
+        value, place = self.fine.largest_root_stress(k, side, radius, half_width)
+        return value, place, np.abs(value - self.coarse.largest_root_stress(k, side, radius, half_width)[0])
+
+    def _stress_at_samples(self, k: int) -> dict[Side, tuple[Array, Array]]:
+        """Value of each side, and its difference from the other solution's."""
+        if k not in self._stresses:
+            r, b = self._samples, np.asarray(REFERENCE_HALF_WIDTH)
+            self._stresses[k] = {side: self._stress_difference(k, side, r, b)[::2] for side in SIDES}
+        return self._stresses[k]
+
+    def _stress_estimate(
+        self, k: int, side: Side, radius: Array, half_width: Array, value: Array, difference: Array
+    ) -> Array:
+        usual = {
+            at: _root_mean_square((off / largest)[:_SAMPLES])
+            for at, (largest, off) in self._stress_at_samples(k).items()
+        }
+        # The back fillet has the loaded one's shape and no shorter edges: it errs no less, should
+        # its difference vanish by chance.
+        least = _USUAL * (max(usual.values()) if side == "compression" else usual[side])
+        # The loaded fillet feels a contact at its upper end; the back one is as far from it as from any.
+        near = self._at_an_end(radius, half_width) & (k == 0 and side == "tension")
+        share = np.where(near, _END_SHARE, _STRESS_SHARE)
+        return np.maximum(share * difference, _STRESS_SHARE * least * np.abs(value))
+
+    @cached_property
+    def _neighbours(self) -> dict[int, Array]:
+        return {}
+
+    @cached_property
+    def _stresses(self) -> dict[int, dict[Side, tuple[Array, Array]]]:
+        return {}
+
+    def _at_an_end(self, radius: Array, half_width: Array) -> NDArray[np.bool_]:
+        """Whether contacts are narrower than pressures that the mesh resolves, and have no room for these."""
+        flank = self.fine.flank
+        arc, resolved = flank.arc_of_radius(radius), 2.0 * max(self.fine.corner_distance, self.coarse.corner_distance)
+        room = np.minimum(arc - flank.flank_start, flank.flank_end - arc)
+        return np.asarray((room < resolved) & (half_width < resolved))
+
+    @cached_property
+    def _samples(self) -> Array:
+        """Radii at which errors are looked for: `_SAMPLES` evenly in roll angle, those between, and near the ends."""
+        flank, tooth = self.fine.flank, self.fine.tooth
+        low, high = max(flank.lowest_radius, tooth.form_radius), min(flank.highest_radius, tooth.involute_tip_radius)
+        first, last = tooth.roll(np.array([max(low, tooth.base_radius), high])).tolist()
+        evenly = np.clip(tooth.radius_of_roll(np.linspace(first, last, _SAMPLES)), low, high)
+        between = np.sqrt(0.5 * (evenly[1:] ** 2 + evenly[:-1] ** 2))
+        # On an involute the squared radius grows by twice the base radius times the arc length.
+        near = 2.0 * tooth.base_radius * np.array(_BESIDE_ENDS)
+        ends = np.sqrt(np.concatenate([low**2 + near, high**2 - near]))
+        return np.concatenate([evenly, between, ends[(ends > low) & (ends < high)]])
+
+
+def _root_mean_square(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
