@@ -14,6 +14,8 @@ from fegear.geometry.gear import Gear, Material
 from fegear.geometry.pair import GearPair
 from fegear.geometry.tooth import Tooth
 
+pytestmark = pytest.mark.last_bit
+
 FAST = MeshSettings().scaled(2.0)
 
 

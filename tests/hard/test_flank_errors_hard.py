@@ -18,6 +18,8 @@ from fegear.geometry.pair import MEMBERS
 from fegear.results.pair.loaded_flanks import load_flanks
 from tests.helpers.solved_once import CACHE
 
+pytestmark = pytest.mark.last_bit
+
 CASES = Path(__file__).parents[2] / "cases"
 POSITIONS = (8, 12, 16, 24)
 #: Crowning of the pair [um], tip edges and reliefs, loads besides the nominal one, panels over the face.

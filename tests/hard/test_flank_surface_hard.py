@@ -9,6 +9,8 @@ from fegear.base.errors import FegearError, InputError
 from fegear.formulas.lubricant import Oil
 from fegear.workbench.run import run
 
+pytestmark = pytest.mark.last_bit
+
 KINDS = ("mineral", "polyalphaolefin", "polyglycol", "water-soluble-polyglycol", "traction-fluid", "phosphate-ester")
 
 

@@ -21,6 +21,8 @@ from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import EndRelief, tip_relief
 from fegear.geometry.tooth import Tooth
 
+pytestmark = pytest.mark.last_bit
+
 FACE = 0.01
 
 

@@ -19,6 +19,8 @@ from fegear.geometry.rack import BasicRack
 from fegear.geometry.relief import CombinedRelief, crowning, root_relief, tip_relief
 from fegear.geometry.tooth import Tooth
 
+pytestmark = pytest.mark.last_bit
+
 FACE = 0.02
 
 

@@ -14,6 +14,8 @@ from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
+pytestmark = pytest.mark.last_bit
+
 #: Teeth, helix angle [deg], width [modules], bore over root radius, profile shift.
 GEARS = [
     (12, 20, 3, 0.5, 0.3), (14, 0, 5, 0.6, 0.4), (18, 30, 4, 0.4, 0.2), (23, 20, 10, 0.5, 0.1), (28, 0, 8, 0.5, 0.0),

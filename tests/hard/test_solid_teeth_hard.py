@@ -16,6 +16,8 @@ from fegear.fem.solid.solution import solve_solid
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 
+pytestmark = pytest.mark.last_bit
+
 RACK = BasicRack(1.0, 1.25, 0.25)
 ROUGH = replace(
     SolidSettings().scaled(2.0), section=replace(SolidSettings().section.scaled(2.0), order=2), least_degree=4
