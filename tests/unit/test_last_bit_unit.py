@@ -64,7 +64,8 @@ def test_a_process_that_is_started_under_noise_computes_with_it():
 def test_hard_cases_run_under_noise_whole_and_others_in_part():
     def collected(*options):
         files = ["tests/hard/test_pairs_hard.py", "tests/closed_form/test_hertz_closed_form.py"]
-        command = [sys.executable, "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", "--collect-only", *options, *files]
+        usual = ["-n", "0", "-p", "no:cacheprovider", "--collect-only"]
+        command = [sys.executable, "-m", "pytest", *usual, *options, *files]
         root = Path(__file__).parents[2]
         done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True)
         return [sum(line.startswith(file) for line in done.stdout.splitlines()) for file in files]
