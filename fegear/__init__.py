@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from fegear.workbench.pair import Pair
     from fegear.workbench.questions import (
         dynamic_factor,
+        load_sharing,
         rating,
         relief,
         root_stress,
@@ -29,7 +30,8 @@ if TYPE_CHECKING:
 __version__ = "0.2.0"
 
 __all__ = [
-    "FegearError", "Gear", "InputError", "Pair", "Results", "__version__", "dynamic_factor", "rating", "relief",
+    "FegearError", "Gear", "InputError", "Pair", "Results", "__version__", "dynamic_factor", "load_sharing",
+    "rating", "relief",
     "root_stress", "run", "stiffness_table", "transmission_error",
 ]  # fmt: skip
 
@@ -41,6 +43,7 @@ _HOMES = {
     "Pair": "workbench.pair",
     "Results": "workbench.results",
     "dynamic_factor": "workbench.questions",
+    "load_sharing": "workbench.questions",
     "rating": "workbench.questions",
     "relief": "workbench.questions",
     "root_stress": "workbench.questions",

@@ -109,7 +109,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
 
     on = scene.case.effects.on()
     steps = tuple(
-        Step(task, stage, tuple(reasons[task]), tuple(e for e in stage.effects if e in on))
+        Step(task, stage, tuple(reasons[task]), tuple(e for e in on if e in stage.effects_on(scene, task.subject)))
         for task, stage in ((task, known.called(task.stage)) for task in order)
     )
     running = {step.stage.name for step in steps}

@@ -148,6 +148,8 @@ class Stage:
         ``check(scene, subject)`` raises `InputError` when the scene lacks something the stage cannot do without.
     effects : tuple of str
         Effects that change what it computes.
+    effects_of : callable or None
+        ``effects_of(scene, subject)`` -> those of them that do so for this subject; None where all do.
     requires : tuple of Need
         Effects that must be on; a scene that leaves them off is refused with the remedy.
     forecast : callable
@@ -165,6 +167,7 @@ class Stage:
     needs: Callable[[Scene, str], tuple[Task, ...]] = _nothing
     check: Callable[[Scene, str], None] = _fine
     effects: tuple[str, ...] = ()
+    effects_of: Callable[[Scene, str], tuple[str, ...]] | None = None
     requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown
     cites: Cites = _uncited
@@ -172,3 +175,7 @@ class Stage:
     title: str = ""
     results: tuple[str, ...] = ()
     about: str = ""
+
+    def effects_on(self, scene: Scene, subject: str) -> tuple[str, ...]:
+        """Effects that change what it computes for a subject."""
+        return self.effects if self.effects_of is None else self.effects_of(scene, subject)

@@ -100,32 +100,6 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
             Entry("deformed-in-mesh", "pair.deformed_in_mesh.DEFORMED_IN_MESH", "Deformed teeth of the gears in mesh"),
             Entry("loaded-flanks", "pair.loaded_flanks.LOADED_FLANKS", "Contact over the flanks"),
             Entry(
-                "flank-load-sharing",
-                "pair.load_sharing.FLANK_LOAD_SHARING",
-                "Load sharing over the flanks",
-                ("load-sharing",),
-                "load, deflection and contact pressure of a tooth pair from first to last contact",
-            ),
-            Entry(
-                "flank-transmission-error",
-                "pair.flank_transmission_error.FLANK_TRANSMISSION_ERROR",
-                "Transmission error over the flanks",
-                ("transmission-error",),
-                "loaded transmission error, mesh stiffness, their harmonics, and both over load",
-            ),
-            Entry(
-                "flank-root-stress",
-                "pair.flank_root_stress.FLANK_ROOT_STRESS",
-                "Root stress over the face",
-                ("root-stress-history",),
-                "root stress of both gears as a tooth passes through the mesh",
-            ),
-            Entry(
-                "flank-stress-in-mesh",
-                "pair.stress_in_mesh.FLANK_STRESS_IN_MESH",
-                "Root stress of the gears in mesh over the face",
-            ),
-            Entry(
                 "load-distribution",
                 "pair.load_distribution.LOAD_DISTRIBUTION",
                 "Load over the flanks",

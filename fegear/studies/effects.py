@@ -94,7 +94,8 @@ class Fixed:
 
 def felt_effects(scene: Scene) -> tuple[str, ...]:
     """Effects that the stages of a scene's plan know, on or off."""
-    known = {effect for step in make_plan(scene, STAGES).steps for effect in step.stage.effects}
+    steps = make_plan(scene, STAGES).steps
+    known = {effect for step in steps for effect in step.stage.effects_on(scene, step.task.subject)}
     return tuple(effect for effect in EffectsPart.model_fields if effect in known)
 
 

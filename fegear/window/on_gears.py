@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.results.pair.deformed_in_mesh import DeformedInMeshData
-    from fegear.results.pair.loaded_flanks import LoadedFlanksData
+    from fegear.results.pair.loaded_flanks import LoadedWidePair
     from fegear.results.pair.stress_in_mesh import StressInMeshData
 
 
@@ -52,7 +52,7 @@ def on_the_gears(task: Task, data: Any) -> dict[str, Any] | None:
     data : object
         As the stage computed it.
     """
-    if task.stage in ("stress-in-mesh", "flank-stress-in-mesh"):
+    if task.stage == "stress-in-mesh":
         return {"pair": task.subject, "kind": "stress", **_stress(data)}
     if task.stage == "deformed-in-mesh":
         return {"pair": task.subject, "kind": "deformed", **_deformed(data)}
@@ -97,8 +97,8 @@ def _deformed(data: DeformedInMeshData) -> dict[str, Any]:
     }
 
 
-def _pressure(data: LoadedFlanksData) -> dict[str, Any]:
-    found, i = data.found, data.nominal
+def _pressure(data: LoadedWidePair) -> dict[str, Any]:
+    found, i = data.found, data.at
     lines, pair = found.lines, found.pair
     pressure = found.pressure[:, :, i] * 1e-6
     inner = np.where(lines.at_edge, 0.0, pressure)
@@ -161,11 +161,8 @@ def _round_factor(value: float) -> float:
     return float(min(1000.0, power * max(step for step in (1.0, 2.0, 5.0) if step * power <= max(value, 1.0))))
 
 
-#: What is switched on at the gears, and the stage that computes it for plane teeth, and for those with a width.
-_PLANE = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
-
-
-_WIDE = {"stress": "flank-stress-in-mesh"}
+#: What is switched on at the gears, and the stage that computes it.
+_STAGES = {"stress": "stress-in-mesh", "deformed": "deformed-in-mesh"}
 
 
 #: Why deformed teeth are not shown of gears with a width.
@@ -191,12 +188,12 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
         Of the pair.
     """
     found = {key: _plain(value) for key, value in asdict(moving_pair(scene.pairs[name])).items()}
-    return found | {"refused": {kind: _NOT_PLANE for kind in _PLANE if kind not in _stages(scene, name)}}
+    return found | {"refused": {kind: _NOT_PLANE for kind in _STAGES if kind not in _stages(scene, name)}}
 
 
 def _stages(scene: Scene, name: str) -> dict[str, str]:
     """The stages that compute what is switched on at the gears of a pair."""
-    return _PLANE if name in scene.plane_pairs else _WIDE
+    return {kind: stage for kind, stage in _STAGES.items() if kind != "deformed" or name in scene.plane_pairs}
 
 
 def wanted_on_gears(scene: Scene, shows: Iterable[tuple[str, str]]) -> tuple[list[Task], list[dict[str, Any]]]:

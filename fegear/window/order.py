@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fegear.output.draw_plotly.layout import darker, plotly_json
-from fegear.results.pair.loaded_flanks import LoadedFlanksData
-from fegear.results.pair.loaded_pair import LoadedPairData
-from fegear.results.relief.harris_map import NOW, load_now, nominal_load, slider_map
+from fegear.results.pair.loaded_teeth import teeth_of
+from fegear.results.relief.harris_map import NOW, load_now, slider_map
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -22,13 +21,11 @@ if TYPE_CHECKING:
     from fegear.engine.plan import Plan
     from fegear.engine.run import Results
     from fegear.engine.stage import Task
+    from fegear.results.pair.loaded_teeth import LoadedTeeth
 
 
 #: What a relief, a load or a tooth is changed for: the stages whose results come first, and come while it is changed.
-ANSWERS = (
-    "load-sharing", "transmission-error", "root-stress-history",
-    "flank-load-sharing", "flank-transmission-error", "flank-root-stress",
-)  # fmt: skip
+ANSWERS = ("load-sharing", "transmission-error", "root-stress-history")
 
 
 #: What is in sight is found with them if that took no longer than this before [s].
@@ -90,10 +87,6 @@ def in_order(plan: Plan, scene: Scene, sight: Collection[str], seconds: Mapping[
 _MOST, _LEAST = 2.0, 0.02
 
 
-#: What a pair under load is told as: plane teeth, and those with a width.
-LOADED = (LoadedPairData, LoadedFlanksData)
-
-
 class HarrisMaps:
     """Maps of the pairs of one case, over the range of their sliders."""
 
@@ -104,21 +97,21 @@ class HarrisMaps:
         """The map of every pair that is loaded, by the pair's name."""
         found = {}
         for task, outcome in results.outcomes.items():
-            data = outcome.data
-            if not isinstance(data, LOADED):
+            teeth = teeth_of(task, outcome.data)
+            if teeth is None:
                 continue
-            load = nominal_load(data)
+            load = teeth.nominal
             begun = self._begun.get(task.subject, load)
             if not _LEAST * begun <= load <= _MOST * begun:
                 begun = load
             self._begun[task.subject] = begun
-            figure = slider_map(task.subject, data, _MOST * begun)
+            figure = slider_map(task.subject, teeth, _MOST * begun)
             drawn = {"key": figure.key, "heading": figure.heading, "caption": figure.caption, **plotly_json(figure)}
             found[task.subject] = {"figure": drawn, "darker": darker([figure]), "now": NOW}
         return found
 
 
-def load_now_of(pair: str, data: LoadedPairData | LoadedFlanksData) -> dict[str, Any]:
+def load_now_of(pair: str, teeth: LoadedTeeth) -> dict[str, Any]:
     """The curve of the present load of a pair, for a map that is there."""
-    load, x, te = load_now(data)
+    load, x, te = load_now(teeth)
     return {"pair": pair, "load": load, "x": np.round(x, 6).tolist(), "te": np.round(te, 6).tolist()}

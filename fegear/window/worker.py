@@ -14,12 +14,13 @@ from fegear.base.errors import FegearError, InputError
 from fegear.base.solution_cache import SolutionCache
 from fegear.base.store import Store
 from fegear.engine.processes import loading
+from fegear.results.pair.loaded_teeth import teeth_of
 from fegear.window.computing import Sent
 from fegear.window.designs import design_asked, designed, draft_of
 from fegear.window.drag_handles import hands_of
 from fegear.window.job_queue import Compare, Compute, Design, Export, Inbox, Said, Unwanted
 from fegear.window.on_gears import on_the_gears, wanted_on_gears
-from fegear.window.order import LOADED, HarrisMaps, in_order, load_now_of
+from fegear.window.order import HarrisMaps, in_order, load_now_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -243,9 +244,9 @@ class Worker:
         from fegear.output.report.blocks import Values
         from fegear.output.report.page import fragment
 
-        data = outcome.data
-        if isinstance(data, LOADED) and self._asked is not None and self._asked.moving:
-            self._later.append(lambda: self._say("load_now", **load_now_of(task.subject, data)))
+        teeth = teeth_of(task, outcome.data)
+        if teeth is not None and self._asked is not None and self._asked.moving:
+            self._later.append(lambda: self._say("load_now", **load_now_of(task.subject, teeth)))
         title = next(step.stage.title for step in plan.steps if step.task == task)
         figures = [one for one in outcome.figures if isinstance(one, Figure) and one.drawable_in_page]
         values = Values(outcome.values, scene.case.accuracy.tolerance)

@@ -103,8 +103,9 @@ class Pair:
         driver, driven = self.names
         gears = {driver: self.driver.keys, driven: self.driven.keys}
         pair = {"driver": driver, "driven": driven, **self.keys, **taken(load, f"pair.{self.name}")}
-        if not self.driver.is_spur and pair["compliance"] == {"source": "fe"}:
-            del pair["compliance"]  # the default of spur pairs; the flanks of helical ones are rigid
+        wide = not self.driver.is_spur or pair.get("width", "plane") != "plane"
+        if wide and pair["compliance"] == {"source": "fe"}:
+            del pair["compliance"]  # gears with a width are solved so, and know no other source
         return {"gear": gears, "pair": {self.name: pair}}
 
     @cached_property
@@ -115,6 +116,11 @@ class Pair:
     def is_spur(self) -> bool:
         """Whether its teeth are straight."""
         return self.name in self._scene.spur_pairs
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether it is loaded with its width: helical pairs are, spur ones by their key ``width``."""
+        return self.name in self._scene.wide_pairs
 
     @property
     def geometry(self) -> GearPair:

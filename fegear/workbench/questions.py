@@ -29,10 +29,17 @@ if TYPE_CHECKING:
 DAMPING_RATIO = 0.1
 
 
+#: Keys of gears and pairs with a width that call for the effects relief and misalignment.
+_RELIEFS = ("lead", "bias", "topography", "modification")
+_MISALIGNMENTS = ("misalignment", "line_error")
+
+
 #: What each result is called in the title of its case.
 _TITLES = {
     "stiffness": "Stiffness",
     "crosscheck": "Root stress and compliance",
+    "load-sharing": "Load sharing",
+    "root-stress-history": "Root stress through the mesh",
     "transmission-error": "Transmission error",
     "relief": "Relief",
     "dynamic-factor": "Dynamic factor",
@@ -59,13 +66,14 @@ def ask_of_pair(
     cache: SolutionCache | None,
 ) -> Results:
     """Run the case with the effects that the description calls for and the result knows, and with those given."""
-    gears = (pair.driver.keys, pair.driven.keys)
+    keys = [*pair.driver.keys, *pair.driven.keys]
     called = {
         "hertz": "load-dependent",
         "corner_contact": True,
         "neighbour_coupling": pair.keys["compliance"].get("source", "fe") == "fe",
-        "relief": any("relief" in keys for keys in gears),
-        "spacing_errors": any("spacing_errors" in keys for keys in gears),
+        "relief": "relief" in keys or (pair.is_wide and bool({*_RELIEFS} & {*keys, *pair.keys})),
+        "spacing_errors": "spacing_errors" in keys,
+        "misalignment": pair.is_wide and bool({*_MISALIGNMENTS} & {*pair.keys}),
         "parametric": True,
         "contact_loss": True,
     }
@@ -84,11 +92,6 @@ def _loaded(
     """The pair's document under its load or loads, along the line of action."""
     if not isinstance(pair, Pair):
         raise InputError("pair", shown(pair), "is no fegear.Pair", "write fegear.Pair(pinion, wheel)")
-    if not pair.is_spur:
-        raise InputError(
-            "pair", f'"{pair.name}"', "is helical, and loaded teeth are computed for spur pairs",
-            'ask for "tooth-contact", "transmissibility" or "crosscheck" with fegear.run',
-        )  # fmt: skip
     if (torque is None) == (load is None):
         raise InputError(
             "torque", "(not given)" if torque is None else "(given)", "must be given, or load instead",
@@ -151,21 +154,29 @@ def stiffness_table(
 
 
 def root_stress(
-    gears: Gear | Iterable[Gear],
+    gears: Gear | Iterable[Gear] | Pair,
     *,
-    positions: int = 20,
+    positions: int | None = None,
+    torque: Torque | Iterable[Torque] | None = None,
+    load: Force | Iterable[Force] | None = None,
+    effects: Mapping[str, Any] | None = None,
     tolerance: float | None = None,
     progress: bool | None = None,
     cache: SolutionCache | None = None,
 ) -> Results:
-    """Root stress by finite elements beside every formula (ISO 6336-3, AGMA 908, ...), for loads along the flank.
+    """Root stress of gears under a load along the flank, or of both gears of a pair through the mesh.
+
+    Of gears that by finite elements is compared with every formula (ISO 6336-3, AGMA 908, ...); of a pair, spur or
+    helical, it is that of a tooth as it passes through the mesh under the pair's load.
 
     Parameters
     ----------
-    gears : Gear or iterable of Gear
-        Each with a name of its own.
-    positions : int
-        Loads along the flank.
+    gears : Gear or iterable of Gear, or Pair
+        Gears each with a name of its own.
+    positions : int, optional
+        Loads along the flank of gears; 20 by default.
+    torque, load, effects
+        Of a pair, as in `transmission_error`.
     tolerance : float, optional
         Relative error that the mesh is chosen for.
     progress, cache
@@ -174,8 +185,19 @@ def root_stress(
     Returns
     -------
     Results
-        Tables ``crosscheck_root_stress_<gear>``, values ``<gear>.root_stress.<formula>.highest_ratio``.
+        Tables ``crosscheck_root_stress_<gear>``, values ``<gear>.root_stress.<formula>.highest_ratio``; of a pair
+        tables ``root_stress_history_<pair>_<gear>``, values ``<pair>.driver.largest_root_tension``, ...
     """
+    if isinstance(gears, Pair):
+        if positions is not None:
+            raise InputError(
+                "positions", shown(positions), "is for gears: a pair's contacts pass along the flank", "leave it out"
+            )
+        document = _loaded(gears, torque, load)
+        return ask_of_pair("root-stress-history", gears, document, effects, tolerance, progress, cache)
+    for key, given in (("torque", torque), ("load", load), ("effects", effects)):
+        if given is not None:
+            raise InputError(key, brief(given), "is for pairs, and these are gears", "give a fegear.Pair, or no load")
     found = [gears] if isinstance(gears, Gear) else list(gears) if isinstance(gears, Iterable) else []
     if not found or not all(isinstance(gear, Gear) for gear in found):
         raise InputError("gears", brief(gears), "must be gears", 'write fegear.Gear(20, "3 mm", name="z20")')
@@ -183,7 +205,7 @@ def root_stress(
     for name in names:
         if names.count(name) > 1:
             raise InputError("gears", f'"{name}"', "is the name of several gears", 'give each its own: name="z20"')
-    document = {"gear": {gear.name: gear.keys for gear in found}, "stiffness": {"positions": positions}}
+    document = {"gear": {gear.name: gear.keys for gear in found}, "stiffness": {"positions": positions or 20}}
     return run_scene(_scene("crosscheck", document, tolerance), progress=progress, cache=cache_of(cache))
 
 
@@ -202,13 +224,14 @@ def transmission_error(
     Parameters
     ----------
     pair : Pair
+        Spur or helical; helical ones, and spur ones with ``width``, are loaded with their width.
     torque : torque or iterable of torques
         On the driver; single values are for the largest of several.
     load : force or iterable of forces
         Along the line of action, in place of the torque.
     effects : mapping, optional
         Changes of the effects, which are on as the teeth really are: neighbours deform, contacts widen with load,
-        corners touch early, relief and spacing errors where a gear has them.
+        corners touch early; relief, spacing errors and misalignment where gears or pair have them.
     tolerance : float, optional
         Relative error that the meshes are chosen for.
     progress, cache
@@ -221,6 +244,33 @@ def transmission_error(
         ``transmission_error_summary_<pair>``. Values ``<pair>.te_peak_to_peak``, ...
     """
     return ask_of_pair("transmission-error", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache)
+
+
+def load_sharing(
+    pair: Pair,
+    *,
+    torque: Torque | Iterable[Torque] | None = None,
+    load: Force | Iterable[Force] | None = None,
+    effects: Mapping[str, Any] | None = None,
+    tolerance: float | None = None,
+    progress: bool | None = None,
+    cache: SolutionCache | None = None,
+) -> Results:
+    """Load, deflection and contact pressure of one tooth pair from first to last contact, spur or helical.
+
+    Parameters
+    ----------
+    pair : Pair
+    torque, load, effects, tolerance, progress, cache
+        As in `transmission_error`.
+
+    Returns
+    -------
+    Results
+        Table ``load_sharing_<pair>``, for several loads ``load_sharing_loads_<pair>``. Values
+        ``<pair>.largest_load``, ``<pair>.largest_hertz_pressure``, ...
+    """
+    return ask_of_pair("load-sharing", pair, _loaded(pair, torque, load), effects, tolerance, progress, cache)
 
 
 def relief(

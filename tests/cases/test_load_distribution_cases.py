@@ -41,7 +41,7 @@ def ran(cache, *overrides):
 
 def neglected(outcome):
     """What the stage before says of the effects that are off."""
-    return LOADED_FLANKS.present(outcome.data, outcome.data.asked).remarks
+    return LOADED_FLANKS.present(outcome.data, LOADED_FLANKS.inputs(read_scene(CASE, COARSE), "I")).remarks
 
 
 @pytest.fixture(scope="module")

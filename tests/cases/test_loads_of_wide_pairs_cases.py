@@ -28,7 +28,7 @@ from fegear.engine.stage import Task
 from fegear.fem.solid.slice_laws import missed_by_slices
 from fegear.geometry.pair import MEMBERS
 from fegear.results.catalogue import STAGES
-from fegear.results.pair.flank_transmission_error import FLANK_TRANSMISSION_ERROR
+from fegear.results.pair.transmission_error import TRANSMISSION_ERROR
 
 CASE = Path(__file__).parents[2] / "cases" / "helical_load.toml"
 COARSE = (
@@ -166,7 +166,7 @@ def test_load_factors(results):
     for member in MEMBERS:
         assert 1.0 < results.values[f"I.{member}.K_Fbeta"].si < rows["K_Hbeta"][1]
     data = results.outcomes[Task("flank-load-factors", "I")].data
-    root = results.outcomes[Task("flank-root-stress", "I")].data
+    root = results.outcomes[Task("root-stress-history", "I")].data.found
     # across the root and away from the ends of the face: near the stress along the section there, off by
     # sin(15 deg)^2 and the shear
     over = root.over_face["driver"]["tension"]
@@ -237,12 +237,16 @@ def test_maps_reach_the_tips(results):
 
 
 def test_the_transmission_error_says_what_spacing_errors_leave_open(results):
-    data = results.outcomes[Task("flank-transmission-error", "I")].data
-    inputs = FLANK_TRANSMISSION_ERROR.inputs(results.scene, "I")
-    assert not any("rotational" in remark for remark in FLANK_TRANSMISSION_ERROR.present(data, inputs).remarks)
-    effects = data.loaded.asked.effects.model_copy(update={"spacing_errors": True})
-    uneven = replace(data, loaded=replace(data.loaded, asked=replace(data.loaded.asked, effects=effects)))
-    (told,) = (remark for remark in FLANK_TRANSMISSION_ERROR.present(uneven, inputs).remarks if "rotational" in remark)
+    data = results.outcomes[Task("transmission-error", "I")].data
+    inputs = TRANSMISSION_ERROR.inputs(results.scene, "I")
+    assert not any("rotational" in remark for remark in TRANSMISSION_ERROR.present(data, inputs).remarks)
+    loaded = results.outcomes[Task("loaded-flanks", "I")].data
+    assert loaded.transmission_error(lambda _share: None).only is None
+    uneven = replace(loaded, gaps=replace(loaded.gaps, driver_spacing=np.array([0.0, 1e-6])))
+    found = uneven.transmission_error(lambda _share: None)
+    assert found.only == 0
+    said = TRANSMISSION_ERROR.present(replace(data, found=found), inputs).remarks
+    (told,) = (remark for remark in said if "rotational" in remark)
     assert "base pitch 0" in told
 
 
@@ -257,6 +261,6 @@ def test_a_spur_pair_takes_its_width_from_its_key():
     plane = {str(step.task) for step in make_plan(read_scene(CASE, asked), STAGES).steps}
     wide = {str(step.task) for step in make_plan(read_scene(CASE, [*asked, 'pair.I.width="solid"']), STAGES).steps}
     assert {"transmission-error of I", "load-sharing of I"} <= plane
-    assert {"flank-transmission-error of I", "flank-load-sharing of I"} <= wide
+    assert {"transmission-error of I", "load-sharing of I", "loaded-flanks of I"} <= wide
     assert not any("flank" in task for task in plane)
     assert "loaded-pair of I" not in wide

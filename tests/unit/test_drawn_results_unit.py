@@ -22,7 +22,7 @@ from fegear.output.draw_plotly.layout import plotly_json
 from fegear.output.draw_png.sheet import Sheet
 from fegear.results.gear.drawing import pair_figure, path_marks, roll_marks
 from fegear.results.gear.geometry import Drawing
-from fegear.results.pair.loaded_pair import pitch_marks
+from fegear.results.pair.loaded_teeth import pitch_marks
 from fegear.results.train.dynamic_factor import _figure as _factor_figure
 from fegear.results.train.mesh_force_spectrum import _MOST_HARMONICS, SpectrumData, _spectrum_figures
 from fegear.results.train.natural_modes import _campbell_figure

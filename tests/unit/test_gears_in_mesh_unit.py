@@ -35,7 +35,7 @@ CASE = {
 }  # fmt: skip
 MESHES = Path(__file__).parents[2] / "meshes"
 STRESS, DEFORMED = Task("stress-in-mesh", "I"), Task("deformed-in-mesh", "I")
-WIDE = Task("flank-stress-in-mesh", "I")
+WIDE = Task("stress-in-mesh", "I")
 
 
 @pytest.fixture(scope="module")
@@ -278,7 +278,7 @@ def test_colours_in_sections_of_helical_teeth_are_the_root_stress_through_the_me
     )
     assert np.hypot(*(one.places["tension"][t, :, np.nanargmax(along)] - largest.place)) < 0.1 * 3e-3
     # In every section the tooth through the mesh is that of the table over the face, as far as the points go.
-    over = ran.outcomes[Task("flank-root-stress", "I")].data.over_face["driver"]["tension"]
+    over = ran.outcomes[Task("root-stress-history", "I")].data.found.over_face["driver"]["tension"]
     for section, z in enumerate(found.z.tolist()):
         for t, j in enumerate(found.pairs.tolist()):
             own = found.roll + j * found.pair.base_pitch

@@ -185,13 +185,81 @@ def test_stiffness_and_root_stress_are_the_case_s():
     assert table["c_self"] == pytest.approx(other["c_self"], rel=1e-9)
 
 
-def test_a_helical_pair_is_described_and_refused_where_it_cannot_be_loaded():
+#: Gears of a helical pair, and a spur pair that is loaded with its width: what both need and what each adds.
+TIP = {"tip": {"amount": "12 um", "length": "1.5 mm"}}
+HELICAL = {"teeth": 20, "normal_module": "3 mm", "helix_angle": "15 deg", "face_width": "8 mm", "relief": TIP}
+WIDE_PAIRS = {
+    "helical": (
+        {**HELICAL, "hand": "right"},
+        {**HELICAL, "hand": "left", "relief": None, "lead": {"crowning": "5 um"}},
+        {"line_error": {"over_face": "8 um"}},
+    ),
+    "spur with its width": (
+        {"teeth": 20, "module": "3 mm", "face_width": "10 mm", "relief": TIP},
+        {"teeth": 33, "module": "3 mm", "face_width": "10 mm"},
+        {"width": "slices"},
+    ),
+}
+DOORS = {
+    "transmission-error": fegear.transmission_error,
+    "load-sharing": fegear.load_sharing,
+    "root-stress-history": fegear.root_stress,
+}
+
+
+@pytest.fixture(scope="module", params=WIDE_PAIRS)
+def wide(request):
+    """A pair that is loaded with its width, and the case file that says the same."""
+    driver, driven, keys = WIDE_PAIRS[request.param]
+    driven = {key: value for key, value in driven.items() if value is not None}
+    pair = fegear.Pair(fegear.Gear(**driver, name="p"), fegear.Gear(**driven, name="w"), **keys)
+    effects = {"neighbour_coupling": True, "relief": True, "misalignment": "line_error" in keys, **EFFECTS}
+    case = {
+        "gear": {"p": driver, "w": driven},
+        "pair": {"I": {"driver": "p", "driven": "w", "load": "3 kN", **keys}},
+        "effects": effects,
+        "accuracy": {"tolerance": 0.1},
+    }
+    return pair, case
+
+
+@pytest.mark.parametrize("result", DOORS)
+def test_every_door_takes_pairs_with_a_width_and_gives_what_the_case_file_does(wide, result):
+    pair, case = wide
+    assert pair.is_wide
+    found = DOORS[result](pair, load="3 kN", tolerance=0.1)
+    assert [step.task.stage for step in found.plan.steps][-2:] == ["loaded-flanks", result]
+    same_here = fegear.run(case, results=[result], cache=pair.known)
+    assert {one.origin for one in same_here.timings.values()} == {"recalled"}  # key by key the same case
+    assert [(one.name, one.si) for one in found.values] == [(one.name, one.si) for one in same_here.values]
+    assert list(found.remarks) == list(same_here.remarks)
+
+
+@pytest.mark.parametrize("result", DOORS)
+def test_every_door_takes_plane_teeth(pair, result):
+    question = {"torque": "90 N*m", "effects": {"relief": False}}
+    pair = fegear.Pair(
+        pair.driver, pair.driven, compliance="weber-banaschek", root_stress={"source": "iso-6336-3"}
+    )  # fmt: skip
+    assert not pair.is_wide
+    more = {"pair.I.torque": "90 N*m", "pair.I.root_stress": {"source": "iso-6336-3"}}
+    same(DOORS[result](pair, **question), CASE, more, [result])
+
+
+def test_root_stress_is_of_gears_or_of_a_pair(pair):
+    with pytest.raises(InputError, match=r"positions.*is for gears"):
+        fegear.root_stress(pair, torque="90 N*m", positions=5)
+    with pytest.raises(InputError, match=r"torque.*is for pairs"):
+        fegear.root_stress(pair.driver, torque="90 N*m")
+
+
+def test_a_helical_pair_is_described_and_refused_where_no_case_file_could_ask():
     keys = {"normal_module": "3 mm", "helix_angle": "15 deg", "face_width": "20 mm"}
     helical = fegear.Pair(fegear.Gear(23, hand="right", **keys), fegear.Gear(57, hand="left", **keys))
     assert helical.geometry.overlap_ratio == pytest.approx(helical.flanks.overlap_ratio) != 0.0
     assert not helical.driver.is_spur
-    with pytest.raises(InputError, match="is helical"):
-        fegear.transmission_error(helical, torque="90 N*m")
+    with pytest.raises(InputError, match="is no spur pair of this case"):
+        fegear.relief(helical, torque="90 N*m")
     assert helical.driver.geometry.base_helix_angle > 0.0
     assert "overlap ratio" in helical._repr_html_()
     spur = fegear.Pair(fegear.Gear(23, "3 mm"), fegear.Gear(57, "3 mm"))

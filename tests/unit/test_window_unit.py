@@ -35,7 +35,7 @@ from fegear.engine.stage import Task
 from fegear.output.report.blocks import Values
 from fegear.output.report.page import fragment
 from fegear.results.catalogue import STAGES
-from fegear.results.pair.loaded_pair import LoadedPairData
+from fegear.results.pair.loaded_teeth import loaded_pair
 from fegear.results.relief.harris_map import NOW, load_now, slider_map
 from fegear.results.relief.relief_handles import handled_relief
 from fegear.window import job_queue as inbox_module
@@ -602,14 +602,14 @@ def test_the_map_beside_the_slider_is_that_of_runs_at_its_loads(tmp_path):
     maps = HarrisMaps()
     found = maps.at_rest(results)["I"]
     json.dumps(found, allow_nan=False)
-    data = next(one.data for one in results.outcomes.values() if isinstance(one.data, LoadedPairData))
+    data = loaded_pair({task: one.data for task, one in results.outcomes.items()}, "I")
     figure = slider_map("I", data, 10_000.0)
     drawn = {one.name: one for one in figure.panels[0].items}
     (_, x, te), now = load_now(data), drawn[NOW]
     assert np.interp(x, now.x, now.y) == pytest.approx(te, abs=0.02 * np.ptp(te) + 1e-9)
     other = scene_of(Asked(TWO.replace('"5 kN"', '"7 kN"'), "c", str(tmp_path)))
     there = run_plan(other, make_plan(other, STAGES))
-    at_7 = next(one.data for one in there.outcomes.values() if isinstance(one.data, LoadedPairData))
+    at_7 = loaded_pair({task: one.data for task, one in there.outcomes.items()}, "I")
     at_7_now = {one.name: one for one in slider_map("I", at_7, 10_000.0).panels[0].items}[NOW]
     assert drawn["7000 N"].y == pytest.approx(at_7_now.y)
     # The range stays while the slider is within it, and follows a load beyond it.

@@ -18,6 +18,8 @@ from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import refuse_load
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fegear.case.built.flank_errors import FlankErrors
     from fegear.case.built.flank_modifications import FaceModifications
     from fegear.case.built.pair_inputs import Flanks
@@ -26,8 +28,15 @@ if TYPE_CHECKING:
     from fegear.geometry.flank_modification import FlankModification
     from fegear.geometry.pair import GearPair
 
-#: Effects that loaded flanks know.
-FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact", "misalignment")
+#: Effects that change a pair with a width, and what a report says where they are off though the case has their data.
+FLANK_EFFECTS: Mapping[str, str] = {
+    "neighbour_coupling": "coupling between tooth pairs is neglected",
+    "hertz": "contacts do not widen with their load",
+    "relief": "gears have a relief or lead modifications that are neglected",
+    "spacing_errors": "gears have spacing_errors that are neglected",
+    "corner_contact": "contact lines end at the tips instead of going on along their edges",
+    "misalignment": "the pair has a misalignment or line_error that is neglected",
+}
 #: Panels per module of face.
 _PANELS_PER_MODULE = 4.0
 

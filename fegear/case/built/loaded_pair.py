@@ -6,7 +6,7 @@ What makes a pair of a case impossible to load as the case asks.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,37 +26,13 @@ if TYPE_CHECKING:
     from fegear.case.relief import EndReliefPart
     from fegear.contact.plane.compliance import GearCompliance
     from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.pair_compliance import PairCompliance
     from fegear.fem.plane.gear import GearInfluence
     from fegear.geometry.pair import GearPair, Member
     from fegear.geometry.relief import Crowning, EndRelief
 
     Sources = tuple[GearCompliance, GearCompliance]
-
-
-@dataclass(frozen=True)
-class LoadedPair:
-    """A pair ready for load sharing.
-
-    Parameters
-    ----------
-    engagement : Engagement
-        With the effects of its case.
-    shifted : tuple of Engagement
-        The same with one compliance each off by its estimated error; empty where the source states none.
-    loads : tuple of float
-        Every load of the case [N], ascending.
-    nominal : float
-        The load that the contract's tables are for [N].
-    sources : tuple of str
-        How the compliance sources describe themselves.
-    """
-
-    engagement: Engagement
-    shifted: tuple[Engagement, ...]
-    loads: tuple[float, ...]
-    nominal: float
-    sources: tuple[str, ...]
 
 
 def compliance_sources(asked: PairInputs, influences: Mapping[str, GearInfluence]) -> Sources:
@@ -231,6 +207,8 @@ def build_loaded_pair(asked: PairInputs, at_rest: Engagement, shifted: tuple[Sou
     InputError
         If a relief or an error list does not fit its gear; the key is the one of the case file.
     """
+    from fegear.contact.plane.loaded_pair import LoadedPair
+
     effects = asked.effects
     compliance = replace(at_rest.compliance, nominal_load=asked.nominal)
     engagement = replace(at_rest, compliance=compliance)

@@ -13,18 +13,18 @@ import numpy as np
 from fegear.base.errors import FegearError, InputError
 from fegear.base.tally import tallying
 from fegear.case.built.loaded_pair import relieved, spaced
-from fegear.case.built.pair_inputs import LOAD_SHARING
+from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.train import motion_model
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from fegear.case.built.loaded_pair import LoadedPair
     from fegear.case.built.pair_inputs import PairInputs
     from fegear.case.built.train import MotionInputs
     from fegear.case.effects import EffectsPart
     from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.neglected_effects import Answer, Change
     from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.train.excitation import MeshExcitation
@@ -140,7 +140,7 @@ def neglected_effects(
     others: dict[str, Engagement] = {}
     wrong: dict[str, InputError] = {}
     with tallying():  # what the estimate runs is no part of the case's own work
-        for effect in _off(asked.effects, LOAD_SHARING):
+        for effect in _off(asked.effects, EFFECTS):
             try:
                 other = with_effect(asked, pair.engagement, effect)
             except InputError as error:  # data that nothing uses may be wrong: the run goes on without its size

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair, Member
 
 
-#: The effects of load sharing, in the order in which they are reported.
-LOAD_SHARING = ("corner_contact", "neighbour_coupling", "hertz", "relief", "spacing_errors")
+#: Effects that change a pair of plane teeth, in the order in which they are reported.
+EFFECTS = ("corner_contact", "neighbour_coupling", "hertz", "relief", "spacing_errors")
 
 
 #: Share of the active profile that a relief table may leave out unremarked: what rounding its radii takes.
@@ -140,7 +140,7 @@ def pair_inputs(scene: Scene, name: str) -> PairInputs:
     """
     part, pair, effects = scene.case.pair[name], scene.pairs[name], scene.case.effects
     first, second = (gear_flanks(scene, gear_name(scene, name, member)) for member in MEMBERS)
-    own = EffectsPart(**{effect: getattr(effects, effect) for effect in LOAD_SHARING})
+    own = EffectsPart(**{effect: getattr(effects, effect) for effect in EFFECTS})
     table = pair_compliance_table(scene, name) if part.compliance.source == "table" else None
     nominal = part.normal_load(pair) or math.nan
     assumed = effect_remarks(scene, name)

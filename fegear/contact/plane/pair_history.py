@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown
 from fegear.contact.plane.transmission_error import BESIDE
 
 if TYPE_CHECKING:
@@ -43,13 +44,13 @@ class PairHistory:
         [m].
     """
 
-    x: Array
-    driver_roll_angle: Array
-    load: Array
-    share: Array
-    deflection: Array
-    hertz_pressure: Array
-    transmission_error: Array
+    x: Array = shown("mm", "position of the pair on the line of action, from the pitch point", label="line of action")
+    driver_roll_angle: Array = shown("deg", "of the contact point on the driver", name="roll_angle")
+    load: Array = shown("N", "on the pair along the line of action", label="load on the pair")
+    share: Array = shown("", "of the total load")
+    deflection: Array = shown("um", "of both teeth and their contact")
+    hertz_pressure: Array = shown("MPa", "largest pressure of smooth flanks", label="largest Hertzian pressure")
+    transmission_error: Array = shown("um", "loaded transmission error")
 
 
 def pair_history(engagement: Engagement, load: ArrayLike, positions: int = 200, cycle: int = 0) -> PairHistory:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from fegear.base.shown import shown, shows
 from fegear.contact.plane.pair_history import refined_peaks
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.contact.plane.shifted_compliance import solve_again
@@ -42,10 +43,47 @@ class ToothStress:
         Estimated [Pa]; NaN where the source does not know its own.
     """
 
-    x: Array
-    tension: Array
-    compression: Array | None
-    tension_error: Array
+    x: Array = shown("mm", "position of the tooth's contact on the line of action")
+    tension: Array = shown(
+        "MPa",
+        "largest tangential tension of the fillet below the loaded flank",
+        name="stress",
+        label="largest root stress",
+    )
+    compression: Array | None = shown("MPa", "most negative stress of the other fillet")
+    tension_error: Array = shown("MPa", "estimated error of stress", name="stress_error")
+
+    @property
+    def knows_error(self) -> bool:
+        """Whether its error is estimated everywhere."""
+        return not np.isnan(self.tension_error).any()
+
+    def worst(self, i: int) -> int:
+        """Position of the largest tension under load number i."""
+        return int(np.argmax(self.tension[:, i]))
+
+    def error(self, i: int) -> float | None:
+        """Estimated error of the largest tension under load number i [Pa]; None where the source does not know it."""
+        error = float(self.tension_error[self.worst(i), i])
+        return None if np.isnan(error) else error
+
+    @property
+    @shows("MPa", "of the mesh cycle", name="largest_root_tension")
+    def largest_tension(self) -> Array:
+        """Under each load, shape (L,) [Pa]."""
+        return np.asarray(self.tension.max(axis=0))
+
+    @property
+    @shows("MPa", "of the mesh cycle", name="largest_root_compression")
+    def largest_compression(self) -> Array | None:
+        """Most negative under each load, shape (L,) [Pa]; None where the source knows none."""
+        return None if self.compression is None else np.asarray(self.compression.min(axis=0))
+
+    @property
+    @shows("MPa", "largest less smallest stress below the loaded flank over the mesh", name="root_stress_range")
+    def tension_range(self) -> Array:
+        """Under each load, shape (L,) [Pa]."""
+        return np.asarray(np.ptp(self.tension, axis=0))
 
 
 class LoadedStates(NamedTuple):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
+from fegear.base.shown import shown
 from fegear.contact.wide.compliance import line_bands, places_of
 from fegear.contact.wide.lines import base_twist
 from fegear.fem.plane.root_stress import extreme
@@ -54,10 +55,10 @@ class StressOverFace(ReadOnlyArrays):
         Where it sits [m].
     """
 
-    x: Array
-    z: Array
-    value: Array
-    radius: Array
+    x: Array = shown("mm", "position of the tooth's contact in the middle of the face")
+    z: Array = shown("mm", "from the middle of the face", name="face_position", label="face position z")
+    value: Array = shown("MPa", "largest tension up the fillet below the loaded flank", name="stress")
+    radius: Array = shown("mm", "where it sits, from the axis")
 
     def largest(self, sign: float) -> tuple[Array, Array]:
         """Largest (sign 1) or most negative (-1) stress over the face and its place along it, shape (T,) each."""

@@ -21,9 +21,9 @@ from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.contact.wide.pair_history import ContactPattern
     from fegear.engine.stage import Upstream, Work
-    from fegear.results.pair.loaded_flanks import LoadedFlanksData
 
 #: Loads that are drawn.
 _DRAWN = 4
@@ -45,14 +45,14 @@ class ContactPatternData:
 
     Parameters
     ----------
-    loaded : LoadedFlanksData
+    loaded : LoadedWidePair
     loads : tuple of float
         A light one, and those of the case [N].
     pattern : ContactPattern
         Under each of them.
     """
 
-    loaded: LoadedFlanksData
+    loaded: LoadedWidePair
     loads: tuple[float, ...]
     pattern: ContactPattern
 
@@ -65,7 +65,7 @@ def _compute(inputs: ContactPatternInputs, upstream: Upstream, _work: Work) -> C
     from fegear.contact.wide.pair_history import contact_pattern
 
     loaded = loaded_flanks(upstream, inputs.name)
-    loads = (_LIGHT * loaded.asked.nominal, *loaded.asked.loads)
+    loads = (_LIGHT * loaded.nominal, *loaded.loads)
     found = loaded.flanks.solve(loads, loaded.gaps, loaded.known)
     return ContactPatternData(loaded, loads, contact_pattern(found, loaded.gaps.at(found.pair, found.lines)))
 
@@ -91,7 +91,7 @@ def _present(data: ContactPatternData, inputs: ContactPatternInputs) -> Outcome:
     )
     title = f"Contact pattern of pair {name} under every load"
     meaning = f"of the flank that a coat of {inputs.coat * 1e6:.4g} um prints"
-    value = Value(f"{name}.printed_share", float(share[1 + data.loaded.nominal]), "", None, meaning)
+    value = Value(f"{name}.printed_share", float(share[1 + data.loaded.at]), "", None, meaning)
     table = Table(f"contact_pattern_{name}", columns, title)
     return Outcome(data, (table,), (value,), {"coat": inputs.coat}, (), (_figure(inputs, data),))
 
@@ -100,7 +100,7 @@ def _figure(inputs: ContactPatternInputs, data: ContactPatternData) -> Figure:
     pattern, found, coat = data.pattern, data.loaded.found, inputs.coat
     radius = found.pair.radius(pattern.x, "driver")
     panels = []
-    for i in few(len(data.loads), (0, 1 + data.loaded.nominal), _DRAWN):
+    for i in few(len(data.loads), (0, 1 + data.loaded.at), _DRAWN):
         seen = np.where(pattern.separation[i] < coat, pattern.separation[i], np.nan).T * 1e6
         share = float(pattern.printed_share(coat)[i])
         heat = HeatMap(pattern.z * 1e3, radius * 1e3, seen, "separation", "um", limits=(0.0, coat * 1e6))
@@ -123,7 +123,7 @@ CONTACT_PATTERN = Stage(
     compute=_compute,
     present=_present,
     needs=needs_flanks,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=citing(Citation("iso-21771", "contact lines in the plane of action", "5.4")),
     forecast=lambda _scene, _name: forecasts.constant(0.1),
 )

@@ -9,6 +9,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import check_relief
+from fegear.case.built.pair_inputs import EFFECTS
 from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage, Task
@@ -17,8 +18,8 @@ from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
 from fegear.results.gear.stiffness import needs_solution, solution_of
-from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair, plane_pairs
-from fegear.results.pair.stress_in_mesh import mesh_inputs, needs_mesh
+from fegear.results.pair.loaded_teeth import loaded_pair, needs_gears, plane_pairs
+from fegear.results.pair.stress_in_mesh import mesh_inputs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -128,7 +129,7 @@ def _in_gear(pair: GearPair, member: Member, one: MovedOutline) -> Array:
 def _needs_motion(scene: Scene, name: str) -> tuple[Task, ...]:
     part = scene.case.pair[name]
     gears = dict.fromkeys((part.driver, part.driven))
-    return (*needs_mesh(scene, name), *(Task("outline-motion", gear) for gear in gears))
+    return (*needs_gears(scene, name), *(Task("outline-motion", gear) for gear in gears))
 
 
 def _check_compliance(scene: Scene, name: str) -> None:

@@ -11,13 +11,14 @@ import numpy as np
 from fegear.base.errors import RangeError
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS
 from fegear.case.built.loaded_pair import check_relief
+from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.pair_surface import pair_surface, tip_reliefs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
 from fegear.results.pair.flank_surface_tables import surface_figures, surface_tables, surface_values
-from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
-from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair, needs_pair, plane_pairs
+from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.pair.loaded_teeth import loaded_pair, needs_teeth, plane_pairs, wide_pairs
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
@@ -162,7 +163,7 @@ def _compute_wide(inputs: FlankSurfaceInputs, upstream: Upstream, _work: Work) -
     x = _between(pair.x_start, pair.x_end, _WIDE_PATH)
     z = _between(lines.low, lines.high, _FACE)
     scale = factors.application * factors.dynamic
-    load = np.maximum(found.spread(x, z, _without_edges(found, loaded.nominal)), 0.0) * scale
+    load = np.maximum(found.spread(x, z, _without_edges(found, loaded.at)), 0.0) * scale
     law = asked.friction.of(pair, rated.speed, rated.load * scale) if asked.friction else None
     computed = flank_surface(rated, x, z, load, law)
     return _standards(asked, computed, wide=True, outside=0.0)
@@ -288,7 +289,7 @@ _CITES = citing(
 
 FLANK_SURFACE = Stage(
     subjects=plane_pairs,
-    needs=needs_pair,
+    needs=needs_teeth,
     inputs=_inputs,
     compute=_compute,
     present=_present,
@@ -305,7 +306,7 @@ WIDE_FLANK_SURFACE = Stage(
     compute=_compute_wide,
     present=_present,
     check=_check_wide,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=_CITES,
     forecast=_forecast,
 )

@@ -23,12 +23,12 @@ from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.pair.flank_surface_tables import flank_pressure_figure
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
-from fegear.results.pair.loaded_pair import drawn_loads
+from fegear.results.pair.loaded_teeth import drawn_loads
 
 if TYPE_CHECKING:
     from fegear.case.reading import Scene
     from fegear.contact.wide.loaded import LoadedFlanks
-    from fegear.results.pair.loaded_flanks import LoadedFlanksData
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
 
 
 #: K_Hbeta above this part of the largest that its averaging allows is remarked on.
@@ -99,8 +99,8 @@ def _over_face(name: str, found: LoadedFlanks, i: int) -> Table:
     return Table(f"load_over_face_{name}", columns, f"Load over the face of pair {name}")
 
 
-def _positions(name: str, data: LoadedFlanksData) -> Table:
-    found, i = data.found, data.nominal
+def _positions(name: str, data: LoadedWidePair) -> Table:
+    found, i = data.found, data.at
     columns = [
         Column("roll", found.lines.roll, "mm", "roll position: x of pair 0 in the middle of the face"),
         Column("te", found.transmission_error[:, i], "um", "loaded transmission error along the line of action"),
@@ -118,7 +118,7 @@ def _positions(name: str, data: LoadedFlanksData) -> Table:
     return Table(f"load_distribution_roll_{name}", tuple(columns), f"Shares and transmission error of pair {name}")
 
 
-def _loads(name: str, data: LoadedFlanksData) -> Table:
+def _loads(name: str, data: LoadedWidePair) -> Table:
     stated, error = data.stated, data.error
     columns = (
         Column("load", data.found.load, "N", "along the line of action"),
@@ -132,8 +132,8 @@ def _loads(name: str, data: LoadedFlanksData) -> Table:
     return Table(f"load_distribution_loads_{name}", columns, f"Pair {name} under every load")
 
 
-def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
-    name, found, i = inputs.name, data.found, data.nominal
+def _present(data: LoadedWidePair, inputs: LoadDistributionInputs) -> Outcome:
+    name, found, i = inputs.name, data.found, data.at
     stated, lines = data.stated, data.over.found.lines
     inner = np.where(lines.at_edge, 0.0, data.over.found.pressure[:, :, i])
     p, s = np.unravel_index(int(inner.argmax()), inner.shape)
@@ -163,8 +163,8 @@ def _present(data: LoadedFlanksData, inputs: LoadDistributionInputs) -> Outcome:
     return Outcome(data, tables, values, settings, tuple(_remarks(name, data)), figures)
 
 
-def _remarks(name: str, data: LoadedFlanksData) -> list[str]:
-    found, i = data.found, data.nominal
+def _remarks(name: str, data: LoadedWidePair) -> list[str]:
+    found, i = data.found, data.at
     lines, load = found.lines, found.line_load[:, :, i]
     remarks = []
     if (edge := float(np.where(lines.at_edge, load, 0.0).max())) > 0.0:
@@ -328,7 +328,7 @@ LOAD_DISTRIBUTION = Stage(
     present=_present,
     needs=needs_flanks,
     check=_check,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +11,13 @@ from fegear.base.errors import RangeError
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome, Value
-from fegear.engine.stage import Forecast, Stage, Subject
+from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
-from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import RING
 from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
-from fegear.results.pair.flank_root_stress import places_along
 from fegear.results.pair.load_distribution import distributed_pairs
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.pair.loaded_teeth import gears_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,12 +25,20 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.contact.wide.load_factors import RootFactors
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.engine.stage import Task, Upstream, Work
     from fegear.geometry.pair import Member
-    from fegear.results.pair.loaded_flanks import LoadedFlanksData
 
 #: Seconds of a roll position: both gears, both solutions, three loads.
 _SECONDS = 0.015
+
+
+@dataclass(frozen=True)
+class FlankGears:
+    """Names of a pair and of its gears by member."""
+
+    name: str = field(compare=False)
+    gears: Mapping[Member, str] = field(compare=False)
 
 
 @dataclass(frozen=True)
@@ -40,7 +47,7 @@ class FlankLoadFactorsData:
 
     Parameters
     ----------
-    loaded : LoadedFlanksData
+    loaded : LoadedWidePair
     transverse, transverse_error : ndarray, shape (L,)
         K_Halpha and its estimated error.
     root, coarse : mapping of Member to RootFactors
@@ -53,7 +60,7 @@ class FlankLoadFactorsData:
         F_betay [m] and N_F.
     """
 
-    loaded: LoadedFlanksData
+    loaded: LoadedWidePair
     transverse: Array
     transverse_error: Array
     root: Mapping[Member, RootFactors]
@@ -64,7 +71,7 @@ class FlankLoadFactorsData:
     exponent: float
 
 
-def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankLoadFactorsData:
+def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFactorsData:
     from fegear.contact.wide.load_factors import (
         iso_face_load_factor,
         iso_root_exponent,
@@ -75,13 +82,13 @@ def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> FlankLoadFacto
     from fegear.contact.wide.root_stress import rooted_lines
 
     loaded = loaded_flanks(upstream, inputs.name)
-    found, coarse, i = loaded.found, loaded.error.coarse, loaded.nominal
-    pair, coupling, z = found.pair, loaded.asked.effects.neighbour_coupling, places_along(loaded)
+    found, coarse, i = loaded.found, loaded.error.coarse, loaded.at
+    pair, coupling, z = found.pair, loaded.coupling, loaded.places_along
     # Perfect flanks on the same lines, each with its own compliances.
     perfect, perfect_coarse = (loaded.flanks.solve(found.load, None, one.known) for one in (found, coarse))
     root: dict[Member, RootFactors] = {}
     root_coarse: dict[Member, RootFactors | None] = {}
-    for member, gear in zip(MEMBERS, loaded.asked.gears, strict=True):
+    for member, gear in inputs.gears.items():
         influence = solid_solution_of(upstream, gear)
         rooted = rooted_lines(pair, member, found.lines, influence.fine, coupling=coupling)
         root[member], root_coarse[member] = root_factors(found, perfect, rooted, z, i), None
@@ -120,8 +127,8 @@ def _table(name: str, data: FlankLoadFactorsData) -> Table:
     return Table(f"load_factors_{name}", tuple(columns), f"Load factors of pair {name} under every load")
 
 
-def _present(data: FlankLoadFactorsData, inputs: Subject) -> Outcome:
-    name, i = inputs.name, data.loaded.nominal
+def _present(data: FlankLoadFactorsData, inputs: FlankGears) -> Outcome:
+    name, i = inputs.name, data.loaded.at
     k = float(data.loaded.stated.face_load_factor[i])
     values = [
         Value(f"{name}.K_Halpha", float(data.transverse[i]), "", float(data.transverse_error[i]),
@@ -163,11 +170,11 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 FLANK_LOAD_FACTORS = Stage(
     subjects=distributed_pairs,
-    inputs=Subject.of,
+    inputs=lambda scene, name: FlankGears(name, gears_of(scene, name)),
     compute=_compute,
     present=_present,
     needs=_needs,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=citing(*RING, Citation("iso-6336-1", "face and transverse load factors", "clauses 7 to 9")),
     forecast=_forecast,
 )

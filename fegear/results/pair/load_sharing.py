@@ -1,285 +1,139 @@
-"""Stage ``load-sharing``: one tooth pair followed from first to last contact.
-
-Stage ``flank-load-sharing``: result ``load-sharing`` of pairs that are loaded with their width.
-
-Tables, values and figure of one tooth pair from first to last contact, in the plane and over the face.
-"""
+"""Stage ``load-sharing``: one tooth pair followed from first to last contact, plane or with its width."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS
-from fegear.case.built.loaded_pair import check_relief
+from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.citation import Citation, citing
-from fegear.engine.figure.figure import Axis, Figure, Panel
-from fegear.engine.figure.items import Curve
+from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
+from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Subject
-from fegear.engine.table import Column, Table
+from fegear.engine.table import Table
 from fegear.results import forecasts
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
-from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
-from fegear.results.pair.loaded_pair import EFFECTS, drawn_loads, needs_pair, over_loads, plane_pairs
+from fegear.results.pair.loaded_teeth import (
+    TEETH_EFFECTS,
+    check_teeth,
+    drawn_loads,
+    effects_of_teeth,
+    loaded_pairs,
+    loaded_teeth,
+    needs_teeth,
+    over_loads,
+    under_load,
+)
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
-    from fegear.case.built.loaded_pair import LoadedPair
     from fegear.case.reading import Scene
-    from fegear.contact.plane.pair_history import PairHistory
+    from fegear.contact.loaded_teeth import LoadedTeeth, LoadHistory
     from fegear.engine.stage import Upstream, Work
-    from fegear.geometry.pair import GearPair
-    from fegear.results.pair.loaded_flanks import LoadedFlanksData
 
-
-_POSITIONS = 200
-
-
-#: One engagement followed over its path [s], and what corners off the path add to it.
-_HISTORY, _HISTORY_CORNERS = 0.006, 0.02
+#: One engagement followed over its path [s], what corners off the path add to it, and a pair with a width.
+_HISTORY, _HISTORY_CORNERS, _WIDE = 0.006, 0.02, 0.05
+#: Columns of a pair under one load.
+_COLUMNS = ("x", "driver_roll_angle", "load", "share", "deflection", "hertz_pressure")
 
 
 @dataclass(frozen=True)
 class LoadSharingData:
-    """What the stage hands to pictures.
+    """The loaded teeth, and one pair of them followed over its path."""
 
-    Parameters
-    ----------
-    pair : LoadedPair
-    history : PairHistory
-        Under every load of the case.
-    load_error : ndarray or None
-        Estimated error of its loads [N].
-    """
-
-    pair: LoadedPair
-    history: PairHistory
-    load_error: Array | None
+    teeth: LoadedTeeth
+    history: LoadHistory
 
 
-def _at_corner(pair: LoadedPair, h: PairHistory) -> Array:
-    p = pair.engagement.pair
-    return np.where((h.x < p.x_start) | (h.x > p.x_end), 1.0, 0.0)
+def _compute(inputs: Subject, upstream: Upstream, _work: Work) -> LoadSharingData:
+    teeth = loaded_teeth(upstream, inputs.name)
+    return LoadSharingData(teeth, teeth.history())
 
 
-def _compute(_inputs: Subject, upstream: Upstream, _work: Work) -> LoadSharingData:
-    from fegear.contact.plane.pair_history import pair_history
-    from fegear.contact.plane.shifted_compliance import load_shift
-
-    (found,) = upstream.values()
-    pair: LoadedPair = found.pair
-    history = pair_history(pair.engagement, pair.loads, _POSITIONS)
-    shifts = [load_shift(history, pair_history(other, pair.loads, _POSITIONS)) for other in pair.shifted]
-    return LoadSharingData(pair, history, np.sum(shifts, axis=0) if shifts else None)
-
-
-def _present(data: LoadSharingData, inputs: Subject) -> Outcome:
-    name, pair, history = inputs.name, data.pair, data.history
-    i, off_path = pair.loads.index(pair.nominal), _at_corner(pair, history)
-    beyond = ", outside which tip corners touch" if pair.engagement.corner_contact else ""
-    shown = FollowedPair(
-        name, pair.engagement.pair, pair.loads, i, history, data.load_error, off_path,
-        f"{beyond}. Compliances: {'; '.join(pair.sources)}.",
-    )  # fmt: skip
-    remarks = []
-    worst = float((off_path * history.load[:, i]).max())
-    if pair.engagement.corner_contact and worst > 0.0:
-        remarks.append(
-            f"Pair {name}: tip corners touch off the path and carry up to {worst:.4g} N ({worst / pair.nominal:.1%}); "
-            "hertz_pressure there is that of smooth flanks, the true one is higher."
-        )
-    settings = {"positions": _POSITIONS}
-    return Outcome(
-        data, history_tables(shown), history_values(shown), settings, tuple(remarks), (history_figure(shown),)
-    )
-
-
-def _forecast(scene: Scene, name: str) -> Forecast:
-    """One history for each engagement."""
-    each = _HISTORY + (_HISTORY_CORNERS if scene.case.effects.corner_contact else 0.0)
-    return Forecast(
-        {"positions": 200, "loads": forecasts.loads(scene, name)}, each * forecasts.engagements(scene, name)
-    )
-
-
-@dataclass(frozen=True)
-class FlankLoadSharingData:
-    """What the stage hands to tables and pictures.
-
-    Parameters
-    ----------
-    loaded : LoadedFlanksData
-    history : PairHistory
-        Under every load of the case.
-    load_error : ndarray, shape (P, L)
-        Estimated error of its loads [N].
-    pressure_error : float
-        Of the largest pressure at the nominal load [Pa].
-    """
-
-    loaded: LoadedFlanksData
-    history: PairHistory
-    load_error: Array
-    pressure_error: float
-
-
-def _compute_wide(inputs: Subject, upstream: Upstream, _work: Work) -> FlankLoadSharingData:
-    from fegear.contact.wide.pair_history import flank_pair_history, history_error
-
-    loaded = loaded_flanks(upstream, inputs.name)
-    found, coarse, pair = loaded.found, loaded.error.coarse, loaded.found.pair
-    history = flank_pair_history(found, loaded.gaps.at(pair, found.lines))
-    again = flank_pair_history(coarse, loaded.gaps.at(pair, coarse.lines))
-    largest, other = (one.hertz_pressure[:, loaded.nominal].max() for one in (history, again))
-    missed = loaded.missed  # by slices, of compliances
-    error = history_error(history, again) + missed * history.load * (1.0 - history.share)
-    return FlankLoadSharingData(loaded, history, error, float(abs(other - largest) + 0.5 * missed * largest))
-
-
-def _present_wide(data: FlankLoadSharingData, inputs: Subject) -> Outcome:
-    loaded, history, pair = data.loaded, data.history, data.loaded.found.pair
-    helical = pair.driver.helix_angle != 0.0
-    about = (
-        " in the middle of the face, before and after which the contact line crosses a part of it. "
-        if helical
-        else ". "
-    )
-    shown = FollowedPair(
-        inputs.name, pair, loaded.asked.loads, loaded.nominal, history, data.load_error, None,
-        f"{about}Gears with their width, {'coupled slices' if loaded.asked.width == 'slices' else 'solid'}.",
-        data.pressure_error,
-    )  # fmt: skip
-    settings = {"positions": history.x.size}
-    return Outcome(data, history_tables(shown), history_values(shown), settings, (), (history_figure(shown),))
-
-
-@dataclass(frozen=True)
-class FollowedPair:
-    """A tooth pair followed under every load, ready to be shown.
-
-    Parameters
-    ----------
-    name : str
-        Of the pair of gears.
-    pair : GearPair
-    loads : tuple of float
-        Ascending [N].
-    nominal : int
-        Number of the nominal one.
-    history : PairHistory
-    load_error : ndarray, shape (P, L), or None
-        Estimated error of its loads [N].
-    corner : ndarray, shape (P,), or None
-        1 where a tip corner touches off the path, whose pressure is not that of smooth flanks; None where none can.
-    about : str
-        What else its figure tells.
-    pressure_error : float or None
-        Estimated error of the largest pressure at the nominal load, where it is known by itself [Pa].
-    """
-
-    name: str
-    pair: GearPair
-    loads: tuple[float, ...]
-    nominal: int
-    history: PairHistory
-    load_error: Array | None
-    corner: Array | None
-    about: str
-    pressure_error: float | None = None
-
-
-def _columns(h: PairHistory, i: int) -> tuple[Column, ...]:
-    return (
-        Column("x", h.x, "mm", "position of the pair on the line of action, from the pitch point"),
-        Column("roll_angle", h.driver_roll_angle, "deg", "of the contact point on the driver"),
-        Column("load", h.load[:, i], "N", "on the pair along the line of action"),
-        Column("share", h.share[:, i], "", "of the total load"),
-        Column("deflection", h.deflection[:, i], "um", "of both teeth and their contact"),
-        Column("hertz_pressure", h.hertz_pressure[:, i], "MPa", "largest pressure of smooth flanks"),
-    )
-
-
-def history_tables(f: FollowedPair, more: tuple[Column, ...] = ()) -> tuple[Table, ...]:
-    """The pair at the nominal load, with `more` columns behind, and under every load."""
-    i, name, history = f.nominal, f.name, f.history
-    columns = [*_columns(history, i), *more]
-    if f.corner is not None:
-        columns.append(Column("corner", f.corner, "", "1 where a tip corner touches off the path"))
-    if f.load_error is not None:
-        columns.append(Column("load_error", f.load_error[:, i], "N", "estimated error of load"))
+def _tables(name: str, data: LoadSharingData) -> tuple[Table, ...]:
+    """The pair at the nominal load, and under every load."""
+    h, loads = data.history, data.teeth.loads
+    columns = [*columns_of(h.found, *_COLUMNS, load=h.at)]
+    error = None if h.load_error is None else error_column(columns[_COLUMNS.index("load")], h.load_error[:, h.at])
+    if h.corner is not None:
+        columns.append(column_of(h, "corner"))
+    columns += [] if error is None else [error]
     title = f"Load on one tooth pair of {name}"
-    tables = [Table(f"load_sharing_{name}", tuple(columns), f"{title}, {f.loads[i]:.6g} N")]
-    if len(f.loads) > 1:
-        columns_of = over_loads(f.loads, [_columns(history, k) for k in range(len(f.loads))])
-        tables.append(Table(f"load_sharing_loads_{name}", columns_of, f"{title} for every load"))
+    tables = [Table(f"load_sharing_{name}", tuple(columns), f"{title}, {loads[h.at]:.6g} N")]
+    if len(loads) > 1:
+        every = over_loads(loads, [columns_of(h.found, *_COLUMNS, load=k) for k in range(len(loads))])
+        tables.append(Table(f"load_sharing_loads_{name}", every, f"{title} for every load"))
     return tuple(tables)
 
 
-def history_values(f: FollowedPair) -> tuple[Value, ...]:
-    """Largest load, share and pressure at the nominal load."""
-    name, history, i = f.name, f.history, f.nominal
-    largest = int(np.argmax(history.load[:, i]))
-    pressure = history.hertz_pressure[:, i] * (1.0 if f.corner is None else 1.0 - f.corner)
-    hardest = int(np.argmax(pressure))
-    error = None if f.load_error is None else float(f.load_error[largest, i])
-    relative = None if error is None else error / history.load[largest, i]
-    where = f"at x = {history.x[hardest] * 1e3:.5g} mm"
-    by_load = 0.5 * relative * float(pressure[hardest]) if relative else None
+def _values(name: str, h: LoadHistory) -> tuple[Value, ...]:
+    where = f"smooth flanks, at x = {h.found.x[h.hardest_pressed] * 1e3:.5g} mm"
     return (
-        Value(f"{name}.largest_load", float(history.load[largest, i]), "N", error, "on one tooth pair"),
-        Value(f"{name}.largest_share", float(history.share[largest, i]), "", relative, "of one tooth pair"),
-        Value(
-            f"{name}.largest_hertz_pressure", float(pressure[hardest]), "MPa",
-            # Never exact: where the load has no error, what Hertz leaves out is still not estimated.
-            by_load if f.pressure_error is None else f.pressure_error, f"smooth flanks, {where}",
-        ),
-    )  # fmt: skip
-
-
-def history_figure(f: FollowedPair) -> Figure:
-    """Load and largest pressure over the path, for a few of the loads."""
-    h, x, marks = f.history, f.history.x * 1e3, path_marks(f.pair)
-    load, pressure = [], []
-    for i, label, role in drawn_loads(f.loads, f.loads[f.nominal]):
-        error = f.load_error[:, i] if f.load_error is not None and i == f.nominal else None
-        load.append(Curve(x, h.load[:, i], label, role, error))
-        pressure.append(Curve(x, h.hertz_pressure[:, i] * 1e-6, label, role))
-    return Figure(
-        f"load_sharing_{f.name}",
-        f"Load on a tooth pair of pair {f.name}",
-        f"Pair {f.name}: one tooth pair from its first to its last contact; A to E: points of the path{f.about}",
-        (
-            Panel(LINE_OF_ACTION, Axis("load on the pair", "N", zero=True), tuple(load), marks),
-            Panel(LINE_OF_ACTION, Axis("largest Hertzian pressure", "MPa", zero=True), tuple(pressure), marks),
-        ),
-        under=f"{f.loads[f.nominal]:.5g} N" if len(f.loads) == 1 else "",
+        value_of(h, "largest_load", name, h.largest_load_error),
+        value_of(h, "largest_share", name, h.largest_share_error),
+        value_of(h, "largest_hertz_pressure", name, h.largest_pressure_error, meaning=where),
     )
 
 
+def _figure(name: str, data: LoadSharingData) -> Figure:
+    """Load and largest pressure over the path, for a few of the loads."""
+    teeth, h = data.teeth, data.history
+    marks, panels = path_marks(teeth.pair), []
+    for key in ("load", "hertz_pressure"):
+        errors = h.load_error if key == "load" else None
+        curves = [
+            curve_of(h.found, "x", key, label, role, errors[:, i] if errors is not None and i == h.at else None, load=i)
+            for i, label, role in drawn_loads(teeth.loads, teeth.nominal)
+        ]
+        panels.append(Panel(LINE_OF_ACTION, axis_of(type(h.found), key, zero=True), tuple(curves), marks))
+    return Figure(
+        f"load_sharing_{name}",
+        f"Load on a tooth pair of pair {name}",
+        f"Pair {name}: one tooth pair from its first to its last contact; A to E: points of the path{h.where}. "
+        f"{teeth.about}",
+        tuple(panels),
+        under=under_load(teeth.loads),
+    )
+
+
+def _remarks(name: str, data: LoadSharingData) -> tuple[str, ...]:
+    h = data.history
+    worst = 0.0 if h.corner is None else float((h.corner * h.found.load[:, h.at]).max())
+    if worst == 0.0:
+        return ()
+    said = (
+        f"Pair {name}: tip corners touch off the path and carry up to {worst:.4g} N "
+        f"({worst / data.teeth.nominal:.1%}); hertz_pressure there is that of smooth flanks, the true one is higher."
+    )
+    return (said,)
+
+
+def _present(data: LoadSharingData, inputs: Subject) -> Outcome:
+    name, h = inputs.name, data.history
+    settings = {"positions": h.positions}
+    figures = (_figure(name, data),)
+    return Outcome(data, _tables(name, data), _values(name, h), settings, _remarks(name, data), figures)
+
+
+def _forecast(scene: Scene, name: str) -> Forecast:
+    """One history for each engagement of plane teeth."""
+    if name in scene.wide_pairs:
+        return forecasts.constant(_WIDE)
+    each = _HISTORY + (_HISTORY_CORNERS if scene.case.effects.corner_contact else 0.0)
+    settings = {"positions": POSITIONS, "loads": forecasts.loads(scene, name)}
+    return Forecast(settings, each * forecasts.engagements(scene, name))
+
+
 LOAD_SHARING = Stage(
-    subjects=plane_pairs,
-    needs=needs_pair,
+    subjects=loaded_pairs,
+    needs=needs_teeth,
     inputs=Subject.of,
     compute=_compute,
     present=_present,
-    check=check_relief,
-    effects=EFFECTS,
+    check=check_teeth,
+    effects=TEETH_EFFECTS,
+    effects_of=effects_of_teeth,
     cites=citing(Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ),
     forecast=_forecast,
-)
-
-
-FLANK_LOAD_SHARING = Stage(
-    subjects=wide_pairs,
-    needs=needs_flanks,
-    inputs=Subject.of,
-    compute=_compute_wide,
-    present=_present_wide,
-    effects=FLANK_EFFECTS,
-    cites=citing(Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ),
-    forecast=lambda _scene, _name: forecasts.constant(0.05),
 )

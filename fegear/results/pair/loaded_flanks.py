@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
 from fegear.case.built.pair_inputs import gear_name
-from fegear.case.built.solid_influence import flank_pairs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
@@ -16,19 +14,18 @@ from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import heavy_load
 from fegear.results.forecasts import HERTZ, INVOLUTE, RING
 from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
+from fegear.results.pair.loaded_teeth import wide_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.base.arrays import Array
     from fegear.base.solution_cache import SolutionCache
     from fegear.case.built.loaded_flanks import FlanksToLoad
     from fegear.case.reading import Scene
-    from fegear.contact.wide.compliance import FlankCompliance
-    from fegear.contact.wide.error import FlankError
     from fegear.contact.wide.gaps import FlankGaps
     from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
-    from fegear.contact.wide.over_pitch import OverPitch, Stated
+    from fegear.contact.wide.loaded_pair import LoadedWidePair as LoadedWidePair  # noqa: PLC0414  (for the window)
+    from fegear.contact.wide.over_pitch import Stated
     from fegear.engine.stage import Upstream, Work
     from fegear.fem.solid.flank_body import FlankBody
     from fegear.geometry.pair import Member
@@ -47,71 +44,14 @@ _FEWEST = 3
 _LINE, _CONTACT = 0.0023, 0.001
 
 
-@dataclass(frozen=True)
-class LoadedFlanksData:
-    """What the stage hands to those that stand on it.
-
-    Parameters
-    ----------
-    asked : FlanksToLoad
-        What the case says of the pair.
-    flanks : FlankPair
-        The pair, ready to be loaded again under other gaps and loads.
-    known : FlankCompliance
-        Its compliances at all roll positions, made for the nominal load.
-    gaps : FlankGaps
-        What keeps the flanks apart, of the effects that are on.
-    found : LoadedFlanks
-        Under every load of the case, ascending.
-    over : OverPitch
-        What is stated of the whole base pitch under every load, at as many roll positions as that needs.
-    error : FlankError
-        Estimated errors of `found`, and of what is stated.
-    nominal : int
-        Number of the nominal load among them.
-    neglected : mapping of str to (float, float)
-        By the effects that are off: what each of them would change, if it were on, of mean transmission error [m] and
-        K_Hbeta at the nominal load.
-    unloaded : ndarray, shape (P,)
-        Transmission error of the rigid flanks at the roll positions of `found` [m].
-    beside : float
-        By how much gaps are off because modified flanks touch beside the contact lines of unmodified ones [m].
-    missed : float
-        Share by which compliances of slices are known to be off; 0 for solids.
-    """
-
-    asked: FlanksToLoad
-    flanks: FlankPair
-    known: FlankCompliance
-    gaps: FlankGaps
-    found: LoadedFlanks
-    over: OverPitch
-    error: FlankError
-    nominal: int
-    neglected: Mapping[str, tuple[float, float]]
-    unloaded: Array
-    beside: float
-    missed: float
-
-    @cached_property
-    def stated(self) -> Stated:
-        """Numbers of the whole base pitch under every load."""
-        return self.over.stated
-
-
-def wide_pairs(scene: Scene) -> tuple[str, ...]:
-    """All pairs with a width that carry a load; all of them where none does, so that the missing load is reported."""
-    return tuple(name for name in flank_pairs(scene) if name in scene.wide_pairs) or tuple(scene.wide_pairs)
-
-
 def needs_flanks(_scene: Scene, name: str) -> tuple[Task, ...]:
     """The task of this stage for a pair."""
     return (Task("loaded-flanks", name),)
 
 
-def loaded_flanks(upstream: Upstream, name: str) -> LoadedFlanksData:
+def loaded_flanks(upstream: Upstream, name: str) -> LoadedWidePair:
     """What this stage computed for a pair."""
-    return cast("LoadedFlanksData", upstream[Task("loaded-flanks", name)])
+    return cast("LoadedWidePair", upstream[Task("loaded-flanks", name)])
 
 
 def load_flanks(
@@ -152,9 +92,10 @@ def load_flanks(
     return flanks, gaps, found
 
 
-def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlanksData:
+def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWidePair:
     from fegear.contact.wide.error import flank_error, with_misses
     from fegear.contact.wide.gaps import beside_the_lines, unloaded_error
+    from fegear.contact.wide.loaded_pair import LoadedWidePair as LoadedWidePair  # noqa: PLC0414  (for the window)
     from fegear.contact.wide.over_pitch import over_pitch
     from fegear.fem.solid.slice_laws import missed_by_slices
 
@@ -176,10 +117,10 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedFlank
     }
     unloaded = unloaded_error(asked.pair, gaps, found.lines.roll)
     beside = beside_the_lines(asked.pair, gaps, found.lines)
-    nominal = asked.loads.index(asked.nominal)
-    return LoadedFlanksData(
-        asked, flanks, known, gaps, found, over, error, nominal, neglected, unloaded, beside, missed
-    )  # fmt: skip
+    apart = asked.gaps(relief=False, misalignment=effects.misalignment)
+    return LoadedWidePair(
+        flanks, asked.loads, asked.nominal, known, gaps, apart, found, over, error, neglected, unloaded, beside, missed
+    )
 
 
 def _with_edges(asked: FlanksToLoad, flanks: FlankPair, gaps: FlankGaps, stated: Stated) -> tuple[float, float]:
@@ -214,7 +155,7 @@ def _with(
     )
 
 
-def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
+def _present(data: LoadedWidePair, asked: FlanksToLoad) -> Outcome:
     found = data.found
     settings = {
         "width": asked.width, "positions": asked.positions, "panels": asked.panels,
@@ -224,42 +165,42 @@ def _present(data: LoadedFlanksData, asked: FlanksToLoad) -> Outcome:
         "positions_of_stated": data.over.found.lines.roll.size,
         "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
     }  # fmt: skip
-    remarks = (*_heavy(data), *_sliced(data), *_neglected(data), *_beside(data), *_short(data))
-    return Outcome(data, settings=settings, remarks=remarks)
+    said = (one(asked.name, data) for one in (_heavy, _sliced, _neglected, _beside, _short))
+    return Outcome(data, settings=settings, remarks=tuple(remark for some in said for remark in some))
 
 
-def _heavy(data: LoadedFlanksData) -> tuple[str, ...]:
+def _heavy(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     """Say where no metal carries the load, spread over the face or where it stands."""
     found = data.over.found
     sentence = heavy_load(data.flanks.pair, float(found.load.max()), float(found.largest_pressure.max()))
-    return (f"Pair {data.asked.name}: {sentence}",) if sentence else ()
+    return (f"Pair {name}: {sentence}",) if sentence else ()
 
 
-def _sliced(data: LoadedFlanksData) -> tuple[str, ...]:
+def _sliced(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     """Say what slices are."""
     if not data.missed:
         return ()
     told = (
-        f"Pair {data.asked.name}: coupled slices of the plane section are used instead of solid gears. Their "
+        f"Pair {name}: coupled slices of the plane section are used instead of solid gears. Their "
         f"compliances miss those of solids by up to {data.missed:.0%}, which the estimated errors count."
     )
     return (told,)
 
 
-def _beside(data: LoadedFlanksData) -> tuple[str, ...]:
+def _beside(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     """Say where modifications or errors are too steep for the contact lines of unmodified flanks."""
-    mean = float(data.stated.mean[data.nominal])
+    mean = float(data.stated.mean[data.at])
     if data.beside <= _UNREMARKED * mean:
         return ()
     remark = (
-        f"Pair {data.asked.name}: where modifications or errors are steep the flanks touch beside the contact lines of "
+        f"Pair {name}: where modifications or errors are steep the flanks touch beside the contact lines of "
         f"unmodified ones, which moves gaps by up to {data.beside * 1e6:.3g} um; the mean transmission error is "
-        f"{mean * 1e6:.4g} um. Column te_unloaded of load_distribution_roll_{data.asked.name} knows it, loads do not."
+        f"{mean * 1e6:.4g} um. Column te_unloaded of load_distribution_roll_{name} knows it, loads do not."
     )
     return (remark,)
 
 
-def _short(data: LoadedFlanksData) -> tuple[str, ...]:
+def _short(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     """Say where the load stands on so few places that panels are too long for it."""
     found = data.found
     fewest = (found.contact.force > 0.0).sum(axis=1).min(axis=0)
@@ -267,26 +208,18 @@ def _short(data: LoadedFlanksData) -> tuple[str, ...]:
         return ()
     i = int(fewest.argmin())
     remark = (
-        f"Pair {data.asked.name}: under {found.load[i]:.4g} N the flanks touch at {fewest[i]} places of a roll "
+        f"Pair {name}: under {found.load[i]:.4g} N the flanks touch at {fewest[i]} places of a roll "
         "position, too few to tell how the load spreads between them. Raise load_distribution.panels."
     )
     return (remark,)
 
 
-def _neglected(data: LoadedFlanksData) -> tuple[str, ...]:
+def _neglected(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     """Say how much the effects would change that are off."""
-    told = {
-        "neighbour_coupling": "coupling between tooth pairs is neglected",
-        "hertz": "contacts do not widen with their load",
-        "relief": "gears have a relief or lead modifications that are neglected",
-        "spacing_errors": "gears have spacing_errors that are neglected",
-        "corner_contact": "contact lines end at the tips instead of going on along their edges",
-        "misalignment": "the pair has a misalignment or line_error that is neglected",
-    }
-    i = data.nominal
+    i = data.at
     mean, factor = float(data.stated.mean[i]), float(data.stated.face_load_factor[i])
     return tuple(
-        f"Pair {data.asked.name}: {told[effect]} (effects.{effect}). With it the mean transmission error would be "
+        f"Pair {name}: {FLANK_EFFECTS[effect]} (effects.{effect}). With it the mean transmission error would be "
         f"{(mean + te) * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {factor + k:.4g} for {factor:.4g}."
         for effect, (te, k) in data.neglected.items()
     )
@@ -310,7 +243,7 @@ LOADED_FLANKS = Stage(
     present=_present,
     needs=_needs,
     check=check_flanks_to_load,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
 )

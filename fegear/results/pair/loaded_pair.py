@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, cast
-
-import numpy as np
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from fegear.base.plain import content_key
 from fegear.case.built.loaded_pair import (
-    LoadedPair,
     build_loaded_pair,
     check_pair,
     compliance_sources,
@@ -17,33 +14,25 @@ from fegear.case.built.loaded_pair import (
     shifted_sources,
 )
 from fegear.case.built.neglected_effects import Neglected, neglected_effects, neglected_remarks, whole_ratio_remarks
-from fegear.case.built.pair_inputs import pair_inputs
-from fegear.engine.figure.figure import Axis
-from fegear.engine.figure.items import Mark, few, ramp
+from fegear.case.built.pair_inputs import EFFECTS, pair_inputs
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage, Task
-from fegear.engine.table import Column
+from fegear.engine.stage import Forecast, Stage
 from fegear.results.forecasts import CLOSED_FORM_COMPLIANCES, HERTZ, PATCH, RING
-from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.stiffness import needs_solution, solution_of
+from fegear.results.pair.loaded_teeth import plane_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator
 
-    from fegear.base.arrays import Array
     from fegear.case.built.pair_inputs import PairInputs
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
     from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.neglected_effects import Answer
     from fegear.engine.citation import Citation
-    from fegear.engine.stage import Upstream, Work
-    from fegear.geometry.pair import GearPair
+    from fegear.engine.stage import Task, Upstream, Work
 
-#: Abscissa of figures over one base pitch.
-BASE_PITCH = Axis("roll position over one base pitch", "mm")
-#: Effects that load sharing knows.
-EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact")
 #: What the results that load a pair stand on; those of the train stand on its transmission error.
 _ANSWERS: dict[str, Answer] = {
     "load-sharing": "load on a tooth pair",
@@ -59,47 +48,6 @@ _ANSWERS: dict[str, Answer] = {
 }  # fmt: skip
 #: Results that are for every load of the case.
 _FOR_ALL_LOADS = frozenset({"load-sharing", "transmission-error", "root-stress-history", "relief", "relief-chart"})
-
-
-def drawn_loads(loads: Sequence[float], nominal: float, word: str = "nominal") -> list[tuple[int, str, str]]:
-    """Index, label and role of the loads that are drawn: all, or evenly many with the nominal one."""
-    near = min(range(len(loads)), key=lambda i: abs(loads[i] - nominal))
-    chosen = few(len(loads), (near,))
-    labels = [f"{loads[i]:.5g} N" + (f" ({word})" if loads[i] == nominal and len(loads) > 1 else "") for i in chosen]
-    return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
-
-
-def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tuple[Column, ...]:
-    """Columns of one load each, joined below each other behind a column of the load."""
-    rows = [len(part[0]) for part in parts]
-    return (
-        Column("total_load", np.repeat(loads, rows), "N", "along the line of action"),
-        *(replace(same[0], si=np.concatenate([column.si for column in same])) for same in zip(*parts, strict=True)),
-    )
-
-
-def pitch_marks(pair: GearPair, x: Array) -> tuple[Mark, ...]:
-    """Marks of those points that a roll over one base pitch passes, between the ends of x [m]."""
-    low, high = float(x.min()) * 1e3, float(x.max()) * 1e3
-    room = 1e-6 * (high - low)
-    return tuple(m for m in path_marks(pair) if low - room <= m.at <= high + room)
-
-
-def plane_pairs(scene: Scene) -> tuple[str, ...]:
-    """All pairs of plane teeth that carry a load; all of them where none does, so that the missing load is reported."""
-    pairs = scene.plane_pairs
-    loaded = tuple(name for name, pair in pairs.items() if scene.case.pair[name].normal_load(pair) is not None)
-    return loaded or tuple(pairs)
-
-
-def needs_pair(_scene: Scene, name: str) -> tuple[Task, ...]:
-    """The task of this stage for a pair."""
-    return (Task("loaded-pair", name),)
-
-
-def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
-    """What this stage computed for a pair."""
-    return cast("LoadedPairData", upstream[Task("loaded-pair", name)]).pair
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.loaded_teeth import HARMONICS
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve, Points
 from fegear.engine.outcome import Outcome, Value
@@ -16,9 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.contact.fourier import FourierSeries
-    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.mark_series import StaticErrorSeries
-    from fegear.contact.plane.transmission_error import TransmissionError
 
 #: Harmonics in the figure.
 _BARS = 16
@@ -54,22 +54,22 @@ class MarkData:
     contact_ratio: float
 
 
-def mark_data(engagement: Engagement, exact: TransmissionError, terms: int) -> MarkData:
-    """Compute the series beside an exact transmission error of the same load."""
+def mark_data(pair: LoadedPair, terms: int) -> MarkData:
+    """Compute the series beside the exact transmission error of plane teeth under their nominal load."""
     from dataclasses import replace
 
     from fegear.contact.plane.mark_series import spacing_series, static_error_series
     from fegear.contact.plane.transmission_error import transmission_error
 
-    harmonics, none = exact.series.amplitude.size, np.empty(0)
+    engagement, none = pair.engagement, np.empty(0)
     uneven = bool(engagement.driver_spacing.size or engagement.driven_spacing.size)
     even = replace(engagement, driver_spacing=none, driven_spacing=none)
-    same = transmission_error(even, exact.load, harmonics) if uneven else exact
+    same = transmission_error(even, pair.nominal, HARMONICS)
     contacts = same.loaded.grid.contacts
     parted = bool(np.any((same.loaded.loads[:, :, 0] <= 0.0) & contacts.present & (contacts.gap == 0.0)))
     corners = bool(np.any((same.loaded.loads[:, :, 0] > 0.0) & (contacts.gap > 0.0)))
     spacing = spacing_series(engagement, 3 * engagement.cycles) if uneven else None
-    series = static_error_series(engagement, exact.load, harmonics, terms)
+    series = static_error_series(engagement, pair.nominal, HARMONICS, terms)
     return MarkData(series, same.series, spacing, engagement.cycles, parted, corners, engagement.pair.contact_ratio)
 
 

@@ -18,15 +18,16 @@ from fegear.engine.figure.items import Curve, HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table
-from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
+from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.pair.loaded_teeth import wide_pairs
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Complex
     from fegear.case.reading import Scene
     from fegear.contact.fourier import Panels
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.contact.wide.mesh_matrix import MeshStiffness
     from fegear.engine.stage import Upstream, Work
-    from fegear.results.pair.loaded_flanks import LoadedFlanksData
 
 
 @dataclass(frozen=True)
@@ -35,14 +36,14 @@ class MeshStiffnessData:
 
     Parameters
     ----------
-    flanks : LoadedFlanksData
+    flanks : LoadedWidePair
     found, other : MeshStiffness
         And what the coarser solution gives.
     even : ndarray, shape (3,)
         K_M over its own mean, kappa and mu of contact lines that are everywhere equally stiff.
     """
 
-    flanks: LoadedFlanksData
+    flanks: LoadedWidePair
     found: MeshStiffness
     other: MeshStiffness
     even: Array
@@ -50,7 +51,7 @@ class MeshStiffnessData:
     @property
     def mean(self) -> Array:
         """K_M [N/m], kappa and mu of the mean matrix under the nominal load."""
-        return np.asarray(self.found.mean_parameters[:, self.flanks.nominal])
+        return np.asarray(self.found.mean_parameters[:, self.flanks.at])
 
     @property
     def mean_error(self) -> Array:
@@ -58,7 +59,7 @@ class MeshStiffnessData:
         from fegear.contact.wide.mesh_matrix import mesh_parameters_of
         from fegear.contact.wide.transmission_error import from_half
 
-        i, found = self.flanks.nominal, self.found
+        i, found = self.flanks.at, self.found
         fewer = np.stack([from_half(found.points, moment) for moment in found.moments[:, :, i]], axis=1)
         half = mesh_parameters_of(found.pair, found.mean(fewer))
         return np.asarray(np.abs(self.other.mean_parameters[:, i] - self.mean) + np.abs(half - self.mean))
@@ -68,7 +69,7 @@ class MeshStiffnessData:
         """Mean matrix under the nominal load over q of both gears, shape (10, 10) [N/m]; see `over_q`."""
         from fegear.contact.wide.mesh_matrix import over_q
 
-        return over_q(self.found.pair, self.found.mean(self.found.matrix[:, self.flanks.nominal]))
+        return over_q(self.found.pair, self.found.mean(self.found.matrix[:, self.flanks.at]))
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def _compute(asked: MeshStiffnessInputs, upstream: Upstream, _work: Work) -> Mes
 
 
 def _over_roll(name: str, data: MeshStiffnessData) -> Table:
-    i, found = data.flanks.nominal, data.found
+    i, found = data.flanks.at, data.found
     parameters, doubt = found.parameters[:, :, i], np.abs(data.other.parameters - found.parameters)[:, :, i]
     c = math.cos(found.pair.driver.base_helix_angle)
     columns = (
@@ -130,7 +131,7 @@ def _mean_matrix(name: str, data: MeshStiffnessData) -> Table:
 
 
 def _harmonics(name: str, data: MeshStiffnessData) -> Table:
-    i, found = data.flanks.nominal, data.found
+    i, found = data.flanks.at, data.found
     c, b = math.cos(found.pair.driver.base_helix_angle), found.half_width
     from fegear.contact.wide.transmission_error import series_over_pitch
 
@@ -194,7 +195,7 @@ def loaded_harmonics(data: MeshStiffnessData, count: int, shuttling: bool) -> tu
     from fegear.contact.wide.transmission_error import from_half
 
     flanks = data.flanks
-    found, other = (_over_q(one, te, flanks.nominal, shuttling) for one, te in (
+    found, other = (_over_q(one, te, flanks.at, shuttling) for one, te in (
         (data.found, flanks.found.transmission_error), (data.other, flanks.error.coarse.transmission_error)
     ))  # fmt: skip
     points = data.found.points
@@ -225,7 +226,7 @@ def _over_q(one: MeshStiffness, te: Array, case: int, shuttling: bool) -> Array:
 
 
 def _present(data: MeshStiffnessData, asked: MeshStiffnessInputs) -> Outcome:
-    name, i, found = asked.name, data.flanks.nominal, data.found
+    name, i, found = asked.name, data.flanks.at, data.found
     (stiffness, kappa, mu), doubt = data.mean, data.mean_error
     (kappa_i, mu_i), (kappa_j, mu_j) = own_axis_parameters(data)
     b, c = found.half_width, math.cos(found.pair.driver.base_helix_angle)
@@ -252,7 +253,7 @@ def _present(data: MeshStiffnessData, asked: MeshStiffnessInputs) -> Outcome:
     tables = [_over_roll(name, data), _mean_matrix(name, data), _harmonics(name, data)]
     if found.moments.shape[2] > 1:
         tables.append(_loads(name, data))
-    settings = {"positions": data.flanks.asked.positions, "load": data.flanks.asked.nominal}
+    settings = {"positions": data.flanks.flanks.positions, "load": data.flanks.nominal}
     figures = mesh_stiffness_figures(name, data)
     return Outcome(data, tuple(tables), values, settings, _remarks(name, data), figures)
 
@@ -304,7 +305,7 @@ def mesh_stiffness_figures(name: str, data: MeshStiffnessData) -> tuple[Figure, 
 
 
 def _drawn_over_roll(name: str, data: MeshStiffnessData) -> Figure:
-    i, roll = data.flanks.nominal, data.flanks.found.lines.roll * 1e3
+    i, roll = data.flanks.at, data.flanks.found.lines.roll * 1e3
     found, mean, even = data.found.parameters[:, :, i], data.mean, data.even
     doubt = np.abs(data.other.parameters[:, :, i] - found)
     lever = math.cos(data.found.pair.driver.base_helix_angle) * data.found.lever[:, i] / data.found.half_width
@@ -331,7 +332,7 @@ def _drawn_over_roll(name: str, data: MeshStiffnessData) -> Figure:
             Panel(x, Axis("mu", zero=True), (curve(2, "these teeth"), level(float(mean[2]), "mean", "ink"),
                   level(float(even[2]), "lines equally stiff", "grey"))),
         ),
-        under=f"{data.flanks.asked.nominal:.5g} N",
+        under=f"{data.flanks.nominal:.5g} N",
     )  # fmt: skip
 
 
@@ -348,7 +349,7 @@ def _as_map(name: str, data: MeshStiffnessData) -> Figure:
         "driven gear, each turning about right-handed axes through its own. Rotations are arcs at half the face width "
         "b and at the base radius r.",
         (Panel(Axis("motion", categories=names), Axis("force", categories=names), (field,), height=2.2),),
-        under=f"{data.flanks.asked.nominal:.5g} N",
+        under=f"{data.flanks.nominal:.5g} N",
     )
 
 
@@ -359,7 +360,7 @@ MESH_STIFFNESS_MATRIX = Stage(
     present=_present,
     needs=needs_flanks,
     check=_check,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=citing(Citation("blankenship-singh", "mesh stiffness matrix, kappa and mu", "Eqs. 2 to 7")),
     forecast=lambda _scene, _name: Forecast({}, 0.1),
 )

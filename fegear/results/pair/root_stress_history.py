@@ -1,22 +1,20 @@
 """Stage ``root-stress-history``: root stress of one tooth of either gear on its way through the mesh.
 
 What the results of root stress share: where ``pair.NAME.root_stress`` takes it from, and how that is told.
-
-Tables, values and figure of root stress on a tooth's way through the mesh, in the plane and over the face.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fegear.case.built.loaded_pair import check_relief
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, root_stress_source
 from fegear.engine.citation import Citation
-from fegear.engine.figure.figure import Axis, Figure, Panel
-from fegear.engine.figure.items import Curve, Mark
+from fegear.engine.declared import axis_of, column_of, columns_of, curve_of, error_column, value_of
+from fegear.engine.figure.figure import Figure, Panel
+from fegear.engine.figure.items import HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
@@ -25,43 +23,42 @@ from fegear.results import forecasts
 from fegear.results.forecasts import ROOT_STRESS_CITATIONS
 from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.stiffness import needs_solution, solution_of
-from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair, needs_pair, plane_pairs
-from fegear.results.pair.transmission_error import POSITIONS
+from fegear.results.gear.stiffness_over_face import solid_solution_of
+from fegear.results.pair.loaded_teeth import (
+    TEETH_EFFECTS,
+    check_teeth,
+    effects_of_teeth,
+    gears_of,
+    loaded_pair,
+    loaded_pairs,
+    loaded_teeth,
+    needs_gears,
+    needs_teeth,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from fegear.case.built.loaded_pair import LoadedPair
     from fegear.case.reading import Scene
-    from fegear.contact.plane.compliance import RootStressInfluence
+    from fegear.contact.loaded_teeth import LoadedTeeth, RootStressInMesh
     from fegear.contact.plane.tooth_stress import ToothStress
+    from fegear.contact.wide.root_stress import StressOverFace
     from fegear.engine.stage import Task, Upstream, Work
-    from fegear.geometry.pair import GearPair, Member
+    from fegear.fem.plane.influence import Side
+    from fegear.geometry.pair import Member
+
+#: Of a pair with a width: seconds to begin with, and of a roll position, both gears and both solutions, for each load.
+_WIDE, _WIDE_POSITION = 0.5, 0.05
+#: Points of a map over the way of the tooth and along the face.
+_ACROSS, _ALONG = 181, 81
 
 
 @dataclass(frozen=True)
 class RootStressData:
-    """Root stress of one tooth of either gear by every source, and what formulas say of their values."""
+    """The loaded teeth, and the root stress of one tooth of either gear in the mesh."""
 
-    pair: LoadedPair
-    stress: dict[Member, dict[str, ToothStress]]
-    notes: dict[Member, dict[str, tuple[str, ...]]]
-
-
-def _check(scene: Scene, name: str) -> None:
-    check_relief(scene, name)
-    check_formulas(scene, name, tips=scene.case.effects.corner_contact)
-
-
-def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (*needs_pair(scene, name), *needs_sources(scene, name))
-
-
-def table_names(scene: Scene, name: str) -> dict[Member, str]:
-    """``<pair>_<gear>``; where a gear meshes with its like the driven one's name ends in ``_driven``."""
-    names = {member: gear_name(scene, name, member) for member in MEMBERS}
-    twins = names["driver"] == names["driven"]
-    return {m: f"{name}_{g}" + ("_driven" if twins and m == "driven" else "") for m, g in names.items()}
+    teeth: LoadedTeeth
+    found: RootStressInMesh
 
 
 @dataclass(frozen=True)
@@ -73,7 +70,7 @@ class RootStressInputs:
     rate : float or None
         Velocity of the contact along the line of action [m/s], where the case gives a speed.
     sources : tuple of str
-        Of root stress; the first is the result.
+        Of root stress; the first is the result. None are named for pairs with a width: that is finite elements.
     coupled, tips : bool
         Whether neighbours' loads count, and whether tip corners touch beyond the path of contact.
     name : str
@@ -94,69 +91,92 @@ class RootStressInputs:
     estimates: bool = True
 
 
+def table_names(scene: Scene, name: str) -> dict[Member, str]:
+    """``<pair>_<gear>``; where a gear meshes with its like the driven one's name ends in ``_driven``."""
+    names = {member: gear_name(scene, name, member) for member in MEMBERS}
+    twins = names["driver"] == names["driven"]
+    return {m: f"{name}_{g}" + ("_driven" if twins and m == "driven" else "") for m, g in names.items()}
+
+
 def _inputs(scene: Scene, name: str) -> RootStressInputs:
-    speed = scene.case.pair[name].speed
+    speed, effects = scene.case.pair[name].speed, scene.case.effects
     rate = None if speed is None else speed * scene.pairs[name].driver.base_radius
-    gears, effects = {member: gear_name(scene, name, member) for member in MEMBERS}, scene.case.effects
-    sources = stress_sources(scene, name)
-    labels = table_names(scene, name)
-    coupled, tips = effects.neighbour_coupling, effects.corner_contact
-    return RootStressInputs(rate, sources, coupled, tips, name, labels, gears, scene.estimates)
+    sources = () if name in scene.wide_pairs else stress_sources(scene, name)
+    return RootStressInputs(
+        rate, sources, effects.neighbour_coupling, effects.corner_contact, name, table_names(scene, name),
+        gears_of(scene, name), scene.estimates,
+    )  # fmt: skip
+
+
+def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    if name in scene.wide_pairs:
+        return needs_gears(scene, name)
+    return (*needs_teeth(scene, name), *needs_sources(scene, name))
+
+
+def _sources(asked: RootStressInputs, upstream: Upstream) -> dict[Member, dict[str, Any]]:
+    """Where root stress comes from: the gears' solids, or what the case names for plane teeth."""
+    if not asked.sources:
+        return {member: {FINITE_ELEMENTS: solid_solution_of(upstream, gear)} for member, gear in asked.gears.items()}
+    pair = loaded_pair(upstream, asked.name)
+    solved = {} if FINITE_ELEMENTS not in asked.sources else {g: solution_of(upstream, g) for g in asked.gears.values()}
+    sources: dict[Member, dict[str, Any]] = {member: {} for member in MEMBERS}
+    for member, gear in asked.gears.items():
+        for name in asked.sources:
+            source: Any = pair.engagement.compliance.source(member)  # knows what was asked before
+            if name != FINITE_ELEMENTS or getattr(source, "influence", None) is not solved[gear]:
+                source = root_stress_source(name, asked.name, gear, pair.pair, member, solved, tips=asked.tips)
+            sources[member][name] = source
+    return sources
 
 
 def _compute(asked: RootStressInputs, upstream: Upstream, work: Work) -> RootStressData:
-    from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress, with_peaks
-    from fegear.contact.plane.transmission_error import roll_positions
-
-    pair = loaded_pair(upstream, asked.name)
-    solved = {} if FINITE_ELEMENTS not in asked.sources else {g: solution_of(upstream, g) for g in asked.gears.values()}
-    sources: dict[Member, dict[str, RootStressInfluence]] = {member: {} for member in MEMBERS}
-    for member in MEMBERS:
-        gear = asked.gears[member]
-        for name in asked.sources:
-            source: RootStressInfluence = pair.engagement.compliance.source(member)  # knows what was asked before
-            if name != FINITE_ELEMENTS or getattr(source, "influence", None) is not solved[gear]:
-                source = root_stress_source(
-                    name, asked.name, gear, pair.engagement.pair, member, solved, tips=asked.tips
-                )  # fmt: skip
-            sources[member][name] = source
-    x = roll_positions(pair.engagement, POSITIONS)
-    x = with_peaks(pair.engagement, pair.nominal, x, {member: (*sources[member].values(),) for member in MEMBERS})
-    states = loaded_states(pair.engagement, pair.shifted, pair.loads, x)
-    stress: dict[Member, dict[str, ToothStress]] = {}
-    notes: dict[Member, dict[str, tuple[str, ...]]] = {}
-    for number, member in enumerate(MEMBERS):
-        stress[member], notes[member] = {}, {}
-        for name, source in sources[member].items():
-            stress[member][name] = tooth_stress(pair.engagement, states, member, source, estimates=asked.estimates)
-            notes[member][name] = source.remarks
-        work.progress((number + 1) / len(MEMBERS))
-    return RootStressData(pair, stress, notes)
+    teeth = loaded_teeth(upstream, asked.name)
+    found = teeth.root_stress(_sources(asked, upstream), work.progress, estimates=asked.estimates)
+    return RootStressData(teeth, found)
 
 
 def _present(data: RootStressData, inputs: RootStressInputs) -> Outcome:
-    name, pair = inputs.name, data.pair
-    i = pair.loads.index(pair.nominal)
+    name, teeth, found = inputs.name, data.teeth, data.found
+    i = teeth.loads.index(teeth.nominal)
     tables, values = [], []
     for member, label in inputs.labels.items():
-        gear = inputs.gears[member]
-        tables.append(stress_table(label, gear, data.stress[member], i, inputs.rate, pair.loads))
-        for k, (source, s) in enumerate(data.stress[member].items()):
-            values += stress_values(f"{name}.{member}", ending(inputs.sources, k), f"gear {gear}, {told(source)}", s, i)
-    settings: dict[str, object] = {"root_stress": list(inputs.sources)}
-    notes = {inputs.gears[member]: found for member, found in data.notes.items()}
+        gear, of, over = inputs.gears[member], f"{name}.{member}", found.over_face.get(member)
+        more = () if over is None else _places(over)
+        tables.append(_stress_table(label, gear, found.stress[member], i, inputs.rate, teeth.loads, more))
+        if over is not None:
+            tables.append(_over_face(label, gear, over))
+        for k, (source, s) in enumerate(found.stress[member].items()):
+            by = told(source) if over is None else _where(s, over, i)
+            values += _stress_values(of, ending(inputs.sources, k), f"gear {gear}, {by}", s, i)
+        values += _across_the_root(of, gear, found.across.get(member))
+    notes = {inputs.gears[member]: said for member, said in found.notes.items()}
     remarks = formula_remarks(name, notes, coupled=inputs.coupled)
-    figure = stress_figure(name, pair.engagement.pair, pair.nominal, data.stress, i, inputs.gears)
-    return Outcome(data, tuple(tables), tuple(values), settings, remarks, (figure,))
+    remarks += (_direction(data, name, i),) if found.across else ()
+    figures = [_stress_figure(name, data, i, inputs.gears)]
+    settings: dict[str, object] = {"root_stress": list(inputs.sources)}
+    if found.over_face:
+        settings = {"places_along_the_face": int(found.over_face["driver"]["tension"].z.size)}
+        figures.append(_map(name, teeth.nominal, found.over_face, inputs.gears))
+    return Outcome(data, tuple(tables), tuple(values), settings, remarks, tuple(figures))
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_teeth(scene, name)
+    if name not in scene.wide_pairs:
+        check_formulas(scene, name, tips=scene.case.effects.corner_contact)
 
 
 def _cites(scene: Scene, name: str) -> Iterator[Citation]:
-    yield from cited_sources(scene, name)
+    yield from ROOT_STRESS_CITATIONS[FINITE_ELEMENTS] if name in scene.wide_pairs else cited_sources(scene, name)
     yield Citation("mark", "root stress of a tooth on its way through the mesh", "section 3, Appendix B")
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:
     """Kernels of both gears over the path, those of their neighbours, and the formulas' tables."""
+    if name in scene.wide_pairs:
+        positions, loads = scene.case.load_distribution.positions, forecasts.loads(scene, name)
+        return Forecast({"positions": positions, "loads": loads}, _WIDE + _WIDE_POSITION * positions * loads)
     seconds = 0.25 if scene.case.effects.corner_contact else 0.12
     seconds *= 1.0 if scene.case.effects.neighbour_coupling else 0.3
     return forecasts.constant(seconds + seconds_of(stress_sources(scene, name)))
@@ -221,105 +241,169 @@ def formula_remarks(pair: str, notes: Mapping[str, Mapping[str, tuple[str, ...]]
     return tuple(remarks)
 
 
-def stress_table(
+def _stress_table(
     name: str,
     gear: str,
     found: Mapping[str, ToothStress],
     i: int,
     rate: float | None,
     loads: tuple[float, ...],
-    more: tuple[Column, ...] = (),
+    more: tuple[Column, ...],
 ) -> Table:
     """One tooth of a gear by every source, at load `i` and the others; `rate` [m/s] makes a time of its way."""
     sources = tuple(found)
     first = found[sources[0]]
-    columns = [Column("x", first.x, "mm", "position of the tooth's contact on the line of action")]
+    columns = [*columns_of(first, "x")]
     if rate is not None:
         columns.insert(0, Column("t", (first.x - first.x[0]) / rate, "s", "from the first position"))
     for k, (source, s) in enumerate(found.items()):
         end = ending(sources, k)
-        meaning = f"largest tangential tension of the fillet below the loaded flank, by {told(source)}"
-        columns.append(Column(f"stress{end}", s.tension[:, i], "MPa", meaning))
+        tension = column_of(s, "tension", load=i, name=f"stress{end}")
+        tension = replace(tension, meaning=f"{tension.meaning}, by {told(source)}")
+        columns.append(tension)
         if s.compression is not None:
-            columns.append(
-                Column(f"compression{end}", s.compression[:, i], "MPa", "most negative stress of the other fillet")
-            )
-        if not np.isnan(s.tension_error).any():
-            columns.append(
-                Column(f"stress_error{end}", s.tension_error[:, i], "MPa", f"estimated error of stress{end}")
-            )
+            columns.append(column_of(s, "compression", load=i, name=f"compression{end}"))
+        if s.knows_error:
+            error = s.tension_error[:, i]
+            columns.append(replace(error_column(tension, error), name=f"stress_error{end}"))
         for j, load in enumerate(loads):
             if j != i:
-                head = f"stress{end} at {load:.6g} N"
-                columns.append(Column(head, s.tension[:, j], "MPa", f"as stress{end}, under this load"))
+                head, meaning = f"stress{end} at {load:.6g} N", f"as stress{end}, under this load"
+                columns.append(column_of(s, "tension", load=j, name=head, meaning=meaning))
     return Table(f"root_stress_history_{name}", (*columns, *more), f"Root stress of a tooth of gear {gear} in the mesh")
 
 
-def stress_values(of: str, end: str, by: str, s: ToothStress, i: int) -> list[Value]:
+def _stress_values(of: str, end: str, by: str, s: ToothStress, i: int) -> list[Value]:
     """Largest stresses by one source, under load `i`."""
-    worst = int(np.argmax(s.tension[:, i]))
-    error = float(s.tension_error[worst, i])
-    values = [
-        Value(
-            f"{of}.largest_root_tension{end}", float(s.tension[worst, i]), "MPa", None if np.isnan(error) else error,
-            f"{by}, contact at x = {s.x[worst] * 1e3:.5g} mm",
-        ),
-        Value(
-            f"{of}.root_stress_range{end}", float(np.ptp(s.tension[:, i])), "MPa", None,
-            "largest less smallest stress below the loaded flank over the mesh",
-        ),
+
+    def value(key: str, error: float | None = None, at: int | None = None) -> Value:
+        where = "" if at is None else f"{by}, contact at x = {s.x[at] * 1e3:.5g} mm"
+        found = value_of(s, key, of, error, load=i, meaning=where)
+        return replace(found, name=f"{found.name}{end}")
+
+    pressed = [] if s.compression is None else [
+        value("largest_compression", at=int(np.argmin(s.compression[:, i])))
     ]  # fmt: skip
-    if s.compression is not None:
-        least = int(np.argmin(s.compression[:, i]))
-        place = f"{by}, contact at x = {s.x[least] * 1e3:.5g} mm"
-        values.insert(
-            1, Value(f"{of}.largest_root_compression{end}", float(s.compression[least, i]), "MPa", None, place)
-        )
-    return values
+    return [value("largest_tension", s.error(i), s.worst(i)), *pressed, value("tension_range")]
 
 
-def stress_figure(
-    name: str,
-    pair: GearPair,
-    load: float,
-    stress: Mapping[Member, Mapping[str, ToothStress]],
-    i: int,
-    gears: Mapping[Member, str],
-) -> Figure:
-    """Draw the largest stresses of both gears over the way of a tooth at load `i`, which is `load` [N]."""
+def _places(over: Mapping[Side, StressOverFace]) -> tuple[Column, ...]:
+    tension = over["tension"]
+    pull, press = tension.largest(1.0)[1], over["compression"].largest(-1.0)[1]
+    at = np.argmax(tension.value, axis=1)
+    radius, along = tension.radius[np.arange(at.size), at], "where stress is largest along the face, from its middle"
+    return (
+        column_of(tension, "z", pull, name="stress_face_position", meaning=along),
+        column_of(tension, "radius", radius, name="stress_radius", meaning="and its distance from the axis"),
+        column_of(tension, "z", press, name="compression_face_position",
+                  meaning="where compression is largest along the face"),
+    )  # fmt: skip
+
+
+def _where(stress: ToothStress, over: Mapping[Side, StressOverFace], i: int) -> str:
+    z = float(over["tension"].largest(1.0)[1][stress.worst(i)])
+    return f"largest tension at face position {z * 1e3:.4g} mm"
+
+
+def _over_face(label: str, gear: str, over: Mapping[Side, StressOverFace]) -> Table:
+    """Every place along the face at every position of the tooth, at the nominal load."""
+    pull, press = over["tension"], over["compression"]
+    columns = (
+        column_of(pull, "x", np.repeat(pull.x, pull.z.size)),
+        column_of(pull, "z", np.tile(pull.z, pull.x.size)),
+        column_of(pull, "value", pull.value.ravel()),
+        column_of(pull, "radius", pull.radius.ravel()),
+        column_of(press, "value", press.value.ravel(), name="compression",
+                  meaning="most negative stress up the other fillet"),
+        column_of(press, "radius", press.radius.ravel(), name="compression_radius"),
+    )  # fmt: skip
+    return Table(f"root_stress_over_face_{label}", columns, f"Root stress of gear {gear} along its face in the mesh")
+
+
+def _across_the_root(of: str, gear: str, found: tuple[float, float] | None) -> list[Value]:
+    if found is None:
+        return []
+    value, error = found
+    said = f"gear {gear}: largest tension at right angles to the helix, as formulas for the normal section mean it"
+    return [Value(f"{of}.largest_root_tension_across", value, "MPa", None if np.isnan(error) else error, said)]
+
+
+def _direction(data: RootStressData, name: str, i: int) -> str:
+    """What the direction of the stress makes of it."""
+    largest = {m: next(iter(s.values())).largest_tension[i] for m, s in data.found.stress.items()}
+    across = data.found.across.items()
+    more = " and ".join(f"{100.0 * (value / largest[m] - 1.0):+.1f} % ({m})" for m, (value, _) in across)
+    return (
+        f"Pair {name}: root stresses over the mesh and the face are those along the transverse section; the "
+        f"largest at right angles to the helix differs by {more}: values largest_root_tension_across."
+    )
+
+
+def _stress_figure(name: str, data: RootStressData, i: int, gears: Mapping[Member, str]) -> Figure:
+    """Draw the largest stresses of both gears over the way of a tooth at the nominal load, number `i`."""
+    pair, load, stress = data.teeth.pair, data.teeth.nominal, data.found.stress
     curves, largest = [], []
     several = len(stress["driver"]) > 1
     for g, (member, found) in enumerate(stress.items()):
         for k, (source, s) in enumerate(found.items()):
             label = f"{member} {gears[member]}" + (f", {told(source)}" if several else "")
-            tension, error = s.tension[:, i] * 1e-6, s.tension_error[:, i] * 1e-6
-            role = f"series:{g + 2 * k}" if k else member
-            curves.append(
-                Curve(s.x * 1e3, tension, f"{label}, tension", role, None if np.isnan(error).any() else error)
-            )
+            error, role = s.tension_error[:, i] if s.knows_error else None, f"series:{g + 2 * k}" if k else member
+            curves.append(curve_of(s, "x", "tension", f"{label}, tension", role, error, load=i))
             if s.compression is not None:
-                style = f"{member} compression"
-                curves.append(Curve(s.x * 1e3, s.compression[:, i] * 1e-6, f"{label}, compression", style, width=1.2))
-            largest.append(f"{tension.max():.4g} MPa ({member}{f', {told(source)}' if several else ''})")
-    x = Axis("position of the tooth's contact on the line of action", "mm")
+                pressed = curve_of(s, "x", "compression", f"{label}, compression", f"{member} compression", load=i)
+                curves.append(replace(pressed, width=1.2))
+            most = float(s.largest_tension[i]) * 1e-6
+            largest.append(f"{most:.4g} MPa ({member}{f', {told(source)}' if several else ''})")
+    of, marks = type(next(iter(stress["driver"].values()))), (*path_marks(pair), Mark("y", 0.0))
     return Figure(
         f"root_stress_history_{name}",
         f"Root stress through the mesh of pair {name}",
         f"Pair {name} at {load:.5g} N: fillet stress of one tooth; by finite elements its own load's and its "
         f"neighbours' added. A to E: points of the path of contact. Largest tension {' and '.join(largest)}.",
-        (Panel(x, Axis("largest root stress", "MPa"), tuple(curves), (*path_marks(pair), Mark("y", 0.0))),),
+        (Panel(axis_of(of, "x"), axis_of(of, "tension"), tuple(curves), marks),),
+        under=f"{load:.5g} N",
+    )
+
+
+def _map(
+    name: str, load: float, over_face: Mapping[Member, Mapping[Side, StressOverFace]], gears: Mapping[Member, str]
+) -> Figure:
+    """Draw the largest tension of both gears along the face over the way of a tooth, with one scale of colours."""
+    maps = {member: over["tension"] for member, over in over_face.items()}
+    top = max(float(one.value.max()) for one in maps.values()) * 1e-6
+    panels = []
+    for member, one in maps.items():
+        # Roll positions stand unevenly; straight between them.
+        x, z = np.linspace(one.x[0], one.x[-1], _ACROSS), np.linspace(one.z[0], one.z[-1], _ALONG)
+        way = np.stack([np.interp(x, one.x, along) for along in one.value.T]) * 1e-6
+        value = np.stack([np.interp(z, one.z, along) for along in way.T], axis=1)
+        panels.append(
+            Panel(
+                axis_of(type(one), "x", "position of the tooth's contact on the line of action"),
+                axis_of(type(one), "z"),
+                (HeatMap(x * 1e3, z * 1e3, value, "largest root tension", "MPa", limits=(0.0, top)),),
+                title=f"{member} {gears[member]}: {one.value.max() * 1e-6:.4g} MPa",
+            )
+        )
+    return Figure(
+        f"root_stress_over_face_{name}",
+        f"Root stress over the face of pair {name}",
+        f"Pair {name}: largest tension up the fillet of a tooth of either gear along its face, on its way through the "
+        "mesh; the position is that of its contact line in the middle of the face.",
+        tuple(panels),
         under=f"{load:.5g} N",
     )
 
 
 ROOT_STRESS_HISTORY = Stage(
-    subjects=plane_pairs,
+    subjects=loaded_pairs,
     needs=_needs,
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
-    effects=EFFECTS,
+    effects=TEETH_EFFECTS,
+    effects_of=effects_of_teeth,
     cites=_cites,
     forecast=_forecast,
 )

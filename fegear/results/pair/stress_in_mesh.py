@@ -1,9 +1,8 @@
 """Stage ``stress-in-mesh``: root stress along the fillets of two gears in mesh, for their moving picture.
 
-Stage ``flank-stress-in-mesh``: root stress along the fillets of two gears with a width, in sections along the face.
-
-In the section at z the flanks of a helical pair touch where those of its middle section do when the gears have turned
-back by z tan(beta_b) on the line of action: so one picture of the teeth serves all sections.
+Of gears with a width it is shown in sections along the face. In the section at z the flanks of a helical pair touch
+where those of its middle section do when the gears have turned back by z tan(beta_b) on the line of action: so one
+picture of the teeth serves all sections.
 
 What the stages of the moving picture of a pair read: its loads, and both gears solved by finite elements.
 """
@@ -16,22 +15,28 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS
-from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import FINITE_ELEMENTS, gear_name, root_stress_source
+from fegear.case.built.pair_inputs import FINITE_ELEMENTS, root_stress_source
+from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.citation import citing
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Stage
+from fegear.engine.stage import Stage, Task
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.forecasts import RING
 from fegear.results.gear.drawing import placed_in_mesh
-from fegear.results.gear.stiffness import needs_solution, solution_of
+from fegear.results.gear.stiffness import solution_of
 from fegear.results.gear.stiffness_over_face import solid_solution_of
-from fegear.results.pair.flank_root_stress import needs_flank_roots, places_along
-from fegear.results.pair.loaded_flanks import loaded_flanks, wide_pairs
-from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair, needs_pair, plane_pairs
-from fegear.results.pair.transmission_error import POSITIONS
+from fegear.results.pair.loaded_flanks import loaded_flanks
+from fegear.results.pair.loaded_teeth import (
+    PLANE,
+    TEETH_EFFECTS,
+    check_teeth,
+    effects_of_teeth,
+    gears_of,
+    loaded_pair,
+    loaded_pairs,
+    needs_gears,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,7 +44,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.case.reading import Scene
     from fegear.contact.wide.root_stress import RootedLines
-    from fegear.engine.stage import Task, Upstream, Work
+    from fegear.engine.stage import Upstream, Work
     from fegear.fem.plane.gear import GearInfluence
     from fegear.fem.plane.influence import Side
     from fegear.geometry.pair import GearPair, Member
@@ -221,7 +226,7 @@ def _stress_over_face(asked: MeshInputs, upstream: Upstream, _work: Work) -> Str
 
     loaded = loaded_flanks(upstream, asked.name)
     found, pair = loaded.found, loaded.found.pair
-    force, coupling = found.contact.force[:, :, loaded.nominal], loaded.asked.effects.neighbour_coupling
+    force, coupling = found.contact.force[:, :, loaded.at], loaded.coupling
     rooted = {
         member: rooted_lines(
             pair, member, found.lines, solid_solution_of(upstream, asked.gears[member]).fine, coupling=coupling
@@ -229,9 +234,9 @@ def _stress_over_face(asked: MeshInputs, upstream: Upstream, _work: Work) -> Str
         for member in MEMBERS
     }
     moments = _moments(found.lines.roll, pair.x_start, pair.base_pitch)
-    along = places_along(loaded)
+    along = loaded.places_along
     largest = max((_largest_over_face(one, force, along, moments) for one in rooted.values()), key=_value)
-    z = _sections(places_along(loaded), largest.z)
+    z = _sections(along, largest.z)
     numbers = np.unique([one.teeth[:, 1] for one in rooted.values()])
     pairs = np.arange(numbers[0] - moments.on.max(), numbers[-1] - moments.on.min() + 1)
     gears = {member: _along(one, force, z, moments, pairs) for member, one in rooted.items()}
@@ -309,14 +314,7 @@ class MeshInputs:
 
 def mesh_inputs(scene: Scene, name: str) -> MeshInputs:
     """Read them."""
-    gears = {member: gear_name(scene, name, member) for member in MEMBERS}
-    return MeshInputs(scene.case.effects.corner_contact, name, gears)
-
-
-def needs_mesh(scene: Scene, name: str) -> tuple[Task, ...]:
-    """The tasks of the loaded pair and of both gears' solutions."""
-    part = scene.case.pair[name]
-    return (*needs_pair(scene, name), *needs_solution(part.driver, part.driven))
+    return MeshInputs(scene.case.effects.corner_contact, name, gears_of(scene, name))
 
 
 def picture_positions(roll: Array, pitch: float, kept: float) -> Index:
@@ -339,26 +337,20 @@ def picture_positions(roll: Array, pitch: float, kept: float) -> Index:
     return np.array(chosen)
 
 
+def _compute(asked: MeshInputs, upstream: Upstream, work: Work) -> StressInMeshData:
+    plane = Task(PLANE.stage, asked.name) in upstream
+    return (_stress if plane else _stress_over_face)(asked, upstream, work)
+
+
 STRESS_IN_MESH = Stage(
-    subjects=plane_pairs,
-    needs=needs_mesh,
+    subjects=loaded_pairs,
+    needs=needs_gears,
     inputs=mesh_inputs,
-    compute=_stress,
+    compute=_compute,
     present=lambda data, _inputs: Outcome(data),
-    check=check_relief,
-    effects=EFFECTS,
-    cites=citing(*RING),
-    forecast=lambda _scene, _name: forecasts.constant(0.15),
-)
-
-
-FLANK_STRESS_IN_MESH = Stage(
-    subjects=wide_pairs,
-    needs=needs_flank_roots,
-    inputs=mesh_inputs,
-    compute=_stress_over_face,
-    present=lambda data, _inputs: Outcome(data),
-    effects=FLANK_EFFECTS,
+    check=check_teeth,
+    effects=TEETH_EFFECTS,
+    effects_of=effects_of_teeth,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.15),
 )

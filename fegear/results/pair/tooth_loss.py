@@ -14,6 +14,7 @@ import numpy as np
 from fegear.base.errors import RangeError
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS
 from fegear.case.built.loaded_pair import check_relief
+from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.pair_surface import check_speed, pair_friction, pair_speed
 from fegear.case.built.train import build_train, check_train, train_inputs, train_part
 from fegear.engine.citation import Citation
@@ -23,8 +24,8 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
-from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks, wide_pairs
-from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair, needs_pair, plane_pairs
+from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
+from fegear.results.pair.loaded_teeth import loaded_pair, needs_teeth, plane_pairs, wide_pairs
 from fegear.results.train.gear_train import the_train
 
 if TYPE_CHECKING:
@@ -464,7 +465,7 @@ def _check_train(scene: Scene, _subject: str) -> None:
 
 TOOTH_LOSS = Stage(
     subjects=plane_pairs,
-    needs=needs_pair,
+    needs=needs_teeth,
     inputs=_inputs,
     compute=_compute,
     present=_present,
@@ -482,7 +483,7 @@ WIDE_TOOTH_LOSS = Stage(
     compute=_compute_wide,
     present=_present,
     check=_check_wide,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=_cites,
     forecast=_forecast,
 )

@@ -224,7 +224,6 @@ def _computed(
 ) -> tuple[Computed, list[Computed | None]]:
     """What is computed at the nominal load, and at that of every level of the spectrum; None for idle ones."""
     from fegear.contact.wide.rated import SolvedFlanks, computed_flanks, computed_plane
-    from fegear.results.pair.flank_root_stress import places_along
 
     members = asked.conditions.geometry.members
     ratings = [] if spectrum is None else [level.rating for level in spectrum.levels]
@@ -235,8 +234,8 @@ def _computed(
     loaded = loaded_flanks(upstream, asked.name)
     solids = {member: solid_solution_of(upstream, gear) for member, gear in zip(MEMBERS, asked.gears, strict=True)}
     solved = SolvedFlanks(
-        loaded.flanks, loaded.gaps, loaded.found.known, loaded.error.coarse.known, solids, places_along(loaded),
-        loaded.asked.effects.neighbour_coupling,
+        loaded.flanks, loaded.gaps, loaded.found.known, loaded.error.coarse.known, solids, loaded.places_along,
+        loaded.coupling,
     )  # fmt: skip
     nominal = asked.conditions.duty.tangential
     loads = [_applied(asked, formula, nominal)]
@@ -488,7 +487,7 @@ RATING = Stage(
     present=_present,
     needs=_needs,
     check=_check,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=_cites,
     forecast=_forecast,
 )

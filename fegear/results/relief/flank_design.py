@@ -163,9 +163,8 @@ def _compute(inputs: FlankDesignInputs, upstream: Upstream, work: Work) -> Flank
     from fegear.design.flanks.flank_design import design_flanks
 
     found = loaded_flanks(upstream, inputs.name)
-    asked, flanks = found.asked, found.flanks
-    apart = asked.gaps(relief=False, misalignment=bool(asked.effects.misalignment))
-    task = _task(inputs.part, flanks.pair, asked.nominal)
+    flanks, apart = found.flanks, found.unrelieved
+    task = _task(inputs.part, flanks.pair, found.nominal)
     solved = {member: solid_solution_of(upstream, inputs.gears[member]) for member in MEMBERS}
     coarse = {member: one.coarse or one.fine for member, one in solved.items()}
     return FlankDesignData(flanks.pair, design_flanks(flanks, coarse, found.known, apart, task, work.progress))

@@ -25,7 +25,6 @@ from fegear.engine.stage import Forecast, Stage
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.stiffness_over_face import needs_solid_solution, solid_solution_of
-from fegear.results.pair.flank_root_stress import places_along
 from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
 from fegear.results.relief.tolerance_robustness import ToleranceData, drawn, present_draws, together
 from fegear.results.relief.tolerance_tables import OWN
@@ -148,7 +147,7 @@ def _bench(inputs: FlankDrawInputs, upstream: Upstream, moved: float = 0.0) -> F
         flanks = replace(flanks, pair=pair)
         known = flanks.compliance(inputs.load)
     gaps = replace(loaded.gaps, driver_spacing=none, driven_spacing=none)
-    z, coupling = places_along(loaded), loaded.asked.effects.neighbour_coupling
+    z, coupling = loaded.places_along, loaded.coupling
     one, other = (
         rooted_lines(
             flanks.pair, member, known.lines, solid_solution_of(upstream, gear).fine, coupling=coupling
@@ -196,7 +195,7 @@ FLANK_TOLERANCE_ROBUSTNESS = Stage(
     compute=_compute,
     present=present_draws,
     check=_check,
-    effects=FLANK_EFFECTS,
+    effects=tuple(FLANK_EFFECTS),
     cites=citing(
         Citation("iso-1328-1", "tolerances that deviations are drawn inside", "5.3, formulas (5) to (12)"), HERTZ
     ),

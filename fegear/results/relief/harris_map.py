@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fegear.contact.loaded_teeth import POSITIONS
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Points
-from fegear.results.pair.loaded_flanks import LoadedFlanksData
-from fegear.results.pair.loaded_pair import BASE_PITCH, LoadedPairData, drawn_loads, pitch_marks
-from fegear.results.pair.transmission_error import POSITIONS
+from fegear.results.pair.loaded_teeth import BASE_PITCH, drawn_loads, pitch_marks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.base.arrays import Array
+    from fegear.contact.loaded_teeth import LoadedTeeth
     from fegear.contact.plane.engagement import Loaded
     from fegear.engine.figure.items import Item
     from fegear.geometry.pair import GearPair
@@ -79,56 +79,35 @@ def _round_step(about: float) -> float:
     return max(one for one in (1.0, 2.0, 2.5, 5.0) if one <= about / power * (1.0 + 1e-9)) * power
 
 
-def nominal_load(data: LoadedPairData | LoadedFlanksData) -> float:
-    """The load that a pair's results are for [N]."""
-    return data.pair.nominal if isinstance(data, LoadedPairData) else data.asked.nominal
-
-
-def _at_loads(data: LoadedPairData | LoadedFlanksData, loads: Array, positions: int) -> HarrisCurves:
-    """The pair under other loads: plane teeth at so many roll positions, others at their own."""
-    from fegear.contact.plane.transmission_error import roll_positions
-
-    if isinstance(data, LoadedFlanksData):
-        found = data.flanks.solve(loads, data.gaps, data.known)
-        return HarrisCurves(found.lines.roll, found.load, found.transmission_error)
-    engagement = data.pair.engagement
-    x = roll_positions(engagement, positions)
-    return HarrisCurves(x, loads, engagement.solve(engagement.grid(x), tuple(loads.tolist())).transmission_error)
-
-
-def _now(data: LoadedPairData | LoadedFlanksData, positions: int) -> HarrisCurves:
+def _now(teeth: LoadedTeeth, positions: int) -> HarrisCurves:
     """The pair under its nominal load."""
-    if isinstance(data, LoadedFlanksData):
-        found, i = data.found, data.nominal
-        return HarrisCurves(found.lines.roll, found.load[[i]], found.transmission_error[:, [i]])
-    return _at_loads(data, np.array([nominal_load(data)]), positions)
+    return HarrisCurves(*teeth.error_under([teeth.nominal], positions))
 
 
-def load_now(data: LoadedPairData | LoadedFlanksData) -> tuple[float, Array, Array]:
+def load_now(teeth: LoadedTeeth) -> tuple[float, Array, Array]:
     """The transmission error at the nominal load, at a few roll positions, while a slider moves: N, mm and um."""
-    now = _now(data, _QUICK)
+    now = _now(teeth, _QUICK)
     return float(now.load[0]), now.x * 1e3, now.transmission_error[:, 0] * 1e6
 
 
-def slider_map(name: str, data: LoadedPairData | LoadedFlanksData, greatest: float) -> Figure:
+def slider_map(name: str, teeth: LoadedTeeth, greatest: float) -> Figure:
     """The Harris map beside a load slider: the family up to the greatest load, and the present load in it.
 
     Parameters
     ----------
     name : str
         Of the pair.
-    data : LoadedPairData or LoadedFlanksData
+    teeth : LoadedTeeth
         Its reliefs, errors and effects are those of the case.
     greatest : float
         Load to which the slider goes [N].
     """
     step = _round_step(greatest / _FAMILY)
     loads = step * np.arange(1.0, math.floor(greatest / step * (1.0 + 1e-9)) + 1.0)
-    curve, present = _at_loads(data, loads, POSITIONS), _now(data, POSITIONS)
-    pair = data.pair.engagement.pair if isinstance(data, LoadedPairData) else data.asked.pair
+    curve, present = HarrisCurves(*teeth.error_under(loads, POSITIONS)), _now(teeth, POSITIONS)
     x, now, error = present.x, present.load, present.transmission_error * 1e6
     wide = Curve(x * 1e3, error[:, 0], NOW, "ink", dash="solid", width=3.2, markers=False)
-    over_roll = harris_panel(curve, pair, math.nan, "", (wide,))
+    over_roll = harris_panel(curve, teeth.pair, math.nan, "", (wide,))
     over_load = Panel(
         Axis("load along the line of action", "N", zero=True),
         Axis("peak to peak", "um", zero=True),

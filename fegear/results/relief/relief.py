@@ -17,6 +17,7 @@ from fegear.base.errors import InputError, RangeError
 from fegear.case.built.neglected_effects import design_remarks, neglected_in_design
 from fegear.case.built.pair_inputs import gear_name, pair_inputs
 from fegear.case.design import DesignPart
+from fegear.contact.loaded_teeth import HARMONICS, POSITIONS
 from fegear.engine.citation import Citation, citing
 from fegear.engine.declared import axis_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
@@ -26,9 +27,8 @@ from fegear.engine.stage import Forecast, Stage
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.gear.drawing import roll_marks
-from fegear.results.pair.loaded_pair import BASE_PITCH, needs_pair, pitch_marks
+from fegear.results.pair.loaded_teeth import BASE_PITCH, needs_teeth, pitch_marks
 from fegear.results.pair.root_stress_history import table_names
-from fegear.results.pair.transmission_error import HARMONICS, POSITIONS
 from fegear.results.relief.harris_map import harris_panel
 from fegear.results.relief.relief_tables import (
     grindable_table,
@@ -42,10 +42,10 @@ from fegear.results.relief.relief_tables import (
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from fegear.case.built.loaded_pair import LoadedPair
     from fegear.case.built.pair_inputs import PairInputs
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
+    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.loading import LoadingFunction
     from fegear.design.minimum_excitation import ReliefTable
     from fegear.design.relief_design import ReliefDesign
@@ -418,7 +418,7 @@ def _harris_figure(name: str, data: ReliefData) -> Figure:
 
 RELIEF = Stage(
     subjects=design_pairs,
-    needs=needs_pair,
+    needs=needs_teeth,
     inputs=_inputs,
     compute=_compute,
     present=_present,

@@ -17,16 +17,16 @@ from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
-from fegear.results.pair.loaded_pair import needs_pair
+from fegear.results.pair.loaded_teeth import needs_teeth
 from fegear.results.relief.relief import DESIGN_EFFECTS, ReliefData, design_pairs, design_part
 from fegear.results.relief.relief_tables import tip_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fegear.case.built.loaded_pair import LoadedPair
     from fegear.case.design import ChartPart, RobustnessPart
     from fegear.case.reading import Scene
+    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.design.charts import Metric, ReliefChart, Robustness
     from fegear.design.tip_relief.grindable import TipReliefPair
     from fegear.engine.stage import Upstream, Work
@@ -299,7 +299,7 @@ _CITES = citing(
 
 RELIEF_CHART = Stage(
     subjects=design_pairs,
-    needs=needs_pair,
+    needs=needs_teeth,
     inputs=_chart_inputs,
     compute=_compute_chart,
     present=_present_chart,

@@ -16,15 +16,15 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import roll_marks
-from fegear.results.pair.loaded_pair import needs_pair
+from fegear.results.pair.loaded_teeth import needs_teeth
 from fegear.results.relief.relief import DESIGN_EFFECTS, design_pairs, design_part
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
-    from fegear.case.built.loaded_pair import LoadedPair
     from fegear.case.design import ChartPart
     from fegear.case.reading import Scene
     from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.pair_history import PairHistory
     from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.engine.stage import Upstream, Work
@@ -207,7 +207,7 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 
 RELIEF_CURVES = Stage(
     subjects=design_pairs,
-    needs=needs_pair,
+    needs=needs_teeth,
     inputs=_inputs,
     compute=_compute,
     present=_present,

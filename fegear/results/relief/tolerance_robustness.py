@@ -22,7 +22,14 @@ from fegear.case.built.flank_errors import (
     untold,
 )
 from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, pair_inputs, root_stress_source
+from fegear.case.built.pair_inputs import (
+    EFFECTS,
+    FINITE_ELEMENTS,
+    check_formulas,
+    gear_name,
+    pair_inputs,
+    root_stress_source,
+)
 from fegear.case.built.tooth_influence import gear_to_solve
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
@@ -32,7 +39,7 @@ from fegear.engine.stage import Forecast, Stage
 from fegear.geometry.pair import MEMBERS
 from fegear.results.forecasts import HERTZ
 from fegear.results.gear.stiffness import solution_of
-from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair, needs_pair
+from fegear.results.pair.loaded_teeth import loaded_pair, needs_teeth
 from fegear.results.pair.root_stress_history import needs_sources, stress_sources
 from fegear.results.relief.tolerance_tables import (
     NOMINAL,
@@ -216,7 +223,7 @@ def _inputs(scene: Scene, name: str) -> DrawInputs:
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (*needs_pair(scene, name), *needs_sources(scene, name))
+    return (*needs_teeth(scene, name), *needs_sources(scene, name))
 
 
 def _bench(asked: DrawInputs, upstream: Upstream) -> Bench:

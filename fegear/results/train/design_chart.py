@@ -18,7 +18,7 @@ from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Need, Stage, Task
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
-from fegear.results.pair.loaded_pair import loaded_pair
+from fegear.results.pair.loaded_teeth import loaded_pair
 from fegear.results.train.design_chart_tables import chart_tables, chart_values, design_chart_figures, line_remark
 from fegear.results.train.gear_train import gear_train, needs_plane_teeth, needs_speeds, own_meshes, the_train
 from fegear.results.train.motion import check_motion

@@ -14,6 +14,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_pair import check_relief
 from fegear.case.built.neglected_effects import percent
+from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.train import TrainInputs, assemble, build_train, check_train, train_inputs, train_part
 from fegear.dynamics.train.gear_train import a_drives
 from fegear.dynamics.train.matrices import static_forces
@@ -22,17 +23,17 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.results import forecasts
 from fegear.results.pair.loaded_flanks import loaded_flanks
-from fegear.results.pair.loaded_pair import EFFECTS, loaded_pair
+from fegear.results.pair.loaded_teeth import loaded_pair
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.case.reading import Scene
+    from fegear.contact.wide.loaded_pair import LoadedWidePair
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.tooth_force import Pull
     from fegear.engine.stage import Upstream, Work
-    from fegear.results.pair.loaded_flanks import LoadedFlanksData
 
 
 #: One mesh as springs [s]: tooth pairs that stand alone, and pairs that share.
@@ -115,17 +116,17 @@ def compute_train(asked: TrainInputs, upstream: Upstream, work: Work) -> GearTra
     return replace(made, meshes=meshes)
 
 
-def _of_flanks(data: LoadedFlanksData, force: float, *, forward: bool) -> MeshExcitation:
+def _of_flanks(data: LoadedWidePair, force: float, *, forward: bool) -> MeshExcitation:
     """Springs of a pair with a width under a mean force [N]; under its nominal load where it idles."""
     from fegear.dynamics.train.flank_excitation import flank_excitation
 
-    found = data.flanks.solve([force or data.asked.nominal], data.gaps, data.known)
+    found = data.flanks.solve([force or data.nominal], data.gaps, data.known)
     return flank_excitation(data.flanks, found, forward=forward)
 
 
-def _doubt(data: LoadedFlanksData) -> tuple[float, float]:
+def _doubt(data: LoadedWidePair) -> tuple[float, float]:
     """Estimated errors of mean stiffness [N/m] and peak-to-peak transmission error [m] under the nominal load."""
-    i, found, coarse = data.nominal, data.found, data.error.coarse
+    i, found, coarse = data.at, data.found, data.error.coarse
     fine, other = (1.0 / float(one.lines.mean(1.0 / one.contact.stiffness[:, i])) for one in (found, coarse))
     return abs(other - fine), float(data.error.peak_to_peak[i])
 

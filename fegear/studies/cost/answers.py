@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fegear.base.arrays import Array
-    from fegear.case.built.loaded_pair import LoadedPair
     from fegear.contact.plane.compliance import GearCompliance
+    from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.contact.plane.transmission_error import TransmissionError
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.fem.plane.gear import GearInfluence

@@ -13,7 +13,7 @@ from fegear.case.built.loaded_flanks import check_flanks_to_load
 from fegear.case.built.solid_influence import flank_pairs
 from fegear.case.built.train import motion_inputs
 from fegear.results.gear.stiffness import contact_half_width, load_radii
-from fegear.results.pair.loaded_pair import plane_pairs
+from fegear.results.pair.loaded_teeth import plane_pairs
 from fegear.studies.cost.answers import OF_FLANKS, OF_GEAR, Quantity
 
 if TYPE_CHECKING:

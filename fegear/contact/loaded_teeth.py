@@ -1,0 +1,300 @@
+"""A pair of gears under all its loads: what every kind of model answers alike, whether its teeth are plane or wide.
+
+`LoadedTeeth` is what results, Python and the window know of a loaded pair. Its makers are
+`fegear.contact.plane.loaded_pair.LoadedPair` and `fegear.contact.wide.loaded_pair.LoadedWidePair`; a pair of another
+kind is one more maker. What is known of one kind alone is a part of an answer that may be None or empty.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from fegear.base.shown import shown, shows
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.fourier import FourierSeries
+    from fegear.contact.plane.pair_history import PairHistory
+    from fegear.contact.plane.shifted_compliance import TransmissionErrorShift
+    from fegear.contact.plane.tooth_stress import ToothStress
+    from fegear.contact.wide.root_stress import StressOverFace
+    from fegear.fem.plane.influence import Side
+    from fegear.geometry.pair import GearPair, Member
+
+#: Harmonics of the transmission error of plane teeth.
+HARMONICS = 64
+#: Roll positions of their curves over the base pitch, and positions of a pair over its path; those on either side of
+#: every jump come in addition.
+POSITIONS = 200
+#: Largest number of base pitches over which rotational harmonics of spacing errors are computed.
+MOST_CYCLES = 10_000
+
+
+class LoadedTeeth(Protocol):
+    """A pair of gears under every load of its case."""
+
+    @property
+    def pair(self) -> GearPair:
+        """Both gears in mesh."""
+
+    @property
+    def loads(self) -> tuple[float, ...]:
+        """Along the transverse line of action, ascending [N]."""
+
+    @property
+    def nominal(self) -> float:
+        """The one of them that single numbers are for [N]."""
+
+    @property
+    def about(self) -> str:
+        """Where its compliances come from, as a sentence for figures."""
+
+    def history(self) -> LoadHistory:
+        """One tooth pair from first to last contact under every load."""
+
+    def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
+        """Transmission error and mesh stiffness over one base pitch under every load.
+
+        Parameters
+        ----------
+        progress : callable
+            Takes the fraction that is done.
+        """
+
+    def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:
+        """Transmission error under other loads, without its harmonics and errors.
+
+        Parameters
+        ----------
+        loads : array_like, shape (L,)
+            [N].
+        positions : int
+            Even roll positions of plane teeth; those of a pair with a width are its own.
+
+        Returns
+        -------
+        x : ndarray, shape (P,)
+            Roll positions over one base pitch [m].
+        load : ndarray, shape (L,)
+            [N].
+        te : ndarray, shape (P, L)
+            [m].
+        """
+
+    def root_stress(
+        self,
+        sources: Mapping[Member, Mapping[str, Any]],
+        progress: Callable[[float], None],
+        *,
+        estimates: bool = True,
+    ) -> RootStressInMesh:
+        """Root stress of one tooth of either gear on its way through the mesh.
+
+        Parameters
+        ----------
+        sources : mapping of member to mapping of str to source
+            Where it comes from, by name: `RootStressInfluence` for plane teeth, `SolidInfluence` for wide ones.
+        progress : callable
+        estimates : bool
+            Whether errors are estimated, where that is a choice.
+        """
+
+
+@dataclass(frozen=True)
+class LoadHistory:
+    """One tooth pair followed from first to last contact, at P positions under L loads.
+
+    Parameters
+    ----------
+    found : PairHistory
+    at : int
+        Number of the nominal load.
+    load_error : ndarray, shape (P, L), or None
+        Estimated error of its loads [N].
+    corner : ndarray, shape (P,), or None
+        1 where a tip corner touches off the path, whose pressure is not that of smooth flanks; None where none can.
+    where : str
+        What a figure adds to the points of the path.
+    positions : int
+        At which it was asked for.
+    pressure_error : float or None
+        Estimated error of the largest pressure at the nominal load, where it is known by itself [Pa].
+    """
+
+    found: PairHistory
+    at: int
+    load_error: Array | None
+    corner: Array | None = shown("", "1 where a tip corner touches off the path")
+    where: str = ""
+    positions: int = 0
+    pressure_error: float | None = None
+
+    @property
+    def most_loaded(self) -> int:
+        """Position of the largest load at the nominal one."""
+        return int(np.argmax(self.found.load[:, self.at]))
+
+    @property
+    def _smooth_pressure(self) -> Array:
+        """Pressure at the nominal load [Pa], zero at corners."""
+        pressure = self.found.hertz_pressure[:, self.at]
+        return pressure if self.corner is None else pressure * (1.0 - self.corner)
+
+    @property
+    def hardest_pressed(self) -> int:
+        """Position of the largest pressure of smooth flanks at the nominal load."""
+        return int(np.argmax(self._smooth_pressure))
+
+    @property
+    @shows("N", "on one tooth pair")
+    def largest_load(self) -> float:
+        """At the nominal load [N]."""
+        return float(self.found.load[self.most_loaded, self.at])
+
+    @property
+    @shows("", "of one tooth pair")
+    def largest_share(self) -> float:
+        """Of the nominal load."""
+        return float(self.found.share[self.most_loaded, self.at])
+
+    @property
+    @shows("MPa", "smooth flanks")
+    def largest_hertz_pressure(self) -> float:
+        """At the nominal load [Pa]."""
+        return float(self._smooth_pressure[self.hardest_pressed])
+
+    @property
+    def largest_load_error(self) -> float | None:
+        """Estimated [N]."""
+        return None if self.load_error is None else float(self.load_error[self.most_loaded, self.at])
+
+    @property
+    def largest_share_error(self) -> float | None:
+        """Estimated: that of the largest load over it."""
+        error = self.largest_load_error
+        return None if error is None else error / self.found.load[self.most_loaded, self.at]
+
+    @property
+    def largest_pressure_error(self) -> float | None:
+        """Estimated, by itself or by the load's [Pa]; never zero, for what Hertz neglects is not estimated."""
+        if self.pressure_error is not None:
+            return self.pressure_error
+        relative = self.largest_share_error
+        return 0.5 * relative * self.largest_hertz_pressure if relative else None
+
+
+@dataclass(frozen=True)
+class ErrorOverPitch:
+    """Transmission error and mesh stiffness at P roll positions over one base pitch, under L loads, N harmonics.
+
+    Parameters
+    ----------
+    pair : GearPair
+    loads : tuple of float
+        Ascending [N].
+    at : int
+        Number of the nominal one.
+    positions : int
+        Roll positions that were asked for.
+    integrated : str
+        How the harmonics come about, for their figure.
+    series : tuple of FourierSeries
+        Of the transmission error under every load.
+    shift : TransmissionErrorShift or None
+        Estimated errors at the nominal load.
+    x : ndarray, shape (P,)
+        Roll positions [m].
+    te, mesh_stiffness, local_stiffness, pairs_in_contact : ndarray, shape (P, L)
+        [m], [N/m], [N/m].
+    te_mean, te_peak_to_peak, te_effective, local_stiffness_mean : ndarray, shape (L,)
+        Of the whole base pitch [m], [m], [m], [N/m].
+    mesh_stiffness_mean : float
+        At the nominal load [N/m].
+    mesh_compliance_mean : float or None
+        Mean of 1/K_T of perfect flanks [m/N]; none where no pair of them is on the path at some roll positions.
+    te_error : ndarray, shape (P,), or None
+        Estimated at the nominal load along the curve, where it is known [m].
+    rotational : FourierSeries or None
+        Over the base pitches after which the same teeth meet again, with spacing errors, where it is computed.
+    cycles : int
+        How many base pitches these are; 1 where teeth stand evenly or none but this one is looked at.
+    only : int or None
+        The one base pitch that is looked at although each has a transmission error of its own.
+    """
+
+    pair: GearPair
+    loads: tuple[float, ...]
+    at: int
+    positions: int
+    integrated: str
+    series: tuple[FourierSeries, ...]
+    shift: TransmissionErrorShift | None
+    x: Array = shown("mm", "roll position: the pair that is last to come into contact")
+    te: Array = shown("um", "loaded transmission error", label="transmission error")
+    mesh_stiffness: Array = shown("N/um", "secant, sum over the pairs in contact", label="mesh stiffness")
+    pairs_in_contact: Array = shown("", "tooth pairs that carry load")
+    local_stiffness: Array = shown("N/um", "slope of load over transmission error")
+    te_mean: Array = shown("um", "mean transmission error over the base pitch", label="mean")
+    te_peak_to_peak: Array = shown("um", "largest less smallest", label="peak to peak")
+    te_effective: Array = shown("um", "A_e of NASA TM-89901, 0-peak")
+    local_stiffness_mean: Array = shown("N/um", "slope of load, mean over the base pitch")
+    mesh_stiffness_mean: float = shown("N/um", "secant stiffness, mean")
+    mesh_compliance_mean: float | None = shown(
+        "um/N", "mean of 1/K_T, perfect flanks with every pair of the path in contact (Mark, A.11)"
+    )
+    te_error: Array | None = shown("um", "estimated error of te", default=None)
+    rotational: FourierSeries | None = None
+    cycles: int = 1
+    only: int | None = None
+
+    @property
+    def load(self) -> float:
+        """The nominal load [N]."""
+        return self.loads[self.at]
+
+    @property
+    @shows("N", "along the line of action", label="load along the line of action")
+    def total_load(self) -> Array:
+        """Every load, shape (L,) [N]."""
+        return np.array(self.loads)
+
+    @property
+    @shows("N.m", "torque on the driver under that load", label="torque on the driver")
+    def driver_torque(self) -> Array:
+        """Under each load, shape (L,) [N m]."""
+        return self.total_load * self.pair.driver.base_radius
+
+    @property
+    @shows("um", "0-peak")
+    def te_first_harmonic(self) -> Array:
+        """Amplitude of the first harmonic under each load, shape (L,) [m]; zero where none is known."""
+        return np.array([one.amplitude[0] if one.amplitude.size else 0.0 for one in self.series])
+
+
+@dataclass(frozen=True)
+class RootStressInMesh:
+    """Root stress of one tooth of either gear on its way through the mesh.
+
+    Parameters
+    ----------
+    stress : mapping of member to mapping of str to ToothStress
+        By every source, under every load; the first source is the result.
+    notes : mapping of member to mapping of str to tuple of str
+        What sources say of their own values.
+    over_face : mapping of member to mapping of side to StressOverFace
+        At the nominal load; empty for plane teeth.
+    across : mapping of member to (float, float)
+        Helical gears: largest tension at right angles to the helix at the nominal load, and its estimated error [Pa].
+    """
+
+    stress: Mapping[Member, Mapping[str, ToothStress]]
+    notes: Mapping[Member, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+    over_face: Mapping[Member, Mapping[Side, StressOverFace]] = field(default_factory=dict)
+    across: Mapping[Member, tuple[float, float]] = field(default_factory=dict)

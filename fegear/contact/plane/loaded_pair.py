@@ -1,0 +1,164 @@
+"""A pair of plane teeth under all its loads: the maker of `LoadedTeeth` whose contacts are points of a section."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.contact.loaded_teeth import (
+    HARMONICS,
+    MOST_CYCLES,
+    POSITIONS,
+    ErrorOverPitch,
+    LoadHistory,
+    RootStressInMesh,
+)
+from fegear.contact.plane.pair_history import pair_history
+from fegear.contact.plane.shifted_compliance import load_shift, transmission_error_shift
+from fegear.contact.plane.tooth_stress import loaded_states, tooth_stress, with_peaks
+from fegear.contact.plane.transmission_error import (
+    mean_secant_stiffness,
+    pair_stiffness,
+    revolution,
+    roll_positions,
+    secant_stiffness,
+    transmission_error,
+)
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.fourier import FourierSeries
+    from fegear.contact.plane.compliance import RootStressInfluence
+    from fegear.contact.plane.engagement import Engagement
+    from fegear.contact.plane.pair_history import PairHistory
+    from fegear.contact.plane.tooth_stress import ToothStress
+    from fegear.geometry.pair import GearPair, Member
+
+
+@dataclass(frozen=True)
+class LoadedPair:
+    """A pair ready for load sharing.
+
+    Parameters
+    ----------
+    engagement : Engagement
+        With the effects of its case.
+    shifted : tuple of Engagement
+        The same with one compliance each off by its estimated error; empty where the source states none.
+    loads : tuple of float
+        Every load of the case [N], ascending.
+    nominal : float
+        The load that the contract's tables are for [N].
+    sources : tuple of str
+        How the compliance sources describe themselves.
+    """
+
+    engagement: Engagement
+    shifted: tuple[Engagement, ...]
+    loads: tuple[float, ...]
+    nominal: float
+    sources: tuple[str, ...]
+
+    @property
+    def pair(self) -> GearPair:
+        """Both gears in mesh."""
+        return self.engagement.pair
+
+    @property
+    def about(self) -> str:
+        """Its sources of compliance."""
+        return f"Compliances: {'; '.join(self.sources)}."
+
+    @property
+    def _at(self) -> int:
+        return self.loads.index(self.nominal)
+
+    def history(self) -> LoadHistory:
+        """See `LoadedTeeth`; the error of the loads is the change by the shifted compliances."""
+        e = self.engagement
+        found = pair_history(e, self.loads, POSITIONS)
+        shifts = [load_shift(found, pair_history(other, self.loads, POSITIONS)) for other in self.shifted]
+        error = np.sum(shifts, axis=0) if shifts else None
+        where = ", outside which tip corners touch" if e.corner_contact else ""
+        return LoadHistory(found, self._at, error, self._off_path(found), where, POSITIONS)
+
+    def _off_path(self, found: PairHistory) -> Array:
+        return np.where((found.x < self.pair.x_start) | (found.x > self.pair.x_end), 1.0, 0.0)
+
+    def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
+        """See `LoadedTeeth`; integrated exactly between its jumps."""
+        e, i = self.engagement, self._at
+        exact = []
+        for number, load in enumerate(self.loads):
+            exact.append(transmission_error(e, load, HARMONICS))
+            progress((number + 1) / (len(self.loads) + 2))
+        curve = e.solve(e.grid(roll_positions(e, POSITIONS)), self.loads)
+        bridged = e.pair.contact_ratio >= 1.0  # else perfect flanks have positions without any pair on the path
+        te_mean, peak_to_peak, effective, local = (
+            np.array([getattr(te, key) for te in exact])
+            for key in ("mean", "peak_to_peak", "effective_error", "average_stiffness")
+        )
+        return ErrorOverPitch(
+            self.pair,
+            self.loads,
+            i,
+            POSITIONS,
+            "integrated exactly between its jumps",
+            tuple(te.series for te in exact),
+            transmission_error_shift(exact[i], self.shifted),
+            x=curve.x,
+            te=curve.transmission_error,
+            mesh_stiffness=secant_stiffness(curve),
+            pairs_in_contact=(curve.loads > 0.0).sum(axis=0),
+            local_stiffness=curve.local_stiffness,
+            te_mean=te_mean,
+            te_peak_to_peak=peak_to_peak,
+            te_effective=effective,
+            local_stiffness_mean=local,
+            mesh_stiffness_mean=mean_secant_stiffness(exact[i]),
+            mesh_compliance_mean=pair_stiffness(e, self.nominal, HARMONICS).mean_compliance if bridged else None,
+            rotational=self._rotational(),
+            cycles=e.cycles,
+        )
+
+    def _rotational(self) -> FourierSeries | None:
+        """Harmonics over the base pitches after which the same teeth meet again, where they are not too many."""
+        e, cycles = self.engagement, self.engagement.cycles
+        uneven = bool(e.driver_spacing.size or e.driven_spacing.size)
+        return revolution(e, self.nominal, cycles, 3 * cycles) if uneven and cycles <= MOST_CYCLES else None
+
+    def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:
+        """See `LoadedTeeth`."""
+        wanted = np.atleast_1d(np.asarray(loads, dtype=float))
+        x = roll_positions(self.engagement, positions)
+        state = self.engagement.solve(self.engagement.grid(x), tuple(wanted.tolist()))
+        return x, wanted, state.transmission_error
+
+    def root_stress(
+        self,
+        sources: Mapping[Member, Mapping[str, RootStressInfluence]],
+        progress: Callable[[float], None],
+        *,
+        estimates: bool = True,
+    ) -> RootStressInMesh:
+        """See `LoadedTeeth`; its positions have the peaks of every source."""
+        e = self.engagement
+        x = roll_positions(e, POSITIONS)
+        x = with_peaks(e, self.nominal, x, {member: (*sources[member].values(),) for member in MEMBERS})
+        states = loaded_states(e, self.shifted, self.loads, x)
+        stress: dict[Member, dict[str, ToothStress]] = {}
+        for number, member in enumerate(MEMBERS):
+            stress[member] = {
+                name: tooth_stress(e, states, member, source, estimates=estimates)
+                for name, source in sources[member].items()
+            }
+            progress((number + 1) / len(MEMBERS))
+        notes = {member: {name: source.remarks for name, source in sources[member].items()} for member in MEMBERS}
+        return RootStressInMesh(stress, notes)

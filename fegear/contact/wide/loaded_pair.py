@@ -1,0 +1,252 @@
+"""A pair of gears with a width under all its loads: the maker of `LoadedTeeth` whose contacts are lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from fegear.contact.loaded_teeth import ErrorOverPitch, LoadHistory, RootStressInMesh
+from fegear.contact.plane.tooth_stress import ToothStress
+from fegear.contact.wide.pair_history import flank_pair_history, history_error
+from fegear.contact.wide.root_stress import rooted_lines
+from fegear.contact.wide.transmission_error import flank_transmission_error_shift, flank_transmission_errors
+from fegear.fem.plane.root_stress import curves_apart
+from fegear.fem.solid.influence import ENTRY_SHARES
+from fegear.geometry.pair import MEMBERS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import ArrayLike
+
+    from fegear.base.arrays import Array
+    from fegear.contact.plane.shifted_compliance import TransmissionErrorShift
+    from fegear.contact.wide.compliance import FlankCompliance
+    from fegear.contact.wide.error import FlankError
+    from fegear.contact.wide.gaps import FlankGaps
+    from fegear.contact.wide.loaded import FlankPair, LoadedFlanks
+    from fegear.contact.wide.over_pitch import OverPitch, Stated
+    from fegear.contact.wide.root_stress import RootedLines, StressOverFace
+    from fegear.contact.wide.transmission_error import FlankTransmissionError
+    from fegear.fem.plane.influence import Side
+    from fegear.fem.solid.influence import SolidInfluence
+    from fegear.geometry.pair import GearPair, Member
+
+#: Places along the face per module, at which root stress is looked for, and how many at least.
+_PER_MODULE, _FEWEST = 4.0, 17
+#: Both fillets, and the sign of the stress that is looked for.
+_SIDES: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))
+
+
+@dataclass(frozen=True)
+class LoadedWidePair:
+    """A pair with a width under every load, and all that further questions about it need.
+
+    Parameters
+    ----------
+    flanks : FlankPair
+        The pair, ready to be loaded again under other gaps and loads.
+    loads : tuple of float
+        Every load of the case [N], ascending.
+    nominal : float
+        [N].
+    known : FlankCompliance
+        Its compliances at all roll positions, made for the nominal load.
+    gaps, unrelieved : FlankGaps
+        What keeps the flanks apart, of the effects that are on; and of these what is no relief and no spacing error.
+    found : LoadedFlanks
+        Under every load.
+    over : OverPitch
+        What is stated of the whole base pitch under every load, at as many roll positions as that needs.
+    error : FlankError
+        Estimated errors of `found`, and of what is stated.
+    neglected : mapping of str to (float, float)
+        By the effects that are off: what each of them would change, if it were on, of mean transmission error [m] and
+        K_Hbeta at the nominal load.
+    unloaded : ndarray, shape (P,)
+        Transmission error of the rigid flanks at the roll positions of `found` [m].
+    beside : float
+        By how much gaps are off because modified flanks touch beside the contact lines of unmodified ones [m].
+    missed : float
+        Share by which compliances of slices are known to be off; 0 for solids.
+    """
+
+    flanks: FlankPair
+    loads: tuple[float, ...]
+    nominal: float
+    known: FlankCompliance
+    gaps: FlankGaps
+    unrelieved: FlankGaps
+    found: LoadedFlanks
+    over: OverPitch
+    error: FlankError
+    neglected: Mapping[str, tuple[float, float]]
+    unloaded: Array
+    beside: float
+    missed: float
+
+    @property
+    def pair(self) -> GearPair:
+        """Both gears in mesh."""
+        return self.found.pair
+
+    @property
+    def at(self) -> int:
+        """Number of the nominal load."""
+        return self.loads.index(self.nominal)
+
+    @property
+    def coupling(self) -> bool:
+        """Whether a tooth feels the loads of those beside it."""
+        return self.flanks.coupling
+
+    @property
+    def about(self) -> str:
+        """What the gears are solved as."""
+        return f"Gears with their width, {'coupled slices' if self.missed else 'solid'}."
+
+    @cached_property
+    def stated(self) -> Stated:
+        """Numbers of the whole base pitch under every load."""
+        return self.over.stated
+
+    @property
+    def places_along(self) -> Array:
+        """Places along the face at which root stress is looked for [m], both ends among them."""
+        lines, module = self.found.lines, self.pair.driver.module
+        count = max(_FEWEST, 2 * round(0.5 * _PER_MODULE * (lines.high - lines.low) / module) + 1)
+        return np.linspace(lines.low, lines.high, count)
+
+    def history(self) -> LoadHistory:
+        """See `LoadedTeeth`; errors are the change by the coarser solution, and what slices miss."""
+        coarse, i, missed = self.error.coarse, self.at, self.missed
+        found = flank_pair_history(self.found, self.gaps.at(self.pair, self.found.lines))
+        again = flank_pair_history(coarse, self.gaps.at(self.pair, coarse.lines))
+        largest, other = (one.hertz_pressure[:, i].max() for one in (found, again))
+        error = history_error(found, again) + missed * found.load * (1.0 - found.share)
+        where = (
+            " in the middle of the face, before and after which the contact line crosses a part of it"
+            if self.pair.driver.helix_angle
+            else ""
+        )
+        pressure_error = float(abs(other - largest) + 0.5 * missed * largest)
+        return LoadHistory(found, i, error, None, where, found.x.size, pressure_error)
+
+    def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
+        """See `LoadedTeeth`; numbers of the base pitch are of more roll positions than the curves, where these need."""
+        over, i, found = self.over, self.at, self.found
+        each = [
+            replace(te, peak_to_peak=float(swing))
+            for te, swing in zip(
+                flank_transmission_errors(over.found, over.points), over.stated.peak_to_peak, strict=True
+            )
+        ]
+        curves, again = (flank_transmission_errors(one, self.flanks.points) for one in (found, self.error.coarse))
+        progress(0.5)
+        perfect = replace(self.flanks, positions=over.found.lines.roll.size).solve(
+            [self.nominal], None, over.found.known
+        )
+        shift = _missed_too(flank_transmission_error_shift(each[i], curves[i], again[i]), each[i], self.missed)
+        # What is stated of the whole base pitch is stated once.
+        shift = replace(shift, mean=float(self.error.mean[i]), peak_to_peak=float(self.error.peak_to_peak[i]))
+        uneven = bool(self.gaps.driver_spacing.size or self.gaps.driven_spacing.size)
+        te_mean, peak_to_peak, effective, local = (
+            np.array([getattr(te, key) for te in each])
+            for key in ("mean", "peak_to_peak", "effective_error", "average_stiffness")
+        )
+        return ErrorOverPitch(
+            self.pair,
+            self.loads,
+            i,
+            each[i].values.size,
+            f"from {each[i].values.size} roll positions over the base pitch",
+            tuple(te.series for te in each),
+            shift,
+            x=found.lines.roll,
+            te=found.transmission_error,
+            mesh_stiffness=np.stack([te.secant for te in curves], axis=1),
+            pairs_in_contact=(found.pair_load > 0.0).sum(axis=0),
+            local_stiffness=np.stack([te.local for te in curves], axis=1),
+            te_mean=te_mean,
+            te_peak_to_peak=peak_to_peak,
+            te_effective=effective,
+            local_stiffness_mean=local,
+            mesh_stiffness_mean=each[i].mean_secant,
+            mesh_compliance_mean=float(perfect.mean_transmission_error[0]) / self.nominal,
+            te_error=self.error.transmission_error[:, i],
+            only=self.gaps.base_pitch if uneven else None,
+        )
+
+    def error_under(self, loads: ArrayLike, positions: int) -> tuple[Array, Array, Array]:  # noqa: ARG002
+        """See `LoadedTeeth`; the nominal load alone is what was solved before."""
+        wanted, found = np.atleast_1d(np.asarray(loads, dtype=float)), self.found
+        if wanted.tolist() == [self.nominal]:
+            return found.lines.roll, found.load[[self.at]], found.transmission_error[:, [self.at]]
+        found = self.flanks.solve(wanted, self.gaps, self.known)
+        return found.lines.roll, found.load, found.transmission_error
+
+    def root_stress(
+        self,
+        sources: Mapping[Member, Mapping[str, SolidInfluence]],
+        progress: Callable[[float], None],
+        *,
+        estimates: bool = True,  # noqa: ARG002  (as in the plane; here errors cost next to nothing)
+    ) -> RootStressInMesh:
+        """See `LoadedTeeth`; one source for each gear, its solid or its slices, looked at all along the face."""
+        stress: dict[Member, dict[str, ToothStress]] = {}
+        over_face: dict[Member, dict[Side, StressOverFace]] = {}
+        across: dict[Member, tuple[float, float]] = {}
+        for number, member in enumerate(MEMBERS):
+            ((name, influence),) = sources[member].items()
+            rooted = rooted_lines(self.pair, member, self.found.lines, influence.fine, coupling=self.coupling)
+            stress[member] = {name: self._largest_over_face(rooted, influence, over_face)}
+            if self.pair.driver.helix_angle and influence.coarse:  # slices know no shear along the face
+                across[member] = self._across(rooted, stress[member][name])
+            progress((number + 1) / len(MEMBERS))
+        return RootStressInMesh(stress, {}, over_face, across)
+
+    def _largest_over_face(
+        self, rooted: RootedLines, influence: SolidInfluence, over_face: dict[Member, dict[Side, StressOverFace]]
+    ) -> ToothStress:
+        """Largest over the face under every load; what it is all over the face at the nominal one goes to the map."""
+        coarse, z, member = self.error.coarse, self.places_along, rooted.member
+        again = influence.coarse and rooted_lines(
+            self.pair, member, coarse.lines, influence.coarse, coupling=self.coupling
+        )
+        largest: dict[Side, list[Array]] = {"tension": [], "compression": []}
+        off = []
+        for i in range(self.found.load.size):
+            felt = {side: rooted.stress(side, self.found.contact.force[:, :, i], z) for side, _ in _SIDES}
+            for side, sign in _SIDES:
+                largest[side].append(felt[side].largest(sign)[0])
+            if i == self.at:
+                over_face[member] = felt
+            if again:
+                other = again.stress("tension", coarse.contact.force[:, :, i], z)
+                by_coarse = np.stack([np.interp(rooted.x, other.x, one) for one in other.value.T], axis=1)
+                off.append(ENTRY_SHARES["root_tension"] * curves_apart(felt["tension"].value, by_coarse))
+            else:  # slices know how far they are off
+                off.append(influence.error.get("root_tension", np.nan) * np.abs(largest["tension"][-1]))
+        tension, compression, error = (np.stack(x, axis=1) for x in (largest["tension"], largest["compression"], off))
+        return ToothStress(rooted.x, tension, compression, error)
+
+    def _across(self, rooted: RootedLines, stress: ToothStress) -> tuple[float, float]:
+        i = self.at
+        largest = rooted.largest("tension", self.found.contact.force[:, :, i], self.places_along, across=True)
+        worst = stress.worst(i)
+        return largest, float(stress.tension_error[worst, i] / stress.tension[worst, i] * largest)
+
+
+def _missed_too(shift: TransmissionErrorShift, te: FlankTransmissionError, missed: float) -> TransmissionErrorShift:
+    """The same with what slices are known to miss of compliances."""
+    return replace(
+        shift,
+        mean=shift.mean + missed * te.mean,
+        peak_to_peak=shift.peak_to_peak + missed * te.peak_to_peak,
+        effective=shift.effective + missed * te.effective_error,
+        amplitude=shift.amplitude + missed * te.series.amplitude,
+        stiffness=shift.stiffness + missed * te.mean_secant,
+    )

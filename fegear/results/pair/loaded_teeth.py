@@ -1,0 +1,165 @@
+"""Loaded pairs for the results that ask something of them: which there are, who makes them, what their figures share.
+
+A kind of pair is one row here: `PLANE` and `WIDE`. A result that stands on `LoadedTeeth` takes subjects, needs, checks
+and effects from here and knows no kind.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from fegear.case.built.loaded_flanks import FLANK_EFFECTS
+from fegear.case.built.loaded_pair import check_relief
+from fegear.case.built.pair_inputs import EFFECTS, gear_name
+from fegear.case.built.solid_influence import flank_pairs
+from fegear.engine.figure.figure import Axis
+from fegear.engine.figure.items import Mark, few, ramp
+from fegear.engine.stage import Task
+from fegear.engine.table import Column
+from fegear.geometry.pair import MEMBERS
+from fegear.results.gear.drawing import path_marks
+from fegear.results.gear.stiffness import needs_solution
+from fegear.results.gear.stiffness_over_face import needs_solid_solution
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from fegear.base.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.contact.loaded_teeth import LoadedTeeth as LoadedTeeth  # noqa: PLC0414  (for the window)
+    from fegear.contact.plane.loaded_pair import LoadedPair
+    from fegear.engine.stage import Upstream
+    from fegear.geometry.pair import GearPair, Member
+
+#: Abscissa of figures over one base pitch.
+BASE_PITCH = Axis("roll position over one base pitch", "mm")
+
+
+def plane_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs of plane teeth that carry a load; all of them where none does, so that the missing load is reported."""
+    pairs = scene.plane_pairs
+    loaded = tuple(name for name, pair in pairs.items() if scene.case.pair[name].normal_load(pair) is not None)
+    return loaded or tuple(pairs)
+
+
+def wide_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs with a width that carry a load; all of them where none does, so that the missing load is reported."""
+    return tuple(name for name in flank_pairs(scene) if name in scene.wide_pairs) or tuple(scene.wide_pairs)
+
+
+def _fine(_scene: Scene, _name: str) -> None:
+    return None
+
+
+@dataclass(frozen=True)
+class Kind:
+    """How pairs of one kind are loaded.
+
+    Parameters
+    ----------
+    stage : str
+        That makes them.
+    effects : tuple of str
+        That change them.
+    check : callable
+        What results of such a pair refuse beside what its maker refuses.
+    solutions : callable
+        Gears to the tasks that solve them.
+    """
+
+    stage: str
+    effects: tuple[str, ...]
+    solutions: Callable[..., tuple[Task, ...]]
+    check: Callable[[Scene, str], None] = _fine
+
+
+PLANE = Kind("loaded-pair", EFFECTS, needs_solution, check_relief)
+WIDE = Kind("loaded-flanks", tuple(FLANK_EFFECTS), needs_solid_solution)
+#: Effects that change a loaded pair of any kind.
+TEETH_EFFECTS = tuple(dict.fromkeys((*PLANE.effects, *WIDE.effects)))
+
+
+def loaded_pairs(scene: Scene) -> tuple[str, ...]:
+    """Subjects of results that stand on loaded pairs of any kind."""
+    return (*plane_pairs(scene), *wide_pairs(scene))
+
+
+def kind_of(scene: Scene, name: str) -> Kind:
+    """How a pair is loaded."""
+    return WIDE if name in scene.wide_pairs else PLANE
+
+
+def needs_teeth(scene: Scene, name: str) -> tuple[Task, ...]:
+    """The task that makes a loaded pair."""
+    return (Task(kind_of(scene, name).stage, name),)
+
+
+def needs_gears(scene: Scene, name: str) -> tuple[Task, ...]:
+    """The tasks that make a loaded pair and solve both of its gears."""
+    gears = (gear_name(scene, name, member) for member in MEMBERS)
+    return (*needs_teeth(scene, name), *kind_of(scene, name).solutions(*gears))
+
+
+def check_teeth(scene: Scene, name: str) -> None:
+    """Refuse what results of a loaded pair cannot be asked for."""
+    kind_of(scene, name).check(scene, name)
+
+
+def effects_of_teeth(scene: Scene, name: str) -> tuple[str, ...]:
+    """Effects that change a pair."""
+    return kind_of(scene, name).effects
+
+
+def teeth_of(task: Task, data: Any) -> LoadedTeeth | None:
+    """The loaded pair that a task computed; None where it is none of its makers."""
+    if task.stage not in (PLANE.stage, WIDE.stage):
+        return None
+    return cast("LoadedTeeth", data.pair if task.stage == PLANE.stage else data)
+
+
+def loaded_teeth(upstream: Upstream, name: str) -> LoadedTeeth:
+    """What its maker left of a pair, among the tasks that a task needs."""
+    made = (teeth_of(task, data) for task, data in upstream.items() if task.subject == name)
+    return next(teeth for teeth in made if teeth is not None)
+
+
+def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
+    """A pair of plane teeth, for what is known of these alone."""
+    return cast("LoadedPair", cast("Any", upstream[Task(PLANE.stage, name)]).pair)
+
+
+def gears_of(scene: Scene, name: str) -> dict[Member, str]:
+    """Names of a pair's gears by member."""
+    return {member: gear_name(scene, name, member) for member in MEMBERS}
+
+
+def drawn_loads(loads: Sequence[float], nominal: float, word: str = "nominal") -> list[tuple[int, str, str]]:
+    """Index, label and role of the loads that are drawn: all, or evenly many with the nominal one."""
+    near = min(range(len(loads)), key=lambda i: abs(loads[i] - nominal))
+    chosen = few(len(loads), (near,))
+    labels = [f"{loads[i]:.5g} N" + (f" ({word})" if loads[i] == nominal and len(loads) > 1 else "") for i in chosen]
+    return list(zip(chosen, labels, ramp(len(chosen)), strict=True))
+
+
+def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tuple[Column, ...]:
+    """Columns of one load each, joined below each other behind a column of the load."""
+    rows = [len(part[0]) for part in parts]
+    return (
+        Column("total_load", np.repeat(loads, rows), "N", "along the line of action"),
+        *(replace(same[0], si=np.concatenate([column.si for column in same])) for same in zip(*parts, strict=True)),
+    )
+
+
+def under_load(loads: Sequence[float]) -> str:
+    """The load that a figure holds for, where the pair has one only; else its legend names them."""
+    return f"{loads[0]:.5g} N" if len(loads) == 1 else ""
+
+
+def pitch_marks(pair: GearPair, x: Array) -> tuple[Mark, ...]:
+    """Marks of those points that a roll over one base pitch passes, between the ends of x [m]."""
+    low, high = float(x.min()) * 1e3, float(x.max()) * 1e3
+    room = 1e-6 * (high - low)
+    return tuple(m for m in path_marks(pair) if low - room <= m.at <= high + room)
