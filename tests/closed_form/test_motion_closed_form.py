@@ -2,11 +2,14 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import fegear
 from fegear.base.errors import InputError, RangeError
+from fegear.dynamics.motion.kernel.polynomials import largest_force
 from fegear.dynamics.motion.motion import propagate, simulate, static_state
 from fegear.dynamics.motion.motion_model import MotionModel, pack
 from fegear.dynamics.motion.steady_state import speed_sweep, steady_state
@@ -16,6 +19,7 @@ from fegear.dynamics.train.matrices import damping_matrix, stiffness_matrix
 from fegear.dynamics.train.periodic import Periodic
 from fegear.dynamics.train.train import Body, Damper, Mesh, Shaft, Torque, Train, mesh_damping
 
+CASES = Path(__file__).parents[2] / "cases"
 R, J, K = 0.05, 2e-3, 2e8
 NATURAL = math.sqrt(2 * K * R * R / J)
 
@@ -338,3 +342,27 @@ def test_springs_are_packed_without_loss():
         v = (2 * u - low - high) / (high - low)
         got = [unit * np.polynomial.polynomial.polyval(v, packed.poly[piece, q]) for q, unit in enumerate(units)]
         assert got == pytest.approx([float(part(6 * u)) for part in parts], rel=1e-12)
+
+
+def test_a_tooth_pair_bears_no_more_than_its_mesh_where_two_begin_to_bear_at_once():
+    """Their loads are a difference of nothing for a moment, and the damping force of the impact is finite."""
+    slide, mesh_of = np.array([[3.0, 0.0]]), np.array([0, 0])
+    for loads in ([1e-18, -0.9e-18], [-0.9e-18, 1e-18], [1e-18, 1e-18], [0.0, 0.0], [2.0, 1.0]):
+        force = np.array([[load, 0.0] for load in loads])
+        total = largest_force(force, slide, 2, mesh_of, 0, -1, 1.0, 1.0)
+        shares = [largest_force(force, slide, 2, mesh_of, 0, s, 1.0, 1.0) for s in (0, 1)]
+        assert all(0.0 <= share <= total * (1.0 + 1e-15) for share in shares)
+        assert sum(shares) == pytest.approx(total if any(loads) else 0.0)
+    assert largest_force(np.array([[2.0, 0.0], [1.0, 0.0]]), slide, 2, mesh_of, 0, 0, 1.0, 1.0) == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize("length", [0.119, 0.12, 0.121])
+def test_the_dynamic_factor_is_smooth_where_a_relief_lets_two_pairs_begin_to_bear_at_once(length):
+    """It was 3.0 to 5.0 (6.0 and 8.1 with a chart's own speeds) between 1.8890 at .115 and 1.8884 at .125."""
+    case = CASES / "sources" / "lin_townsend_oswald_fig9.toml"
+    relief = {"tip": {"amount_over_delta": 0.25, "normalised_length": length}}
+    changes = {"gear.a.relief": relief, "effects.relief": True, "dynamics.speeds": ["11300 rpm"]}
+    found = fegear.run(case, changes, results="dynamic-factor", progress=False)
+    table = found.tables["dynamic_factor_I"]
+    assert table["dynamic_factor"][0] == pytest.approx(1.8887, abs=4e-4)
+    assert table["dynamic_factor"][0] <= table["mesh_force_factor"][0]

@@ -85,19 +85,25 @@ def first_crossing(row: Any, h: float, sign: float) -> float:
     return -1.0
 
 
-def _load(force: Any, slide: Any, n_springs: int, mesh_of: Any, m: int, pick: int, t: float) -> float:
-    """Force of mesh m at time t of the step, or, for pick >= 0, what spring `pick` carries of it."""
-    elastic, own = 0.0, 0.0
+def _load(force: Any, slide: Any, n_springs: int, mesh_of: Any, m: int, pick: int, t: float, sign: float) -> float:
+    """Force of mesh m at time t of the step, or, for pick >= 0, what spring `pick` carries of it.
+
+    Springs share the damping force in proportion to what they bear. Two that begin to bear within round-off of each
+    other are a difference of nothing for a moment, one of them by a last digit below zero, while the damping force of
+    the impact is finite: so a share is taken of what pushes alone, and lies between none and all.
+    """
+    elastic, pushing, own = 0.0, 0.0, 0.0
     for s in range(n_springs):
         if mesh_of[s] == m:
             value = value_at(force[s], t)
             elastic += value
+            pushing += abs(value) if value * sign > 0.0 else 0.0
             if s == pick:
-                own = value
+                own = abs(value) if value * sign > 0.0 else 0.0
     total = elastic + value_at(slide[m], t)
     if pick < 0:
         return total
-    return own * total / elastic if elastic != 0.0 else 0.0
+    return own * total / pushing if pushing != 0.0 else 0.0
 
 
 def largest_force(
@@ -107,23 +113,23 @@ def largest_force(
     samples = 12
     best_j, best = 0, -math.inf
     for j in range(samples + 1):
-        value = sign * _load(force, slide, n_springs, mesh_of, m, pick, h * j / samples)
+        value = sign * _load(force, slide, n_springs, mesh_of, m, pick, h * j / samples, sign)
         if value > best:
             best_j, best = j, value
     low, high = h * max(best_j - 1, 0) / samples, h * min(best_j + 1, samples) / samples
     golden = 0.6180339887498949
     a, b = high - golden * (high - low), low + golden * (high - low)
-    fa = sign * _load(force, slide, n_springs, mesh_of, m, pick, a)
-    fb = sign * _load(force, slide, n_springs, mesh_of, m, pick, b)
+    fa = sign * _load(force, slide, n_springs, mesh_of, m, pick, a, sign)
+    fb = sign * _load(force, slide, n_springs, mesh_of, m, pick, b, sign)
     for _ in range(36):
         if fa > fb:
             high, b, fb = b, a, fa
             a = high - golden * (high - low)
-            fa = sign * _load(force, slide, n_springs, mesh_of, m, pick, a)
+            fa = sign * _load(force, slide, n_springs, mesh_of, m, pick, a, sign)
         else:
             low, a, fa = a, b, fb
             b = low + golden * (high - low)
-            fb = sign * _load(force, slide, n_springs, mesh_of, m, pick, b)
+            fb = sign * _load(force, slide, n_springs, mesh_of, m, pick, b, sign)
     return max(best, fa, fb)
 
 
