@@ -63,7 +63,7 @@ class ReliefChart:
         "", "in lengths from tip to HPSTC along the line of action", name="length",
         label="length of tip relief (1: tip to HPSTC)",
     )  # fmt: skip
-    loads: Array = shown("N", "along the line of action", name="total_load")
+    loads: Array = shown("N", "total load along the line of action", name="total_load")
     unit_length: float = shown("mm", "length 1 of the chart on the line of action")
     effective_error: Array = shown(
         "um", "A_e of NASA TM-89901, 0-peak", name="te_effective", label="effective transmission error A_{e}"

@@ -68,8 +68,8 @@ def tiled(columns: Iterable[Column], times: int) -> tuple[Column, ...]:
     return tuple(replace(column, si=np.tile(column.si, times)) for column in columns)
 
 
-def repeated(columns: Iterable[Column], times: int) -> tuple[Column, ...]:
-    """Every row of some columns so many times."""
+def repeated(columns: Iterable[Column], times: int | Sequence[int]) -> tuple[Column, ...]:
+    """Every row of some columns so many times: one number, or one for each row."""
     return tuple(replace(column, si=np.repeat(column.si, times)) for column in columns)
 
 

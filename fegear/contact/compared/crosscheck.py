@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from fegear.geometry.tooth import Tooth
 
 
+_REASON = "why the formula gives nothing; empty where it does"
+
+
 @dataclass(frozen=True, slots=True)
 class RootStressAnswers:
     """One root-stress formula over load positions, shape (N,), for a tooth of module 1.
@@ -42,14 +45,12 @@ class RootStressAnswers:
         Stress x module / line load; NaN exactly where `reasons` has words.
     radius, tangent_angle : ndarray
         Place of the stress: distance from the gear's centre [modules], fillet tangent to tooth centre line [rad].
-    reasons : tuple of str
-        Why there is no value; empty where there is one.
     """
 
     stress: Array
     radius: Array
     tangent_angle: Array
-    reasons: tuple[str, ...]
+    reasons: tuple[str, ...] = shown("", _REASON, name="reason")
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +65,7 @@ class ComplianceAnswers:
         label="deflection per line load",
     )  # fmt: skip
     parts: Array = shown("um.mm/N", "part of the formula's sum")
-    reasons: tuple[str, ...] = shown("", "why the formula gives nothing; empty where it does", name="reason")
+    reasons: tuple[str, ...] = shown("", _REASON, name="reason")
 
 
 @dataclass(frozen=True, slots=True)

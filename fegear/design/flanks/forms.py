@@ -34,9 +34,9 @@ class GroundRelief:
     """
 
     driver_tip: float = shown("um", "tip relief of the driver", default=0.0)
-    driver_tip_length: float = shown("mm", "along the line of action", default=0.0)
+    driver_tip_length: float = shown("mm", "of that relief, along the line of action", default=0.0)
     driven_tip: float = shown("um", "tip relief of the driven gear", default=0.0)
-    driven_tip_length: float = shown("mm", "along the line of action", default=0.0)
+    driven_tip_length: float = shown("mm", "of that relief, along the line of action", default=0.0)
     crowning: float = shown("um", "of the lead, at both ends", default=0.0)
     end_relief: float = shown("um", "at both ends of the face", default=0.0)
     end_relief_length: float = shown("mm", "along the face", default=0.0)

@@ -306,7 +306,7 @@ def _formulas(answers: _Answers, count: int) -> Column:
 
 def _reasons(answers: _Answers) -> Column:
     words = np.array([reason for a in answers.values() for reason in a.reasons], dtype=np.str_)
-    return Column("reason", words, "", "why the formula gives nothing; empty where it does")
+    return column_of(next(iter(answers.values())), "reasons", words)
 
 
 def _extremes(prefix: str, ratio: Array, names: tuple[str, ...]) -> tuple[Value, ...]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.shown import declared
 from fegear.case.built.tooth_influence import mesh_settings, seconds_of_gear
 from fegear.engine.citation import citing
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
@@ -84,6 +85,7 @@ def _rack(v: Variant) -> tuple[float, float]:
 
 
 def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: float, *, drawn: bool) -> Table:
+    from fegear.contact.compared.crosscheck import RootStressAnswers
     from fegear.contact.compared.root_stress_study import verdict
 
     rows = []
@@ -126,7 +128,7 @@ def _table(found: tuple[VariantStress, ...], names: tuple[str, ...], module: flo
         ("place_angle", "deg", "fillet tangent to tooth centre line where the formula puts the stress"),
         ("place_angle_fe", "deg", "the same by finite elements"),
         ("verdict", "", "high, low, within 5 %, or breaks down"),
-        ("reason", "", "why the formula gives nothing; empty where it does"),
+        ("reason", "", declared(RootStressAnswers, "reasons").meaning),
     )
     if drawn:
         heads += (

@@ -66,7 +66,7 @@ _USUAL_FORCE = 1e3
 
 _SIDES: tuple[tuple[Side, str], ...] = (
     ("tension", "largest tangential stress of the fillet below the loaded flank, anywhere along the face"),
-    ("compression", "most negative tangential stress of the other fillet"),
+    ("compression", "most negative tangential stress of the other fillet, anywhere along the face"),
 )
 
 

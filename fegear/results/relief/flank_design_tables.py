@@ -29,6 +29,8 @@ _JUDGED = (
 
 def topography_table(name: str, gear: str, member: Member, share: float, data: FlankDesignData) -> Table:
     """Exact topography of one gear, which a case reads back as its ``topography``."""
+    from fegear.design.minimum_excitation import ReliefTable
+
     design, pair = data.design, data.pair
     x, z = (grid.ravel() for grid in np.meshgrid(design.x, design.z, indexing="ij"))
     own = z + pair.face_height(member)
@@ -38,7 +40,7 @@ def topography_table(name: str, gear: str, member: Member, share: float, data: F
         Column("z", own, "mm", "along the gear's face, from its middle"),
         Column("removal", share * design.removal.ravel(), "um", "material to remove, along the normal in the section"),
         Column("diameter", 2.0 * np.asarray(pair.radius(x, member)), "mm", "of the flank point"),
-        Column("x", x, "mm", "position on the line of action, positive toward the driver's tip"),
+        column_of(ReliefTable, "x", x),
         Column("line_load", task.load * task.loading.line_load(x, z), "N/mm", "design load on the pair per face width"),
     )
     return Table(f"flank_topography_{name}_{gear}", columns, f"Topographic relief of gear {gear} in pair {name}")

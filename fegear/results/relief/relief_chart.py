@@ -264,7 +264,13 @@ def _robustness_figure(name: str, found: Mapping[str, Robustness], metric: str) 
         f"robustness_{name}",
         f"Robustness of the reliefs of pair {name}",
         f"Pair {name}: worst (marked) and least (thin) of all combinations of spacing error and relief tolerance.",
-        (Panel(Axis("load over design load"), Axis(f"{what} transmission error", "um", zero=True), tuple(curves)),),
+        (
+            Panel(
+                axis_of(next(iter(found.values())), "load_factors"),
+                Axis(f"{what} transmission error", "um", zero=True),
+                tuple(curves),
+            ),
+        ),
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_of, column_over, repeated
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, ramp
 from fegear.engine.outcome import Outcome, Value
@@ -126,21 +127,20 @@ def _curve(engagement: Engagement, load: float, amount: float, length: float) ->
 
 
 def _present(data: ReliefCurvesData, inputs: CurvesInputs) -> Outcome:
+    from fegear.design.charts import ReliefChart
+
     name, curves = inputs.name, data.curves
     rows = [curve.history.x.size for curve in curves]
 
     def along(key: str) -> Array:
         return np.concatenate([np.ravel(getattr(curve.history, key)) for curve in curves])
 
-    def of(key: str) -> Array:
-        return np.array([getattr(curve.error, key) for curve in curves])
-
     amounts, lengths = np.array([c.amount for c in curves]), np.array([c.length for c in curves])
+    relief = column_of(ReliefChart, "amounts", amounts), column_of(ReliefChart, "lengths", lengths)
     history = Table(
         f"relief_curves_{name}",
         (
-            Column("amount", np.repeat(amounts, rows), "um", "removal at both tips"),
-            Column("length", np.repeat(lengths, rows), "", "L_n, 1 from the tip to the HPSTC"),
+            *repeated(relief, rows),
             Column("x", along("x"), "mm", "position of the pair on the line of action"),
             Column("roll_angle", along("driver_roll_angle"), "deg", "of the contact point on the driver"),
             Column("te", along("transmission_error"), "um", "loaded transmission error"),
@@ -153,11 +153,10 @@ def _present(data: ReliefCurvesData, inputs: CurvesInputs) -> Outcome:
     summary = Table(
         f"relief_curves_summary_{name}",
         (
-            Column("amount", amounts, "um", "removal at both tips"),
+            relief[0],
             Column("amount_over_delta", amounts / data.delta, "", "over Welbourn's Delta"),
-            Column("length", lengths, "", "L_n, 1 from the tip to the HPSTC"),
-            Column("te_peak_to_peak", of("peak_to_peak"), "um", "largest less smallest"),
-            Column("te_effective", of("effective_error"), "um", "A_e of NASA TM-89901"),
+            relief[1],
+            *(column_over([curve.error for curve in curves], key) for key in ("peak_to_peak", "effective_error")),
             *(Column(f"amplitude_{n + 1}", series[:, n], "um", "harmonic, 0-peak") for n in range(_TOLD)),
         ),
         f"Transmission error of {name}, relief by relief",
