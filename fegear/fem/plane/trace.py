@@ -175,16 +175,20 @@ class LoadedFlank:
 
     def _normal(self, edge: Index, xi: Array) -> Array:
         """Unit vectors into the material at places of edges, shape (2, *xi.shape)."""
-        slope = np.stack([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
-        tangent = np.einsum("cin,in...->cn...", self.points[:, :, edge], slope)
-        normal = np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
         on_flank = (edge >= self.first_flank_edge) & (edge < self.after_flank_edge)
+        normal = np.empty((2, *xi.shape))
         # The involute's own: tangent to the base circle, so that a load's torque is exactly the base radius times it.
         e = edge[on_flank] - self.first_flank_edge
         along = xi[on_flank]
         low, high = (self.roll_squared[i].reshape(-1, *[1] * (along.ndim - 1)) for i in (e, e + 1))
         phi = self.base_half_angle - np.sqrt(np.maximum(low + (high - low) * along, 0.0))
         normal[:, on_flank] = np.stack([-np.cos(phi), np.sin(phi)])
+        if not on_flank.all():
+            off = ~on_flank
+            beside = xi[off]
+            slope = np.stack([4 * beside - 3, 4 * beside - 1, 4 - 8 * beside])
+            tangent = np.einsum("cin,in...->cn...", self.points[:, :, edge[off]], slope)
+            normal[:, off] = np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
         return normal
 
     def patches(self, arc: Array, half_width: Array) -> Array:
@@ -232,8 +236,10 @@ class LoadedFlank:
         edge, position, xi, weight = self._pressed(arc, half_width)
         inward = self._normal(edge, xi)
         # of the flank's last edge: a small rounding may be a single edge, whose own tangent there is degrees off
-        last = self._normal(np.array([self.after_flank_edge - 1]), np.array([1.0]))
-        inward[:, edge >= self.after_flank_edge] = last[:, :, None]
+        beyond = edge >= self.after_flank_edge
+        if beyond.any():
+            last = self._normal(np.array([self.after_flank_edge - 1]), np.array([1.0]))
+            inward[:, beyond] = last[:, :, None]
         shape = lagrange(self.order, xi) * weight
         return edge, position, shape * inward[:, None]
 
