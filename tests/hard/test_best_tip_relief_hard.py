@@ -343,10 +343,8 @@ def test_the_band_holds_what_is_equally_good():
     assert found.driver.amount < 1.01 * found.driver_band[0].amount
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("seed", range(30))
-def test_no_differential_evolution_finds_less_on_random_pairs(seed):
-    """It found 1.88389 for 1.9341 um and .269379 for .27935 um."""
+def drawn(seed):
+    """A random pair under a load, a shape, and its search."""
     rng = np.random.default_rng(seed)
     addendum, hertz = float(rng.choice([0.8, 1.0, 1.3])), str(rng.choice(["linear", "none"]))
     z1, z2 = int(rng.integers(12, 61)), int(rng.integers(17, 101))
@@ -354,22 +352,55 @@ def test_no_differential_evolution_finds_less_on_random_pairs(seed):
     shift = max(rng.uniform(0.0, 0.4), (18 - z1) / 18 * addendum)
     e, load = engaged(z1, z2, addendum=addendum, shift=shift, hertz=hertz, line_load=10 ** rng.uniform(4.5, 6.0))
     power = float(rng.choice([1.0, 2.0]))
-    found = grindable(e, load, "linear" if power == 1.0 else "parabolic")
-    reference, dense = Reference(e, load, 120), Reference(e, load, 1500)
+    return e, load, power, grindable(e, load, "linear" if power == 1.0 else "parabolic")
+
+
+def evolved(e, load, power, positions, seed, aim, popsize=15):
+    """Least of an aim, of numbers in their units and what they leave, by differential evolution: numbers, and unit."""
+    reference = Reference(e, load, positions)
     scale = reference.approach(reference.removal([0.0, 0.5, 0.0, 0.5], power)).mean()
     tooth = [float(deepest_relief(g, roll_of_radius(g, g.involute_tip_radius))) for g in (e.pair.driver, e.pair.driven)]
-    bounds = [
-        (0.0, min(6.0 * scale, tooth[0]) / scale),
-        (0.02, 1.0),
-        (0.0, min(6.0 * scale, tooth[1]) / scale),
-        (0.02, 1.0),
-    ]
+    bounds = [b for t in tooth for b in ((0.0, min(6.0 * scale, t) / scale), (0.02, 1.0))]
     unit = np.array([scale, 1.0, scale, 1.0])
     best = differential_evolution(
-        lambda p: reference.left(p.T * unit, power, "peak_to_peak"), bounds, popsize=15, maxiter=250, seed=seed,
-        tol=1e-6, vectorized=True, updating="deferred", polish=False,
+        lambda p: aim(p, reference.left(p.T * unit, power, "peak_to_peak")), bounds, popsize=popsize, maxiter=250,
+        seed=seed, tol=1e-6, vectorized=True, updating="deferred", polish=False,
     )  # fmt: skip
-    assert found.least < dense.left(best.x * unit, power, "peak_to_peak") / 0.99
+    return best.x, unit
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(30))
+def test_no_differential_evolution_finds_less_on_random_pairs(seed):
+    """It found 1.88389 for 1.9341 um and .269379 for .27935 um."""
+    e, load, power, found = drawn(seed)
+    x, unit = evolved(e, load, power, 120, seed, lambda _, left: left)
+    assert found.least < Reference(e, load, 1500).left(x * unit, power, "peak_to_peak") / 0.99
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(30))
+def test_no_differential_evolution_finds_less_removal_among_the_equally_good(seed):
+    e, load, power, found = drawn(seed)
+    # Half of the hundredth is left to what 240 positions do not see.
+    fined = 1.005 * found.least
+    x, unit = evolved(
+        e, load, power, 240, seed, lambda p, left: p[0] + p[2] + 100.0 * np.maximum(left / fined - 1.0, 0.0), 25
+    )
+    if Reference(e, load, 1500).left(x * unit, power, "peak_to_peak") < 1.01 * found.least:
+        assert found.driver.amount + found.driven.amount < 1.002 * (x[0] + x[2]) * unit[0]
+
+
+def test_the_least_removal_is_found_in_a_valley_that_is_not_the_deepest():
+    """72.5 um were removed of a pair where 60.8 leave as little, in a valley whose ground is .6 % higher."""
+    teeth = Tooth(18, BasicRack(), profile_shift=0.22941994), Tooth(40, BasicRack(), profile_shift=-0.22941994)
+    gears = [Gear(t, 3e-3, 12e-3, 30e-3) for t in teeth]
+    sources = [closed_form_compliance(g, "weber-banaschek") for g in gears]
+    load = 11396.11
+    e = Engagement(PairCompliance(GearPair(*gears), *sources, hertz="none", nominal_load=load))
+    found = grindable(e, load, "parabolic")
+    assert found.objective == pytest.approx(1.01 * found.least, rel=1e-3)
+    assert found.driver.amount + found.driven.amount < 61e-6
 
 
 def test_reliefs_for_several_loads_are_at_least_as_good_as_those_for_one():

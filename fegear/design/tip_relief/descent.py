@@ -386,6 +386,8 @@ def refine(trials: Trials, start: Floats, limits: Limits, aim: Aim | None = None
         reach = trust * np.maximum(p, 0.2 * unit)
         low, high = np.maximum(limits.low - p, -reach) / unit, np.minimum(limits.high - p, reach) / unit
         d, on_edge = _best_step(problem, low, high, aim, left, on_edge)
+        if released and on_edge:
+            break
         new = np.clip(p + d * unit, limits.low, limits.high)
         new_tried, new_left, new_value = tried_at(new)
         evaluations += 9

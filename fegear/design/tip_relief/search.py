@@ -54,6 +54,8 @@ _STAGES = {
 }
 #: Ends of the last descent that are led to the ground, and of the equally good those that are led to the end.
 _GROUNDS, _CHOSEN = 3, 3
+#: Valleys from which the least removal is looked for besides.
+_VALLEYS = 6
 #: Ends that leave so many times the least are not led on, nor are those that lie so near to one that was, in their
 #: units; a penalty below this is none.
 _HOPELESS, _BESIDE_END, _WITHIN = 1.03, 0.04, 1e-3
@@ -198,7 +200,9 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
     p: Floats
     values: Floats
     of_starts: Floats
+    valleys: Floats
     p, candidates = scan(coarse, limits)
+    valleys = p
     values, solved, of_starts, trials, now = np.arange(float(p.shape[0])), 0, np.empty(0), coarse, -1
     for step, (positions, followed, trust, rounds) in enumerate(_STAGES[metric]):
         if positions != now:
@@ -207,11 +211,12 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         p, values, count = descend(trials.exact if step else trials.rough, trials, p, limits, trust, rounds)
         solved += count if step else 0
         of_starts = values if step == 1 else of_starts
+        valleys = valleys if step else p[values < _AGREED * values.min() + 1e-6 * scale]
     agree = of_starts < _AGREED * of_starts.min() + 1e-6 * scale
     other = int(of_starts.argmax() if agree.all() else np.where(agree, np.inf, of_starts).argmin())
     doubt = float(room(trials, p[other : other + 1], limits, _DOUBT)[0])
     like = _are_like(pair, engagement.compliance)
-    p = _driver_deeper(p) if like else p
+    p, valleys = (_driver_deeper(p), _driver_deeper(valleys)) if like else (p, valleys)
     grounds: list[tuple[float, Floats]] = []
     for i in _apart(p, values, limits, _GROUNDS):
         if grounds and (values[i] > _HOPELESS * grounds[0][0] or _led_already(p[i], grounds, limits)):
@@ -221,7 +226,8 @@ def search(engagement: Engagement, loads: Floats, power: float, metric: str) -> 
         solved += count
     least, ground = min(grounds, key=lambda one: one[0])
     p, values = np.concatenate([[end for _, end in grounds], p]), np.append([left for left, _ in grounds], values)
-    best, count = _among_equals(trials, p[values <= (1.0 + SHARE) * least], (1.0 + SHARE) * least, limits, like)
+    allowed = (1.0 + SHARE) * least
+    best, count = _among_equals(trials, p[values <= allowed], valleys, allowed, limits, like)
     return Found(
         best.chosen, best.left, least, ground, best.band, best.band_error, candidates, solved + count, of_starts.size,
         int(agree.sum()), float(of_starts[other]), doubt,
@@ -251,11 +257,11 @@ def _are_like(pair: GearPair, compliance: PairCompliance) -> bool:
     return all(bool(np.allclose(one, other, rtol=_LIKE, atol=0.0)) for one, other in (sizes, soft))
 
 
-def _apart(p: Floats, values: Floats, limits: Limits, most: int) -> list[int]:
-    """Which of some candidates are the best that differ, best first."""
+def _apart(p: Floats, values: Floats, limits: Limits, most: int, apart: float = _SAME) -> list[int]:
+    """Which of some candidates are the best that lie apart, best first."""
     found: list[int] = []
     for i in np.argsort(values, kind="stable"):
-        if all((np.abs(p[i] - p[j]) > _SAME * limits.unit).any() for j in found):
+        if all((np.abs(p[i] - p[j]) > apart * limits.unit).any() for j in found):
             found.append(int(i))
         if len(found) == most:
             break
@@ -277,14 +283,20 @@ class _Choice:
     band_error: Floats
 
 
-def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits, like: bool) -> tuple[_Choice, int]:
+def _among_equals(
+    trials: Trials, equals: Floats, valleys: Floats, allowed: float, limits: Limits, like: bool
+) -> tuple[_Choice, int]:
     """Choose one of the reliefs that leave no more than allowed, and find from where to where they go.
+
+    The least removal is a search of its own: the valley with the least removal need not be among the deepest.
 
     Parameters
     ----------
     trials : Trials
     equals : ndarray, shape (B, 4)
         Some of them.
+    valleys : ndarray, shape (V, 4)
+        Grounds of valleys, by the quick sharing, of which some may be as deep.
     allowed : float
         [m].
     limits : Limits
@@ -298,7 +310,10 @@ def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits
     """
     unit = limits.unit
     rule = np.array([1.0, -_LONGER, 1.0, -_LONGER])
-    starts = equals[_apart(equals, equals / unit @ rule, limits, _CHOSEN)]
+    starts = np.concatenate([
+        some[_apart(some, some / unit @ rule, limits, most, apart)]
+        for some, most, apart in ((equals, _CHOSEN, _SAME), (valleys, _VALLEYS, _DOUBT))
+    ])  # fmt: skip
     outward = np.concatenate([-np.eye(4), np.eye(4)])
     # The band is looked for from what lies farthest out already.
     ends = equals[(equals / unit @ outward.T).argmax(axis=0)]
@@ -318,15 +333,20 @@ def _among_equals(trials: Trials, equals: Floats, allowed: float, limits: Limits
         end, left, count = refine(trials, within[i], limits, Aim(rule[None], allowed))
         solved += count
         led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
-    # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
-    end, left, count = refine(trials, min(led, key=lambda one: one[0])[1], limits, Aim(rule[None], allowed))
-    led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
+        fewest = min(removal for removal, _, _ in led)
+        if sum(removal < fewest + _EQUAL for removal, _, _ in led) > 1:
+            break
+    else:
+        # Once more from the best, with a new region of trust: where two extremes change places a first ends too early.
+        end, left, count = refine(trials, min(led, key=lambda one: one[0])[1], limits, Aim(rule[None], allowed))
+        solved += count
+        led.append((float(rule @ (end / unit)), _driver_deeper(end[None])[0] if like else end, left))
     fewest = min(removal for removal, _, _ in led)
     _, chosen, left = max((one for one in led if one[0] < fewest + _EQUAL), key=lambda one: float(one[1][0]))
     known = np.concatenate([within, chosen[None]])
     known = np.concatenate([known, _mirrored(known)]) if like else known
     error = (np.maximum(doubt, _mirrored(doubt)) if like else doubt) * unit
-    return _Choice(chosen, left, np.array([known.min(axis=0), known.max(axis=0)]), error), solved + count
+    return _Choice(chosen, left, np.array([known.min(axis=0), known.max(axis=0)]), error), solved
 
 
 def _set_up(engagement: Engagement, positions: int, loads: int) -> Bench:
