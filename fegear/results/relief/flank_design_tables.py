@@ -75,13 +75,15 @@ def designs_table(name: str, data: FlankDesignData) -> Table:
 
 def map_table(name: str, design: FlankDesign) -> Table:
     """Transmission error and K_Hbeta over misalignment and load."""
+    from fegear.design.charts import ReliefChart
+
     over_face, loads = np.array(design.task.map_over_face), np.array(design.task.map_loads)
     per, states = over_face.size * loads.size, design.states
     columns = (
         Column("relief", np.repeat(np.array([s.label for s in states]), per), "", "what is ground"),
         Column("over_face", np.tile(np.repeat(over_face, loads.size), len(states)), "um",
                "misalignment besides the given one: gap at +b/2 less that at -b/2"),
-        Column("load", np.tile(loads, len(states) * over_face.size), "N", "along the line of action"),
+        column_of(ReliefChart, "loads", np.tile(loads, len(states) * over_face.size), name="load"),
         *(
             column_of(states[0].mapped, key, np.concatenate([getattr(s.mapped, key).ravel() for s in states]))
             for key in ("peak_to_peak", "face_load_factor", "pressure")

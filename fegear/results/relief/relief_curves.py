@@ -21,7 +21,6 @@ from fegear.results.pair.loaded_teeth import needs_teeth
 from fegear.results.relief.relief import DESIGN_EFFECTS, design_pairs, design_part
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
     from fegear.case.design import ChartPart
     from fegear.case.reading import Scene
     from fegear.contact.plane.engagement import Engagement
@@ -132,8 +131,9 @@ def _present(data: ReliefCurvesData, inputs: CurvesInputs) -> Outcome:
     name, curves = inputs.name, data.curves
     rows = [curve.history.x.size for curve in curves]
 
-    def along(key: str) -> Array:
-        return np.concatenate([np.ravel(getattr(curve.history, key)) for curve in curves])
+    def along(key: str, head: str = "") -> Column:
+        every = np.concatenate([np.ravel(getattr(curve.history, key)) for curve in curves])
+        return column_of(curves[0].history, key, every, name=head)
 
     amounts, lengths = np.array([c.amount for c in curves]), np.array([c.length for c in curves])
     relief = column_of(ReliefChart, "amounts", amounts), column_of(ReliefChart, "lengths", lengths)
@@ -141,11 +141,11 @@ def _present(data: ReliefCurvesData, inputs: CurvesInputs) -> Outcome:
         f"relief_curves_{name}",
         (
             *repeated(relief, rows),
-            Column("x", along("x"), "mm", "position of the pair on the line of action"),
-            Column("roll_angle", along("driver_roll_angle"), "deg", "of the contact point on the driver"),
-            Column("te", along("transmission_error"), "um", "loaded transmission error"),
-            Column("load", along("load"), "N", "on the pair along the line of action"),
-            Column("share", along("share"), "", "of the total load"),
+            along("x"),
+            along("driver_roll_angle"),
+            along("transmission_error", "te"),
+            along("load"),
+            along("share"),
         ),
         f"Transmission error and load of a tooth pair of {name}, relief by relief, {data.pair.nominal:.6g} N",
     )

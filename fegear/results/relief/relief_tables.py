@@ -157,10 +157,12 @@ def tip_values(key: str, ground: TipReliefPair, member: Member) -> list[Value]:
 
 def harris_table(name: str, curves: Mapping[str, Loaded]) -> Table:
     """Transmission error over the mesh cycle for a family of loads, with each relief."""
+    from fegear.design.charts import ReliefChart
+
     first = next(iter(curves.values()))
     n, loads = first.x.size, first.load
     columns = [
-        Column("total_load", np.repeat(loads, n), "N", "along the line of action"),
+        column_of(ReliefChart, "loads", np.repeat(loads, n)),
         Column("x", np.tile(first.x, loads.size), "mm", "roll position over one base pitch"),
     ]
     for label, curve in curves.items():
