@@ -84,8 +84,8 @@ def test_slopes_of_tip_reliefs_are_those_of_differences(metric, power):
             both = [trials.tangent(evaluate(p + sign * step), np.zeros_like(p))[0] for sign in (1.0, -1.0)]
             off = np.abs((both[0] - both[1]) / 2e-6 - slope[:, k] * p[:, k]) / value
             if metric == "effective_error" and evaluate == trials.exact:
-                # How the jumps of kinks change is neglected in slopes, which lead the way; values, from whose differences
-                # the end is found, count them.
+                # How the jumps of kinks change is neglected in slopes, which lead the way; values, from whose
+                # differences the end is found, count them.
                 assert off.max() < 3e-3
                 assert np.median(off) < 1e-4
                 continue
