@@ -58,7 +58,7 @@ class Scene:
         depend on that: a first answer while a value is being moved does without.
     drafts : mapping of str to float
         Gears of which a draft is enough, with its relative tolerance: their teeth are solved once, as that tolerance
-        usually wants, and not held against it.
+        usually wants, and not compared with it.
     """
 
     case: Case

@@ -238,7 +238,7 @@ class SchemaNodes:
         return ", ".join(filter(None, [plain.get(str(kind.get("type")), ""), *_range(kind)]))
 
 
-#: A list of more names than these is told by what they are.
+#: A list of more names than these is shown by what they are.
 _MANY = 12
 
 
@@ -261,7 +261,7 @@ def _range(kind: Node) -> list[str]:
 
 
 def help_of(node: Node) -> str:
-    """What a key means, as a sentence; its units are told apart from it."""
+    """What a key means, as a sentence; its units are distinguished from it."""
     text = str(node.get("description", "")).removesuffix(unit_note(node)).strip()
     if not text:
         return ""

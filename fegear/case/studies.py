@@ -1,4 +1,4 @@
-"""``[study]``: gears and load positions over which root-stress formulas are held against finite elements.
+"""``[study]``: gears and load positions over which root-stress formulas are compared with finite elements.
 
 ``[cost]``: which results ``fegear cost`` studies; without it, those that ``results`` asks for.
 

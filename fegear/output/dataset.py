@@ -112,7 +112,7 @@ CONVENTIONS = "CF-1.11"
 _LONGEST = 200
 
 
-#: Units that UDUNITS, by which the conventions read them, spells otherwise (held against UDUNITS 2.2.28).
+#: Units that UDUNITS, by which the conventions read them, spells otherwise (compared with UDUNITS 2.2.28).
 UDUNITS = {"": "1", "deg": "degree", "1/mm": "mm-1"}
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 SUMMARY = "summary.json"
 
 
-#: What every command writes into, held against the folder before anything is computed.
+#: What every command writes into, checked in the folder before anything is computed.
 _KNOWN = (SUMMARY, RECORD, "report.html", "results.nc", "sweep.nc", "tables/*", "plots/*", "fields/*")
 
 
@@ -57,7 +57,7 @@ def whole_or_nothing(target: Path, key: str = "--out", say: Callable[[str], None
     Parameters
     ----------
     target : Path
-        Output folder; made if needed, and held against other processes meanwhile. Files that an earlier run wrote and
+        Output folder; made if needed, and held by this process meanwhile. Files that an earlier run wrote and
         that this one does not make are removed, if they still are what it wrote. Files of others are left alone;
         those that stand where a new one must go are kept under another name.
     key : str

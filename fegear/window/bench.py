@@ -184,7 +184,7 @@ class Bench:
             self._computing.ask(Export(self._aside(), self.asked()._replace(loosened=1.0), what, target))
 
     def _aside(self) -> int:
-        """Number of a job beside the case itself; who asked for it is told where it is refused."""
+        """Number of a job beside the case itself; who asked for it is reported where it is refused."""
         number = next(self._numbers)
         self._asides.add(number)
         return number

@@ -1,6 +1,6 @@
 """The computing process seen from the page: asked, listened to, stopped where it does not listen, started again.
 
-What a page has been told already, so that it is told again only what has become different.
+What a page has been told already, so that it is sent only what has become different.
 """
 
 from __future__ import annotations

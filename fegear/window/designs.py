@@ -1,6 +1,6 @@
 """Reliefs by theory for the case on the desk: those that leave no transmission error, and the nearest to grind.
 
-A first answer where a gear has to be solved anew: the same results from a coarser mesh of it, told as a draft.
+A first answer where a gear has to be solved anew: the same results from a coarser mesh of it, reported as a draft.
 """
 
 from __future__ import annotations

@@ -186,7 +186,7 @@ class Asked(NamedTuple):
     shows : tuple of (str, str)
         Pair and kind of what is switched on at the gears in mesh.
     laid : int
-        How many cases have lain on the desk before it: what was told of those is forgotten.
+        How many cases have lain on the desk before it: what was reported of those is forgotten.
     """
 
     text: str

@@ -119,7 +119,7 @@ class Page:
 
     @staticmethod
     def _by_hand(do: Callable[[], None]) -> None:
-        """Change the case as the hand on the page says; what cannot be changed so is told."""
+        """Change the case as the hand on the page says; what cannot be changed so is reported."""
         try:
             do()
         except FegearError as error:

@@ -1,4 +1,4 @@
-"""The server of the page: on this machine alone, for one case at a time, until it is told to end."""
+"""The server of the page: on this machine alone, for one case at a time, until it is asked to end."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _end_with_the_terminal() -> None:
 
 
 def serve(case: Path | None, port: int | None, *, browser: bool, say: Callable[[str], None]) -> None:
-    """Serve the page until the process is told to end.
+    """Serve the page until the process is asked to end.
 
     Parameters
     ----------

@@ -271,7 +271,7 @@ def _check_flanks(scene: Scene, name: str) -> None:
     for member in MEMBERS if asked.effects.relief else ():
         flank = asked.flank(member)
         try:
-            # What is given in Welbourn's Delta is held against the tooth when that is known.
+            # What is given in Welbourn's Delta is compared with the tooth when that is known.
             build_relief(asked.pair, member, flank, 0.0)
         except InputError as error:
             raise at(f"gear.{flank.gear}", error) from None

@@ -38,7 +38,7 @@ class SolidGearToSolve:
     gear : Gear
     settings : SolidSettings
     tolerance : float
-        What estimated errors are held against.
+        What estimated errors are compared with.
     reach : int
         K: neighbours -K..K.
     name : str

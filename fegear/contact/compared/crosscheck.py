@@ -1,4 +1,4 @@
-"""The closed forms of `fegear.formulas` held against the finite elements of the same gear.
+"""The closed forms of `fegear.formulas` compared with the finite elements of the same gear.
 
 What is compared, in every function: one tooth of the whole ring under one load normal to its flank, no other tooth
 loaded, per unit line load (secant, not local slope). Formulas outside their range leave a reason in words.

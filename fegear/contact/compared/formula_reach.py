@@ -84,7 +84,7 @@ def reach(formula: str, ratio: Array, columns: Mapping[str, Array], gear: Array,
     columns : mapping of str to ndarray, shape (N,)
         What the range may speak of.
     gear : ndarray of int, shape (N,)
-        Which gear each point is of: the ranges are looked for on even ones and held against odd ones.
+        Which gear each point is of: the ranges are looked for on even ones and compared with odd ones.
     rated : ndarray of bool, shape (N,)
         Points whose load is where ratings put it.
     """

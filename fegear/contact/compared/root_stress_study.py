@@ -1,4 +1,4 @@
-"""Where each root-stress formula is high, low or breaks down: a sweep of teeth held against finite elements.
+"""Where each root-stress formula is high, low or breaks down: a sweep of teeth compared with finite elements.
 
 Gears drawn evenly over ranges of their numbers, and where they are loaded: a population for a study of formulas.
 """

@@ -7,7 +7,7 @@ Where rigid flanks touch: gaps of modified flanks on tilted shafts, each at the 
 
 `FlankGaps.at` looks where unmodified, aligned flanks touch. There the gap is off by R sigma^2 / 2, R the relative
 radius of curvature and sigma the gap's slope up the flanks, for the flanks touch R sigma away. Here the driver's
-helicoid is held against the driven gear's, turned as its shaft is, and the least gap is looked for up the flank.
+helicoid is compared with the driven gear's, turned as its shaft is, and the least gap is looked for up the flank.
 """
 
 from __future__ import annotations

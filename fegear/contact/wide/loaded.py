@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from fegear.geometry.pair import GearPair, Member
 
 
-#: Parts of the face whose loads are told apart: so long at most [modules], so many at least.
+#: Parts of the face whose loads are distinguished: so long at most [modules], so many at least.
 _CELL, _FEWEST_CELLS = 0.5, 4
 #: Nearer to a sharp edge than this share of a base pitch is on it.
 _ON_EDGE = 1e-6

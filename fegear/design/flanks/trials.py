@@ -315,7 +315,7 @@ def quick_flanks(known: FlankCompliance, force: Array, panels: int, cells: int) 
     panels : int
         Over the whole face; shorter lines have as many fewer.
     cells : int
-        Equal parts of the face whose loads are told apart.
+        Equal parts of the face whose loads are distinguished.
     """
     lines = known.lines
     matrix = tangent_compliance(known, np.arange(force.shape[0]), force)

@@ -1,6 +1,6 @@
 """Dynamic factor of a linearised train over speed: no contact loss, the other meshes at the worst relative phase.
 
-Dynamic factor foretold from the effective error of the static transmission error (TM-89901, Fig. 11).
+Dynamic factor predicted from the effective error of the static transmission error (TM-89901, Fig. 11).
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ def read_sector_mesh(
     key : str
         Name of the input for error messages.
     own_fillet : bool
-        Whether the fillet is the user's own (optimised, ground): it is then not held against the rack's.
+        Whether the fillet is the user's own (optimised, ground): it is then not compared with the rack's.
 
     Returns
     -------

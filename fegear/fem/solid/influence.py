@@ -279,7 +279,7 @@ def solid_influence(
     check_bore(section, bore_radius)
     check_solid(section, tau, width, poisson_ratio, settings, held, reach)
     by = solver_of(settings)
-    estimate_error &= settings.source == "solid"  # that of slices is known from the gears that they were held against
+    estimate_error &= settings.source == "solid"  # that of slices is known from the gears that they were compared with
 
     def solve(chosen: SolidSettings) -> SolidSolution:
         return known_or_solved(

@@ -138,7 +138,7 @@ def flash_temperatures(rated: RatedSurface, x: ArrayLike) -> FlashTemperatures:
     ----------
     rated : RatedSurface
     x : array_like
-        Places at which they are told [m]; mean and largest are taken over the whole path.
+        Places at which they are reported [m]; mean and largest are taken over the whole path.
     """
     mu = friction(rated)
 

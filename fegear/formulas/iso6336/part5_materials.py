@@ -36,7 +36,7 @@ BRINELL = 0.95
 _CONVERSION = 0.01
 
 
-#: 25, 28 and 30 HRC in HV (ISO 18265, table A.1), by which case-hardened cores of quality MQ are told apart.
+#: 25, 28 and 30 HRC in HV (ISO 18265, table A.1), by which case-hardened cores of quality MQ are distinguished.
 HRC_25, HRC_28, HRC_30 = 266.25, 286.4285714285714, 301.6666666666667
 
 

@@ -124,7 +124,7 @@ class StiffnessInputs:
     radii, half_widths : ndarray, shape (P,)
         Of the contacts [m].
     tolerance : float
-        That estimated errors are held against.
+        That estimated errors are compared with.
     assumed : tuple of str
         Sentences about values that the case does not give.
     name : str

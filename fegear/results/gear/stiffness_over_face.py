@@ -123,7 +123,7 @@ class SolidTableInputs:
     radii, positions, half_widths : ndarray, shape (R,), (Z,), (R,)
         Of the bands and their contacts [m].
     tolerance : float
-        That estimated errors are held against.
+        That estimated errors are compared with.
     assumed : tuple of str
         Sentences about values that the case does not give.
     name : str

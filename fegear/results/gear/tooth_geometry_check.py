@@ -1,4 +1,4 @@
-"""Stage ``tooth-geometry-check``: the drawing held against rules of thumb, each with its value, limit and remedy."""
+"""Stage ``tooth-geometry-check``: the drawing compared with rules of thumb, each with its value, limit and remedy."""
 
 from __future__ import annotations
 

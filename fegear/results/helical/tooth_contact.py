@@ -51,7 +51,7 @@ class ToothContactData:
     no_ellipses: str = ""
 
 
-#: Results that tell of the same pair under load, and values and figures that they have, too: here they are "unloaded".
+#: Results that report the same pair under load, and values and figures that they have, too: here they are "unloaded".
 _UNDER_LOAD = frozenset({"transmission-error", "load-distribution", "contact-pattern"})
 _VALUES_OF_BOTH = ("te_peak_to_peak", "te_max", "te_min")
 _FIGURES_OF_BOTH = ("transmission_error_", "contact_pattern_")

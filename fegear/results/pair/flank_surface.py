@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 #: Places along the path of a plane pair, and along path and face of one with a width.
 _PATH, _WIDE_PATH, _FACE = 400, 121, 41
-#: Ends of path and face at which the load of a pair with a width is told by extrapolation alone, of their length.
+#: Ends of path and face at which the load of a pair with a width is shown by extrapolation alone, of their length.
 _MARGIN = 1e-3
 
 

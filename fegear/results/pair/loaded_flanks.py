@@ -1,4 +1,4 @@
-"""Stage ``loaded-flanks``: a pair of gears with a width under all its loads, for the stages that tell of it."""
+"""Stage ``loaded-flanks``: a pair of gears with a width under all its loads, for the stages that report it."""
 
 from __future__ import annotations
 

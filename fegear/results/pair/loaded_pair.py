@@ -70,7 +70,7 @@ class LoadedPairInputs:
     loads : tuple of float
         For which those are estimated [N].
     tolerance : float
-        That they are held against.
+        That they are compared with.
     effects : EffectsPart
         All of the case, for the remedies.
     estimates : bool

@@ -1,6 +1,6 @@
 """Stage ``root-stress-history``: root stress of one tooth of either gear on its way through the mesh.
 
-What the results of root stress share: where ``pair.NAME.root_stress`` takes it from, and how that is told.
+What the results of root stress share: where ``pair.NAME.root_stress`` takes it from, and how that is reported.
 """
 
 from __future__ import annotations

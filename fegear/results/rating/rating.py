@@ -348,7 +348,7 @@ def rated_columns(values: Iterable[Value], pair: str) -> tuple[Column, ...]:
 _SHAKEN = 10.0
 
 
-#: How near to an axial contact ratio of 1 the jump of AGMA's J is told, and from which size.
+#: How near to an axial contact ratio of 1 the jump of AGMA's J is reported, and from which size.
 _NEAR_ONE, _WORTH_SAYING = 0.1, 0.05
 
 

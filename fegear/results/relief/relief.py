@@ -89,7 +89,7 @@ class ReliefInputs:
     part : DesignPart
     asked : PairInputs
     tolerance : float
-        That neglected effects are held against.
+        That neglected effects are compared with.
     effects : EffectsPart
         All of the case, for the remedies.
     labels, gears : mapping of str to str

@@ -87,7 +87,7 @@ def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
     ends = sorted(math.degrees(float(pair.roll_angle(x, member))) for x in (pair.x_start, pair.x_end))
     try:
         relief = described_relief(scene, gear).relief
-    except InputError:  # refused where it counts; the case's own sentence is told then
+    except InputError:  # refused where it counts; the case's own sentence is reported then
         relief = None
     roll = np.linspace(ends[0], ends[1], _PLACES)
     removal = np.zeros(_PLACES) if relief is None else relief.removal(np.radians(roll)) * 1e6

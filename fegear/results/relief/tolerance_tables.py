@@ -30,7 +30,7 @@ OWN, NOMINAL, ROBUST = "as the case", "best without deviations", "best in the pe
 _ENDING = {OWN: "", NOMINAL: "_nominal_best", ROBUST: "_robust_best"}
 
 
-#: Percentiles that are told.
+#: Percentiles that are reported.
 PERCENTS = (5.0, 50.0, 95.0)
 
 
@@ -60,7 +60,7 @@ SHOWN = {
 }
 
 
-#: Outcomes that are drawn and whose influences are told.
+#: Outcomes that are drawn and whose influences are reported.
 _TOLD = (
     "te_peak_to_peak", "te_harmonic_1", "face_load_factor", "driver_root_tension", "driven_root_tension",
     "hertz_pressure",
@@ -100,7 +100,7 @@ class PairDrawn(Protocol):
 
 
 def told(data: ToleranceData) -> tuple[str, ...]:
-    """Outcomes of a pair that are told beside its tables."""
+    """Outcomes of a pair that are given beside its tables."""
     return tuple(name for name in _TOLD if name in data.outcomes)
 
 

@@ -314,7 +314,7 @@ def _number(point: object, key: str) -> float:
 def _unequal(
     driver: float, driven: float, length: float, at: dict[tuple[tuple[float, float], float], object]
 ) -> UnequalRelief:
-    """A relief of its own on each gear, and its factor foretold from both amounts on both gears."""
+    """A relief of its own on each gear, and its factor predicted from both amounts on both gears."""
     point = at[(driver, driven), length]
     known = [at[(amount, amount), length] for amount in (driver, driven)]
     errors, factors = ([_number(one, key) for one in known] for key in ("effective_error", "dynamic_factor"))

@@ -44,7 +44,7 @@ class SweepInputs:
     ----------
     motion : MotionInputs
     tolerance : float
-        That neglected effects are held against.
+        That neglected effects are compared with.
     idle_friction : bool
         Whether the case describes a friction that is off.
     effects : EffectsPart

@@ -34,7 +34,7 @@ _LINES = 40
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two runs held against each other.
+    """Two runs compared.
 
     Parameters
     ----------

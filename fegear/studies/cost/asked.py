@@ -38,7 +38,7 @@ _OF_RESULT = {
     "dynamic-root-stress": ("root-stress", "tooth-force"),
     "dynamic-factor": ("dynamic-factor",),
 }
-#: Results that tell of a pair over its face, and those of plane gears, which a study of such a pair says nothing of.
+#: Results that report a pair over its face, and those of plane gears, which a study of such a pair says nothing of.
 _OVER_FACE = frozenset({"load-distribution", "transmission-error", "load-sharing"})
 _OF_PLANE_GEARS = frozenset({"stiffness", "root-stress", "crosscheck"})
 #: Line load where the case names none [N/m].

@@ -293,7 +293,7 @@ def _partial(best: TransmissionError, harmonics: int) -> float:
     return abs(float(np.ptp(cut.evaluate(x))) / best.peak_to_peak - 1.0)
 
 
-#: Edges over the usual ones, and functions per module of face; the last of each is what the others are held against.
+#: Edges over the usual ones, and functions per module of face; the last of each is what the others are compared with.
 _FACTORS, _WAVES = (1.5, 1.25, 1.0, 0.8, 0.6), (0.75, 1.0, 1.5, 2.0, 3.0)
 
 
@@ -333,7 +333,7 @@ def solid_knobs(asked: Asked) -> list[Knob]:
 def _varied(
     asked: Asked, settings: list[SolidSettings], name: str, others: str, setting: Array, step: Array, against: str = ""
 ) -> list[Knob]:
-    """Knobs of one setting, its last value the one that the others are held against."""
+    """Knobs of one setting, its last value the one that the others are compared with."""
     answers, spent = zip(*(timed(partial(_answer, asked, one), repeat=False) for one in settings), strict=True)
     seconds = [one.cpu for one in spent[:-1]]
     at = f"{others}, against {against or f'{setting[-1]:.3g}'}; largest of the bands"

@@ -68,7 +68,7 @@ _NARROW, _WIDE = 0.04, 0.08
 
 @dataclass(frozen=True)
 class Ladder:
-    """The configurations, and what they are held against.
+    """The configurations, and what they are compared with.
 
     Parameters
     ----------
