@@ -238,6 +238,7 @@ def test_work_begun_ahead_holds_no_stopped_program_back():
 def test_a_stop_in_the_worst_moment_leaves_no_folder(tmp_path, moment, code, left, number):
     program = (
         "import os, platform, signal, sys\nfrom pathlib import Path\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # ignored in what a shell has put behind
         "from fegear.cli import _heed_requests_to_stop, _Stopped\n"
         "from fegear.output.folder import whole_or_nothing\n"
         "_heed_requests_to_stop()\n"
