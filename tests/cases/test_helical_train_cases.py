@@ -50,10 +50,10 @@ def test_the_helical_stage_moves_the_train(outcomes):
     assert first.force == pytest.approx(60.0 / pair.driver.base_radius, rel=1e-9)
     assert second.force == pytest.approx(99.0 / second.pair.driver.base_radius, rel=1e-9)
     flanks = outcomes[Task("loaded-flanks", "first")].data
-    te = flanks.found.transmission_error[:, flanks.nominal]
+    te = flanks.found.transmission_error[:, flanks.at]
     s = np.mod(flanks.found.lines.roll / pair.base_pitch, 1.0)
     np.testing.assert_allclose(first.error(s), te, rtol=1e-5)
-    assert first.error.mean == pytest.approx(float(flanks.found.mean_transmission_error[flanks.nominal]), rel=2e-3)
+    assert first.error.mean == pytest.approx(float(flanks.found.mean_transmission_error[flanks.at]), rel=2e-3)
     values = {value.name: value for value in outcomes[Task("gear-train")].values}
     helix = pair.driver.base_helix_angle
     assert values["first.axial_force"].si == pytest.approx(first.force * math.tan(helix))
@@ -122,7 +122,7 @@ def columns(outcome, name):
 def test_transmissibility_takes_the_mean_matrix_of_the_teeth(outcomes):
     data = outcomes[Task("mesh-stiffness-matrix", "first")].data
     made = outcomes[Task("transmissibility", "stage")].data
-    moments = data.found.moments[:, :, data.flanks.nominal] @ data.flanks.found.lines.weight
+    moments = data.found.moments[:, :, data.flanks.at] @ data.flanks.found.lines.weight
     c, b = math.cos(made.mesh.base_helix_angle), 4e-3
     assert made.mesh.stiffness == pytest.approx(moments[0] / c**2, rel=1e-12)
     assert made.mesh.kappa == pytest.approx(c * moments[1] / moments[0] / b, rel=1e-9)
@@ -150,7 +150,7 @@ def test_slow_gears_on_rigid_bearings_feel_the_force_wander_over_the_face(outcom
     data = outcomes[Task("mesh-stiffness-matrix", "first")].data
     flanks, forces = data.flanks, outcomes[Task("pair-forces", "stage")].data.spectrum
     lever = tilt_lever(data.found.pair, flanks.found.lines)
-    force = flanks.found.contact.force[:, :, flanks.nominal]
+    force = flanks.found.contact.force[:, :, flanks.at]
     moment = np.einsum("pm,pm->p", force, hat_averages(flanks.found.lines, lever))
     wave = 2.0 * series_over_pitch(flanks.flanks.points, moment).coefficients
     for n in (1, 2):

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.case.built.helical_pair import HelicalPairInputs
     from fegear.case.pair_excitation import ExcitationPart, MeshErrorPart
     from fegear.case.reading import Scene
+    from fegear.contact.loaded_teeth import ErrorOverPitch
     from fegear.dynamics.helical_pair.pair_forces import Line, PairForces
     from fegear.engine.stage import Upstream, Work
 
@@ -214,9 +215,9 @@ def _pair_harmonics(asked: PairForcesInputs, upstream: Upstream) -> tuple[Comple
         return loaded_harmonics(mesh_stiffness_of(upstream, asked.flanks), count, error is not None and error.shuttling)
     (found,) = (one for task, one in upstream.items() if task.stage in ("transmission-error", "tooth-contact"))
     if asked.arm == 0.0:
-        series = found.exact[found.pair.loads.index(found.pair.nominal)].series
-        errors = None if found.shift is None else np.asarray(found.shift.amplitude[:count])
-        return np.asarray(2.0 * series.coefficients[1 : count + 1]), errors
+        error_of: ErrorOverPitch = found.found
+        errors = None if error_of.shift is None else np.asarray(error_of.shift.amplitude[:count])
+        return np.asarray(2.0 * error_of.series[error_of.at].coefficients[1 : count + 1]), errors
     # Where the gear runs ahead of its mate, the flanks have too much: the sign of removal is the other one.
     ahead = -asked.arm * found.contact.error
     all_of_them, half = (_harmonics(ahead, step, count) for step in (1, 2))
