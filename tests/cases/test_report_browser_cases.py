@@ -180,8 +180,14 @@ def test_no_width_makes_the_page_scroll_sideways(page, width):
 
 
 @pytest.mark.parametrize("words", ["span W", "over balls or pins M"])
-def test_span_and_dimension_over_balls_are_seen_without_scrolling(page, words):
+def test_results_are_seen_first_and_span_and_dimension_over_balls_one_click_away(page, words):
     page.run("scrollTo(0, 0)")
+    assert page.run("document.querySelector('main section h2').textContent") == "Results"
+    assert page.run("document.querySelector('.values tbody tr').getBoundingClientRect().bottom") < 450
+    link = "[...document.querySelectorAll('nav a')].find(a => a.textContent.startsWith('Gear data'))"
+    assert page.run(f"{link}.getBoundingClientRect().bottom") < 900
+    page.run("document.documentElement.style.scrollBehavior = 'auto'")
+    page.click(link)
     row = f"[...document.querySelectorAll('.sheet tr')].find(r => r.textContent.trim().startsWith('{words}'))"
     left, right, bottom = page.run(
         f"(() => {{ const b = {row}.getBoundingClientRect(); return [b.left, b.right, b.bottom]; }})()"
@@ -189,7 +195,6 @@ def test_span_and_dimension_over_balls_are_seen_without_scrolling(page, words):
     assert 0 < left < right < 1300
     assert bottom < 900
     assert float(page.run(f"{row}.cells[1].textContent")) > 10.0
-    assert page.run("document.querySelector('main section h2').textContent").startswith("Gear data")
     assert page.complaints == []
 
 

@@ -33,6 +33,7 @@ from fegear.output.report.blocks import (  # fmt: skip
     Facts,
     Folded,
     Grid,
+    Group,
     Heading,
     Listed,
     Notes,
@@ -181,7 +182,8 @@ def page_of_every_block(name: str, folder: Path) -> Page:
     blocks = (
         Paragraph(name), Heading(name), Notes((name,)), Listed((name, 1.5, True)), Bars({name: 1.0}, name), Code(name),
         Facts({name: [{name: 1.0}, {name: name}], "list": [name, {name: name}], "none": []}),
-        Grid((name,), ((name,),)), Folded(name, (Paragraph(name),)), Download(f"{name}.toml"), Values((value,), 1e-9),
+        Grid((name,), ((name,),)), Folded(name, (Paragraph(name),)), Group((Paragraph(name),)),
+        Download(f"{name}.toml"), Values((value,), 1e-9),
         DataTable(table), Plot(figure), sheet, Still(Picture(picture, name, name)),
     )  # fmt: skip
     return Page(name, name, (Section(name, blocks),), (table,), {f"{name}.toml": b""})

@@ -98,6 +98,13 @@ class Folded(Block):
 
 
 @dataclass(frozen=True)
+class Group(Block):
+    """Blocks that stay together, with other groups at their side where the page is broad."""
+
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True)
 class Code(Block):
     """A file as it is."""
 

@@ -2,7 +2,7 @@
 
 Accuracy and its cost: seconds, errors beside the tolerance, settings.
 
-The head of a report: the data of the gears as on a drawing, and each pair drawn in mesh.
+The data of the gears as on a drawing, and each pair drawn in mesh.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from fegear.output.report.blocks import (
     Facts,
     Folded,
     Grid,
+    Group,
     Heading,
     Notes,
     Paragraph,
@@ -72,19 +73,19 @@ def _values(results: Results) -> tuple[Block, ...]:
     wanted = {step.task for step in results.plan.steps if any(r.startswith("results asks") for r in step.reasons)}
     found = [(task, outcome.values) for task, outcome in results.outcomes.items() if outcome.values]
     found.sort(key=lambda item: (bool(wanted) and item[0] not in wanted, not any(value.error for value in item[1])))
-    blocks: list[Block] = []
+    open_: list[Block] = []
+    folded: list[Block] = []
     shown, tolerance = 0, results.scene.case.accuracy.tolerance
     for task, values in found:
         if shown and shown + len(values) > _MOST_OPEN:
-            folded = Values(values, tolerance)
-            blocks.append(Folded(f"{_title(results, task)} ({len(values)} values)", (folded,)))
+            folded.append(Folded(f"{_title(results, task)} ({len(values)} values)", (Values(values, tolerance),)))
             continue
         shown += len(values)
-        blocks += [Heading(_title(results, task)), Values(values[:_MOST_OPEN], tolerance)]
-        if len(values) > _MOST_OPEN:
-            rest = values[_MOST_OPEN:]
-            blocks.append(Folded(f"{len(rest)} more of them", (Values(rest, tolerance),)))
-    return tuple(blocks)
+        group: tuple[Block, ...] = (Heading(_title(results, task)), Values(values[:_MOST_OPEN], tolerance))
+        if rest := values[_MOST_OPEN:]:
+            group += (Folded(f"{len(rest)} more of them", (Values(rest, tolerance),)),)
+        open_.append(Group(group))
+    return (*open_, *folded)
 
 
 def _citations(results: Results, task: Task) -> tuple[Citation, ...]:
@@ -168,10 +169,15 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
     scene = results.scene
     name = f"{file_name(scene.name)}.toml"
     files = {name: scene.text.encode()} if scene.text else {}
-    gears = gear_sections(results)
     shown = frozenset({"gear_data", *(f"gear_data_{pair}" for pair in scene.pairs)})
-    told = f"{len(remarks)} warning{'s' if len(remarks) > 1 else ''}"
-    warned = f" {told}, below the gear data." if remarks and gears else ""
+    values = _values(results)
+    pictures = {task: [one for one in drawn if one.task == task] for task in results.outcomes}
+    stages = [_stage(results, task, pictures[task], shown) for task in results.outcomes]
+    # Pictures before what is a table only: the mesh under load before the data of its gears.
+    stages.sort(key=lambda section: not any(isinstance(block, Plot | Still) for block in section.blocks))
+    warned = (
+        f" {len(remarks)} warning{'s' if len(remarks) > 1 else ''}, below the results." if remarks and values else ""
+    )
     total = sum(results.seconds.values())
     count = sum(len(outcome.values) for outcome in results.outcomes.values())
     return Page(
@@ -179,11 +185,10 @@ def run_page(results: Results, drawn: Sequence[Drawn], remarks: Sequence[str]) -
         note=f"Case {scene.name}: {', '.join(scene.case.results)}. {count} values and {len(results.tables)} tables, "
         f"computed in {total:.2f} s by fegear {fegear.__version__}.{warned}",
         sections=(
-            *gears[:1],
+            Section("Results", values),
             Section("Warnings", (Notes(remarks, "warning"),) if remarks else ()),
-            Section("Results", _values(results)),
-            *gears[1:],
-            *(_stage(results, task, [one for one in drawn if one.task == task], shown) for task in results.outcomes),
+            *stages,
+            *gear_sections(results),
             Section("Accuracy and its cost", accuracy_blocks(results)),
             Section("Plan", _plan(results)),
             Section("Case file", (Code(scene.text), Download(name)) if files else ()),
