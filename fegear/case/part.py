@@ -215,10 +215,21 @@ def at(prefix: str, error: InputError, names: dict[str, str] | None = None) -> F
     return type(error)(f"{prefix}.{key}" if key else prefix, error.value, error.rule, error.remedy)
 
 
+#: Symbols on drawings (ISO 701, ISO 21771) and the keys that they may stand for.
+_SYMBOLS: dict[str, tuple[str, ...]] = {
+    "x": ("profile_shift",), "z": ("teeth",), "m": ("module",), "m_n": ("normal_module",), "mn": ("normal_module",),
+    "b": ("face_width",), "alpha": ("pressure_angle",), "alpha_n": ("pressure_angle",), "beta": ("helix_angle",),
+    "d_a": ("tip_diameter",), "da": ("tip_diameter",), "a": ("centre_distance",), "a_w": ("centre_distance",),
+    "t": ("torque",), "n": ("speed",), "c_a": ("amount",), "c_beta": ("crowning",), "e": ("young_modulus",),
+    "nu": ("poisson_ratio",), "rho": ("density",), "s_r": ("rim_thickness",),
+}  # fmt: skip
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return a remedy that lists the known names, and says which is nearest to `name` if one is."""
     names = sorted(known)
-    near = difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.5)
+    near = [key for key in _SYMBOLS.get(name.lower(), ()) if key in names]
+    near = near or difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.5)
     listed = f"known here: {', '.join(names)}" if names else "none is known here"
     return f'the nearest known name is "{near[0]}"; {listed}' if near and len(names) > 1 else listed
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import json
+import re
 import shutil
 import sys
 import textwrap
@@ -201,12 +202,30 @@ def _stacked(formatter: Any) -> None:
 
 
 class Command(typer.core.TyperCommand):
-    """A command whose help fits into any terminal."""
+    """A command whose help fits into any terminal, and whose options may take a number for each gear.
+
+    ``--teeth 21 53`` is one value where the option says so by its metavar, ``N [N]``.
+    """
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Bring numbers that follow one another behind such an option together."""
+        several = {name for one in self.params if (one.metavar or "").endswith("]") for name in one.opts}
+        words: list[str] = []
+        for word in args:
+            if len(words) > 1 and words[-2] in several and all(map(_is_number, (*words[-1].split(), word))):
+                words[-1] += f" {word}"
+            else:
+                words.append(word)
+        return super().parse_args(ctx, words)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help."""
         _stacked(formatter)
         super().format_help(ctx, formatter)
+
+
+def _is_number(word: str) -> bool:
+    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", word) is not None
 
 
 class Group(typer.core.TyperGroup):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import stat
 import sys
 from functools import partial
@@ -30,7 +29,7 @@ def complete_kinds(incomplete: str) -> list[str]:
 
 def new(
     name: Annotated[
-        list[str], typer.Argument(metavar="NAME", help="Name of the case: NAME.toml is written.", show_default=False)
+        str, typer.Argument(metavar="NAME", help="Name of the case: NAME.toml is written.", show_default=False)
     ],
     kind: Annotated[
         str | None,
@@ -51,37 +50,40 @@ def new(
     face_width: Annotated[str | None, typer.Option("--face-width", metavar="LENGTH", help='E.g. "30 mm".')] = None,
     torque: Annotated[str | None, typer.Option("--torque", help='On the pinion, e.g. "260 N m".')] = None,
     speed: Annotated[str | None, typer.Option("--speed", help='Of the pinion, e.g. "1480 rpm".')] = None,
+    tip_relief: Annotated[
+        tuple[str, str] | None,
+        typer.Option("--tip-relief", metavar="AMOUNT LENGTH", help='Of both gears, e.g. "20 um" "4 mm".'),
+    ] = None,
+    lead_error: Annotated[
+        str | None, typer.Option("--lead-error", metavar="LENGTH", help='Helical pairs: over the face, e.g. "10 um".')
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file of that name.")] = False,
     no_schema: Annotated[bool, typer.Option("--no-schema", help="Write no schema for editors next to it.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a commented case that runs; on a terminal and without options, ask for what it needs.
 
-    For example: fegear new drive --teeth 21 53 --module 3mm --torque "260 N m"
+    For example: fegear new drive --teeth 21 53 --profile-shift 0.3 0.1 --module 3mm --torque "260 N m"
     """
     from fegear.case.drafts.answers import Answers
     from fegear.case.drafts.text import draft
     from fegear.case.text_file import write_file
 
     voice = Voice(quiet)
-    # `--teeth 21 53` leaves its second number among the names.
-    names = [word for word in name if not _is_number(word)]
-    numbers = [word for word in name if _is_number(word)]
-    if len(names) != 1:
-        raise InputError("NAME", " ".join(name), "must be one name", "write for example fegear new drive")
-    if numbers and (teeth is None) == (profile_shift is None):
-        raise InputError("NAME", " ".join(numbers), "must follow --teeth or --profile-shift")
-    path = _case_file(names[0], force=force)
+    path = _case_file(name, force=force)
     given = {
-        "teeth": " ".join([*(teeth or ()), *(numbers if teeth else ())]),
+        "teeth": " ".join(teeth or ()),
         "module": module,
         "pressure_angle": pressure_angle,
-        "profile_shift": " ".join([*(profile_shift or ()), *(() if teeth else numbers)]),
+        "profile_shift": " ".join(profile_shift or ()),
         "rack": rack,
         "helix_angle": helix_angle,
         "face_width": face_width,
         "torque": torque,
         "speed": speed,
+        "tip_relief": tip_relief and tip_relief[0],
+        "relief_length": tip_relief and tip_relief[1],
+        "lead_error": lead_error,
     }
     told = {key: text for key, text in given.items() if text}
     if not told and kind is None and sys.stdin.isatty() and sys.stdout.isatty():
@@ -145,6 +147,8 @@ def _asked() -> Answers:
         told: dict[str, str] = {}
         for number in range(len(questions(kind, {}))):
             question = questions(kind, told)[number]  # a default follows the answers before it
+            if question.optional:
+                continue
             text = ask(question.prompt, question.default, partial(check, question, len(KINDS[kind].gears)))
             told |= {question.name: text} if text else {}
     except KeyboardInterrupt:
@@ -152,10 +156,6 @@ def _asked() -> Answers:
     except EOFError:
         leave("there were no more answers; nothing was written.", 2)
     return Answers(kind, told)
-
-
-def _is_number(word: str) -> bool:
-    return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", word) is not None
 
 
 def _check(text: str, path: Path) -> None:

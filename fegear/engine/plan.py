@@ -5,6 +5,7 @@ A plan in words, for ``fegear plan``: what runs and why, with which settings, fo
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -174,7 +175,7 @@ def plan_lines(scene: Scene, plan: Plan) -> list[str]:
         lines.append("     run time unknown" if predicted is None else f"     about {predicted:.2g} s")
     if plan.skipped:
         lines.append("Will not compute:")
-        lines += [f"  - {name}: {reason}" for name, reason in plan.skipped]
+        lines += _folded(plan.skipped)
     unknown = [str(step.task) for step, predicted in zip(plan.steps, seconds, strict=True) if predicted is None]
     without = f", without {', '.join(unknown)}, whose run time is unknown" if unknown else ""
     total = sum(predicted or 0.0 for predicted in seconds)
@@ -183,6 +184,23 @@ def plan_lines(scene: Scene, plan: Plan) -> list[str]:
         "report come on top, some seconds."
     )
     return lines + [f"Note: {remark}" for remark in plan.remarks]
+
+
+def _folded(skipped: Sequence[tuple[str, str]]) -> list[str]:
+    """Stages that are not computed, those of one reason together: fifty lines would push the plan out of sight."""
+    groups: dict[str, list[str]] = {}
+    for name, reason in skipped:
+        groups.setdefault(reason.partition(" (")[0], []).append(name)
+    found = []
+    for reason, names in groups.items():
+        found += textwrap.wrap(
+            f"{reason}: {', '.join(names)}",
+            118,
+            initial_indent="  - ",
+            subsequent_indent="    ",
+            break_on_hyphens=False,
+        )
+    return found
 
 
 def plan_content(scene: Scene, plan: Plan) -> dict[str, object]:

@@ -24,7 +24,10 @@ HOST = "127.0.0.1"
 #: What the web server's library imports for clients that this server has none of.
 _CLIENTS = ("aiohttp", "requests")
 #: What `fegear open` needs beside fegear.
-EXTRA = "fegear open needs NiceGUI; install it with: pip install 'fegear[workbench]'"
+EXTRA = (
+    "fegear open needs NiceGUI; in a copy of the source run ./open.sh, which installs it, "
+    "elsewhere: pip install 'fegear[workbench]'"
+)
 
 
 def free_port(wanted: int | None) -> int:

@@ -191,6 +191,16 @@ def test_a_misspelt_key_is_reported_before_the_one_that_is_missing():
         build_scene(document, "case", Path())
 
 
+@pytest.mark.parametrize(("symbol", "key"), [("x", "profile_shift"), ("d_a", "tip_diameter"), ("B", "face_width")])
+def test_a_symbol_of_the_drawing_is_refused_with_its_key(symbol, key):
+    document = copy.deepcopy(CASE)
+    document["gear"]["a"][symbol] = 0.3
+    with pytest.raises(
+        InputError, match=rf'gear\.a\.{symbol} = 0\.3: is an unknown key.*nearest known name is "{key}"'
+    ):
+        build_scene(document, "case", Path())
+
+
 def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(InputError, match="does not exist"):
         read_scene(tmp_path / "none.toml")

@@ -28,6 +28,10 @@ _LINE_LOAD = 200e3
 _FACE = 10.0
 
 
+#: Answer to a question about what a drawing need not have.
+_NONE = "none"
+
+
 class Question(NamedTuple):
     """A question.
 
@@ -46,6 +50,11 @@ class Question(NamedTuple):
     default: str
     dimension: str
 
+    @property
+    def optional(self) -> bool:
+        """Whether a drawing need not have it: an option gives it, the terminal does not ask."""
+        return self.default == _NONE
+
 
 _ALL = {
     "pressure_angle": ("Pressure angle", "20 deg", "angle"),
@@ -53,6 +62,9 @@ _ALL = {
     "rack": ("Basic rack, ISO 53 A to D", "C", "rack"),
     "helix_angle": ("Helix angle", "20 deg", "angle"),
     "speed": ("Speed of the pinion", "1500 rpm", "speed"),
+    "tip_relief": ("Tip relief of both gears, at the tip", _NONE, "length"),
+    "relief_length": ("Its length along the line of action", _NONE, "length"),
+    "lead_error": ("Lead error over the face", _NONE, "length"),
 }
 
 
@@ -81,6 +93,11 @@ class Answers:
                     _option(name), f'"{text}"', f'has no meaning for a case of kind "{self.kind}"', "leave it out"
                 )
             check(asked[name], len(KINDS[self.kind].gears), text)
+        if self.has("tip_relief") != self.has("relief_length"):
+            told = f'"{self["tip_relief"]}" over "{self["relief_length"]}"'
+            raise InputError(
+                "--tip-relief", told, "must have both amount and length", 'write for example "20 um" "4 mm"'
+            )
 
     def __getitem__(self, name: str) -> str:
         """Return an answer, given or assumed."""
@@ -89,6 +106,10 @@ class Answers:
     def assumed(self, name: str) -> bool:
         """Whether nobody gave it."""
         return not self.given.get(name)
+
+    def has(self, name: str) -> bool:
+        """Whether the drawing has it: a question of this kind, and not answered by "none"."""
+        return name in {q.name for q in questions(self.kind, self.given)} and self[name] != _NONE
 
     def numbers(self, name: str) -> list[str]:
         """The numbers of an answer, one for each gear: the last stands for those that are not given."""
@@ -163,7 +184,7 @@ def check(question: Question, gears: int, text: str) -> None:
             raise InputError(key, f'"{text}"', f"must be at most {gears} numbers", "write for example 0.3")
     elif question.dimension == "rack":
         BasicRack.named(text)
-    elif to_si(text, question.dimension, key) <= 0.0:
+    elif text != question.default and to_si(text, question.dimension, key) <= 0.0:
         raise InputError(key, f'"{text}"', "must be greater than zero")
 
 
@@ -211,13 +232,16 @@ _TOOTH = ("pressure_angle", "profile_shift", "rack", "face_width")
 _LOADED = (*_TOOTH, "torque", "speed")
 
 
+_RELIEVED = (*_LOADED, "tip_relief", "relief_length")
+
+
 #: Kinds by name.
 KINDS: Mapping[str, Kind] = MappingProxyType({
     "gear": Kind("one gear: its tooth's stiffness and root stress, and the standards' formulas", ("gear",), _TOOTH),
-    "pair": Kind("a pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _LOADED),
+    "pair": Kind("a pair under load: load sharing, transmission error, root stress", ("pinion", "wheel"), _RELIEVED),
     "relief": Kind("a pair whose profile relief is to be designed", ("pinion", "wheel"), _LOADED),
-    "helical": Kind("a helical pair and the errors of its assembly", ("pinion", "wheel"),
-                    ("pressure_angle", "helix_angle", "profile_shift", "rack", "face_width")),
-    "train": Kind("motor, pair and machine in motion: resonances, dynamic factor", ("pinion", "wheel"), _LOADED),
+    "helical": Kind("a helical pair: where its face carries, transmission error, errors of its assembly",
+                    ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "lead_error")),
+    "train": Kind("motor, pair and machine in motion: resonances, dynamic factor", ("pinion", "wheel"), _RELIEVED),
     "study": Kind("root-stress formulas against finite elements over many gears", ("gear",), _TOOTH),
 })  # fmt: skip

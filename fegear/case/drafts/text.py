@@ -39,6 +39,7 @@ face_width = {face_width}{face_width_note}
 # bore_radius = "20 mm"        # where the body is held fast; without it half the root radius
 # tip_diameter = "{tip_diameter}"     # without it: this, the reference circle + 2 (1 + x) modules
 # thickness_allowance = "75 um"     # thinner teeth, for backlash
+{relief}
 # material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # without it steel
 """
 _HELICAL = """\
@@ -51,6 +52,7 @@ hand = "{hand}"
 profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
+{relief}
 """
 _PAIR = """\
 [pair.I]
@@ -61,9 +63,28 @@ speed = {speed}{speed_note}
 # centre_distance = "{centre_distance}"     # without it: free of backlash
 # loads = ["2 kN", "4 kN"]     # further loads along the line of action
 """
+#: What a drawing may have, and the effect that lets it count: on, or off and how it would be written.
+_RELIEF = "relief = {{ tip = {{ amount = {tip_relief}, length = {relief_length} }} }}"
+_NO_RELIEF = 'relief = { tip = { amount = "15 um", length = "4 mm" } }'
+_LINE_ERROR = "line_error = {{ over_face = {lead_error} }}     # gap along the line of action, over the whole face\n"
+_NO_LINE_ERROR = (
+    '# line_error = { over_face = "10 um" }     # off: lead error over the face; misalignment = true lets it count\n'
+)
+_EFFECTS = {
+    "tip_relief": (
+        "relief = true     # on: the tip reliefs of both gears count",
+        f"# relief = true     # off: for gears with {_NO_RELIEF}",
+    ),
+    "lead_error": (
+        "misalignment = true     # on: the lead error counts",
+        "# misalignment = true     # off: for a pair with line_error or misalignment",
+    ),
+}
 #: Column of comments behind keys.
 _COMMENTS = 30
 _ASSUMED = "     # assumed"
+#: Questions about the pair, not its gears.
+_OF_PAIR = ("torque", "speed", "lead_error")
 #: Speeds of a train's motion, as shares of the given one.
 _SLOWEST, _FASTEST = 0.5, 1.5
 #: Inertia of motor and machine over that of the gear beside them, assumed.
@@ -103,6 +124,11 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "second": kind.gears[-1],
         "gears": "\n".join(_gear(answers, number) for number in range(len(kind.gears))),
         "pair": _pair(answers) if "torque" in kind.asks else "",
+        "line_error": _LINE_ERROR.format(**_texts(answers, ("lead_error",)))
+        if answers.has("lead_error")
+        else _NO_LINE_ERROR,
+        "relief": _EFFECTS["tip_relief"][not answers.has("tip_relief")],
+        "misalignment": _EFFECTS["lead_error"][not answers.has("lead_error")],
         **(_train(answers) if answers.kind == "train" else {}),
         **(_study(answers) if answers.kind == "study" else {}),
     }
@@ -124,7 +150,8 @@ def _texts(answers: Answers, names: tuple[str, ...]) -> dict[str, str]:
 
 def _gear(answers: Answers, number: int) -> str:
     kind = KINDS[answers.kind]
-    texts = _texts(answers, ("module", *(name for name in kind.asks if name not in ("torque", "speed"))))
+    texts = _texts(answers, ("module", *(name for name in kind.asks if name not in _OF_PAIR)))
+    texts["relief"] = _RELIEF.format(**texts) if answers.has("tip_relief") else f"# {_NO_RELIEF}"
     texts |= {"name": kind.gears[number], "teeth": answers.numbers("teeth")[number]}
     shift = float(answers.numbers("profile_shift")[number])
     texts["profile_shift"] = repr(shift)
@@ -138,7 +165,8 @@ def _gear(answers: Answers, number: int) -> str:
 def _pair(answers: Answers) -> str:
     first, second = map(json.dumps, KINDS[answers.kind].gears)
     teeth, shifts = (sum(map(float, answers.numbers(name))) for name in ("teeth", "profile_shift"))
-    distance = _length(answers.si("module") * (0.5 * teeth + shifts))
+    turn = math.cos(answers.si("helix_angle")) if answers.kind == "helical" else 1.0
+    distance = _length(answers.si("module") * (0.5 * teeth / turn + shifts))
     return _PAIR.format(first=first, second=second, centre_distance=distance, **_texts(answers, ("torque", "speed")))
 
 
