@@ -13,7 +13,7 @@ every period is kept, so that the largest over N periods and the quantiles can b
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +25,7 @@ from fegear.dynamics.motion.shooting import Orbit, close, moving
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
-    from fegear.dynamics.motion.motion_model import MotionModel, Packed
+    from fegear.dynamics.motion.motion_model import Moving, Packed
 
 
 #: Shares of more damping from which motions are continued, and how much of it is taken away at a time.
@@ -40,19 +40,19 @@ SETTLING, MULTIPLES = 60, (1, 2, 3)
 SAME = 1e-4
 
 
-def stable_motions(model: MotionModel, step: float) -> tuple[Orbit, ...]:
+def stable_motions(model: Moving, step: float) -> tuple[Orbit, ...]:
     """Stable motions of one to three periods that are found by taking damping away, each once.
 
     Parameters
     ----------
-    model : MotionModel
+    model : Moving
         What moves.
     step : float
         Largest truncated term of a step in time.
     """
     found: list[Orbit] = []
     for factor in FROM:
-        settled = _settled(_damped(model, factor), step)
+        settled = _settled(model.more_damped(factor), step)
         for multiple in MULTIPLES:
             orbit = _continued(model, factor, settled, multiple, step) if settled is not None else None
             if orbit is not None and not any(_same(orbit, other, step) for other in found):
@@ -60,13 +60,7 @@ def stable_motions(model: MotionModel, step: float) -> tuple[Orbit, ...]:
     return tuple(found)
 
 
-def _damped(model: MotionModel, factor: float) -> MotionModel:
-    """The model with so many times the damping of its gear pairs."""
-    meshes = tuple(replace(mesh, damping=factor * mesh.damping) for mesh in model.train.meshes)
-    return replace(model, train=replace(model.train, meshes=meshes))
-
-
-def _settled(model: MotionModel, step: float) -> tuple[Array, Array] | None:
+def _settled(model: Moving, step: float) -> tuple[Array, Array] | None:
     packed = pack(model)
     x, v = starting_state(packed, "static")
     try:
@@ -76,15 +70,13 @@ def _settled(model: MotionModel, step: float) -> tuple[Array, Array] | None:
     return passage.x, passage.v
 
 
-def _continued(
-    model: MotionModel, factor: float, state: tuple[Array, Array], multiple: int, step: float
-) -> Orbit | None:
+def _continued(model: Moving, factor: float, state: tuple[Array, Array], multiple: int, step: float) -> Orbit | None:
     """The motion that Newton follows down to the train's own damping, if it is stable there and closes no sooner."""
     orbit: Orbit | None = None
     while True:
         factor = max(factor * STEP, 1.0) if orbit is not None else factor
         try:
-            orbit = close(pack(_damped(model, factor)), *state, multiple, step)
+            orbit = close(pack(model.more_damped(factor)), *state, multiple, step)
         except RangeError:  # without damping at resonance
             return None
         if orbit is None:

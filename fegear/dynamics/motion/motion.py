@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.base.arrays import Array
-    from fegear.dynamics.motion.motion_model import MotionModel
+    from fegear.dynamics.motion.motion_model import Moving
 
 #: Order of the Taylor series; high, because a longer step costs less than a second one.
 ORDER = 20
@@ -236,7 +236,7 @@ class Trajectory:
 
 
 def simulate(
-    model: MotionModel,
+    model: Moving,
     duration: float,
     *,
     start: str | tuple[Array, Array] = "static",
@@ -247,7 +247,7 @@ def simulate(
 
     Parameters
     ----------
-    model : MotionModel
+    model : Moving
         What to integrate.
     duration : float
         How long [s].

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -26,6 +26,74 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.train import Train
+
+
+@dataclass(frozen=True)
+class MotionParts:
+    """What of a model moves, in SI: bodies in coordinates of their own, and the gear pairs between them.
+
+    Parameters
+    ----------
+    shapes : ndarray, shape (size, n)
+        Motion of the bodies per coordinate.
+    free : ndarray of bool, shape (n,)
+        Coordinates whose position matters (all but a rigid-body angle).
+    fastest : float
+        Largest natural frequency [rad/s], which sets the unit of time.
+    damping, stiffness : ndarray, shape (n, n)
+        Without those of the gear pairs, for unit masses.
+    load : ndarray, shape (n,)
+    approach : ndarray, shape (meshes, n)
+        Approach of each gear pair [m].
+    lever : ndarray, shape (meshes, 2, n)
+        Rotation of its two bodies [rad], on which friction acts.
+    excitations : tuple of MeshExcitation
+    mesh_stiffness, mesh_damping, backlash, static, frequency : ndarray, shape (meshes,)
+        Mean stiffness [N/m], damping at it [N s/m], backlash [m], mean force [N], mesh frequency [Hz].
+    momentary : ndarray of bool, shape (meshes,)
+        Whether the damping follows the stiffness of the teeth that touch.
+    """
+
+    shapes: Array
+    free: NDArray[np.bool_]
+    fastest: float
+    damping: Array
+    stiffness: Array
+    load: Array
+    approach: Array
+    lever: Array
+    excitations: tuple[MeshExcitation, ...]
+    mesh_stiffness: Array
+    mesh_damping: Array
+    backlash: Array
+    static: Array
+    frequency: Array
+    momentary: NDArray[np.bool_]
+
+
+class Moving(Protocol):
+    """What motion in time can be asked of: a gear train, a planetary set."""
+
+    @property
+    def speed(self) -> float:
+        """Speed that messages name [rad/s]."""
+
+    @property
+    def period(self) -> float:
+        """Common period of all excitations [s]."""
+
+    @property
+    def static(self) -> Array:
+        """Mean mesh forces [N]."""
+
+    def parts(self) -> MotionParts:
+        """What moves."""
+
+    def at_speed(self, speed: float) -> Moving:
+        """The same at another speed [rad/s]."""
+
+    def more_damped(self, factor: float) -> Moving:
+        """The same with so many times the damping."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +135,11 @@ class MotionModel:
         """The same train at another speed [rad/s]."""
         return replace(self, speed=speed)
 
+    def more_damped(self, factor: float) -> MotionModel:
+        """The same with so many times the damping of its gear pairs."""
+        meshes = tuple(replace(mesh, damping=factor * mesh.damping) for mesh in self.train.meshes)
+        return replace(self, train=replace(self.train, meshes=meshes))
+
     @cached_property
     def static(self) -> Array:
         """Mean mesh forces [N]."""
@@ -86,6 +159,37 @@ class MotionModel:
         parts = self.mesh_periods
         turns = Fraction(math.lcm(*(p.numerator for p in parts)), math.gcd(*(p.denominator for p in parts)))
         return float(turns) * 2.0 * math.pi / self.speed
+
+    def parts(self) -> MotionParts:
+        """The train in its modes, or in its segments where they are many; see `LONG`."""
+        train = self.train
+        shape = modes(train)
+        basis = shape.shapes if train.size <= LONG else segment_shapes(train)
+        slipping = damping_matrix(train, meshes=False) @ basis[:, :1]
+        keep_rigid = bool(np.any(np.abs(slipping) > 0.0)) and not _geared_damping(train)
+        shapes = basis if keep_rigid else basis[:, 1:]
+        free = np.ones(shapes.shape[1], dtype=bool)
+        if keep_rigid:
+            free[0] = False
+        ends = np.array([[train.dof[m.a], train.dof[m.b]] for m in train.meshes])
+        stiff, damped = (projected(train, shapes, of) for of in ("stiffness", "damping"))
+        return MotionParts(
+            shapes=shapes,
+            free=free,
+            fastest=2.0 * math.pi * float(shape.frequencies[-1]),
+            damping=damped,
+            stiffness=stiff,
+            load=shapes.T @ (train.torque + friction_loss_torque(self)),
+            approach=train.approach @ shapes,
+            lever=shapes[ends],
+            excitations=self.excitations,
+            mesh_stiffness=np.array([m.stiffness for m in train.meshes]),
+            mesh_damping=np.array([m.damping for m in train.meshes]),
+            backlash=np.array([m.backlash for m in train.meshes]),
+            static=self.static,
+            frequency=train.mesh_frequencies(self.speed),
+            momentary=np.array([m.damping_law == "momentary" for m in train.meshes]),
+        )
 
 
 def friction_loss_torque(model: MotionModel) -> Array:
@@ -144,7 +248,7 @@ class Packed:
         Whether the damping follows the stiffness of the teeth that touch.
     """
 
-    model: MotionModel
+    model: Moving
     time_unit: float
     length_unit: float
     force_unit: float
@@ -219,82 +323,68 @@ def _on_breaks(part: Periodic, cuts: Array, pitches: int, degree: int) -> Array:
 
 
 def _spring_tables(
-    model: MotionModel, length: float, force: float
+    parts: MotionParts, length: float, force: float
 ) -> tuple[list[tuple[int, float, Array, Array, int]], int]:
     """(mesh, side, cuts, polynomials, pitches) of each spring in units, and their common degree."""
     springs = []
-    for m, (mesh, excitation) in enumerate(zip(model.train.meshes, model.excitations, strict=True)):
+    for m, (backlash, excitation) in enumerate(zip(parts.backlash, parts.excitations, strict=True)):
         none = Periodic.constant(0.0)
         for j, (k, e) in enumerate(zip(excitation.stiffness, excitation.separation, strict=True)):
             a, b = excitation.friction[j] if excitation.friction else (none, none)
             springs.append((m, 1.0 if excitation.parting else 0.0, (k, e, a, b)))
-        if math.isfinite(mesh.backlash) and excitation.parting:
+        if math.isfinite(backlash) and excitation.parting:
             total = excitation.total_stiffness() if len(excitation.stiffness) > 1 else excitation.stiffness[0]
-            springs.append((m, -1.0, (total, Periodic.constant(-mesh.backlash), none, none)))
-    degree = max(part.coefficients.shape[1] - 1 for _, _, parts in springs for part in parts)
+            springs.append((m, -1.0, (total, Periodic.constant(-float(backlash)), none, none)))
+    degree = max(part.coefficients.shape[1] - 1 for _, _, own in springs for part in own)
     found = []
-    for m, side, parts in springs:
-        pitches = math.lcm(*(part.pitches for part in parts))
-        cuts = np.unique(np.concatenate([part.breaks_over(pitches) for part in parts])) / pitches
+    for m, side, own in springs:
+        pitches = math.lcm(*(part.pitches for part in own))
+        cuts = np.unique(np.concatenate([part.breaks_over(pitches) for part in own])) / pitches
         cuts = cuts[np.append(True, np.diff(cuts) > 1e-11)]
         cuts[-1] = 1.0
-        table = np.stack([_on_breaks(part, cuts, pitches, degree) for part in parts], axis=1)
+        table = np.stack([_on_breaks(part, cuts, pitches, degree) for part in own], axis=1)
         table[:, 0] *= length / force
         table[:, 1] /= length
         found.append((m, side, cuts, table, pitches))
     return found, degree
 
 
-def pack(model: MotionModel) -> Packed:
+def pack(model: Moving) -> Packed:
     """Turn a model into arrays for the integrator."""
-    train = model.train
-    shape = modes(train)
-    basis = shape.shapes if train.size <= LONG else segment_shapes(train)
-    slipping = damping_matrix(train, meshes=False) @ basis[:, :1]
-    keep_rigid = bool(np.any(np.abs(slipping) > 0.0)) and not _geared_damping(train)
-    shapes = basis if keep_rigid else basis[:, 1:]
-    free = np.ones(shapes.shape[1], dtype=bool)
-    if keep_rigid:
-        free[0] = False
-    top = 2.0 * math.pi * float(shape.frequencies[-1])
-    rows = train.approach @ shapes
-    rows[:, ~free] = 0.0
-    stiffness = np.array([mesh.stiffness for mesh in train.meshes])
-    length = float(np.max(model.static / stiffness))
+    parts = model.parts()
+    rows = np.where(parts.free, parts.approach, 0.0)
+    length = float(np.max(parts.static / parts.mesh_stiffness))
     if length <= 0.0:
-        largest = [float(np.max(np.abs(e.coefficients))) for x in model.excitations for e in x.separation]
+        largest = [float(np.max(np.abs(e.coefficients))) for x in parts.excitations for e in x.separation]
         length = max(*largest, 1e-9)
     unit = length / float(np.max(np.abs(rows)))
-    time = 1.0 / top
+    time = 1.0 / parts.fastest
     force = unit**2 / (time**2 * length)
-    springs, degree = _spring_tables(model, length, force)
-    frequency = train.mesh_frequencies(model.speed)
-    stiff, damped = (projected(train, shapes, of) for of in ("stiffness", "damping"))
-    K = stiff * time**2
-    K[~free, :] = 0.0
-    K[:, ~free] = 0.0
+    springs, degree = _spring_tables(parts, length, force)
+    K = parts.stiffness * time**2
+    K[~parts.free, :] = 0.0
+    K[:, ~parts.free] = 0.0
     mesh_of = np.array([s[0] for s in springs], dtype=np.int64)
-    ends = np.array([[train.dof[m.a], train.dof[m.b]] for m in train.meshes])
     pieces = [s[3].shape[0] for s in springs]
     return Packed(
         model=model,
         time_unit=time,
         length_unit=length,
         force_unit=force,
-        shapes=shapes * unit,
-        free=free,
+        shapes=parts.shapes * unit,
+        free=parts.free,
         K=K,
-        C=damped * time,
-        f=shapes.T @ (train.torque + friction_loss_torque(model)) * time**2 / unit,
+        C=parts.damping * time,
+        f=parts.load * time**2 / unit,
         approach=rows * unit / length,
-        damping=np.array([m.damping for m in train.meshes]) * length / (force * time),
-        stiffness=stiffness * length / force,
-        momentary=np.array([m.damping_law == "momentary" for m in train.meshes]),
-        lever=shapes[ends] * unit / length,
+        damping=parts.mesh_damping * length / (force * time),
+        stiffness=parts.mesh_stiffness * length / force,
+        momentary=parts.momentary,
+        lever=parts.lever * unit / length,
         mesh_of=mesh_of,
         side=np.array([s[1] for s in springs]),
-        rate=np.array([frequency[s[0]] / s[4] for s in springs]) * time,
-        phase=np.array([model.excitations[s[0]].phase / s[4] for s in springs]),
+        rate=np.array([parts.frequency[s[0]] / s[4] for s in springs]) * time,
+        phase=np.array([parts.excitations[s[0]].phase / s[4] for s in springs]),
         first=np.concatenate([[0], np.cumsum(pieces)]).astype(np.int64),
         cuts=np.concatenate([s[2] for s in springs]),
         poly=np.concatenate([s[3] for s in springs]).reshape(-1, 4, degree + 1),

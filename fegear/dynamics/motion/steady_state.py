@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fegear.base.arrays import Array, Complex
-    from fegear.dynamics.motion.motion_model import MotionModel
+    from fegear.dynamics.motion.motion_model import Moving
 
 #: Most periods of excitation that one period of the motion may take.
 LONGEST_MULTIPLE = 32
@@ -57,7 +57,7 @@ class SteadyState:
 
     Attributes
     ----------
-    model : MotionModel
+    model : Moving
         What moves.
     kind : str
         "periodic", "quasi-periodic", "chaotic", "long-period" (comes back, but after more than 32 periods),
@@ -91,7 +91,7 @@ class SteadyState:
         Stable motions that repeat and exist at this speed beside one that does not (those that were found, not all).
     """
 
-    model: MotionModel
+    model: Moving
     kind: str
     periods: int
     multipliers: Complex
@@ -162,7 +162,7 @@ class SteadyState:
 
 @tallied("steady motions")
 def steady_state(
-    model: MotionModel,
+    model: Moving,
     *,
     start: str | tuple[Array, Array] = "static",
     tolerance: float = 1e-6,
@@ -173,7 +173,7 @@ def steady_state(
 
     Parameters
     ----------
-    model : MotionModel
+    model : Moving
         What moves.
     start : {"static", "rest"} or (x, v)
         Where the motion begins; a state of another speed continues its branch.
@@ -383,7 +383,7 @@ def _measured(
 
 
 def speed_sweep(
-    model: MotionModel,
+    model: Moving,
     speeds: Sequence[float] | Array,
     *,
     start: str = "follow",
@@ -393,7 +393,7 @@ def speed_sweep(
 
     Parameters
     ----------
-    model : MotionModel
+    model : Moving
         What moves; its own speed is not used.
     speeds : sequence of float
         In the order in which they are run; run them up and down to see hysteresis.

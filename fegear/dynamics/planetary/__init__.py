@@ -1,0 +1,1 @@
+"""Planetary sets: assembly, speeds, phases of the meshes, load sharing of the planets, vibration."""

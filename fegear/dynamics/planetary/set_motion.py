@@ -1,0 +1,115 @@
+"""A planetary set in motion with contact loss: what the integrator of `dynamics.motion` takes of it.
+
+Teeth are one-sided springs, each mesh delayed by its phase; all modes of the set about its mean load are damped alike.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import RangeError
+from fegear.dynamics.motion.motion_model import MotionParts
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.dynamics.planetary.set_response import LinearSet
+
+
+@dataclass(frozen=True)
+class SetMotion:
+    """A planetary set at one speed, as `steady_state` and `propagate` take it.
+
+    Its meshes stand in the order sun 1, 2, ..., ring 1, 2, ...
+
+    Parameters
+    ----------
+    linear : LinearSet
+        With the damping ratio of its modes.
+    mesh_frequency : float
+        [Hz]
+    pin_errors : ndarray, shape (2, planets), optional
+        Radially outward and counter-clockwise [m].
+    backlash : float
+        Along the line of action of every mesh [m]; infinite where back flanks never touch.
+    """
+
+    linear: LinearSet
+    mesh_frequency: float
+    pin_errors: Array | None = None
+    backlash: float = math.inf
+
+    def __post_init__(self) -> None:
+        """Refuse standstill."""
+        if not (math.isfinite(self.mesh_frequency) and self.mesh_frequency > 0.0):
+            raise RangeError("speed", self.mesh_frequency, "must be positive", "at standstill the static answer holds")
+
+    @property
+    def speed(self) -> float:
+        """Angular frequency of the mesh [rad/s]: the speed that messages name."""
+        return 2.0 * math.pi * self.mesh_frequency
+
+    @property
+    def period(self) -> float:
+        """Of all excitations [s]: one mesh cycle."""
+        return 1.0 / self.mesh_frequency
+
+    @cached_property
+    def static(self) -> Array:
+        """Mean mesh forces of planets that carry alike [N], shape (2 planets,)."""
+        meshed = self.linear.meshed
+        return np.full(2 * meshed.model.count, meshed.mean_force)
+
+    def at_speed(self, speed: float) -> SetMotion:
+        """The same at another angular frequency of the mesh [rad/s]."""
+        return replace(self, mesh_frequency=speed / (2.0 * math.pi))
+
+    def more_damped(self, factor: float) -> SetMotion:
+        """The same with so many times the damping."""
+        ratio = min(factor * self.linear.damping_ratio, 0.99)
+        return replace(self, linear=replace(self.linear, damping_ratio=ratio))
+
+    def parts(self) -> MotionParts:
+        """The set in its modes; free turning of the whole set is not felt and stays out."""
+        linear, meshed = self.linear, self.linear.meshed
+        model, modes = meshed.model, linear.modes
+        flexible = modes.frequency > 0.0
+        shapes = modes.shapes[:, flexible]
+        natural = 2.0 * math.pi * modes.frequency[flexible]
+        errors = np.zeros((2, model.count)) if self.pin_errors is None else np.array(self.pin_errors, dtype=float)
+        errors[1] *= -1.0 if model.mirrored else 1.0
+        load = model.torque_load(meshed.sun_torque)
+        if math.isfinite(model.planet.pin):
+            load = load - model.planet.pin * errors.ravel() @ model.pin_rows.reshape(-1, model.size)
+        start = model.with_pin_errors(errors)
+        excitations = tuple(
+            replace(
+                one,
+                separation=tuple(gap.plus(-float(model.mesh_rows[mesh, n] @ start)) for gap in one.separation),
+                phase=one.phase - float(meshed.delays[mesh, n]),
+            )
+            for mesh, one in enumerate(meshed.teeth)
+            for n in range(model.count)
+        )
+        count = 2 * model.count
+        return MotionParts(
+            shapes=shapes,
+            free=np.ones(natural.size, dtype=bool),
+            fastest=float(natural[-1]),
+            damping=np.diag(2.0 * linear.damping_ratio * natural),
+            stiffness=shapes.T @ model.held_stiffness() @ shapes,
+            load=load @ shapes,
+            approach=model.mesh_rows.reshape(-1, model.size) @ shapes,
+            lever=np.zeros((count, 2, natural.size)),
+            excitations=excitations,
+            mesh_stiffness=np.repeat(linear.stiffness, model.count),
+            mesh_damping=np.zeros(count),
+            backlash=np.full(count, self.backlash),
+            static=self.static,
+            frequency=np.full(count, self.mesh_frequency),
+            momentary=np.zeros(count, dtype=bool),
+        )
