@@ -51,7 +51,10 @@ class Curve(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Involute:
-    """Right involute flank, parameter roll angle t = tan(alpha) [rad] (ISO 21771, 4.3).
+    """Right involute flank, parameter roll angle t [rad] (ISO 21771, 4.3).
+
+    t = tan(alpha) on an external flank and -tan(alpha) on an internal one, the other branch of the same curve: its
+    tooth lies on the other side, and grows with the radius.
 
     Parameters
     ----------
@@ -80,7 +83,7 @@ class Involute:
         return np.stack([np.cos(phi), -np.sin(phi)])
 
     def curvatures(self, parameter: ArrayLike) -> Array:
-        """1 / (r_b t), infinite on the base circle."""
+        """1 / (r_b t), infinite on the base circle; negative on an internal flank."""
         t = np.asarray(parameter, dtype=float)
         with np.errstate(divide="ignore"):
             return 1.0 / (self.base_radius * t)
@@ -92,9 +95,8 @@ class Involute:
     def polar(self, radius: ArrayLike) -> Array:
         """Angle from the tooth's centre line [rad] of the flank at `radius` [modules], shape of `radius`."""
         r = np.asarray(radius, dtype=float)
-        return self.base_half_angle - polar_angle(
-            np.sqrt((r - self.base_radius) * (r + self.base_radius)) / self.base_radius
-        )
+        roll = np.sqrt((r - self.base_radius) * (r + self.base_radius)) / self.base_radius
+        return self.base_half_angle - polar_angle(math.copysign(1.0, self.end) * roll)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,6 +191,85 @@ class Trochoid:
         return self._turn_and_speed(parameter)[1]
 
 
+@dataclass(frozen=True, slots=True)
+class PinionTipFillet:
+    """Right fillet of an internal tooth, swept by the tip rounding of a pinion-type cutter.
+
+    Parameter b [rad] is the angle of the rounding's normal n = (sin b, cos b) from the centre line of the cutter's
+    tooth; the centre of the rounding, C, stands at the angle `centre_angle` from it. A point of the rounding cuts when
+    its normal passes through the pitch point, at P = C + s n on the cutter's rolling circle; the cutter has then turned
+    by phi = arg(P / i), and with it the gear by phi z0 / z. Differentiated, with g = n . P:
+
+        d(phi)/db = -s / g,    ds'/db = rho + (1 - z0/z) s (s - rho) / g,
+
+    s' the arc length of the fillet; no second derivative of the envelope is needed.
+
+    Parameters
+    ----------
+    rolling_radius : float
+        r_w0 of the cutter, in generation [modules].
+    centre_distance : float
+        a0, between gear and cutter [modules].
+    centre_radius, centre_angle : float
+        Of the rounding's centre in the cutter [modules, rad].
+    rounding : float
+        rho [modules].
+    ratio : float
+        z0 / z.
+    space_half_angle : float
+        pi / z, angle between tooth and space centre lines [rad].
+    start, end : float
+        Range of b [rad]: that of the centre on the root circle, that of the cutter's flank where the rounding ends.
+    """
+
+    rolling_radius: float
+    centre_distance: float
+    centre_radius: float
+    centre_angle: float
+    rounding: float
+    ratio: float
+    space_half_angle: float
+    start: float
+    end: float
+
+    def _pole(self, parameter: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """b, distance s from the rounding's centre to the pole, its foot's distance g, and the cutter's turn phi."""
+        b = np.asarray(parameter, dtype=float)
+        across = self.centre_radius * np.sin(b - self.centre_angle)
+        foot = np.sqrt((self.rolling_radius - across) * (self.rolling_radius + across))
+        distance = foot - self.centre_radius * np.cos(b - self.centre_angle)
+        x = self.centre_radius * math.sin(self.centre_angle) + distance * np.sin(b)
+        y = self.centre_radius * math.cos(self.centre_angle) + distance * np.cos(b)
+        return b, distance, foot, -np.arctan2(x, y)
+
+    def points(self, parameter: ArrayLike) -> Array:
+        """Envelope of the rounding in the gear's frame."""
+        b, _, _, phi = self._pole(parameter)
+        x = self.centre_radius * math.sin(self.centre_angle) + self.rounding * np.sin(b)
+        y = self.centre_radius * math.cos(self.centre_angle) + self.rounding * np.cos(b)
+        s, c = np.sin(phi), np.cos(phi)
+        # turned back by phi, moved out to the cutter's place, and turned on with the gear
+        return _mirror_turn(
+            c * x + s * y, c * y - s * x + self.centre_distance, self.ratio * phi, self.space_half_angle
+        )
+
+    def normals(self, parameter: ArrayLike) -> Array:
+        """Outward normals: from the material into the rounding."""
+        b, _, _, phi = self._pole(parameter)
+        turn = b + phi
+        return _mirror_turn(-np.sin(turn), -np.cos(turn), self.ratio * phi, self.space_half_angle)
+
+    def curvatures(self, parameter: ArrayLike) -> Array:
+        """Turn of the tangent over the arc length; negative, for the fillet is hollow."""
+        b, s, g, _ = self._pole(parameter)
+        return -(1.0 - (1.0 - self.ratio) * s / g) / self.speed(b)
+
+    def speed(self, parameter: ArrayLike) -> Array:
+        """ds'/db: what rolls off the rounding, and the sliding about the pole [modules]."""
+        _, s, g, _ = self._pole(parameter)
+        return np.asarray(self.rounding + (1.0 - self.ratio) * s * (s - self.rounding) / g)
+
+
 def _mirror_turn(x: Array, y: Array, phi: Array, space_half_angle: float) -> Array:
     """Bring (x, y), cut after rolling by phi beside the space's centre line, to the tooth on the space's left.
 
@@ -203,16 +284,16 @@ def _mirror_turn(x: Array, y: Array, phi: Array, space_half_angle: float) -> Arr
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """Circular arc; parameter is the angle of the outward radius from +y, clockwise [rad].
+    """Circular arc; parameter is the angle of the radius from +y, clockwise [rad].
 
     Parameters
     ----------
     centre : (float, float)
         [modules].
     radius : float
-        [modules].
+        [modules]; negative where the material lies outside the arc.
     start, end : float
-        Angles [rad]; the arc runs from `start` down to `end`.
+        Angles [rad] from which and to which the arc runs.
     """
 
     centre: tuple[float, float]
@@ -225,9 +306,9 @@ class Arc:
         return np.array(self.centre).reshape(2, *[1] * np.ndim(parameter)) + self.radius * self.normals(parameter)
 
     def normals(self, parameter: ArrayLike) -> Array:
-        """Radial directions."""
+        """Radial directions, out of the material."""
         a = np.asarray(parameter, dtype=float)
-        return np.stack([np.sin(a), np.cos(a)])
+        return math.copysign(1.0, self.radius) * np.stack([np.sin(a), np.cos(a)])
 
     def curvatures(self, parameter: ArrayLike) -> Array:
         """One over the radius; zero for a vanishing arc would be infinite, so such arcs are never made."""
@@ -235,15 +316,19 @@ class Arc:
 
     def speed(self, parameter: ArrayLike) -> Array:
         """The radius."""
-        return np.full(np.shape(parameter), self.radius)
+        return np.full(np.shape(parameter), abs(self.radius))
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Straight piece from `a` to `b` (a tip chamfer); parameter is the length from `a` [modules]."""
+    """Straight piece from `a` to `b` (a tip chamfer); parameter is the length from `a` [modules].
+
+    The material lies on its left, or on its right if `side` is -1.
+    """
 
     a: tuple[float, float]
     b: tuple[float, float]
+    side: int = 1
 
     @property
     def start(self) -> float:
@@ -264,9 +349,9 @@ class Line:
         return np.multiply.outer(self._direction(), s) + np.array(self.a).reshape(2, *[1] * s.ndim)
 
     def normals(self, parameter: ArrayLike) -> Array:
-        """The direction turned to the right-hand side of inward travel: out of the material."""
+        """The direction turned out of the material."""
         d = self._direction()
-        return np.multiply.outer(np.array([d[1], -d[0]]), np.ones(np.shape(parameter)))
+        return np.multiply.outer(self.side * np.array([d[1], -d[0]]), np.ones(np.shape(parameter)))
 
     def curvatures(self, parameter: ArrayLike) -> Array:
         """Zero."""

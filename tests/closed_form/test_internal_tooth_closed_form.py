@@ -1,0 +1,166 @@
+"""Internal teeth are the envelope of their cutter: rolled by brute force, without any equation of meshing."""
+
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import GeometryError
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
+from fegear.geometry.tooth import Tooth
+
+
+@lru_cache
+def random_teeth(count: int = 200) -> list[InternalTooth]:
+    """Internal teeth, spur and helical, that are not refused."""
+    rng, found = np.random.default_rng(28), []
+    while len(found) < count:
+        z = int(rng.integers(25, 160))
+        z0 = int(rng.integers(10, max(12, z - 8)))
+        beta = float(rng.choice([0.0, math.radians(rng.uniform(1.0, 35.0))]))
+        cutter = PinionCutter(z0, rng.uniform(-0.3, 0.5), rng.uniform(1.0, 1.4), tip_radius=rng.uniform(0.0, 0.4))
+        x = rng.uniform(-0.6, 0.8)
+        tip = z / 2 / math.cos(beta) - x - rng.uniform(0.4, 1.1)
+        try:
+            tooth = InternalTooth(
+                z, cutter, math.radians(rng.uniform(15.0, 26.0)), x, rng.uniform(0.0, 0.05), tip,
+                tip_rounding=float(rng.choice([0.0, rng.uniform(0.0, 0.1)])), helix_angle=beta,
+            )  # fmt: skip
+        except GeometryError:
+            continue
+        found.append(tooth)
+    return found
+
+
+def outside(tooth: InternalTooth, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Distance of points from a tooth of the cutter on +y, from the definition of an involute alone."""
+    cutter, alpha = tooth.cutter, tooth.pressure_angle
+    pitch = cutter.teeth / 2 / math.cos(tooth.helix_angle)
+    base, tip, rho = pitch * math.cos(alpha), pitch + cutter.profile_shift + cutter.addendum, cutter.tip_radius
+    half = (math.pi / 2 + 2 * cutter.profile_shift * math.tan(tooth.normal_pressure_angle)) / cutter.teeth
+    half += math.tan(alpha) - alpha
+    string = math.sqrt((tip - rho) ** 2 - base**2) + rho  # of the flank's last point
+    lean = half - string / base
+    centre = np.array([math.cos(lean) * (string - rho) + base * math.sin(lean),
+                       base * math.cos(lean) - math.sin(lean) * (string - rho)])  # fmt: skip
+    x = np.abs(x)
+    radius, angle = np.hypot(x, y), np.arctan2(x, y)
+    length = np.sqrt(np.maximum(radius**2 - base**2, 0.0))
+    from_flank = length - base * (half - angle + np.arctan2(length, base))
+    from_flank = np.where(radius < base, np.inf, from_flank)
+    beside = np.arctan2(x - centre[0], y - centre[1])
+    from_rounding = np.hypot(x - centre[0], y - centre[1]) - rho
+    tip_side = angle < math.atan2(*centre)
+    return np.where(tip_side, radius - tip, np.where(beside <= math.pi / 2 + lean, from_rounding, from_flank))
+
+
+def nearest(tooth: InternalTooth, points: np.ndarray, sweep: float = 1.3) -> np.ndarray:
+    """Least distance of points of the gear from a tooth of the cutter as both roll, shape (N,)."""
+    # the gear's tooth on +y; its space to the right is put on +y
+    half = math.pi / tooth.teeth
+    u, v = (
+        points[0] * math.cos(half) - points[1] * math.sin(half),
+        points[1] * math.cos(half) + points[0] * math.sin(half),
+    )
+
+    def at(turn: np.ndarray) -> np.ndarray:
+        one, other = turn * tooth.cutter.teeth / tooth.teeth, turn
+        x, y = u * np.cos(one) + v * np.sin(one), v * np.cos(one) - u * np.sin(one)
+        y = y - tooth.generating_distance
+        return outside(tooth, x * np.cos(other) - y * np.sin(other), y * np.cos(other) + x * np.sin(other))
+
+    turns = np.linspace(-sweep, sweep, 2001)[:, None]
+    step = 2.0 * sweep / 2000
+    best = turns[np.argmin(at(turns), axis=0), 0]
+    for _ in range(4):
+        near = best + np.linspace(-1.0, 1.0, 41)[:, None] * step
+        best = near[np.argmin(at(near), axis=0), np.arange(best.size)]
+        step /= 15.0
+    return at(best)
+
+
+def test_outlines_of_200_random_teeth_are_the_envelope_of_their_cutter_to_1e_12() -> None:
+    worst = 0.0
+    for tooth in random_teeth():
+        for curve in (tooth.fillet, tooth.involute):
+            points = curve.points(np.linspace(curve.start, curve.end, 9))
+            worst = max(worst, float(np.abs(nearest(tooth, points)).max()))
+    assert worst < 1e-12
+
+
+def test_curves_of_an_internal_tooth_join_with_their_own_normals_and_curvatures() -> None:
+    """Of the derivatives of the points; the material lies on the right of travel from the space to the tooth's tip."""
+    for tooth in random_teeth(40):
+        last = None
+        for name, curve in tooth.outline.items():
+            u = np.linspace(curve.start, curve.end, 9)
+            h = 1e-4 * (curve.end - curve.start)
+            inner = u[1:-1]
+            ahead, back = curve.points(inner + h), curve.points(inner - h)
+            tangent = (ahead - back) / (2 * abs(h))
+            turn = (curve.normals(inner + h) - curve.normals(inner - h)) / (2 * abs(h))
+            speed, normal = np.hypot(*tangent), curve.normals(inner)
+            assert curve.speed(inner) == pytest.approx(speed, rel=1e-6)
+            assert np.abs((tangent * normal).sum(axis=0) / speed).max() < 1e-6
+            assert (tangent[0] * normal[1] - tangent[1] * normal[0] > 0.0).all(), name
+            curvature = (turn * tangent).sum(axis=0) / speed**2
+            assert curve.curvatures(inner) == pytest.approx(curvature, rel=1e-4, abs=1e-6)
+            if last is not None:
+                assert curve.points(curve.start) == pytest.approx(last, abs=1e-12)
+            last = curve.points(curve.end)
+
+
+def test_space_of_an_internal_gear_is_the_external_tooth_of_the_opposite_shift() -> None:
+    ring = InternalTooth(60, PinionCutter(20), profile_shift=0.3, tip_radius=29.2)
+    pinion = Tooth(60, profile_shift=-0.3)
+    radii = np.linspace(ring.tip_radius, 30.4, 5)
+    assert math.pi / 60 - ring.half_thickness_angle(radii) == pytest.approx(
+        pinion.half_thickness_angle(radii), abs=1e-14
+    )
+
+
+def test_ring_of_the_published_planetary_set_of_18_36_and_93_teeth() -> None:
+    """Its tip diameter is printed as 1906.081 mm, at module 21 mm and x3 = .1171."""
+    ring = InternalTooth(93, PinionCutter(30), profile_shift=0.1171)
+    assert 2.0 * 21.0 * ring.tip_radius == pytest.approx(1906.081, abs=1e-3)
+
+
+def test_root_diameter_and_addendum_describe_the_same_cutter() -> None:
+    by_addendum = InternalTooth(
+        60, PinionCutter(20, 0.1, 1.3), profile_shift=0.2, thickness_allowance=0.02, tip_radius=29.2
+    )
+    by_root = InternalTooth(
+        60, PinionCutter(20, 0.1, root_radius=by_addendum.root_radius), profile_shift=0.2, thickness_allowance=0.02,
+        tip_radius=29.2,
+    )  # fmt: skip
+    assert by_root.cutter.addendum == pytest.approx(1.3, abs=1e-13)
+    assert by_root.form_radius == pytest.approx(by_addendum.form_radius, abs=1e-13)
+
+
+RING = {"teeth": 60, "cutter": PinionCutter(20), "tip_radius": 29.1}
+
+
+@pytest.mark.parametrize(
+    ("changed", "key", "rule", "remedy"),
+    [
+        ({"tip_radius": 29.0}, "tip_radius", "reaches inside 29.0088 modules", "at least 58.0178 modules"),
+        ({"tip_radius": 31.1}, "tip_radius", "leaves no involute", "lower the tip diameter"),
+        ({"cutter": PinionCutter(20, tip_radius=0.4)}, "cutter.tip_radius", "wider than the tip", "at most 0.346"),
+        ({"cutter": PinionCutter(20, 0.2, 1.9, tip_radius=0.0)}, "cutter.addendum", "pointed", "smaller addendum"),
+        ({"cutter": PinionCutter(58)}, "cutter.teeth", "difference below 3", "at most 57 teeth"),
+        ({"cutter": PinionCutter(56)}, "cutter.teeth", "trim", "fewer teeth"),
+        ({"profile_shift": 0.9}, "profile_shift", "at no pressure angle", "below 0.818"),
+        ({"cutter": PinionCutter(20, 0.0, -0.45)}, "cutter.addendum", "inside its base circle", "raise the addendum"),
+        ({"tip_rounding": 0.9}, "tip_rounding", "", "choose at most"),
+        ({"tip_chamfer": 0.7}, "tip_chamfer", "wider than the tip allows", "choose at most"),
+        ({"helix_angle": -0.1}, "helix_angle", "between 0 and 60", "the hand"),
+    ],
+)
+def test_internal_teeth_that_cannot_be_are_refused(changed: dict[str, Any], key: str, rule: str, remedy: str) -> None:
+    with pytest.raises(GeometryError) as refused:
+        InternalTooth(**{**RING, **changed})
+    assert refused.value.key == key
+    assert rule in refused.value.rule
+    assert remedy in refused.value.remedy
