@@ -64,7 +64,7 @@ WATCH = """
 """
 IDLE = (
     "!document.body.classList.contains('computing') && !document.querySelector('#results .stale')"
-    " && document.querySelectorAll('#results .js-plotly-plot').length > 2"
+    " && document.querySelectorAll('#results .js-plotly-plot, #small .small-plot').length > 2"
 )
 
 

@@ -94,27 +94,29 @@ def loaded(at: Session) -> None:
 
 def error(at: Session) -> None:
     """What the plain gears do."""
+    at.press("All results")
     at.see('[data-task="transmission-error of I"]')
 
 
 def dragged(at: Session) -> None:
     """A relief by hand on the pinion, its amount dragged."""
+    at.press("At a glance")
     at.press("Add tip relief")
     point = "document.querySelector('[data-handle=\"pinion tip amount\"]')"
     at.wait(f"{point} !== null")
     at.still()
-    at.see('figure[data-key="relief_of_I_driver"]')
     x, y = at.middle(point)
-    for kind, by in (("mousePressed", 0), ("mouseMoved", -30), ("mouseMoved", -90), ("mouseReleased", -90)):
+    for kind, by in (("mousePressed", 0), ("mouseMoved", -15), ("mouseMoved", -45), ("mouseReleased", -45)):
         at.browser("Input.dispatchMouseEvent", type=kind, x=x, y=y + by, button="left", clickCount=1)
         time.sleep(0.3)
     at.still()
-    at.see('figure[data-key="relief_of_I_driver"]')
 
 
 def ground(at: Session) -> None:
     """The nearest that can be ground."""
     at.press("Nearest that can be ground")
+    at.wait("document.querySelector('#designed section') !== null", 120.0)
+    at.press("All results")
     at.wait("document.querySelector('#designed .main-svg') !== null", 120.0)
     at.still()
     at.wait("document.querySelector('#compared .main-svg') !== null", 120.0)
@@ -128,7 +130,7 @@ def rounded(at: Session) -> None:
         tip = f'relief = {{ tip = {{ amount = "{amount}", start_radius = "{start}" }} }}'
         text = re.sub(rf"(\[gear\.{gear}\][^\[]*?)relief = [^\n]*", rf"\1{tip}", text)
     at.write(text)
-    at.see(".load-slider")
+    at.see(".map")
 
 
 def compared(at: Session) -> None:

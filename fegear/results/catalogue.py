@@ -98,6 +98,8 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
             Entry("stress-in-mesh", "pair.stress_in_mesh.STRESS_IN_MESH", "Root stress of the gears in mesh"),
             Entry("outline-motion", "pair.deformed_in_mesh.OUTLINE_MOTION", "Motion of a gear's outline"),
             Entry("deformed-in-mesh", "pair.deformed_in_mesh.DEFORMED_IN_MESH", "Deformed teeth of the gears in mesh"),
+            Entry("inner-stress", "pair.stress_inside.INNER_STRESS", "Stress inside a gear's teeth under unit loads"),
+            Entry("stress-inside", "pair.stress_inside.STRESS_INSIDE", "Stress inside the teeth of the gears in mesh"),
             Entry("loaded-flanks", "pair.loaded_flanks.LOADED_FLANKS", "Contact over the flanks"),
             Entry(
                 "load-distribution",

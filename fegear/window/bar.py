@@ -49,7 +49,9 @@ class Bar:
             self._pin = self._button("Pin as A", self._pin_or_not)
             self._button("Other case", lambda: bench.lay(None))
             self._level = ui.toggle(list(LEVELS), value=bench.level, on_change=self._level_chosen)
-            self._level.props('dense no-caps unelevated aria-label="Accuracy against time"')
+            self._level.props('dense no-caps unelevated toggle-text-color=paper aria-label="Accuracy against time"')
+            for name in ("to-report", "to-fold"):  # the page names them and answers them
+                ui.element("button").classes("button").props(f"type=button id={name}")
             ui.element("div").classes("state").props("role=status id=state")  # the page writes it: it changes often
         self._told = ui.label().classes("told")
         ui.on("save", self._save)

@@ -14,6 +14,7 @@ from fegear.window.case_text import literal, with_value, with_values
 from fegear.window.computing import whole
 from fegear.window.document import Desk
 from fegear.window.drag_handles import moved_relief, own_name, without_relief
+from fegear.window.glance import keep_view, read_view
 from fegear.window.job_queue import Asked, Compare, Compute, Design, Export, Said
 
 if TYPE_CHECKING:
@@ -59,12 +60,16 @@ class Bench:
         A key of `LEVELS`.
     pinned : Asked or None
         The variant A that is compared with.
+    view : View
+        What is shown at a glance, and how.
     """
 
     def __init__(self, case: Path | None, computing: Computing | None = None) -> None:
         self.desk = Desk.of_file(case) if case is not None else None
         self.level = "normal"
         self.pinned: Asked | None = None
+        self.view = read_view(case)
+        self._settled: Asked | None = None
         self._listeners: list[Callable[[str, _Content], None]] = []
         self._numbers = itertools.count(1)
         self._computing = computing
@@ -103,6 +108,13 @@ class Bench:
         if on:
             self.compute()
 
+    def see_otherwise(self, told: dict[str, Any]) -> None:
+        """Show other small pictures, or another stress inside the teeth; kept for the next time."""
+        before, self.view = self.view, self.view.changed(told)
+        keep_view(self.desk.path if self.desk is not None else None, self.view)
+        if (before.pictures, before.measure == "none") != (self.view.pictures, self.view.measure == "none"):
+            self.compute()
+
     def tell(self, what: str, content: _Content | None = None) -> None:
         """Tell every page."""
         for listener in list(self._listeners):
@@ -111,7 +123,7 @@ class Bench:
     def shown_now(self) -> list[tuple[str, _Content]]:
         """What a page that opens now has to be told."""
         told: list[tuple[str, _Content]] = [
-            (what, self._last[what]) for what in ("plan", "hands", "harris") if what in self._last
+            (what, self._last[what]) for what in ("plan", "hands", "harris", "pinned") if what in self._last
         ]
         for content in self._found.values():
             told.append(("found", {key: value for key, value in content.items() if key != "pictures"}))
@@ -132,6 +144,9 @@ class Bench:
         self._last.clear()
         self._shows = ()
         self._meshed.clear()
+        self._settled = None
+        if desk is not None:
+            self.view = read_view(desk.path)
         self._first = next(self._numbers)
         self.tell("laid")
         self.compute()
@@ -175,7 +190,10 @@ class Bench:
             return
         self._number = next(self._numbers)
         self.tell("asked", {"number": self._number, "moving": moving})
-        asked = self.asked()._replace(moving=moving, sight=self._sight, shows=self._shows, laid=self._laid)
+        asked = self.asked()._replace(
+            moving=moving, sight=self._sight, shows=self._shows, laid=self._laid,
+            pictures=self.view.pictures, field=self.view.measure != "none",
+        )  # fmt: skip
         self._computing.ask(Compute(self._number, asked))
 
     def export(self, what: str, target: str) -> None:
@@ -198,12 +216,21 @@ class Bench:
     def pin(self) -> None:
         """Keep the present state as variant A."""
         self.pinned, self._comparing = self.asked(), 0
-        self.tell("pinned")
+        self._last.pop("pinned", None)
+        if self._settled == self.pinned:
+            self._keep_pinned()
+        self.tell("pinned", self._last.get("pinned"))
+
+    def _keep_pinned(self) -> None:
+        """Keep what was found of A, which pages show beside what is found later."""
+        found = [{key: value for key, value in one.items() if key != "pictures"} for one in self._found.values()]
+        self._last["pinned"] = {"found": found}
 
     def unpin(self) -> None:
         """Compare no more."""
         self.pinned, self._comparing = None, 0
         self._last.pop("compared", None)
+        self._last.pop("pinned", None)
         self.tell("unpinned")
 
     def _with_gears(self, content: _Content) -> _Content:
@@ -224,7 +251,7 @@ class Bench:
             If the text cannot be changed there.
         """
         desk = self._on_desk()
-        self._put(moved_relief(desk.text, desk.document, gear, end, start, amount, index), moving=moving)
+        self._put(moved_relief(desk, gear, end, start, amount, index), moving=moving)
 
     def name_driven(self, pair: str) -> None:
         """Make the driven gear of a pair a gear of its own, where it was the driver as well."""
@@ -299,7 +326,18 @@ class Bench:
             content["level"] = "" if self.level == "normal" else f" ({self.level}, not the case's own)"
         self._keep(what, content)
         self.tell(what, content)
-        if what == "done" and not content["moving"] and self.pinned is not None and self._computing is not None:
+        if what == "done":
+            self._done(moving=content["moving"])
+
+    def _done(self, *, moving: bool) -> None:
+        """Hold what was found against A, or keep it as A's own."""
+        self._settled = None if moving else self.asked()
+        if moving or self.pinned is None:
+            return
+        if self.pinned == self._settled and "pinned" not in self._last:
+            self._keep_pinned()
+            self.tell("pinned", self._last["pinned"])
+        if self._computing is not None:
             self._comparing = self._aside()
             self._computing.ask(Compare(self._comparing, self.pinned, self.asked()))
 

@@ -17,6 +17,8 @@ from fegear.window.journal import Journal, Kept, Left, drop, left_behind, now
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fegear.case.reading import Scene
+
 #: Earlier states that can be gone back to.
 _STATES = 500
 
@@ -40,6 +42,8 @@ class Desk:
         As it is now, whether or not it can be read.
     document : mapping
         As plain tables, of the last text that was valid TOML.
+    scene : Scene or None
+        What the last text that described one describes.
     refusal : FegearError or None
         What is wrong with it: the sentence that the command line prints.
     restored : str
@@ -52,6 +56,7 @@ class Desk:
         self.name, self.folder, self.path = name, folder, path
         self.restored = self.trouble = ""
         self.document: Mapping[str, Any] = {}
+        self.scene: Scene | None = None
         self.refusal: FegearError | None = None
         self._saved = text if path else ""
         self._file = TextFile("")
@@ -130,7 +135,8 @@ class Desk:
         """Read the case and say what is wrong with it."""
         try:
             self.document = parse_document(self.text, f'"{self.name}.toml"')
-            make_plan(build_scene(self.document, self.name, self.folder), STAGES)
+            self.scene = build_scene(self.document, self.name, self.folder)
+            make_plan(self.scene, STAGES)
             self.refusal = None
         except FegearError as error:
             self.refusal = error

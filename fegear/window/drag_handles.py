@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Literal
 
 from fegear.output.draw_plotly.layout import darker, plotly_json
-from fegear.results.relief.relief_handles import handled_relief
+from fegear.results.relief.relief_handles import STARTS, handle_of, handled_relief, start_as_given
 from fegear.window.case_text import literal, value_at, with_value, with_values
 from fegear.window.on_gears import gears_in_mesh
 
@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.window.case_text import Path
-
-
-_MEMBERS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
+    from fegear.window.document import Desk
 
 
 def hands_of(scene: Scene) -> dict[str, Any]:
@@ -73,24 +71,26 @@ def _load(document: Mapping[str, Any], name: str) -> dict[str, str] | None:
     return None
 
 
-#: Other ways to say where a relief starts and how much it removes.
-_OTHERWISE = ("start_radius", "length", "normalised_length", "amount_over_delta")
+_MEMBERS: tuple[Literal["driver"], Literal["driven"]] = ("driver", "driven")
 
 
 #: Keys of a gear that modify its flanks.
 _MODIFIED = {"relief", "lead", "bias", "topography"}
 
 
-def moved_relief(
-    text: str, document: Mapping[str, Any], gear: str, end: str, start: float, amount: float, index: int = 0
-) -> str:
+#: A part of a relief that has moved by less than this stands where it stood [deg], [um]: so much is written.
+_SAME_START, _SAME_AMOUNT = 6e-4, 6e-3
+
+
+def moved_relief(desk: Desk, gear: str, end: str, start: float, amount: float, index: int = 0) -> str:
     """The text of a case with one part of a relief elsewhere, or of another size; the others stay.
+
+    What says where it starts stays the key that it was: a length stays a length.
 
     Parameters
     ----------
-    text : str
-    document : mapping
-        The same as plain tables.
+    desk : Desk
+        The case.
     gear : str
     end : str
         ``tip``, ``root`` or ``crowning``.
@@ -107,12 +107,19 @@ def moved_relief(
         If the text cannot be changed there.
     """
     table: Path = ("gear", gear, "relief", end)
-    new = {"amount": f"{amount:.2f} um"} | ({} if end == "crowning" else {"start_roll_angle": f"{start:.3f} deg"})
-    if isinstance(value_at(document, table), list):
+    if isinstance(value_at(desk.document, table), list):
         table = (*table, str(index))
-    changes: dict[Path, str | None] = {(*table, key): f'"{value}"' for key, value in new.items()}
-    changes |= {(*table, key): None for key in _OTHERWISE if end != "crowning"}
-    return with_values(text, {**changes, ("effects", "relief"): "true"})
+    given = value_at(desk.document, table) or {}
+    handle = None if desk.scene is None else handle_of(desk.scene, gear, end, index)
+    changes: dict[Path, str | None] = {}
+    if handle is None or "amount" not in given or abs(amount - handle.amount) > _SAME_AMOUNT:
+        changes[(*table, "amount")] = f'"{amount:.2f} um"'
+        changes[(*table, "amount_over_delta")] = None
+    if end != "crowning" and (handle is None or abs(start - handle.start) > _SAME_START):
+        key, text = start_as_given(given, handle, start)
+        changes[(*table, key)] = text
+        changes |= {(*table, other): None for other in STARTS if other != key}
+    return with_values(desk.text, {**changes, ("effects", "relief"): "true"})
 
 
 def without_relief(text: str, document: Mapping[str, Any], gear: str) -> str:

@@ -24,10 +24,11 @@ const fegearGears = (() => {
 
   function meshOf(pair, host) {
     const kept = { place: 0, playing: false, data: null, on: {}, sent: {}, factor: null };
-    const stage = document.createElement("div"), canvas = document.createElement("canvas");
+    const stage = document.createElement("div"), canvas = document.createElement("canvas"), inside = document.createElement("canvas");
     stage.className = "mesh-stage";
+    inside.className = "inside";
     const picture = svg("svg", { class: "mesh", role: "img", "aria-label": `Gears of pair ${pair} in mesh` });
-    stage.append(canvas, picture);
+    stage.append(inside, canvas, picture);
     const tools = document.createElement("p");
     tools.className = "mesh-tools";
     const scrub = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 1000, value: 0 });
@@ -35,10 +36,20 @@ const fegearGears = (() => {
     const play = button("Play", "Turn the gears", () => { kept.playing = !kept.playing; play.textContent = kept.playing ? "Pause" : "Play"; if (kept.playing) requestAnimationFrame(turn); });
     const step = (way) => () => { kept.place = (kept.place + way * 0.05 + 2) % 1; draw(); };
     const told = document.createElement("span");
-    told.className = "quiet";
-    tools.append(play, button("◀", "A step back", step(-1)), button("▶", "A step on", step(1)), scrub, told);
+    told.className = "quiet loads";
+    const large = button("Enlarge", "The gears alone", () => {
+      const on = host.classList.toggle("large");
+      large.textContent = on ? "Back" : "Enlarge";
+      large.setAttribute("aria-pressed", String(on));
+    });
+    const back = button("◀", "A step back", step(-1)), on = button("▶", "A step on", step(1));
+    back.setAttribute("aria-label", "A step back");
+    on.setAttribute("aria-label", "A step on");
+    tools.append(play, back, on, scrub, large);
     scrub.oninput = () => { kept.place = scrub.value / 1000; draw(); };
     const more = layersOf(pair, kept, () => draw());
+    stage.append(more.scales);
+    more.elements[0].append(told);
     host.append(stage, tools, ...more.elements);
     let last = 0;
     const frames = kept.frames = []; // when they were drawn [ms]
@@ -67,9 +78,11 @@ const fegearGears = (() => {
       kept.driven = svg("path", { d: line(data.driven), class: "driven" }, up);
       const c = Math.cos(data.pressure_angle), s = Math.sin(data.pressure_angle), a = data.start * 1e3, e = data.end * 1e3;
       svg("line", { x1: a * c, y1: a * s, x2: e * c, y2: e * s, class: "path" }, up);
+      let beside = -Infinity; // letters of points close to each other stand apart
       for (const [letter, x] of data.points) {
         svg("circle", { cx: x * 1e3 * c, cy: x * 1e3 * s, r: 0.07 * m, class: "point" }, up);
-        const word = svg("text", { x: x * 1e3 * c + 0.12 * m, y: -x * 1e3 * s - 0.12 * m, "font-size": 0.36 * m }, picture);
+        beside = Math.max(x * 1e3 * c + 0.12 * m, beside + 0.36 * m);
+        const word = svg("text", { x: beside, y: -x * 1e3 * s - 0.12 * m, "font-size": 0.36 * m }, picture);
         word.textContent = letter.replace(/_\{(.*)\}/, "$1");
       }
       kept.arrows = svg("g", {}, up);
@@ -100,7 +113,11 @@ const fegearGears = (() => {
       scrub.value = Math.round(kept.place * 1000);
       const layers = more.now(), off = layers.z * 1e-3 * d.twist; // the section at z stands so far behind the middle of the face
       picture.classList.toggle("at-rest", !!layers.deformed);
+      const field = layers.deformed ? null : kept.sent.field, loads = fegearField.loaded(d, kept.place, loadAt);
+      fegearField.draw(inside, kept.view, field, { place: kept.place, loadAt, limit: more.limit(), measure: more.measure() });
+      picture.classList.toggle("filled", !!field);
       fegearLayers.gears(canvas, kept.view, layers);
+      fegearGlance.at(pair, d, kept.place, loads);
       more.draw();
       const first = d.start + kept.place * d.base_pitch; // the pair that came into contact last
       const degrees = (x, base) => x / base * 180 / Math.PI;
@@ -131,8 +148,11 @@ const fegearGears = (() => {
     let due = 0; // at most once in a frame
     kept.soon = () => { due ||= requestAnimationFrame(() => { due = 0; draw(); }); };
     kept.draw = draw;
+    kept.loadAt = loadAt;
     kept.take = more.take;
-    kept.retell = more.tell;
+    kept.retell = () => { more.tell(); more.rest(); };
+    kept.rest = more.rest;
+    kept.started = () => more.limit() > 0;
     kept.canvasIsThere = () => canvas.isConnected;
     shown.set(pair, kept);
     for (const content of waiting.get(pair)?.values() ?? []) kept.take(content);
@@ -143,6 +163,37 @@ const fegearGears = (() => {
   // ---- what is switched on -----------------------------------------------------------------------------------------
   function layersOf(pair, kept, draw) {
     const switches = document.createElement("p"), told = document.createElement("p"), scale = document.createElement("p");
+    const scales = document.createElement("div"), fieldScale = document.createElement("p");
+    scales.className = "mesh-scales";
+    fieldScale.className = "mesh-scale";
+    scales.append(fieldScale, scale);
+    fieldScale.hidden = true;
+    const which = document.createElement("select"), whichLabel = document.createElement("label");
+    whichLabel.className = "mesh-measure";
+    for (const [value, words] of [...Object.entries(fegearField.MEASURES).map(([name, [words]]) => [name, words]), ["none", "no stress inside"]]) {
+      which.append(Object.assign(document.createElement("option"), { value, textContent: words }));
+    }
+    which.setAttribute("aria-label", "Stress inside the teeth");
+    which.title = "Stress inside the teeth, from the loads of all pairs and the solved gears; deformed teeth are drawn without it";
+    which.value = fegearGlance.view().measure ?? "mises";
+    which.onchange = () => { fegearGlance.keep({ measure: which.value }); rest(); };
+    whichLabel.append(which);
+    let limit = 0;
+    const measure = () => (which.value === "none" ? "mises" : which.value);
+    function rest() { // the scale of the field, which stays while a value moves
+      const field = kept.sent.field, shown = field && which.value !== "none" && kept.data;
+      const wanted = shown ? fegearField.limitOf(field, kept.data, kept.loadAt, measure()) : 0;
+      if (wanted !== limit || !shown) limit = wanted;
+      fieldScale.hidden = !(limit > 0);
+      if (limit > 0) {
+        const title = document.createElement("span"), [words, signed] = fegearField.MEASURES[measure()], number = String(Number(limit.toPrecision(3)));
+        title.textContent = `${words}:`;
+        fieldScale.title = "The scale ends at the largest value on the fillets over the mesh. Beneath a contact the pressure is spread over 0.3 modules: Hertz's own peak, which is higher, is among the numbers.";
+        fieldScale.replaceChildren(title, ...bar(fegearField.stops(measure()), signed ? `−${number}` : "0", number, "MPa"));
+      }
+      kept.soon();
+    }
+    switches.append(whichLabel);
     const flanks = document.createElement("canvas"), pressed = document.createElement("p");
     switches.className = "mesh-tools";
     told.className = pressed.className = "quiet mesh-told";
@@ -203,13 +254,13 @@ const fegearGears = (() => {
       draw();
     }
     const has = (kind) => (kept.on[kind] && kept.sent[kind] && !kept.sent[kind].refused ? kept.sent[kind] : null);
-    function bar(kind, low, high, unit) { // a scale of colours with its ends
+    function bar(stops, low, high, unit) { // a scale of colours with its ends
       const strip = document.createElement("i"), ends = [low, high].map((one) => {
         const end = document.createElement("span");
         end.textContent = `${one} ${unit}`;
         return end;
       });
-      strip.style.background = `linear-gradient(to right, ${fegearLayers.stops(kind).join()})`;
+      strip.style.background = `linear-gradient(to right, ${stops.join()})`;
       return [ends[0], strip, ends[1]];
     }
     function tell() {
@@ -220,7 +271,7 @@ const fegearGears = (() => {
       if (stress) {
         const { largest, limit } = stress, number = limit.toPrecision(4), title = document.createElement("span");
         title.textContent = "tangential root stress:";
-        scale.replaceChildren(title, ...bar("stress", `−${number}`, number, "MPa"));
+        scale.replaceChildren(title, ...bar(fegearLayers.stops("stress"), `−${number}`, number, "MPa"));
         const wide = faced(), where = wide ? `, z = ${largest.z.toFixed(3)} mm` : "";
         const touches = wide ? "contact line crosses the middle of the face" : "pair touches";
         lines.push(`Largest root tension over the mesh cycle${wide ? " and the face" : ""}: ${largest.value.toPrecision(5)} MPa in the ${largest.member} gear, at radius `
@@ -252,7 +303,7 @@ const fegearGears = (() => {
       if (pressure) {
         const title = document.createElement("span");
         title.textContent = "Hertzian pressure:";
-        pressed.replaceChildren(title, ...bar("pressure", "0", pressure.limit.toPrecision(4), "MPa"), now);
+        pressed.replaceChildren(title, ...bar(fegearLayers.stops("pressure"), "0", pressure.limit.toPrecision(4), "MPa"), now);
       }
     }
     const now = document.createElement("span");
@@ -260,7 +311,11 @@ const fegearGears = (() => {
     return {
       tell,
       allow,
-      elements: [switches, scale, told, flanks, pressed],
+      elements: [switches, told, flanks, pressed],
+      scales,
+      rest,
+      limit: () => limit,
+      measure,
       now: () => ({ place: kept.place, factor: factor(), stress: has("stress"), deformed: has("deformed"), tool: has("tool"), z: sectionAt() }),
       draw() {
         const pressure = kept.sent.pressure;
@@ -269,7 +324,7 @@ const fegearGears = (() => {
         now.textContent = `at this position up to ${found.largest.toPrecision(4)} MPa; the scale leaves tips and form circles out. All flanks in contact are laid over each other.`;
       },
       take(content) {
-        const { kind } = content, made = content.refused ? content : { stress: fegearLayers.stressOf, deformed: fegearLayers.deformedOf }[kind]?.(content) ?? content;
+        const { kind } = content, made = content.refused ? content : { stress: fegearLayers.stressOf, deformed: fegearLayers.deformedOf, field: fegearField.made }[kind]?.(content) ?? content;
         kept.sent[kind] = content.gone ? null : made;
         if (kind in KINDS && kept.on[kind] === undefined) { // a page that opened later
           kept.on[kind] = true;
@@ -277,6 +332,7 @@ const fegearGears = (() => {
           allow(vain);
         }
         tell();
+        if (kind === "field" && (!limit || !fegear.isMoving())) rest();
         kept.soon(); // stress, deformed teeth and loads of one answer come one after the other
       },
     };
@@ -294,10 +350,19 @@ const fegearGears = (() => {
     meshed,
     plan(tasks) { // what is computed no longer is shown no longer
       for (const [pair, kept] of shown) {
-        if (kept.sent.pressure && !tasks.includes(`loaded-flanks of ${pair}`)) kept.take({ kind: "pressure", gone: true });
+        for (const [kind, stage] of [["pressure", "loaded-flanks"], ["field", "stress-inside"]]) {
+          if (kept.sent[kind] && !tasks.includes(`${stage} of ${pair}`)) kept.take({ kind, gone: true });
+        }
       }
     },
+    inside: (pair) => ({ field: shown.get(pair)?.sent.field, data: shown.get(pair)?.data, loadAt: shown.get(pair)?.loadAt }),
     frames: (pair) => shown.get(pair)?.frames ?? [],
-    loads({ pair, x, load }) { loadsOf.set(pair, { x, load }); shown.get(pair)?.soon(); },
+    rest() { for (const kept of shown.values()) kept.rest(); }, // nothing moves any more
+    loads({ pair, x, load }) {
+      loadsOf.set(pair, { x, load });
+      const kept = shown.get(pair);
+      if (kept && !kept.started()) kept.rest();
+      kept?.soon();
+    },
   };
 })();

@@ -18,10 +18,8 @@ const fegearHands = (() => {
 
   // ---- reliefs ----------------------------------------------------------------------------------------------------
   const sendRelief = throttled((content) => emitEvent("relief", content));
-  function placeHandles(figure, relief) {
-    const plot = figure.querySelector(".plot"), layout = plot._fullLayout;
-    let layer = plot.querySelector(".handles");
-    if (!layer) { layer = document.createElement("div"); layer.className = "handles"; plot.append(layer); }
+  function placeHandles(kept, relief) {
+    const { plot, layer } = kept;
     const wanted = relief.handles.flatMap((handle) => handle.end === "crowning" ? [{ handle, part: "amount" }] : [{ handle, part: "start" }, { handle, part: "amount" }]);
     const alone = (handle) => relief.handles.filter((one) => one.end === handle.end).length === 1;
     const buttons = [...layer.children];
@@ -33,13 +31,13 @@ const fegearHands = (() => {
       const kind = handle.end === "crowning" ? "crowning" : `${handle.end} relief`;
       const which = alone(handle) ? kind : `${kind} ${handle.index + 1}`;
       one.dataset.handle = `${relief.gear} ${handle.end}${alone(handle) ? "" : ` ${handle.index + 1}`} ${part}`;
-      const value = () => part === "start" ? `${handle.start.toFixed(3)} deg` : `${handle.amount.toFixed(2)} µm`;
-      one.setAttribute("aria-label", `${which} of gear ${relief.gear}: ${part}, ${value()}`);
-      one.title = `${which}, ${part}: ${value()}; drag it, or use the arrow keys`;
       const put = () => {
+        const value = part === "start" ? `${handle.start.toFixed(3)} deg` : `${handle.amount.toFixed(2)} µm`;
         const x = part === "start" ? handle.start : handle.at, y = part === "start" ? 0 : handle.amount;
-        one.style.left = `${layout.xaxis._offset + layout.xaxis.l2p(x)}px`;
-        one.style.top = `${layout.yaxis._offset + layout.yaxis.l2p(y)}px`;
+        one.style.left = `${plot.x(x)}px`;
+        one.style.top = `${plot.y(y)}px`;
+        one.setAttribute("aria-label", `${which} of gear ${relief.gear}: ${part}, ${value}`);
+        one.title = `${which}, ${part}: ${value}; drag it, or use the arrow keys`;
       };
       const send = (moving) => sendRelief({ gear: relief.gear, end: handle.end, index: handle.index, start: handle.start, amount: handle.amount, moving });
       const room = 0.01 * (relief.high - relief.low);
@@ -52,12 +50,13 @@ const fegearHands = (() => {
       one.onpointerdown = (event) => { one.setPointerCapture(event.pointerId); held = one; event.preventDefault(); one.focus(); };
       one.onpointermove = (event) => {
         if (held !== one) return;
-        const box = plot.getBoundingClientRect(), now = plot._fullLayout;
-        if (part === "start") handle.start = now.xaxis.p2l(event.clientX - box.x - now.xaxis._offset);
-        else handle.amount = now.yaxis.p2l(event.clientY - box.y - now.yaxis._offset);
-        within(); put(); send(true);
+        const before = { ...handle };
+        const box = plot.svg.getBoundingClientRect();
+        if (part === "start") handle.start = plot.atX(event.clientX - box.x);
+        else handle.amount = plot.atY(event.clientY - box.y);
+        within(); put(); kept.follow(before, handle); send(true);
       };
-      one.onpointerup = one.onpointercancel = () => { if (held === one) { held = null; send(false); } };
+      one.onpointerup = one.onpointercancel = () => { if (held === one) { held = null; send(false); kept.draw(); } };
       one.onkeydown = (event) => {
         const way = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: 1, ArrowDown: -1 }[event.key];
         if (!way) return;
@@ -67,6 +66,42 @@ const fegearHands = (() => {
       };
       put();
     });
+  }
+  function removal({ end, start, at, amount, power }, roll) { // of one part, as EndRelief and Crowning have it [um]
+    const share = end === "crowning" ? Math.abs(2 * roll - start - at) / (at - start) : Math.max(0, (roll - start) / (at - start));
+    return amount * share ** power;
+  }
+  function reliefOf(host, relief) { // a gear's relief over the roll angle, with its handles
+    const figure = document.createElement("figure"), title = document.createElement("div"), body = document.createElement("div"), layer = document.createElement("div");
+    figure.className = "relief";
+    figure.dataset.key = relief.figure.key;
+    title.className = "plot-title";
+    body.className = "small-body";
+    layer.className = "handles";
+    const kept = { figure, layer, plot: fegearPlots.plot(body), relief };
+    body.append(layer);
+    figure.append(title, body);
+    host.append(figure);
+    kept.draw = () => {
+      const { figure: spec, darker } = kept.relief, mine = held && layer.contains(held);
+      title.textContent = `${spec.heading}: removal [µm]`;
+      title.title = spec.caption;
+      // A handle that is held stays under the pointer: its axes do not change before it is let go of.
+      const done = kept.plot.draw(spec, 1, { held: mine ? "fixed" : false, pinned: fegearGlance.against(spec.key)?.spec, darker, words: `${spec.heading}. ${spec.caption}` });
+      if (done && !mine) placeHandles(kept, kept.relief);
+      if (done) figure.dataset.count = Number(figure.dataset.count ?? 0) + 1;
+    };
+    // The curve goes with the handle at once; what the server makes of it comes with the next answers.
+    kept.follow = (before, now) => {
+      const spec = kept.relief.figure, x = fegearPlots.numbers(spec.data[0].x), y = fegearPlots.numbers(spec.data[0].y);
+      const moved = Float64Array.from(y, (one, i) => one + removal(now, x[i]) - removal(before, x[i]));
+      const rest = spec.data.slice(1).map((one) => ({ ...one, x: [], y: [] })); // its points, which the handles cover
+      kept.relief = { ...kept.relief, figure: { ...spec, data: [{ ...spec.data[0], y: moved }, ...rest] } };
+      kept.draw();
+    };
+    kept.watch = new ResizeObserver(() => kept.draw());
+    kept.watch.observe(body);
+    return kept;
   }
   function reliefTools(figure, relief) {
     let tools = figure.querySelector(".tools");
@@ -107,37 +142,40 @@ const fegearHands = (() => {
       const number = Number(found[1]);
       if (kept.key !== load.key || kept.unit !== found[2] || number > 2 * kept.base || number < 0.02 * kept.base) kept.base = number;
       Object.assign(kept, { key: load.key, unit: found[2] });
-      words.textContent = `${load.key} of pair ${pair}`;
+      words.textContent = load.key;
+      slider.setAttribute("aria-label", `${load.key} of pair ${pair}`);
       slider.value = 100 * number / kept.base;
       value.textContent = load.text;
     };
     return kept;
   }
 
-  async function show({ pairs }, { made, paint, sections }) {
+  fegearFigure.dark.addEventListener("change", () => { for (const kept of shown.values()) for (const one of kept.plots.values()) one.draw(); });
+  async function show({ pairs }, { made, sections }) {
     for (const [pair, kept] of shown) {
-      if (!(pair in pairs) || !kept.host.isConnected) { fegearFigure.drop(kept.host); shown.delete(pair); sections.delete(`hand ${pair}`); sections.delete(`hand map ${pair}`); }
+      if (!(pair in pairs) || !kept.host.isConnected) { fegearFigure.drop(kept.map); kept.host.remove(); shown.delete(pair); sections.delete(`hand map ${pair}`); }
     }
     for (const [pair, content] of Object.entries(pairs)) {
       if (!shown.has(pair)) {
-        const host = made("section", "task hand");
+        const host = made("section", "hand");
+        host.dataset.pair = pair;
         host.append(made("h2", "", `Pair ${pair} by hand`));
-        const kept = { host };
+        const kept = { host, plots: new Map(), shown: new Map(), remarks: [] };
         kept.mesh = meshOf(pair, host);
-        kept.load = loadOf(pair, host);
+        kept.load = loadOf(pair, host.querySelector(".mesh-tools"));
         kept.map = made("div", "map");
         kept.map.append(made("div", "figures"));
+        document.getElementById("maps").append(kept.map);
         kept.reliefs = made("div", "reliefs");
-        kept.reliefs.append(made("div", "figures"), made("p", "tools pair-tools"));
-        host.append(kept.map, kept.reliefs);
+        kept.tools = made("p", "tools pair-tools");
+        host.append(kept.reliefs, kept.tools);
         document.getElementById("hands").append(host);
         shown.set(pair, kept);
-        sections.set(`hand ${pair}`, { element: kept.reliefs, specs: new Map(), shown: new Map(), darker: {} });
       }
-      const kept = shown.get(pair), section = sections.get(`hand ${pair}`);
+      const kept = shown.get(pair);
       kept.mesh.set(content.mesh);
       kept.load.set(content.load);
-      const tools = kept.host.querySelector(".pair-tools"), offered = content.load ? `${!!content.designs} ${content.reliefs.length}` : "";
+      const { tools } = kept, offered = content.load ? `${!!content.designs} ${content.reliefs.length}` : "";
       if (kept.offered !== offered) tools.replaceChildren(...(!content.designs && content.load ? [
         Object.assign(document.createElement("span"), { className: "quiet", textContent: "Reliefs by theory and the nearest that can be ground are those of plane teeth; tip relief, crowning and slope of gears with a width are what the result flank-design finds." }),
       ] : content.reliefs.length === 1 && content.load ? [
@@ -148,24 +186,40 @@ const fegearHands = (() => {
       ] : []));
       kept.offered = offered;
       for (const relief of content.reliefs) {
-        const key = relief.figure.key, text = JSON.stringify(relief);
-        if (section.shown.get(key) === text) continue;
-        section.shown.set(key, text);
-        section.darker = { ...section.darker, ...relief.darker };
-        section.specs.set(key, relief.figure);
-        await paint(section, key);
-        const figure = [...kept.reliefs.querySelectorAll("figure")].find((one) => one.dataset.key === key);
-        const plot = figure.querySelector(".plot");
-        if (!(held && figure.contains(held))) placeHandles(figure, relief);
-        reliefTools(figure, relief);
-        plot.removeAllListeners?.("plotly_afterplot");
-        plot.on?.("plotly_afterplot", () => { if (!held) placeHandles(figure, relief); });
+        const { key } = relief.figure, text = JSON.stringify(relief);
+        if (kept.shown.get(key) === text) continue;
+        kept.shown.set(key, text);
+        if (!kept.plots.has(key)) kept.plots.set(key, reliefOf(kept.reliefs, relief));
+        const one = kept.plots.get(key);
+        if (!(held && one.layer.contains(held))) one.relief = relief; // in the hand it is newer than any answer
+        else kept.shown.delete(key);
+        one.draw();
+        reliefTools(one.figure, relief);
       }
-      for (const figure of [...kept.reliefs.querySelectorAll(".figures figure")]) {
-        if (content.reliefs.some((one) => one.figure.key === figure.dataset.key)) continue;
-        section.shown.delete(figure.dataset.key);
-        fegearFigure.drop(figure);
+      for (const [key, one] of kept.plots) {
+        if (content.reliefs.some((other) => other.figure.key === key)) continue;
+        one.watch.disconnect();
+        one.figure.remove();
+        kept.shown.delete(key);
+        kept.plots.delete(key);
       }
+    }
+    fegearGlance.hands(pairs);
+    const names = [...shown.keys()];
+    for (const [pair, kept] of shown) {
+      kept.host.hidden = pair !== fegearGlance.pair();
+      const title = kept.host.querySelector("h2"), laid = names.join();
+      if (names.length < 2 || title.dataset.laid === laid) continue;
+      title.dataset.laid = laid;
+      const choice = document.createElement("select");
+      choice.setAttribute("aria-label", "Pair");
+      choice.append(...names.map((name) => Object.assign(document.createElement("option"), { value: name, textContent: `pair ${name}`, selected: name === pair })));
+      choice.onchange = () => {
+        fegearGlance.choose(choice.value);
+        for (const [name, other] of shown) other.host.hidden = name !== choice.value;
+        choice.value = pair;
+      };
+      title.replaceChildren(choice);
     }
   }
   // ---- the Harris map: made at rest, its present load followed while the slider moves -----------------------------------
@@ -192,5 +246,20 @@ const fegearHands = (() => {
     kept.now.section.shown.delete(kept.now.key); // it is another figure now, though it may come back to what it was
     return Plotly.restyle(plot, { x: [x, [load]], y: [te, [Math.max(...te) - Math.min(...te)]] }, at);
   }
-  return { show, harris, follow };
+  /** Puts a remark to the pair that it is about, folded; false where there is none. */
+  function remark(subject, words, made) {
+    const kept = shown.get(subject) ?? [...shown.values()].find((one) => [...one.plots.values()].some(({ relief }) => relief.gear === subject));
+    if (!kept) return false;
+    let fold = kept.host.querySelector(".hand-remarks");
+    if (!fold) {
+      fold = made("details", "hand-remarks");
+      fold.append(made("summary"), made("ul"));
+      kept.host.querySelector(".mesh-stage").append(fold);
+    }
+    const list = fold.querySelector("ul");
+    if (![...list.children].some((one) => one.textContent === words)) list.append(made("li", "", words));
+    fold.querySelector("summary").textContent = `${list.children.length} ${list.children.length === 1 ? "remark" : "remarks"}`;
+    return true;
+  }
+  return { show, harris, follow, remark, of: (subject) => shown.has(subject) };
 })();

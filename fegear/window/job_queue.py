@@ -187,6 +187,10 @@ class Asked(NamedTuple):
         Pair and kind of what is switched on at the gears in mesh.
     laid : int
         How many cases have lain on the desk before it: what was reported of those is forgotten.
+    pictures : tuple of str or None
+        Small pictures that are chosen at a glance (none: the usual ones); None where the case alone is wanted.
+    field : bool
+        Whether stress inside the teeth is shown.
     """
 
     text: str
@@ -197,6 +201,8 @@ class Asked(NamedTuple):
     sight: tuple[str, ...] = ()
     shows: tuple[tuple[str, str], ...] = ()
     laid: int = 0
+    pictures: tuple[str, ...] | None = None
+    field: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,7 +64,7 @@ def journal_folder() -> Path:
     return Path(platformdirs.user_state_dir("fegear", appauthor=False)) / "unsaved"
 
 
-def _stem(path: Path | None) -> str:
+def stem_of(path: Path | None) -> str:
     """How the journals of a case file begin, or those of cases without a file."""
     if path is None:
         return "unnamed"
@@ -95,7 +95,7 @@ class Journal:
         """
         folder = journal_folder()
         folder.mkdir(parents=True, exist_ok=True)
-        place = self._place or folder / f"{_stem(self._path)}-{secrets.token_hex(4)}.json"
+        place = self._place or folder / f"{stem_of(self._path)}-{secrets.token_hex(4)}.json"
         handle, scratch = tempfile.mkstemp(prefix=".", dir=folder)  # readable by its owner alone
         file = os.fdopen(handle, "w", encoding="utf-8")
         try:
@@ -142,7 +142,7 @@ class Journal:
 def left_behind(path: Path | None) -> list[Left]:
     """What windows that are no more kept of a case file, or of cases without one; the newest first."""
     found: list[tuple[float, Left]] = []
-    for place in journal_folder().glob(f"{_stem(path)}*.json"):
+    for place in journal_folder().glob(f"{stem_of(path)}*.json"):
         try:
             with place.open(encoding="utf-8") as file:
                 if not (_lock(file) and _is_still(file, place)):

@@ -272,5 +272,5 @@ const fegearLayers = (() => {
     });
     return { p, count, largest: Math.max(0, ...sent.positions[p].flatMap((line) => line[4])) };
   }
-  return { stressOf, deformedOf, gears, contactMoved, flanks, stops };
+  return { stressOf, deformedOf, gears, contactMoved, flanks, stops, unpack, between };
 })();

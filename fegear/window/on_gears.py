@@ -20,11 +20,14 @@ from fegear.results.gear.drawing import moving_pair, tool_envelope
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from numpy.typing import NDArray
+
     from fegear.base.arrays import Array
     from fegear.case.reading import Scene
     from fegear.results.pair.deformed_in_mesh import DeformedInMeshData
     from fegear.results.pair.loaded_flanks import LoadedWidePair
     from fegear.results.pair.stress_in_mesh import StressInMeshData
+    from fegear.results.pair.stress_inside import ToothStress
 
 
 #: Points along a fillet that are coloured.
@@ -56,6 +59,8 @@ def on_the_gears(task: Task, data: Any) -> dict[str, Any] | None:
         return {"pair": task.subject, "kind": "stress", **_stress(data)}
     if task.stage == "deformed-in-mesh":
         return {"pair": task.subject, "kind": "deformed", **_deformed(data)}
+    if task.stage == "stress-inside":
+        return {"pair": task.subject, "kind": "field", "gears": {m: _inside(one) for m, one in data.gears.items()}}
     if task.stage == "loaded-flanks":
         return {"pair": task.subject, "kind": "pressure", **_pressure(data)}
     return None
@@ -79,6 +84,15 @@ def _stress(data: StressInMeshData) -> dict[str, Any]:
             "radius": largest.radius * 1e3, "z": largest.z * 1e3,
             "at": _rolled(np.array([largest.roll]), start, pitch)[0],
         },
+    }  # fmt: skip
+
+
+def _inside(gear: ToothStress) -> dict[str, Any]:
+    table = gear.table
+    return {
+        "places": millimetres(gear.places), "triangles": table.triangles.ravel().tolist(),
+        "fillet": np.flatnonzero(table.fillet).tolist(), "roll": millimetres(gear.roll), "reach": table.reach,
+        "stress": packed(table.stress), "per_load": gear.per_load * 1e-6, "across": table.across,
     }  # fmt: skip
 
 
@@ -125,7 +139,7 @@ def _pressure(data: LoadedWidePair) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def packed(values: Array) -> dict[str, Any]:
+def packed(values: NDArray[np.floating[Any]]) -> dict[str, Any]:
     """Numbers as sixteen-bit steps of their largest, in base 64: 1.5e-5 of it is a step; NaN is `_NONE`."""
     step = float(np.nanmax(np.abs(values))) / _MOST or 1.0
     data = np.nan_to_num(np.round(values / step), nan=_NONE).astype("<i2").tobytes()
@@ -187,8 +201,13 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
     name : str
         Of the pair.
     """
-    found = {key: _plain(value) for key, value in asdict(moving_pair(scene.pairs[name])).items()}
-    return found | {"refused": {kind: _NOT_PLANE for kind in _STAGES if kind not in _stages(scene, name)}}
+    pair = scene.pairs[name]
+    found = {key: _plain(value) for key, value in asdict(moving_pair(pair)).items()}
+    ratios = {"transverse": pair.contact_ratio} | ({"overlap": pair.overlap_ratio} if pair.driver.helix_angle else {})
+    return found | {
+        "ratios": ratios,
+        "refused": {kind: _NOT_PLANE for kind in _STAGES if kind not in _stages(scene, name)},
+    }
 
 
 def _stages(scene: Scene, name: str) -> dict[str, str]:

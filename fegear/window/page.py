@@ -20,6 +20,7 @@ from fegear.output.report.page import plotly_file
 from fegear.window.bar import Bar
 from fegear.window.bench import TEMPLATES, gallery
 from fegear.window.document import Desk
+from fegear.window.glance import told_of_view
 from fegear.window.inputs import Inputs
 from fegear.window.journal import left_behind
 
@@ -35,11 +36,15 @@ _OF_THE_FORM = frozenset({"laid", "pinned", "unpinned", "refused", "exported", "
 
 
 #: What the page's scripts have no use for.
-_NOT_OF_THE_PAGE = frozenset({"changed", "pinned"})
+_NOT_OF_THE_PAGE = frozenset({"changed"})
 
 
 #: A value that has not moved for so long stands still [s].
 _STILL = 0.4
+
+
+#: Its own scripts, in their order.
+_SCRIPTS = ("moved", "window", "layers", "field", "plots", "glance", "gears", "hands")
 
 
 #: Where the page's own files are served.
@@ -55,11 +60,7 @@ def _serve_files() -> None:
     for folder, name in (
         (report, "figure.js"),
         (report, "page.css"),
-        (own, "moved.js"),
-        (own, "window.js"),
-        (own, "layers.js"),
-        (own, "gears.js"),
-        (own, "hands.js"),
+        *((own, f"{script}.js") for script in _SCRIPTS),
         (own, "window.css"),
     ):
         app.add_static_file(local_file=str(folder / name), url_path=f"{_AT}/{name}", max_cache_age=0)
@@ -76,7 +77,7 @@ class Page:
     def __init__(self, bench: Bench) -> None:
         self._bench = bench
         self._client = ui.context.client
-        with ui.element("div").style("width: 100%") as self._root:
+        with ui.element("div").classes("window").style("width: 100%") as self._root:
             pass
         self._bar: Bar | None = None
         self._inputs: Inputs | None = None
@@ -88,6 +89,7 @@ class Page:
         ui.on("name_driven", lambda event: self._by_hand(lambda: bench.name_driven(**event.args)))
         ui.on("design", lambda event: self._by_hand(lambda: bench.design(**event.args)))
         ui.on("shows", lambda event: bench.show(**event.args))
+        ui.on("view", lambda event: bench.see_otherwise(event.args))
         ui.on("sight", lambda event: bench.see(event.args["tasks"]))
         self._client.run_javascript(f"fegear.begin({json.dumps(template())}, {_AT + '/plotly.js'!r})")
         self._client.on_delete(bench.listen(self._hear))
@@ -103,15 +105,18 @@ class Page:
                 start_page(self._bench)
                 return
             self._bar = Bar(self._bench)
-            with ui.element("div").classes("bench"):
+            with ui.element("div").classes("bench").props("id=bench"):
                 with ui.element("div").classes("inputs").props('role=region aria-label="Case"'):
                     self._inputs = Inputs(self._bench)
                 with ui.element("main").classes("outputs").props('aria-label="Results"'):
-                    ui.element("ul").props("id=remarks")
-                    ui.element("div").props("id=hands")
-                    ui.element("div").props("id=designed")
-                    ui.element("div").props("id=compared")
-                    ui.element("div").props("id=results")
+                    with ui.element("div").props("id=glance"):
+                        ui.element("div").props("id=hands")
+                        ui.element("div").props('id=small role=region aria-label="Small pictures"')
+                        ui.element("div").props('id=strip role=region aria-label="Numbers"')
+                    with ui.element("div").props("id=report"):
+                        for name in ("remarks", "maps", "designed", "compared", "results"):
+                            ui.element("ul" if name == "remarks" else "div").props(f"id={name}")
+        self._client.run_javascript(f"fegearGlance.begin({json.dumps(told_of_view(self._bench.view))})")
         for what, content in self._bench.shown_now():
             self._send(what, content)
             if what == "done":
@@ -176,8 +181,8 @@ def show(bench: Bench) -> None:
     _serve_files()
     for name in ("page.css", "window.css"):
         ui.add_head_html(f'<link rel="stylesheet" href="{_AT}/{name}">')
-    for name in ("figure.js", "moved.js", "window.js", "layers.js", "gears.js", "hands.js"):
-        ui.add_head_html(f'<script src="{_AT}/{name}"></script>')
+    for name in ("figure", *_SCRIPTS):
+        ui.add_head_html(f'<script src="{_AT}/{name}.js"></script>')
     Page(bench)
 
 

@@ -130,8 +130,8 @@ def _serve(case: Path | None, port: int, computing: Computing, *, browser: bool,
     nicegui.app.on_shutdown(computing.close)
     nicegui.app.add_middleware(Doorkeeper, port=port, secret=secret)
     ui.run(
-        lambda: show(bench), host=HOST, port=port, title="fegear", dark=None, reload=False, show=False,
-        show_welcome_message=False, favicon="data:,", reconnect_timeout=30.0, tailwind=False,
+        lambda: show(bench), host=HOST, port=port, title="fegear", language="en-US", dark=None, reload=False,
+        show=False, show_welcome_message=False, favicon="data:,", reconnect_timeout=30.0, tailwind=False,
         gzip_middleware_factory=None, ws_per_message_deflate=False,  # nothing is far away
         message_history_length=100,  # each may be a figure of a hundred kilobytes
     )  # fmt: skip

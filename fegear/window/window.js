@@ -25,6 +25,7 @@ const fegear = (() => {
   }, { rootMargin: `${MARGIN}px` });
 
   // The server is told which results are in sight: those are computed before the others.
+  const owner = new Map(); // figure -> its task
   const seen = new Set();
   let telling = 0;
   const sight = new IntersectionObserver((entries) => {
@@ -94,7 +95,8 @@ const fegear = (() => {
       figure.dataset.key = key;
       const plot = made("div", "plot");
       plot.id = `plot-${key}`;
-      plot.setAttribute("role", "img");
+      plot.setAttribute("role", "group"); // plotly's own buttons are in it
+      plot.ariaLabel = `${spec.heading}. ${spec.caption}`;
       figure.append(made("div", "plot-title"), plot, made("figcaption"));
       host.append(figure);
       watch.observe(figure);
@@ -102,9 +104,9 @@ const fegear = (() => {
     const place = figure.querySelector(".plot"), drawn = place.classList.contains("js-plotly-plot");
     owners.set(figure, { kept, key });
     late.delete(figure);
-    if (drawn && away.has(figure)) { late.add(figure); return; } // painted when it comes into sight
+    if ((drawn && away.has(figure)) || !figure.checkVisibility()) { late.add(figure); return; } // painted when it comes into sight
     const words = `${spec.heading}. ${spec.caption}`;
-    if (place.ariaLabel !== words) {
+    if (figure.querySelector(".plot-title").textContent !== spec.heading || place.ariaLabel !== words) {
       figure.querySelector(".plot-title").textContent = spec.heading;
       figure.querySelector("figcaption").textContent = spec.caption;
       place.ariaLabel = words;
@@ -140,9 +142,9 @@ const fegear = (() => {
   let following = null;
   let moving = false; // whether a value is being moved
   let ended = ""; // what the last computation came to
-  const say = (words) => { if ($("state") && $("state").textContent !== words) $("state").textContent = words; };
+  const say = (words) => { if ($("state") && $("state").textContent !== words) Object.assign($("state"), { textContent: words, title: words }); };
   const heard = {
-    hands(content) { return fegearHands.show(content, { made, paint, sections }); },
+    hands(content) { return fegearHands.show(content, { made, sections }); },
     harris(content) {
       loadsNow.clear(); // of places on the way to where it stands now
       return fegearHands.harris(content, { paint, sections });
@@ -165,6 +167,7 @@ const fegear = (() => {
     begin({ number, count, title }) { say(`${number} of ${count}: ${title} ...`); },
     plan({ tasks }) {
       fegearGears.plan(tasks);
+      fegearGlance.plan(tasks, owner);
       for (const [task, kept] of sections) {
         if (task !== "compared" && !task.startsWith("hand ") && !tasks.includes(task)) { sight.unobserve(kept.element); seen.delete(task); drop(kept.element); sections.delete(task); }
       }
@@ -178,7 +181,9 @@ const fegear = (() => {
       for (const still of kept.element.querySelector(".stills").children) still.classList.add("old"); // drawn anew after all results
       answered(kept);
       kept.darker = darker;
-      for (const spec of figures) if (!spec.same) kept.specs.set(spec.key, spec);
+      for (const spec of figures) { if (!spec.same) kept.specs.set(spec.key, spec); owner.set(spec.key, task); }
+      fegearGlance.found(content);
+      for (const spec of figures) if (spec.key === enlarged?.key && !spec.same) await enlarge(spec.key, enlarged.words);
       kept.late = content;
       // While a value moves, what is out of sight waits until it is in sight or all is at rest.
       if (!moving || kept.element.hidden || seen.has(task)) await put(kept);
@@ -201,6 +206,7 @@ const fegear = (() => {
       answered(kept);
     },
     async done({ remarks, told, moving: goesOn, seconds, tolerance, level }) {
+      if (!goesOn) { fegearGears.rest(); fegearGlance.settle(); }
       ended = `${seconds.toFixed(2)} s at tolerance ${Number(tolerance.toPrecision(3))}${level}`;
       if (goesOn) return; // remarks and errors come when it stands still
       say(ended);
@@ -211,11 +217,13 @@ const fegear = (() => {
       document.body.classList.remove("computing");
       // A remark stands where its result is shown, else with the pair or gear that it is about; the rest above all.
       document.querySelectorAll(".remarks").forEach((one) => one.remove());
+      document.querySelectorAll(".hand-remarks").forEach((one) => one.remove());
       const placed = new Set();
       for (const [task, subject, remark] of told) {
-        const own = sections.get(task)?.element, hand = sections.get(`hand ${subject}`)?.element.closest("section");
-        const place = own && !own.hidden ? own : hand;
-        if (!place || placed.has(remark)) continue;
+        const own = sections.get(task)?.element;
+        if (fegearHands.remark(subject, remark, made)) placed.add(remark);
+        const place = own && !own.hidden ? own : null;
+        if (!place || (placed.has(remark) && !fegearHands.of(subject))) continue;
         placed.add(remark);
         if (!place.querySelector(":scope > .remarks")) place.querySelector(":scope > h2").after(made("ul", "remarks"));
         place.querySelector(":scope > .remarks").append(made("li", "", remark));
@@ -225,7 +233,9 @@ const fegear = (() => {
         const all = made("details"), list = made("ul", "all");
         list.append(...[...placed].map((one) => made("li", "", one)));
         all.append(made("summary", "", `${placed.size} ${placed.size === 1 ? "remark stands at its result" : "remarks stand at their results"}`), list);
-        rest.push(all);
+        const fold = made("li", "fold");
+        fold.append(all);
+        rest.push(fold);
       }
       $("remarks").replaceChildren(...rest);
     },
@@ -262,15 +272,47 @@ const fegear = (() => {
       kept.darker = darker;
       for (const spec of figures) { kept.specs.set(spec.key, spec); await paint(kept, spec.key); }
     },
-    unpinned() { if (sections.has("compared")) drop(sections.get("compared").element); sections.delete("compared"); },
+    pinned(content) { fegearGlance.pinned(content); },
+    unpinned() {
+      fegearGlance.unpinned();
+      if (sections.has("compared")) drop(sections.get("compared").element);
+      sections.delete("compared");
+    },
     laid() {
       sections.clear();
       unpainted.clear();
       seen.clear();
       sight.disconnect();
-      document.querySelectorAll("#results, #remarks, #compared, #designed, #hands").forEach((one) => [...one.children].forEach(drop));
+      owner.clear();
+      document.querySelectorAll("#results, #remarks, #compared, #designed, #maps, #hands").forEach((one) => [...one.children].forEach(drop));
     },
   };
+
+  // ---- a small picture, enlarged: the whole figure, which follows as well --------------------------------------------
+  let enlarged = null;
+  async function enlarge(key, words) {
+    await plotly;
+    const found = fegearGlance.spec(key);
+    if (!found) return;
+    let dialog = $("enlarged");
+    if (!dialog) {
+      dialog = made("dialog");
+      dialog.id = "enlarged";
+      const close = Object.assign(made("button", "button", "Close"), { type: "button", onclick: () => dialog.close() });
+      dialog.append(made("h2"), close, made("div", "plot"), made("p", "quiet"));
+      dialog.onclick = ({ target }) => { if (target === dialog) dialog.close(); };
+      dialog.onclose = () => { enlarged = null; Plotly.purge(dialog.querySelector(".plot")); };
+      document.body.append(dialog);
+    }
+    const again = enlarged?.key === key, mode = fegearFigure.theme(), { spec, darker } = found;
+    enlarged = { key, words };
+    if (!dialog.open) dialog.showModal();
+    dialog.setAttribute("aria-label", spec.heading);
+    dialog.querySelector("h2").textContent = spec.heading;
+    dialog.querySelector("p").textContent = spec.caption;
+    const shaded = shadesOf(JSON.stringify({ data: spec.data, layout: spec.layout }), mode, darker);
+    await draw(dialog.querySelector(".plot"), { key, ...shaded }, shadesOf(JSON.stringify(template), mode, darker), again);
+  }
 
   let line = Promise.resolve(); // one after the other: a figure is not painted twice at a time
   const newest = new Map(); // what is overtaken before its turn is not shown
@@ -312,5 +354,6 @@ const fegear = (() => {
   addEventListener("keydown", (event) => {
     if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); emitEvent("save"); }
   });
-  return { hear, hearAll(all) { for (const one of all) fegear.hear(...one); }, begin(look, address) { template = look; document.documentElement.dataset.ready = "yes"; fetchPlotly(address); } };
+  return { enlarge, isMoving: () => moving, showReport() { for (const kept of sections.values()) if (kept.late) line = line.then(() => put(kept)); },
+    hear, hearAll(all) { for (const one of all) fegear.hear(...one); }, begin(look, address) { template = look; document.documentElement.dataset.ready = "yes"; fetchPlotly(address); } };
 })();

@@ -18,6 +18,7 @@ from fegear.results.pair.loaded_teeth import teeth_of
 from fegear.window.computing import Sent
 from fegear.window.designs import design_asked, designed, draft_of
 from fegear.window.drag_handles import hands_of
+from fegear.window.glance import field_tasks, glance_tasks, numbers_of
 from fegear.window.job_queue import Compare, Compute, Design, Export, Inbox, Said, Unwanted
 from fegear.window.on_gears import on_the_gears, wanted_on_gears
 from fegear.window.order import HarrisMaps, in_order, load_now_of
@@ -174,7 +175,9 @@ class Worker:
 
         scene = scene_of(asked)
         more, at_once_told = wanted_on_gears(scene, asked.shows)
-        plan = make_plan(scene, STAGES, more)
+        more += field_tasks(scene) if asked.field else []
+        beside = glance_tasks(scene, asked.pictures) if asked.pictures is not None else []
+        plan = make_plan(scene, STAGES, [*beside, *more])
         if told:
             if asked.laid != self._laid:
                 self._laid, self._sent, self._meshes, self._on_gears = asked.laid, Sent(), {}, {}
@@ -260,6 +263,7 @@ class Worker:
             ],
             "darker": darker(figures),
             "draft": draft,
+            "numbers": numbers_of(outcome.values),
             "loads": None if loads is None else {
                 "pair": task.subject, "x": loads.column("x").si.tolist(), "load": loads.column("load").si.tolist(),
             },

@@ -47,7 +47,8 @@ TWICE = [
     {"key": "twice", "same": True},
 ]
 IDLE = "!document.body.classList.contains('computing')"
-DRAWN = f"{IDLE} && document.querySelector('#plot-load_sharing_I .main-svg') !== null"
+DRAWN = f"{IDLE} && document.querySelector('[data-picture=sharing] .small-plot path') !== null"
+PAINTED = f"{IDLE} && document.querySelector('#plot-load_sharing_I .main-svg') !== null"
 
 
 def outside_of_tests() -> dict[str, str]:
@@ -146,6 +147,11 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.until(f"{DRAWN} && {field('pair.I.load')} !== null")
     before = largest_load(browser)
 
+    # All results are a click away, and come when they are looked at.
+    assert browser.run("document.querySelector('.js-plotly-plot')") is None
+    browser.click(button("All results"))
+    browser.until(PAINTED)
+
     # Results that are overtaken before their turn have had a figure that the next ones name by its key alone.
     browser.run(f"for (const figure of {json.dumps(TWICE)}) fegear.hear('found', {{task: 'hand twice', title: 'Twice', "
                 "values: '', darker: {}, figures: [figure]})")  # fmt: skip
@@ -188,7 +194,8 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.media(prefers_color_scheme="light")
     browser.size(1300, 900)
 
-    # By hand: a point of a relief is dragged, the slider moved; one stroke is one step back.
+    # By hand, at a glance: a point of a relief is dragged, the slider moved; one stroke is one step back.
+    browser.click(button("At a glance"))
     browser.click(button("Add tip relief"))
     point = "document.querySelector('[data-handle=\"a tip amount\"]')"
     browser.until(f"{point} !== null && {IDLE}")
@@ -215,6 +222,8 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.run("document.querySelector('[data-slider]').focus()")
     press(browser, "ArrowRight", 39)
     browser.until("window.map !== undefined")
+    browser.click(button("All results"))
+    browser.until("document.querySelector('.map .main-svg') !== null")
     browser.run("document.querySelector('.map').scrollIntoView({block: 'center', behavior: 'instant'})")
     mark = "document.querySelector('.map .plot')._fullData.filter(one => one.name === map.pairs.I.now).at(-1)"
     shown = f"Math.round({mark}.x[0])"
@@ -228,8 +237,10 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.click(button("Undo"))
     browser.until(f"{shown} === 7000")
 
+    browser.click(button("At a glance"))
+
     # At the gears: the tool is drawn, what these compliances cannot tell is said.
-    drawn = "document.querySelector('.mesh-stage canvas').toDataURL()"
+    drawn = "document.querySelector('.mesh-stage canvas:not(.inside)').toDataURL()"
     empty = browser.run(drawn)
     browser.click(button("Tool"))
     browser.until(f"{drawn}.length > {len(empty)} + 2000")
@@ -301,6 +312,156 @@ STATE = """(async () => {
 })()"""
 
 
+PLANE = """results = ["load-sharing"]
+[gear.pinion]
+teeth = 21
+module = "3 mm"
+face_width = "30 mm"
+profile_shift = 0.3
+relief = { tip = { amount = "10 um", length = "4 mm" } }
+[gear.wheel]
+teeth = 53
+module = "3 mm"
+face_width = "30 mm"
+profile_shift = 0.1
+[pair.I]
+driver = "pinion"
+driven = "wheel"
+torque = "260 N*m"
+[effects]
+neighbour_coupling = true
+hertz = "load-dependent"
+relief = true
+[accuracy]
+tolerance = 0.01
+"""
+AT_ONCE = (".mesh-stage", "[data-picture=te] svg", "[data-picture=sharing] svg", "[data-picture=root] svg",
+           "[data-picture=harmonics] svg", "[data-key=relief_of_I_driver] svg", "[data-key=relief_of_I_driven] svg",
+           "#strip .cell:last-child", "[data-handle='pinion tip amount']", "[data-slider]")  # fmt: skip
+IN_SIGHT = """(names => names.filter((name) => {
+  const b = document.querySelector(name)?.getBoundingClientRect();
+  return !(b && b.width > 8 && b.height > 8 && b.x >= 0 && b.y >= 0
+    && b.right <= innerWidth && b.bottom <= innerHeight);
+}))"""
+#: Largest principal stress on the fillets of the teeth in contact over the mesh, from the tables of the page [MPa].
+INSIDE = """((member) => {
+  const { field, data, loadAt } = fegearGears.inside("I");
+  let most = 0;
+  for (let i = 0; i < 60; i += 1) {
+    const loads = fegearField.loaded(data, i / 60, loadAt);
+    for (const [pair] of loads) {
+      const value = fegearField.superposed(field, member, data, loads, pair, "tension");
+      for (const n of field.gears[member].fillet) most = Math.max(most, value[n]);
+    }
+  }
+  return most;
+})"""
+DRAWN_SO_FAR = """Object.fromEntries([...document.querySelectorAll('#glance [data-count]')].map((one) =>
+  [one.dataset.picture ?? one.dataset.key, Number(one.dataset.count)])
+  .concat([["inside", document.querySelector("canvas.inside").toDataURL()]]))"""
+
+
+def serious(browser) -> list[str]:
+    """What axe-core finds that is serious or worse, on the page as it is."""
+    axe = pytest.importorskip("axe_core_python", reason="axe-core is missing; pip install axe-core-python")
+    browser.run(Path(axe.__file__).with_name("axe.min.js").read_text("utf-8") + "; 0")
+    found = browser.run("axe.run(document).then(found => found.violations.filter(one => "
+                        "['serious', 'critical'].includes(one.impact)).flatMap(one => one.nodes.map(node => "
+                        "`${one.id}: ${node.html.slice(0, 120)} ${node.any.map(a => a.message)}`)))")  # fmt: skip
+    return list(found)
+
+
+def test_all_that_follows_a_dragged_point_is_in_sight_and_follows_while_it_moves(browser, serve, tmp_path):
+    path = tmp_path / "drive.toml"
+    path.write_text(PLANE)
+    served = serve(str(path))
+    browser.size(1300, 800)
+    go(browser, served.address)
+    browser.until(f"{DRAWN} && document.querySelector('.mesh-scales').textContent.includes('von Mises')")
+    browser.until("document.querySelector('[data-number=te_peak_to_peak] .error')?.textContent.startsWith('±')")
+    assert browser.run(f"{IN_SIGHT}({list(AT_ONCE)})") == []
+    assert browser.run("document.documentElement.scrollHeight <= innerHeight")
+    assert browser.run("document.documentElement.lang") == "en-US"
+
+    # Colours are the root stress of the run: superposed in the page from tables, against surface strains there.
+    for member in ("driver", "driven"):
+        told = browser.run(f"document.querySelector('[data-number=\"{member}.largest_root_tension\"] b').textContent")
+        assert browser.run(f"{INSIDE}('{member}')") == pytest.approx(float(told.split()[0]), rel=0.015)
+
+    # The gears stand where one pair touches within the relief, beside another.
+    browser.run("(one => { one.value = 300; one.oninput(); })(document.querySelector('.mesh-tools input'))")
+
+    # A point is dragged: while it is held all pictures change, its axes stand still, and it stays on its curve.
+    browser.click(button("Pin as A"))
+    browser.until("document.querySelector('[data-number=te_peak_to_peak] .from-a').textContent === 'as A'")
+    browser.run("new Promise(done => setTimeout(done, 300))")  # the strip has another line now, and all above moves up
+    point = "document.querySelector('[data-handle=\"pinion tip amount\"]')"
+    x, y = browser.run(f"(b => [b.x + b.width / 2, b.y + b.height / 2])({point}.getBoundingClientRect())")
+
+    def mouse(kind: str, lower: float) -> None:
+        browser("Input.dispatchMouseEvent", type=kind, x=x, y=y + lower, button="left", buttons=1, clickCount=1)
+
+    ticks = (
+        "[...document.querySelectorAll('[data-key=relief_of_I_driver] svg text')].map(one => one.textContent).join()"
+    )
+    axes, before, word = browser.run(ticks), browser.run(DRAWN_SO_FAR), browser.run(f"{point}.ariaLabel")
+    mouse("mousePressed", 0.0)
+    mouse("mouseMoved", -6.0)
+    mouse("mouseMoved", -12.0)
+    changed = " && ".join(f"now.{name} !== before.{name}" for name in ("te", "sharing", "root", "harmonics", "inside"))
+    browser.until(f"((now, before) => {changed})({DRAWN_SO_FAR}, {json.dumps(before)})")
+    mouse("mouseMoved", -60.0)
+    browser.until("document.body.classList.contains('computing') && document.querySelector("
+                  "'[data-number=te_peak_to_peak] .from-a').textContent.includes('%')")  # fmt: skip
+    assert browser.run(ticks) == axes
+    assert browser.run(f"{point}.ariaLabel") != word
+    assert browser.run(f"{point}.getBoundingClientRect().y + 11") == pytest.approx(y - 60.0, abs=1.5)
+    mouse("mouseReleased", -60.0)
+    browser.until(f"{IDLE} && document.querySelector('[data-number=te_peak_to_peak] .error').textContent !== ''")
+    tab = "[...document.querySelectorAll('.q-tab')].find(one => one.textContent === '{}')"
+    browser.click(tab.format("Text"))
+    browser.until("document.querySelector('textarea')?.value.includes('length = \"4 mm\"')")
+    text = tomllib.loads(browser.run("document.querySelector('textarea').value"))
+    browser.click(tab.format("Form"))
+    assert text["gear"]["pinion"]["relief"]["tip"]["length"] == "4 mm"  # the user's own words
+    assert float(text["gear"]["pinion"]["relief"]["tip"]["amount"].split()[0]) > 12.0
+
+    # A picture enlarged, others chosen; the choice is the window's, not the case's, and outlives it.
+    browser.click("document.querySelector('[data-picture=te] button')")
+    browser.until("document.querySelector('#enlarged[open] .main-svg') !== null")
+    browser.click(button("Close"))
+    before = path.read_text()
+    browser.run("document.querySelector('.choice').open = true")
+    browser.click("[...document.querySelectorAll('.choice label')].find(one => one.textContent === 'Mesh stiffness')")
+    browser.until("document.querySelector('[data-picture=stiffness] .small-plot path') !== null")
+    assert path.read_text() == before
+    go(browser, served.address)
+    browser.until("document.querySelector('[data-picture=stiffness] .small-plot path') !== null")
+
+    # Nothing that axe-core calls serious, on light and dark ground, at a glance and among all results.
+    for ground in ("dark", "light"):
+        browser.media(prefers_color_scheme=ground)
+        browser.until(f"{IDLE} && document.body.classList.contains('body--{ground}')")
+        browser.run("new Promise(done => setTimeout(done, 800))")  # colours change over a while
+        assert serious(browser) == []
+    browser.click(button("All results"))
+    browser.until("document.querySelector('#report .main-svg') !== null")
+    assert serious(browser) == []
+    browser.click(button("At a glance"))
+
+    # Narrow: the same parts below each other, nothing sticks out.
+    browser.size(420, 900)
+    browser.until("document.documentElement.scrollWidth <= innerWidth")
+    tops = browser.run("['.mesh-stage', '.reliefs', '#strip', '#small'].map("
+                       "one => document.querySelector(one).getBoundingClientRect().y)")  # fmt: skip
+    assert tops == sorted(tops)
+    browser.size(1300, 900)
+    assert [
+        one for one in browser.complaints if "favicon" not in one and "WebSocket" not in one and "ERR_" not in one
+    ] == []
+    served.end()
+
+
 @pytest.mark.long
 def test_a_page_on_which_values_were_moved_shows_what_a_fresh_page_shows(browser, serve, tmp_path):
     path = tmp_path / "drive.toml"
@@ -308,6 +469,8 @@ def test_a_page_on_which_values_were_moved_shows_what_a_fresh_page_shows(browser
     served = serve(str(path))
     go(browser, served.address)
     browser.until(f"{DRAWN} && {field('pair.I.load')} !== null")
+    browser.click(button("All results"))
+    browser.until(PAINTED)
     settled = json.loads(browser.run(STATE))
     browser.run("window.cheap = 0; const animate = Plotly.animate;"
                 "Plotly.animate = (...given) => { cheap += 1; return animate(...given); }")  # fmt: skip
@@ -332,7 +495,7 @@ def test_a_page_on_which_values_were_moved_shows_what_a_fresh_page_shows(browser
     browser.until(IDLE)
     moved = json.loads(browser.run(STATE))
     go(browser, served.address)
-    browser.until(DRAWN)
+    browser.until(PAINTED)  # it was left with all results
     fresh = json.loads(browser.run(STATE))
     assert moved.keys() == fresh.keys() == settled.keys()
     for name, one in fresh.items():

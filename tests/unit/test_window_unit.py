@@ -547,10 +547,35 @@ def test_every_part_of_a_relief_has_its_handle_and_moves_alone(tmp_path, several
     assert desk.text == text
     if several is LISTED:
         bench.move_relief("a", "tip", before["tip", 1].start, 5.0, moving=False, index=1)
-        changed = desk.text.replace("5.00 um", "4 um").splitlines()
-        assert [row for row in text.splitlines() if row not in changed] == ['length = "2 mm" # then this']
+        assert desk.text.replace("5.00 um", "4 um") == text.replace(
+            'hertz = "load-dependent"\n', 'hertz = "load-dependent"\nrelief = true\n'
+        )
         bench.drop_relief("a")
         assert desk.text.rstrip() == TWO.rstrip()
+
+
+@pytest.mark.parametrize(
+    ("key", "given"),
+    [("length", '"4 mm"'), ("start_radius", '"43 mm"'), ("start_roll_angle", '"25 deg"'), ("normalised_length", "0.8")],
+)
+def test_where_a_moved_relief_starts_is_said_by_the_key_that_the_user_chose(tmp_path, key, given):
+    bench = Bench(None)
+    bench.lay(Desk(f"{TWO}[gear.a.relief]\ntip = {{ amount = '10 um', {key} = {given} }}\n", "c", tmp_path))
+
+    def now():
+        (handle,) = handled_relief(scene_of(bench.asked()), "I", "driver").handles
+        return handle, value_at(bench.desk.document, ("gear", "a", "relief", "tip"))
+
+    before, kept = now()
+    bench.move_relief("a", "tip", before.start, 14.0, moving=False)
+    after, part = now()
+    assert part == kept | {"amount": "14.00 um"}  # its start is as the user wrote it
+    assert (after.start, after.amount) == (before.start, pytest.approx(14.0))
+    bench.move_relief("a", "tip", before.start + 1.25, 14.0, moving=False)
+    after, part = now()
+    assert part.keys() == kept.keys()
+    assert after.start == pytest.approx(before.start + 1.25, abs=1e-3)
+    assert after.amount == pytest.approx(14.0)
 
 
 def test_the_map_beside_the_slider_of_a_pair_with_a_width_is_that_of_runs_at_its_loads(tmp_path):

@@ -120,7 +120,25 @@ class SectorElements:
 
     def gradients_at_nodes(self) -> Array:
         """Gradients of the shape functions of every element at its own nodes, shape (M, n, 2, n) [1/modules]."""
-        places = _element(self.order).doflocs.T
+        return self._gradients_at(_element(self.order).doflocs.T)
+
+    def gradients_at_points(self) -> tuple[Array, Index]:
+        """Gradients of the shape functions at the mesh's six points of every element.
+
+        Returns
+        -------
+        gradients : ndarray, shape (M, n, 2, 6)
+            [1/modules].
+        points : ndarray of int, shape (M, 6)
+            Which of the mesh's points those are: corners, ascending, then the middle nodes between them.
+        """
+        middle = np.flatnonzero(self.edge_of_point >= 0)
+        point_of_edge = np.empty(middle.size, dtype=np.int64)
+        point_of_edge[self.edge_of_point[middle]] = middle
+        places = np.array([[0.0, 1.0, 0.0, 0.5, 0.5, 0.0], [0.0, 0.0, 1.0, 0.0, 0.5, 0.5]])
+        return self._gradients_at(places), np.hstack([self.element_nodes[:, :3], point_of_edge[self.grid.t2f.T]])
+
+    def _gradients_at(self, places: Array) -> Array:
         return _gradients(self._basis(quadrature=(places, np.ones(places.shape[1]))))
 
     def _basis(self, **at: Any) -> Any:

@@ -154,6 +154,10 @@ LINE_OF_ACTION = Axis("position on the line of action from the pitch point", "mm
 _PAIR_CHORD = 1e-3
 
 
+#: And those of a moving picture, which is drawn large: at 1e-3 a tip is three chords.
+_MOVING_CHORD = 2e-4
+
+
 #: Room above and below the pitch point [modules], and the same to the sides in pitches.
 _TALL, _WIDE = 3.0, 1.9
 
@@ -174,7 +178,7 @@ def roll_marks(pair: GearPair, member: Member) -> tuple[Mark, ...]:
     )
 
 
-def in_mesh(pair: GearPair, member: Member, teeth: int = 2) -> Array:
+def in_mesh(pair: GearPair, member: Member, teeth: int = 2, chord: float = _PAIR_CHORD) -> Array:
     """Outline of a gear's teeth near the pitch point, which is the origin; the flanks touch there, shape (2, N) [m].
 
     The driver lies below and turns clockwise; along the line of action it pushes to the right and up.
@@ -185,6 +189,8 @@ def in_mesh(pair: GearPair, member: Member, teeth: int = 2) -> Array:
     member : {"driver", "driven"}
     teeth : int
         How many on either side of the one that touches.
+    chord : float
+        How far chords may lie off the curves [modules].
 
     Returns
     -------
@@ -192,7 +198,7 @@ def in_mesh(pair: GearPair, member: Member, teeth: int = 2) -> Array:
         One line, from tooth to tooth.
     """
     gear = pair.gear(member)
-    shape = tooth_outline(gear.tooth, _PAIR_CHORD) * gear.module
+    shape = tooth_outline(gear.tooth, chord) * gear.module
     count = min(teeth, (gear.teeth - 1) // 2)
     way = (
         1 if member == "driver" else -1
@@ -352,8 +358,8 @@ def moving_pair(pair: GearPair) -> MovingPair:
     base = pair.driver.base_radius, pair.driven.base_radius
     share = pair.centre_distance / (base[0] + base[1])
     return MovingPair(
-        in_mesh(pair, "driver", _TEETH),
-        in_mesh(pair, "driven", _TEETH),
+        in_mesh(pair, "driver", _TEETH, _MOVING_CHORD),
+        in_mesh(pair, "driven", _TEETH, _MOVING_CHORD),
         base[0] * share,
         base[1] * share,
         *base,

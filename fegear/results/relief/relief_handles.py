@@ -11,13 +11,16 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.flank_modifications import described_relief
 from fegear.case.built.pair_inputs import gear_name
+from fegear.case.relief import STARTS as STARTS  # noqa: PLC0414  (for the window)
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Points
-from fegear.geometry.pair import active_profile
+from fegear.geometry.pair import MEMBERS, active_profile
 from fegear.geometry.relief import CombinedRelief, Crowning, EndRelief
 from fegear.results.gear.drawing import roll_marks
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fegear.case.reading import Scene
     from fegear.geometry.pair import Member
 
@@ -40,6 +43,10 @@ class Handle:
         Where it starts and where its amount is measured [deg]; a crowning's ends.
     amount : float
         [um].
+    power : float
+        Of the removal over the way from its start, or of a crowning from its middle.
+    base_radius : float
+        Of the gear [mm].
     """
 
     end: Literal["tip", "root", "crowning"]
@@ -47,6 +54,8 @@ class Handle:
     start: float
     amount: float
     at: float
+    power: float
+    base_radius: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +141,43 @@ def _handles(scene: Scene, gear: str, relief: object) -> list[Handle]:
         kinds += [(end, index) for index in range(len(getattr(part, end)))]
     found = [one for one in relief.parts if isinstance(one, (EndRelief, Crowning))]  # in the order of the keys
     return [
-        Handle(end, index, math.degrees(one.start), one.amount * 1e6, math.degrees(one.end))
+        Handle(
+            end, index, math.degrees(one.start), one.amount * 1e6, math.degrees(one.end),
+            one.power if isinstance(one, EndRelief) else 2.0, scene.gears[gear].base_radius * 1e3,
+        )
         for (end, index), one in zip(kinds, found, strict=True)
-    ]
+    ]  # fmt: skip
+
+
+def handle_of(scene: Scene, gear: str, end: str, index: int) -> Handle | None:
+    """One part of the relief of a gear as a case has it; None where it has no such part, or no pair has the gear."""
+    for name in scene.pairs:
+        for member in MEMBERS:
+            if gear_name(scene, name, member) == gear:
+                found = handled_relief(scene, name, member).handles
+                return next((one for one in found if (one.end, one.index) == (end, index)), None)
+    return None
+
+
+def start_as_given(given: Mapping[str, object], handle: Handle | None, start: float) -> tuple[str, str]:
+    """The key that says where a part of a relief starts, and what a case writes there; the key stays what it was.
+
+    Parameters
+    ----------
+    given : mapping
+        Keys of the part in the case.
+    handle : Handle or None
+        The part as it is; None for a new one.
+    start : float
+        Where it shall start [deg].
+    """
+    if handle is not None:
+        on = math.radians(start)
+        if "start_radius" in given:
+            return "start_radius", f'"{math.hypot(1.0, on) * handle.base_radius:.4f} mm"'
+        if "length" in given:
+            return "length", f'"{abs(math.radians(handle.at) - on) * handle.base_radius:.4f} mm"'
+        if "normalised_length" in given:
+            share = (handle.at - start) / (handle.at - handle.start)
+            return "normalised_length", f"{float(str(given['normalised_length'])) * share:.5g}"
+    return "start_roll_angle", f'"{start:.3f} deg"'

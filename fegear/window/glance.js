@@ -1,0 +1,193 @@
+"use strict";
+// One glance: small pictures on the right that follow what is moved, the numbers below with their errors and what they
+// differ from A, and what of it is kept: which pictures, which stress, whether the form is folded away.
+const fegearGlance = (() => {
+  const { plot, plain } = fegearPlots;
+  const $ = (id) => document.getElementById(id);
+  const RATIOS = { transverse: "contact ratio", overlap: "overlap ratio" };
+  let told = null, view = {}, pair = null, pairs = {};
+  let pinned = null; // of A: { specs, numbers }
+  const specs = new Map(), numbers = new Map(); // key -> { spec, darker }; name -> number
+  const plots = new Map(); // name of a picture -> what is drawn of it
+  let place = { marks: {} };
+  const made = (tag, cls, text) => {
+    const one = document.createElement(tag);
+    if (cls) one.className = cls;
+    if (text !== undefined) one.textContent = text;
+    return one;
+  };
+  const keep = (change) => { Object.assign(view, change); emitEvent("view", change); };
+
+  // ---- what is shown, and how ---------------------------------------------------------------------------------------
+  function apply() {
+    const none = !Object.keys(pairs).length, report = view.report || none;
+    document.body.classList.toggle("reporting", report);
+    document.body.classList.toggle("folded", !!view.folded);
+    for (const [id, on, words] of [["to-report", report, report ? "At a glance" : "All results"], ["to-fold", view.folded, view.folded ? "Show form" : "Fold form"]]) {
+      const one = $(id);
+      if (!one) continue;
+      one.textContent = words;
+      one.setAttribute("aria-pressed", String(!!on));
+      if (id === "to-report") one.hidden = none;
+    }
+    soon();
+  }
+  document.addEventListener("click", ({ target }) => {
+    const id = target.closest?.("button")?.id;
+    if (id === "to-report") { keep({ report: !view.report }); apply(); if (view.report) fegear.showReport(); }
+    if (id === "to-fold") { keep({ folded: !view.folded }); apply(); }
+  });
+  const chosen = () => {
+    const wide = pairs[pair]?.mesh?.wide, names = view.pictures?.length ? view.pictures : told?.usual[wide ? "wide" : "plane"] ?? [];
+    return names.filter((name) => told?.pictures[name]);
+  };
+
+  // ---- small pictures -----------------------------------------------------------------------------------------------
+  function lay() {
+    const host = $("small"), names = chosen(), wanted = JSON.stringify([pair, names]);
+    if (!host || !told || host.dataset.laid === wanted) return;
+    host.dataset.laid = wanted;
+    host.replaceChildren();
+    plots.clear();
+    for (const name of names) {
+      const one = told.pictures[name], figure = made("figure", "small"), title = made("button", "small-title", one.words);
+      Object.assign(title, { type: "button", title: `Enlarge: ${one.words}` });
+      figure.dataset.picture = name;
+      const body = made("div", "small-body"), empty = made("p", "quiet", "comes with the next results");
+      body.append(empty);
+      figure.append(title, body);
+      host.append(figure);
+      const kept = { ...plot(body), figure, title, empty, key: `${one.key}${pair}`, panel: one.panel, name };
+      title.onclick = body.onclick = () => fegear.enlarge(kept.key, one.words);
+      plots.set(name, kept);
+      watch.observe(body);
+    }
+    const choice = made("details", "choice"), list = made("div");
+    choice.append(made("summary", "", "Choose pictures"), list);
+    for (const [name, one] of Object.entries(told.pictures)) {
+      const label = made("label"), box = Object.assign(made("input"), { type: "checkbox", checked: names.includes(name) });
+      box.onchange = () => {
+        const next = Object.keys(told.pictures).filter((other) => (other === name ? box.checked : chosen().includes(other)));
+        keep({ pictures: next });
+        host.dataset.laid = "";
+        lay();
+        const again = host.querySelector(".choice");
+        again.open = true;
+        soon();
+      };
+      label.append(box, one.words);
+      list.append(label);
+    }
+    host.append(choice);
+  }
+  function drawAll() {
+    due = 0;
+    lay();
+    const moving = fegear.isMoving();
+    for (const kept of plots.values()) {
+      const found = specs.get(kept.key);
+      kept.empty.hidden = !!found;
+      kept.svg.toggleAttribute("hidden", !found);
+      if (!found || (kept.shown === found.spec && kept.theme === fegearFigure.theme() && kept.at === kept.size && kept.against === pinned)) { kept.mark?.(place.marks[kept.name] ?? []); continue; }
+      const { spec, darker } = found, y = spec.layout[`yaxis${kept.panel === 1 ? "" : kept.panel}`]?.title?.text ?? "";
+      const done = kept.draw(spec, kept.panel, { held: moving && "grows", pinned: pinned?.specs.get(kept.key)?.spec, darker, marks: place.marks[kept.name] ?? [], words: `${spec.heading}. ${spec.caption}` });
+      if (!done) continue;
+      Object.assign(kept, { shown: moving ? null : spec, theme: fegearFigure.theme(), at: kept.size, against: pinned });
+      const unit = /\[[^\]]*\]\s*$/.exec(plain(y))?.[0] ?? "", words = `${told.pictures[kept.name].words} ${unit}`;
+      if (kept.title.textContent !== words) kept.title.textContent = words;
+      kept.figure.dataset.count = Number(kept.figure.dataset.count ?? 0) + 1; // how often it was drawn
+    }
+    strip();
+  }
+  let due = 0;
+  const soon = () => { due ||= requestAnimationFrame(drawAll); };
+  const watch = new ResizeObserver((entries) => {
+    for (const { target } of entries) for (const kept of plots.values()) if (kept.figure.contains(target)) kept.size = `${target.clientWidth} ${target.clientHeight}`;
+    soon();
+  });
+  fegearFigure.dark.addEventListener("change", soon);
+
+  // ---- numbers ------------------------------------------------------------------------------------------------------
+  function difference(now, before) { // to A
+    if (!before || !Number.isFinite(now.value) || !Number.isFinite(before.value)) return "";
+    const off = now.value - before.value;
+    if (!off) return "as A";
+    const share = 100 * off / Math.abs(before.value), sign = off > 0 ? "+" : "−";
+    return `${sign}${Math.abs(share) < 1000 && before.value ? `${Number(Math.abs(share).toPrecision(2))} %` : Number(Math.abs(off).toPrecision(3))}`;
+  }
+  const cells = new Map(); // name -> elements of the strip
+  function strip() {
+    const host = $("strip");
+    if (!host || !told) return;
+    const wanted = told.numbers.map((name) => numbers.get(`${pair}.${name}`)).filter(Boolean);
+    const ratios = Object.entries(pairs[pair]?.mesh?.ratios ?? {}).map(([name, value]) => ({ name, label: RATIOS[name], text: value.toFixed(3), value, unit: "", error: "" }));
+    const all = [...wanted, ...ratios], laid = JSON.stringify([pair, all.map((one) => one.name)]);
+    if (host.dataset.laid !== laid) {
+      host.dataset.laid = laid;
+      cells.clear();
+      host.replaceChildren(...all.map((one) => {
+        const cell = made("div", "cell"), parts = [made("span", "label", one.label), made("b"), made("span", "error"), made("span", "from-a")];
+        cell.dataset.number = one.name;
+        cell.append(...parts);
+        cells.set(one.name, parts);
+        return cell;
+      }));
+    }
+    for (const one of all) {
+      const [, value, error, from] = cells.get(one.name), before = pinned?.numbers.get(`${pair}.${one.name}`);
+      for (const [place, words] of [[value, `${one.text}${one.unit ? ` ${one.unit}` : ""}`], [error, one.error ? `± ${one.error}` : ""], [from, pinned ? difference(one, before) : ""]]) {
+        if (place.textContent !== words) place.textContent = words;
+      }
+    }
+  }
+
+  // ---- what is heard ------------------------------------------------------------------------------------------------
+  function gather({ figures, numbers: values, darker }, into) {
+    for (const spec of figures) if (!spec.same) into.specs.set(spec.key, { spec, darker });
+    for (const [name, one] of Object.entries(values ?? {})) into.numbers.set(name, one);
+  }
+  return {
+    begin(content) {
+      told = content;
+      view = { ...content.view };
+      specs.clear();
+      numbers.clear();
+      pinned = null;
+      pairs = {};
+      apply();
+    },
+    view: () => view,
+    keep,
+    found(content) { gather(content, { specs, numbers }); soon(); },
+    plan(tasks, owners) { // what is computed no longer is shown no longer
+      for (const key of [...specs.keys()]) if (owners.has(key) && !tasks.includes(owners.get(key))) specs.delete(key);
+    },
+    hands(content) {
+      const before = Object.keys(pairs).length;
+      pairs = Object.fromEntries(Object.entries(content).map(([name, one]) => [name, { ...one, mesh: one.mesh ?? pairs[name]?.mesh }]));
+      if (!(pair in pairs)) pair = Object.keys(pairs)[0] ?? null;
+      if (before !== Object.keys(pairs).length || !document.body.dataset.pairs) apply();
+      document.body.dataset.pairs = Object.keys(pairs).length;
+      soon();
+    },
+    pair: () => pair,
+    choose(name) { pair = name; soon(); },
+    pinned(content) {
+      pinned = null;
+      if (content.found) { pinned = { specs: new Map(), numbers: new Map() }; for (const one of content.found) gather(one, pinned); }
+      soon();
+    },
+    unpinned() { pinned = null; soon(); },
+    spec: (key) => specs.get(key),
+    against: (key) => pinned?.specs.get(key),
+    at(name, d, share, loads) { // where the gears stand now
+      if (name !== pair) return;
+      const now = (d.start + share * d.base_pitch) * 1e3, all = loads.map(([, x]) => x * 1e3);
+      place = { marks: { te: [now], stiffness: [now], sharing: all, pressure: all, root: all } };
+      for (const kept of plots.values()) kept.mark?.(place.marks[kept.name] ?? []);
+    },
+    soon,
+    settle() { for (const kept of plots.values()) kept.shown = null; soon(); },
+    reporting: () => document.body.classList.contains("reporting"),
+  };
+})();

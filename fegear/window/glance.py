@@ -1,0 +1,175 @@
+"""What stands at one glance: small pictures that follow what is moved, and the numbers an engineer decides by.
+
+What a page was left with is kept for each case beside what it has unsaved: no part of the case, but of its window.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from fegear.base.errors import FegearError
+from fegear.engine.plan import make_plan
+from fegear.engine.stage import Task
+from fegear.output.numbers import plain_number, pretty_unit
+from fegear.output.report.blocks import value_cells
+from fegear.results.catalogue import STAGES
+from fegear.window.journal import journal_folder, stem_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from fegear.case.reading import Scene
+    from fegear.engine.outcome import Value
+
+
+class Picture(NamedTuple):
+    """A small picture: what it is called, the stage that makes its figure, that figure's key, and its panel."""
+
+    words: str
+    stage: str
+    key: str
+    panel: int = 1
+
+
+#: What the column on the right may show, by name; keys are followed by the pair's name.
+PICTURES = {
+    "te": Picture("Transmission error", "transmission-error", "transmission_error_"),
+    "sharing": Picture("Load on a tooth pair", "load-sharing", "load_sharing_"),
+    "root": Picture("Root stress", "root-stress-history", "root_stress_history_"),
+    "harmonics": Picture("Harmonics", "transmission-error", "transmission_error_harmonics_"),
+    "pressure": Picture("Contact pressure", "load-sharing", "load_sharing_", 2),
+    "stiffness": Picture("Mesh stiffness", "transmission-error", "transmission_error_", 2),
+    "line-load": Picture("Load over the face", "load-distribution", "load_over_face_"),
+    "pattern": Picture("Contact pattern", "contact-pattern", "contact_pattern_"),
+}
+#: What it shows where nobody has chosen: of plane pairs, and of those with a width.
+USUAL, USUAL_WIDE = ("te", "sharing", "root", "harmonics"), ("te", "line-load", "root", "harmonics")
+
+#: The numbers of the strip by the end of a value's name, in their order, and how they are called.
+NUMBERS = {
+    "te_peak_to_peak": "transmission error, p-p",
+    "mesh_stiffness_mean": "mesh stiffness, mean",
+    "driver.largest_root_tension": "root tension, driver",
+    "driven.largest_root_tension": "root tension, driven",
+    "largest_hertz_pressure": "contact pressure",
+    "driver.S_F": "S_F, driver",
+    "driven.S_F": "S_F, driven",
+    "driver.S_H": "S_H, driver",
+    "driven.S_H": "S_H, driven",
+}
+#: The stages that these come from beside the ones that are shown; a rating is asked for by the case.
+_ALWAYS = ("transmission-error", "load-sharing", "root-stress-history")
+
+
+def glance_tasks(scene: Scene, pictures: tuple[str, ...]) -> list[Task]:
+    """What has to be computed for the numbers and the small pictures, as far as the case can have it.
+
+    Parameters
+    ----------
+    scene : Scene
+    pictures : tuple of str
+        Names of `PICTURES` that are chosen; none for the usual ones.
+    """
+    usual = USUAL_WIDE if scene.wide_pairs else USUAL
+    names = dict.fromkeys((*_ALWAYS, *(PICTURES[one].stage for one in pictures or usual if one in PICTURES)))
+    stages = {stage.name: stage for stage in STAGES if stage.name in names}
+    return list(_possible(scene, [Task(name, one) for name in names for one in stages[name].subjects(scene)]))
+
+
+def field_tasks(scene: Scene) -> list[Task]:
+    """What has to be computed for the stress inside the teeth, of pairs whose gears are solved by finite elements."""
+    found = (one for one in scene.plane_pairs if scene.case.pair[one].compliance.source == "fe")
+    return list(_possible(scene, [Task("stress-inside", name) for name in found]))
+
+
+def _possible(scene: Scene, tasks: list[Task]) -> Iterator[Task]:
+    with contextlib.suppress(FegearError):  # as a rule all of them, which is found at once
+        make_plan(scene, STAGES, tasks)
+        yield from tasks
+        return
+    for task in tasks:
+        with contextlib.suppress(FegearError):  # what cannot be had is not asked for by the case; its place says so
+            make_plan(scene, STAGES, [task])
+            yield task
+
+
+def numbers_of(values: tuple[Value, ...]) -> dict[str, dict[str, Any]]:
+    """The values of a task that stand in the strip, by their names.
+
+    Returns
+    -------
+    dict
+        ``value``, ``text``, ``error`` (empty where it is not known), ``unit``, ``label`` and ``subject``.
+    """
+    found = {}
+    for value in values:
+        subject, _, name = value.name.partition(".")
+        if name not in NUMBERS:
+            continue
+        text, error = value_cells(value)
+        known = error not in ("exact", "not estimated")
+        found[value.name] = {
+            "value": value.value, "text": text if known else plain_number(value.value, 4),
+            "error": error if known else "", "unit": pretty_unit(value.unit), "label": NUMBERS[name],
+            "subject": subject, "name": name,
+        }  # fmt: skip
+    return found
+
+
+class View(NamedTuple):
+    """How a page was left.
+
+    Attributes
+    ----------
+    pictures : tuple of str
+        Names of `PICTURES`; none for the usual ones.
+    measure : str
+        Of the stress inside the teeth: ``mises``, ``tension``, ``pressure`` or ``none``.
+    folded : bool
+        Whether the form is out of the way.
+    report : bool
+        Whether all results are shown in place of the glance.
+    """
+
+    pictures: tuple[str, ...] = ()
+    measure: str = "mises"
+    folded: bool = False
+    report: bool = False
+
+    def changed(self, told: Mapping[str, Any]) -> View:
+        """The same with what a page says; what is none of its values stays."""
+        new = {name: told[name] for name in self._fields if isinstance(told.get(name), type(getattr(View(), name)))}
+        if isinstance(told.get("pictures"), list):
+            new["pictures"] = tuple(one for one in told["pictures"] if one in PICTURES)
+        return self._replace(**new)
+
+
+def told_of_view(view: View) -> dict[str, Any]:
+    """What a page that opens has to know: how it was left, and what may be chosen."""
+    return {
+        "view": view._asdict(), "usual": {"plane": USUAL, "wide": USUAL_WIDE}, "numbers": list(NUMBERS),
+        "pictures": {name: one._asdict() for name, one in PICTURES.items()},
+    }  # fmt: skip
+
+
+def read_view(case: Path | None) -> View:
+    """How the page of a case file, or of cases without one, was left; the usual view where nothing is known."""
+    with contextlib.suppress(OSError, ValueError):
+        found = json.loads(_place(case).read_text("utf-8"))
+        return View().changed(found) if isinstance(found, dict) else View()
+    return View()
+
+
+def keep_view(case: Path | None, view: View) -> None:
+    """Keep it for the next time; a folder that cannot be written to keeps nothing."""
+    with contextlib.suppress(OSError):
+        place = _place(case)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(json.dumps(view._asdict()), "utf-8")
+
+
+def _place(case: Path | None) -> Path:
+    return journal_folder() / "views" / f"{stem_of(case)}.json"

@@ -1,0 +1,183 @@
+"use strict";
+// Small plots: one panel of a figure as an SVG, quick enough to be drawn anew at every step of a value that moves.
+const fegearPlots = (() => {
+  const SVG = "http://www.w3.org/2000/svg";
+  const ROOM = { left: 46, right: 8, top: 6, bottom: 30 }; // about what is drawn [px]
+  const MOST_TICKS = 6, DASHES = { dash: "6 4", dot: "2 3", dashdot: "6 3 2 3" };
+
+  const node = (tag, attributes, parent) => {
+    const one = document.createElementNS(SVG, tag);
+    for (const [name, value] of Object.entries(attributes)) one.setAttribute(name, value);
+    parent?.append(one);
+    return one;
+  };
+  const unpacked = new WeakMap();
+  function numbers(array) { // of a trace
+    if (!array) return [];
+    if (!array.bdata) return array;
+    if (!unpacked.has(array)) unpacked.set(array, new Float64Array(Uint8Array.from(atob(array.bdata), (one) => one.charCodeAt(0)).buffer));
+    return unpacked.get(array);
+  }
+  const anchor = (panel) => (panel === 1 ? "" : String(panel));
+  const ofPanel = (spec, panel) => spec.data.filter((one) => (one.yaxis ?? "y") === `y${anchor(panel)}` && (one.xaxis ?? "x") === `x${anchor(panel)}`);
+  function endsOf(arrays) {
+    let low = Infinity, high = -Infinity;
+    for (const array of arrays) for (const one of numbers(array)) { if (one < low) low = one; if (one > high) high = one; }
+    return low <= high ? [low, high] : [0, 1];
+  }
+  function step(span, most) { // 1, 2 or 5 times a power of ten
+    const power = 10 ** Math.floor(Math.log10(span / most)), times = span / most / power;
+    return power * (times <= 1 ? 1 : times <= 2 ? 2 : times <= 5 ? 5 : 10);
+  }
+  function ticks([low, high], most) {
+    const by = step(high - low, most), found = [];
+    for (let i = Math.ceil(low / by - 1e-9); i * by <= high + 1e-9 * by; i += 1) found.push(i * by);
+    return [found, Math.max(0, -Math.floor(Math.log10(by) + 1e-9))];
+  }
+  function rangesOf(spec, panel, held) {
+    const traces = ofPanel(spec, panel), name = anchor(panel), found = {};
+    for (const way of ["x", "y"]) {
+      const axis = spec.layout[`${way}axis${name}`] ?? {};
+      if (axis.range && !axis.type?.startsWith("log")) { found[way] = axis.range.map(Number); continue; }
+      let [low, high] = endsOf(traces.map((one) => one[way]));
+      if (way === "y" && (traces.some((one) => one.type === "bar") || axis.rangemode === "tozero")) { low = Math.min(low, 0); high = Math.max(high, 0); }
+      const bars = way === "x" && traces.some((one) => one.type === "bar") ? 0.6 : 0, room = way === "y" ? 0.08 * (high - low || Math.abs(high) || 1) : 0;
+      found[way] = [low - bars - (low === 0 ? 0 : room), high + bars + room];
+      if (found[way][0] === found[way][1]) found[way] = [low - 1, high + 1];
+    }
+    // While a value moves an axis only grows: it would be hard to see what moves otherwise.
+    if (held) found.y = [Math.min(found.y[0], held.y[0]), Math.max(found.y[1], held.y[1])];
+    return found;
+  }
+  const plain = (text) => text.replace(/<[^>]*>/g, "");
+
+  function fitting(text, most) { // words from the end are left away, but for the unit
+    const [, words, unit] = /^(.*?)\s*(\[[^\]]*\])?$/.exec(text), kept = words.split(" ");
+    while (kept.length > 1 && kept.join(" ").length + (unit?.length ?? 0) > most) kept.pop();
+    while (kept.length > 1 && ["the", "of", "on", "from", "over", "one", "in"].includes(kept.at(-1))) kept.pop();
+    return [...kept, unit].filter(Boolean).join(" ");
+  }
+
+  /** A small plot in a place; `draw` shows a figure's panel. */
+  function plot(host) {
+    const svg = node("svg", { class: "small-plot", role: "img" }, host);
+    const kept = { svg, ranges: null, box: null };
+    kept.x = (value) => kept.box.x0 + (value - kept.ranges.x[0]) / (kept.ranges.x[1] - kept.ranges.x[0]) * (kept.box.x1 - kept.box.x0);
+    kept.y = (value) => kept.box.y0 - (value - kept.ranges.y[0]) / (kept.ranges.y[1] - kept.ranges.y[0]) * (kept.box.y0 - kept.box.y1);
+    kept.atX = (px) => kept.ranges.x[0] + (px - kept.box.x0) / (kept.box.x1 - kept.box.x0) * (kept.ranges.x[1] - kept.ranges.x[0]);
+    kept.atY = (px) => kept.ranges.y[0] + (kept.box.y0 - px) / (kept.box.y0 - kept.box.y1) * (kept.ranges.y[1] - kept.ranges.y[0]);
+    kept.mark = (places) => { // places along x, moved without drawing anything else anew
+      if (!kept.box || !kept.nows) return;
+      const { y0, y1 } = kept.box, wanted = places.filter((x) => x >= kept.ranges.x[0] && x <= kept.ranges.x[1]);
+      while (kept.nows.childNodes.length > wanted.length) kept.nows.lastChild.remove();
+      wanted.forEach((x, i) => {
+        const one = kept.nows.childNodes[i] ?? node("line", { class: "now" }, kept.nows);
+        for (const [name, value] of [["x1", kept.x(x)], ["x2", kept.x(x)], ["y1", y0], ["y2", y1]]) one.setAttribute(name, value);
+      });
+    };
+    let shade = (colour) => colour; // on the ground as it is
+    function path(trace) {
+      const x = numbers(trace.x), y = numbers(trace.y);
+      let line = "", down = false;
+      for (let i = 0; i < x.length; i += 1) {
+        if (!Number.isFinite(y[i]) || !Number.isFinite(x[i])) { down = false; continue; }
+        line += `${down ? "L" : "M"}${kept.x(x[i]).toFixed(1)},${kept.y(y[i]).toFixed(1)}`;
+        down = true;
+      }
+      return line;
+    }
+    function curve(trace, group, pinned) {
+      const colour = shade(trace.line?.color ?? trace.marker?.color ?? "currentColor");
+      if (trace.type === "bar") {
+        const x = numbers(trace.x), y = numbers(trace.y), half = pinned ? 0.45 : 0.36;
+        for (let i = 0; i < x.length; i += 1) {
+          const a = kept.y(0), b = kept.y(y[i]);
+          node("rect", { x: kept.x(x[i] - half), width: kept.x(x[i] + half) - kept.x(x[i] - half), y: Math.min(a, b), height: Math.abs(a - b),
+            ...(pinned ? { class: "pinned-bar" } : { fill: colour }) }, group);
+        }
+        return;
+      }
+      if (trace.type !== "scatter" || (trace.fill === "toself" && pinned)) return;
+      const { mode = "lines" } = trace, line = path(trace);
+      if (trace.fill === "toself") node("path", { d: `${line}Z`, fill: shade(trace.fillcolor), stroke: "none" }, group);
+      else if (mode.includes("lines")) {
+        if (trace.fill) node("path", { d: `${line}V${kept.y(0).toFixed(1)}`, fill: shade(trace.fillcolor), stroke: "none" }, group);
+        node("path", { d: line, ...(pinned ? { class: "pinned" } : { stroke: colour, "stroke-width": trace.line?.width ?? 2, "stroke-dasharray": DASHES[trace.line?.dash] ?? "none" }), fill: "none" }, group);
+      } else if (!pinned) {
+        const x = numbers(trace.x), y = numbers(trace.y);
+        for (let i = 0; i < x.length; i += 1) node("circle", { cx: kept.x(x[i]), cy: kept.y(y[i]), r: 3, fill: colour }, group);
+      }
+    }
+    function map(trace, group) { // a map in colour
+      const x = numbers(trace.x), y = numbers(trace.y), z = numbers(trace.z), { zmin, zmax } = trace, wide = x.length, tall = y.length;
+      const canvas = Object.assign(document.createElement("canvas"), { width: wide, height: tall }), context = canvas.getContext("2d");
+      const image = context.createImageData(wide, tall), shades = fegearLayers.stops("pressure").map((one) => [1, 3, 5].map((i) => parseInt(one.slice(i, i + 2), 16)));
+      for (let row = 0; row < tall; row += 1) for (let i = 0; i < wide; i += 1) {
+        const value = z[row * wide + i], to = 4 * ((tall - 1 - row) * wide + i);
+        if (!Number.isFinite(value)) continue;
+        const at = Math.max(0, Math.min(1, (value - zmin) / (zmax - zmin))) * (shades.length - 1), k = Math.min(Math.floor(at), shades.length - 2);
+        for (let c = 0; c < 3; c += 1) image.data[to + c] = shades[k][c] + (shades[k + 1][c] - shades[k][c]) * (at - k);
+        image.data[to + 3] = 255;
+      }
+      context.putImageData(image, 0, 0);
+      const [low, high] = [endsOf([trace.x]), endsOf([trace.y])];
+      node("image", { href: canvas.toDataURL(), x: kept.x(low[0]), y: kept.y(high[1]), width: kept.x(low[1]) - kept.x(low[0]),
+        height: kept.y(high[0]) - kept.y(high[1]), preserveAspectRatio: "none" }, group);
+    }
+    /** Draws a panel of a figure: `held`: keep its axes; `pinned`: the same figure of A; `marks`: places along x. */
+    kept.draw = (spec, panel = 1, { held = false, pinned = null, marks = [], words = "", darker = {} } = {}) => {
+      const { width, height } = svg.getBoundingClientRect();
+      if (width < 40 || height < 40) return false;
+      kept.box = { x0: ROOM.left, x1: width - ROOM.right, y0: height - ROOM.bottom, y1: ROOM.top };
+      shade = fegearFigure.theme() === "dark" ? (colour) => (typeof colour === "string" && darker[colour.slice(0, 7)] ? darker[colour.slice(0, 7)] + colour.slice(7) : colour) : (colour) => colour;
+      kept.ranges = rangesOf(spec, panel, held && kept.ranges);
+      if (held === "fixed" && kept.fixed) kept.ranges = kept.fixed; else kept.fixed = kept.ranges;
+      if (pinned && !held) {
+        const other = rangesOf(pinned, panel, null), own = spec.layout[`yaxis${anchor(panel)}`]?.range;
+        if (!own) kept.ranges.y = [Math.min(kept.ranges.y[0], other.y[0]), Math.max(kept.ranges.y[1], other.y[1])];
+      }
+      const { x0, x1, y0, y1 } = kept.box, group = node("g", {});
+      const id = (kept.id ??= `clip-${Math.random().toString(36).slice(2)}`), clip = node("clipPath", { id }, group);
+      node("rect", { x: x0, y: y1, width: x1 - x0, height: y0 - y1 }, clip);
+      for (const [way, most] of [["x", Math.max(2, Math.min(MOST_TICKS, (x1 - x0) / 60))], ["y", Math.max(2, Math.min(MOST_TICKS, (y0 - y1) / 24))]]) {
+        const [at, digits] = ticks(kept.ranges[way], most);
+        for (const one of at) {
+          const text = Math.abs(one) >= 1e5 ? one.toExponential(0) : one.toFixed(digits).replace("-", "−"), px = kept[way](one);
+          if (way === "x") node("text", { x: px, y: y0 + 12, "text-anchor": "middle" }, group).textContent = text;
+          else {
+            node("line", { x1: x0, x2: x1, y1: px, y2: px, class: one === 0 ? "zero" : "grid" }, group);
+            node("text", { x: x0 - 4, y: px + 3.5, "text-anchor": "end" }, group).textContent = text;
+          }
+        }
+      }
+      const axes = spec.layout[`xaxis${anchor(panel)}`]?.title?.text;
+      if (axes) node("text", { x: (x0 + x1) / 2, y: y0 + 25, "text-anchor": "middle", class: "axis" }, group).textContent = fitting(plain(axes), (x1 - x0 + 2 * ROOM.right) / 5.4);
+      const inner = node("g", { "clip-path": `url(#${id})` }, group);
+      let last = -Infinity;
+      for (const shape of spec.layout.shapes ?? []) {
+        if (shape.xref !== `x${anchor(panel)}` || shape.x0 !== shape.x1) continue;
+        node("line", { x1: kept.x(shape.x0), x2: kept.x(shape.x0), y1: y0, y2: y1, class: "mark" }, inner);
+      }
+      for (const note of [...spec.layout.annotations ?? []].sort((one, other) => one.x - other.x)) {
+        if (note.xref !== `x${anchor(panel)}` || !note.text || note.text.length > 3) continue;
+        const px = Math.max(kept.x(note.x) + 3, last + 10); // letters of places next to each other stand side by side
+        last = px;
+        node("text", { x: px, y: y1 + 9, class: "letter" }, inner).textContent = note.text;
+      }
+      const traces = ofPanel(spec, panel);
+      for (const trace of traces) if (trace.type === "heatmap") map(trace, inner);
+      if (pinned) for (const trace of ofPanel(pinned, panel)) curve(trace, inner, true);
+      for (const trace of traces) curve(trace, inner, false);
+      kept.nows = node("g", {}, inner);
+      kept.mark(marks);
+      node("rect", { x: x0, y: y1, width: x1 - x0, height: y0 - y1, class: "frame" }, group);
+      kept.drawn?.remove();
+      kept.drawn = group;
+      svg.prepend(group);
+      if (words && svg.getAttribute("aria-label") !== words) svg.setAttribute("aria-label", words);
+      return true;
+    };
+    return kept;
+  }
+  return { plot, node, numbers, ofPanel, plain };
+})();
