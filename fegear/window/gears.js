@@ -16,6 +16,7 @@ const fegearGears = (() => {
     parent?.append(one);
     return one;
   };
+  const digits = (value, count) => String(Number(value.toPrecision(count))); // 10100, where toPrecision writes 1.010e+4
   const button = (words, title, pressed) => {
     const one = document.createElement("button");
     Object.assign(one, { type: "button", className: "button", textContent: words, title, onclick: pressed });
@@ -139,7 +140,7 @@ const fegearGears = (() => {
           const look = beside ? " beside" : "";
           svg("line", { x1: px, y1: py, x2: qx, y2: qy, class: `load${look}` }, kept.arrows);
           svg("path", { d: `M${qx + tip * c},${qy + tip * s}L${qx - 0.5 * tip * s},${qy + 0.5 * tip * c}L${qx + 0.5 * tip * s},${qy - 0.5 * tip * c}Z`, class: `load-tip${look}` }, kept.arrows);
-          found.push(`${load.toPrecision(4)} N at x = ${(x * 1e3).toFixed(3)} mm${beside ? " (pale: not in this section)" : ""}`);
+          found.push(`${digits(load, 4)} N at x = ${(x * 1e3).toFixed(3)} mm${beside ? " (pale: not in this section)" : ""}`);
         }
       }
       told.textContent = found.length ? found.join(", ") : `roll position ${(first * 1e3).toFixed(3)} mm`;
@@ -186,7 +187,7 @@ const fegearGears = (() => {
       if (wanted !== limit || !shown) limit = wanted;
       fieldScale.hidden = !(limit > 0);
       if (limit > 0) {
-        const title = document.createElement("span"), [words, signed] = fegearField.MEASURES[measure()], number = String(Number(limit.toPrecision(3)));
+        const title = document.createElement("span"), [words, signed] = fegearField.MEASURES[measure()], number = digits(limit, 3);
         title.textContent = `${words}:`;
         fieldScale.title = "The scale ends at the largest value on the fillets over the mesh. Beneath a contact the pressure is spread over 0.3 modules: Hertz's own peak, which is higher, is among the numbers.";
         fieldScale.replaceChildren(title, ...bar(fegearField.stops(measure()), signed ? `−${number}` : "0", number, "MPa"));
@@ -269,12 +270,12 @@ const fegearGears = (() => {
       section.hidden = !faced();
       label.hidden = !kept.on.deformed;
       if (stress) {
-        const { largest, limit } = stress, number = limit.toPrecision(4), title = document.createElement("span");
+        const { largest, limit } = stress, number = digits(limit, 4), title = document.createElement("span");
         title.textContent = "tangential root stress:";
         scale.replaceChildren(title, ...bar(fegearLayers.stops("stress"), `−${number}`, number, "MPa"));
         const wide = faced(), where = wide ? `, z = ${largest.z.toFixed(3)} mm` : "";
         const touches = wide ? "contact line crosses the middle of the face" : "pair touches";
-        lines.push(`Largest root tension over the mesh cycle${wide ? " and the face" : ""}: ${largest.value.toPrecision(5)} MPa in the ${largest.member} gear, at radius `
+        lines.push(`Largest root tension over the mesh cycle${wide ? " and the face" : ""}: ${digits(largest.value, 5)} MPa in the ${largest.member} gear, at radius `
           + `${largest.radius.toFixed(3)} mm${where}, while its ${touches} at x = ${largest.x.toFixed(3)} mm (ring).`);
         if (wide) {
           const span = wide.z.at(-1) - wide.z[0];
@@ -287,7 +288,7 @@ const fegearGears = (() => {
         slider.value = Math.round(100 * Math.log10(factor()));
         value.textContent = `${factor()} ×`;
         lines.push(`Displacements, transmission error and relief are drawn ${factor()} times as large (largest: `
-          + `${deformed.largest.toPrecision(3)} µm); pale lines show the gears at rest. Flanks that carry load touch at the dots; `
+          + `${digits(deformed.largest, 3)} µm); pale lines show the gears at rest. Flanks that carry load touch at the dots; `
           + "beside them, and where teeth do not touch, they may seem to overlap, for gaps are drawn as they are.");
       }
       if (has("tool")) lines.push("The profile is the envelope of the tool's positions.");
@@ -303,7 +304,7 @@ const fegearGears = (() => {
       if (pressure) {
         const title = document.createElement("span");
         title.textContent = "Hertzian pressure:";
-        pressed.replaceChildren(title, ...bar(fegearLayers.stops("pressure"), "0", pressure.limit.toPrecision(4), "MPa"), now);
+        pressed.replaceChildren(title, ...bar(fegearLayers.stops("pressure"), "0", digits(pressure.limit, 4), "MPa"), now);
       }
     }
     const now = document.createElement("span");
@@ -321,7 +322,7 @@ const fegearGears = (() => {
         const pressure = kept.sent.pressure;
         if (!pressure || !kept.data) return;
         const found = fegearLayers.flanks(flanks, kept.data, pressure, kept.place, faced() ? sectionAt() : null);
-        now.textContent = `at this position up to ${found.largest.toPrecision(4)} MPa; the scale leaves tips and form circles out. All flanks in contact are laid over each other.`;
+        now.textContent = `at this position up to ${digits(found.largest, 4)} MPa; the scale leaves tips and form circles out. All flanks in contact are laid over each other.`;
       },
       take(content) {
         const { kind } = content, made = content.refused ? content : { stress: fegearLayers.stressOf, deformed: fegearLayers.deformedOf, field: fegearField.made }[kind]?.(content) ?? content;

@@ -92,7 +92,7 @@ const fegearGlance = (() => {
       const { spec, darker } = found, y = spec.layout[`yaxis${kept.panel === 1 ? "" : kept.panel}`]?.title?.text ?? "";
       const done = kept.draw(spec, kept.panel, { held: moving && "grows", pinned: pinned?.specs.get(kept.key)?.spec, darker, marks: place.marks[kept.name] ?? [], words: `${spec.heading}. ${spec.caption}` });
       if (!done) continue;
-      Object.assign(kept, { shown: moving ? null : spec, theme: fegearFigure.theme(), at: kept.size, against: pinned });
+      Object.assign(kept, { shown: spec, theme: fegearFigure.theme(), at: kept.size, against: pinned });
       const unit = /\[[^\]]*\]\s*$/.exec(plain(y))?.[0] ?? "", words = `${told.pictures[kept.name].words} ${unit}`;
       if (kept.title.textContent !== words) kept.title.textContent = words;
       kept.figure.dataset.count = Number(kept.figure.dataset.count ?? 0) + 1; // how often it was drawn

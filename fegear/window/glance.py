@@ -18,11 +18,12 @@ from fegear.results.catalogue import STAGES
 from fegear.window.journal import journal_folder, stem_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
     from pathlib import Path
 
     from fegear.case.reading import Scene
     from fegear.engine.outcome import Value
+    from fegear.engine.plan import Plan
 
 
 class Picture(NamedTuple):
@@ -76,24 +77,32 @@ def glance_tasks(scene: Scene, pictures: tuple[str, ...]) -> list[Task]:
     usual = USUAL_WIDE if scene.wide_pairs else USUAL
     names = dict.fromkeys((*_ALWAYS, *(PICTURES[one].stage for one in pictures or usual if one in PICTURES)))
     stages = {stage.name: stage for stage in STAGES if stage.name in names}
-    return list(_possible(scene, [Task(name, one) for name in names for one in stages[name].subjects(scene)]))
+    return [Task(name, one) for name in names for one in stages[name].subjects(scene)]
 
 
 def field_tasks(scene: Scene) -> list[Task]:
     """What has to be computed for the stress inside the teeth, of pairs whose gears are solved by finite elements."""
     found = (one for one in scene.plane_pairs if scene.case.pair[one].compliance.source == "fe")
-    return list(_possible(scene, [Task("stress-inside", name) for name in found]))
+    return [Task("stress-inside", name) for name in found]
 
 
-def _possible(scene: Scene, tasks: list[Task]) -> Iterator[Task]:
-    with contextlib.suppress(FegearError):  # as a rule all of them, which is found at once
-        make_plan(scene, STAGES, tasks)
-        yield from tasks
-        return
-    for task in tasks:
-        with contextlib.suppress(FegearError):  # what cannot be had is not asked for by the case; its place says so
-            make_plan(scene, STAGES, [task])
-            yield task
+def plan_with(scene: Scene, beside: list[Task], more: list[Task]) -> Plan:
+    """The plan of a case with what is shown on request, and what of the glance it can have.
+
+    Raises
+    ------
+    FegearError
+        If the case or what is shown on request cannot be had.
+    """
+    try:
+        return make_plan(scene, STAGES, [*beside, *more])
+    except FegearError:
+        possible = []
+        for task in beside:
+            with contextlib.suppress(FegearError):  # the case does not ask for it; its place on the page stays empty
+                make_plan(scene, STAGES, [task])
+                possible.append(task)
+        return make_plan(scene, STAGES, [*possible, *more])
 
 
 def numbers_of(values: tuple[Value, ...]) -> dict[str, dict[str, Any]]:

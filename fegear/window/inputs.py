@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from fegear.window.case_text import Path
 
 
+#: Kinds of fields that are typed into.
+_TYPED = frozenset({"text", "toml", "number"})
 #: How long nobody types before a text is read [ms].
 _PAUSE = 500
 
@@ -67,6 +69,7 @@ class Inputs:
     # ---- building ------------------------------------------------------------------------------------------------
 
     def _build(self) -> None:
+        typed = self._unconfirmed()
         self._form.clear()
         self._elements, self._places, self._held = {}, {}, {}
         with self._form:
@@ -77,6 +80,19 @@ class Inputs:
                 ui.html("Add a table", tag="h3")
                 choice = ui.select(more_labels(more), label="What else the case may say", on_change=self._table_chosen)
                 choice.props("outlined dense options-dense").style("width: 100%")
+        for path, text in typed.items():
+            again: Any = self._elements.get(path)
+            if again is not None:
+                again.set_value(text)
+
+    def _unconfirmed(self) -> dict[Path, str]:
+        """What somebody has typed and not confirmed yet: no change that comes from elsewhere takes it away."""
+        found = {}
+        for path, element in self._elements.items():
+            held, text = self._held[path], getattr(element, "value", None)
+            if held.kind in _TYPED and isinstance(text, str) and text.strip() != held.shown.strip():
+                found[path] = text
+        return found
 
     def _section(self, section: Section) -> None:
         with ui.element("div").classes("inner" if len(section.path) > 2 else ""):
@@ -210,8 +226,11 @@ class Inputs:
         if set(now) != set(self._held) or any(now[path].kind != self._held[path].kind for path in now):
             self._build()
         else:
+            typed = self._unconfirmed()
             for path, field in now.items():
-                self._held[path] = field
+                before, self._held[path] = self._held[path], field
+                if path in typed and field.shown == before.shown:  # nobody has changed this one
+                    continue
                 element: Any = self._elements.get(path)
                 if element is None:
                     continue

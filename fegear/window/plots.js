@@ -20,9 +20,21 @@ const fegearPlots = (() => {
   }
   const anchor = (panel) => (panel === 1 ? "" : String(panel));
   const ofPanel = (spec, panel) => spec.data.filter((one) => (one.yaxis ?? "y") === `y${anchor(panel)}` && (one.xaxis ?? "x") === `x${anchor(panel)}`);
+  const bounds = new WeakMap(); // an array keeps its ends as long as its description lives
   function endsOf(arrays) {
     let low = Infinity, high = -Infinity;
-    for (const array of arrays) for (const one of numbers(array)) { if (one < low) low = one; if (one > high) high = one; }
+    for (const array of arrays) {
+      if (!array) continue;
+      if (!bounds.has(array)) {
+        const found = numbers(array);
+        let least = Infinity, most = -Infinity;
+        for (let i = 0; i < found.length; i += 1) { if (found[i] < least) least = found[i]; if (found[i] > most) most = found[i]; }
+        bounds.set(array, [least, most]);
+      }
+      const [least, most] = bounds.get(array);
+      if (least < low) low = least;
+      if (most > high) high = most;
+    }
     return low <= high ? [low, high] : [0, 1];
   }
   function step(span, most) { // 1, 2 or 5 times a power of ten
@@ -61,7 +73,9 @@ const fegearPlots = (() => {
   /** A small plot in a place; `draw` shows a figure's panel. */
   function plot(host) {
     const svg = node("svg", { class: "small-plot", role: "img" }, host);
-    const kept = { svg, ranges: null, box: null };
+    const kept = { svg, ranges: null, box: null, room: null };
+    // Its size as it was laid out last: to ask for it while others are drawn has the page laid out each time.
+    new ResizeObserver(([{ contentRect: { width, height } }]) => { kept.room = { width, height }; }).observe(host);
     kept.x = (value) => kept.box.x0 + (value - kept.ranges.x[0]) / (kept.ranges.x[1] - kept.ranges.x[0]) * (kept.box.x1 - kept.box.x0);
     kept.y = (value) => kept.box.y0 - (value - kept.ranges.y[0]) / (kept.ranges.y[1] - kept.ranges.y[0]) * (kept.box.y0 - kept.box.y1);
     kept.atX = (px) => kept.ranges.x[0] + (px - kept.box.x0) / (kept.box.x1 - kept.box.x0) * (kept.ranges.x[1] - kept.ranges.x[0]);
@@ -126,7 +140,7 @@ const fegearPlots = (() => {
     }
     /** Draws a panel of a figure: `held`: keep its axes; `pinned`: the same figure of A; `marks`: places along x. */
     kept.draw = (spec, panel = 1, { held = false, pinned = null, marks = [], words = "", darker = {} } = {}) => {
-      const { width, height } = svg.getBoundingClientRect();
+      const { width, height } = kept.room ?? svg.getBoundingClientRect();
       if (width < 40 || height < 40) return false;
       kept.box = { x0: ROOM.left, x1: width - ROOM.right, y0: height - ROOM.bottom, y1: ROOM.top };
       shade = fegearFigure.theme() === "dark" ? (colour) => (typeof colour === "string" && darker[colour.slice(0, 7)] ? darker[colour.slice(0, 7)] + colour.slice(7) : colour) : (colour) => colour;

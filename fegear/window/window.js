@@ -104,13 +104,13 @@ const fegear = (() => {
     const place = figure.querySelector(".plot"), drawn = place.classList.contains("js-plotly-plot");
     owners.set(figure, { kept, key });
     late.delete(figure);
-    if ((drawn && away.has(figure)) || !figure.checkVisibility()) { late.add(figure); return; } // painted when it comes into sight
     const words = `${spec.heading}. ${spec.caption}`;
     if (figure.querySelector(".plot-title").textContent !== spec.heading || place.ariaLabel !== words) {
       figure.querySelector(".plot-title").textContent = spec.heading;
       figure.querySelector("figcaption").textContent = spec.caption;
       place.ariaLabel = words;
     }
+    if ((drawn && away.has(figure)) || !figure.checkVisibility()) { late.add(figure); return; } // painted when it comes into sight
     kept.drawn?.set(key, spec);
     if (drawn && moving && await fegearMoved.move(place, spec, mode)) return;
     const shaded = shadesOf(JSON.stringify({ data: spec.data, layout: spec.layout }), mode, kept.darker);

@@ -18,7 +18,7 @@ from fegear.results.pair.loaded_teeth import teeth_of
 from fegear.window.computing import Sent
 from fegear.window.designs import design_asked, designed, draft_of
 from fegear.window.drag_handles import hands_of
-from fegear.window.glance import field_tasks, glance_tasks, numbers_of
+from fegear.window.glance import field_tasks, glance_tasks, numbers_of, plan_with
 from fegear.window.job_queue import Compare, Compute, Design, Export, Inbox, Said, Unwanted
 from fegear.window.on_gears import on_the_gears, wanted_on_gears
 from fegear.window.order import HarrisMaps, in_order, load_now_of
@@ -169,15 +169,14 @@ class Worker:
     # ---- jobs ----------------------------------------------------------------------------------------------------
 
     def _results(self, asked: Asked, *, told: bool = False) -> Results:
-        from fegear.engine.plan import make_plan
         from fegear.engine.run import run_plan
-        from fegear.results.catalogue import STAGES
 
         scene = scene_of(asked)
         more, at_once_told = wanted_on_gears(scene, asked.shows)
-        more += field_tasks(scene) if asked.field else []
         beside = glance_tasks(scene, asked.pictures) if asked.pictures is not None else []
-        plan = make_plan(scene, STAGES, [*beside, *more])
+        inside = field_tasks(scene) if asked.field else []
+        plan = plan_with(scene, [*beside, *inside], more)
+        more += inside
         if told:
             if asked.laid != self._laid:
                 self._laid, self._sent, self._meshes, self._on_gears = asked.laid, Sent(), {}, {}

@@ -165,6 +165,20 @@ def test_a_case_is_changed_refused_undone_compared_saved_and_outlives_its_server
     browser.until(f"{IDLE} && document.querySelector('.values td.number b').textContent !== '{before}'")
     assert largest_load(browser) != before
 
+    # What is typed and not confirmed stays, whatever else of the case changes meanwhile.
+    browser.run(f"{field('gear.a.module')}.select()")
+    browser("Input.insertText", text="3.25 mm")
+    browser.run("emitEvent('load', {pair: 'I', key: 'load', text: '6.1 kN', moving: false})")
+    browser.until(f"{field('pair.I.load')}.value === '6.1 kN' && {IDLE}")
+    browser.run("emitEvent('relief', {gear: 'a', end: 'tip', start: 28, amount: 5, moving: false})")  # another table
+    browser.until(f"{field('gear.a.relief.tip.amount')}?.value === '5.00 um'")
+    assert browser.run(f"{field('gear.a.module')}.value") == "3.25 mm"
+    browser.run(f"{field('gear.a.module')}.select()")
+    browser("Input.insertText", text="3 mm")
+    for _ in range(2):
+        browser.click(button("Undo"))
+    browser.until(f"{field('pair.I.load')}.value === '6 kN' && {field('gear.a.relief.tip.amount')} == null && {IDLE}")
+
     # Refused at its field, in the words of the command line; the results stay; undone.
     shown = largest_load(browser)
     browser.run(f"{field('gear.a.module')}.select()")

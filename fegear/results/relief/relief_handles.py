@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from fegear.case.reading import Scene
     from fegear.geometry.pair import Member
+    from fegear.geometry.relief import Relief
 
 #: Parts of a relief that can be moved, in the order in which `build_relief` takes them.
 ENDS: tuple[Literal["tip"], Literal["root"], Literal["crowning"]] = ("tip", "root", "crowning")
@@ -94,10 +95,7 @@ def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
     """
     pair, gear = scene.pairs[name], gear_name(scene, name, member)
     ends = sorted(math.degrees(float(pair.roll_angle(x, member))) for x in (pair.x_start, pair.x_end))
-    try:
-        relief = described_relief(scene, gear).relief
-    except InputError:  # refused where it counts; the case's own sentence is reported then
-        relief = None
+    relief = _relief(scene, gear)
     roll = np.linspace(ends[0], ends[1], _PLACES)
     removal = np.zeros(_PLACES) if relief is None else relief.removal(np.radians(roll)) * 1e6
     handles = tuple(_handles(scene, gear, relief))
@@ -127,6 +125,13 @@ def handled_relief(scene: Scene, name: str, member: Member) -> HandledRelief:
     return HandledRelief(gear, ends[0], ends[1], {"tip": middle, "root": middle} | usual, handles, figure)
 
 
+def _relief(scene: Scene, gear: str) -> Relief | None:
+    try:
+        return described_relief(scene, gear).relief
+    except InputError:  # refused where it counts; the case's own sentence is reported then
+        return None
+
+
 def _roll(scene: Scene, gear: str, radius: float) -> float:
     base = scene.gears[gear].base_radius
     return math.sqrt(max((radius / base) ** 2 - 1.0, 0.0))
@@ -151,12 +156,10 @@ def _handles(scene: Scene, gear: str, relief: object) -> list[Handle]:
 
 def handle_of(scene: Scene, gear: str, end: str, index: int) -> Handle | None:
     """One part of the relief of a gear as a case has it; None where it has no such part, or no pair has the gear."""
-    for name in scene.pairs:
-        for member in MEMBERS:
-            if gear_name(scene, name, member) == gear:
-                found = handled_relief(scene, name, member).handles
-                return next((one for one in found if (one.end, one.index) == (end, index)), None)
-    return None
+    if not any(gear_name(scene, name, member) == gear for name in scene.pairs for member in MEMBERS):
+        return None
+    found = _handles(scene, gear, _relief(scene, gear))
+    return next((one for one in found if (one.end, one.index) == (end, index)), None)
 
 
 def start_as_given(given: Mapping[str, object], handle: Handle | None, start: float) -> tuple[str, str]:
