@@ -16,6 +16,7 @@ from fegear.case.loading import LoadDistributionPart, LoadingPart, TransmissionE
 from fegear.case.operation import RatingPart
 from fegear.case.pair import PairPart
 from fegear.case.part import Part
+from fegear.case.planetary import PlanetaryPart
 from fegear.case.stiffness import StiffnessPart
 from fegear.case.studies import CostPart, StudyPart, TolerancePart
 from fegear.case.train import TrainPart
@@ -64,6 +65,9 @@ class Case(Part):
     )
     train: TrainPart | None = Field(
         default=None, description="The gear train: bodies, shafts, meshes, dampers and torques."
+    )
+    planetary: dict[str, PlanetaryPart] = Field(
+        default_factory=dict, description="Planetary sets, each by a name of your choice."
     )
     dynamics: DynamicsPart = Field(
         default_factory=DynamicsPart, description="Speeds, frequencies, harmonics and friction of the running train."

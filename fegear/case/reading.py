@@ -16,6 +16,7 @@ from pydantic import ValidationError
 from fegear.base.errors import PATH, InputError, shown
 from fegear.case.model import Case
 from fegear.case.part import BARE_SI, check_references, nearest
+from fegear.case.planetary import with_set_pairs
 from fegear.case.schema import keys_at
 from fegear.case.text_file import read_text
 
@@ -183,6 +184,7 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
         case = Case.model_validate(document, context={BARE_SI: bare_si})
     except ValidationError as error:
         raise refusal(error) from None
+    case = with_set_pairs(case)
     gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items()}
     for key, pair in case.pair.items():
         for role in ("driver", "driven"):

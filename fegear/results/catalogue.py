@@ -274,6 +274,37 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType(
                 "mesh and bearing forces of a helical pair over speed, by transmission error and external forces",
             ),
         ),
+        "Planetary sets": (
+            Entry(
+                "planet-set",
+                "planetary.planet_set.PLANET_SET",
+                "Planetary set",
+                ("planet-set",),
+                "speeds, torques, frequencies and mesh phases of a planetary set, and what phasing cancels",
+            ),
+            Entry("meshed-set", "planetary.planet_load_sharing.MESHED_SET", "Teeth of a planetary set"),
+            Entry(
+                "planet-load-sharing",
+                "planetary.planet_load_sharing.PLANET_LOAD_SHARING",
+                "Load sharing of planets",
+                ("planet-load-sharing",),
+                "load of each planet over the mesh cycle, K_gamma, transmission error and forces of a planetary set",
+            ),
+            Entry(
+                "planet-modes",
+                "planetary.planet_vibration.PLANET_MODES",
+                "Natural modes of a planetary set",
+                ("planet-modes",),
+                "natural frequencies of a planetary set: rotational, translational and planet modes",
+            ),
+            Entry(
+                "planet-vibration",
+                "planetary.planet_vibration.PLANET_VIBRATION",
+                "Vibration of a planetary set",
+                ("planet-vibration",),
+                "dynamic forces in the meshes of a planetary set over speed, excited with their phases",
+            ),
+        ),
         "Gear trains in motion": (
             Entry(
                 "gear-train",

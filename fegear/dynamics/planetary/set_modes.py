@@ -77,6 +77,7 @@ def set_modes(model: SetModel, sun_mesh: float, ring_mesh: float) -> SetModes:
     shapes = _sorted_out(shapes, squared, masses, central[turns], central[~turns])
     energy = masses[:, None] * shapes**2
     turning, moving = energy[central[turns]].sum(axis=0), energy[central[~turns]].sum(axis=0)
+    turning, moving = (np.where(share < _STILL, 0.0, share) for share in (turning, moving))
     words = {(True, False): "rotation", (False, True): "translation", (False, False): "planets"}
     kind = tuple(
         words.get((t > _STILL, m > _STILL), "mixed") if w > 0.0 else "rotation"

@@ -1,0 +1,157 @@
+"""From ``[planetary.NAME]`` to the set, how it runs, its bodies and its teeth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.case.part import at
+from fegear.case.planetary import angles_of, sun_pair
+from fegear.dynamics.planetary.kinematics import Running, running
+from fegear.dynamics.planetary.phases import Phases, mesh_phases
+from fegear.dynamics.planetary.planet_set import CENTRALS, PlanetarySet
+from fegear.dynamics.planetary.set_model import CentralBody, PlanetBody, SetModel
+from fegear.dynamics.train.train import disc_inertia
+from fegear.geometry.involute import inv
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fegear.base.arrays import Array
+    from fegear.case.planetary import PlanetaryPart, SetBodyPart
+    from fegear.case.reading import Scene
+    from fegear.dynamics.planetary.planet_set import Central
+    from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.geometry.gear import Gear
+
+#: Speed of sets of which nobody gave one [rad/s]: ratios, torques and phases do not depend on it.
+_ANY_SPEED = 1.0
+
+
+@dataclass(frozen=True)
+class SetInputs:
+    """What a planetary set depends on besides its loaded teeth.
+
+    Parameters
+    ----------
+    found : PlanetarySet
+    run : Running
+    phases : Phases
+    model : SetModel
+        Without masses where these are not known.
+    sun_torque : float
+        Size of the torque on the sun without losses [N m]; those of the planets' loads.
+    given : mapping of str to ndarray or None
+        Stiffness of the meshes "sun" and "ring" that the case gives [N/m].
+    at_speed : bool
+        Whether a speed is given.
+    name : str
+    """
+
+    found: PlanetarySet
+    run: Running
+    phases: Phases
+    model: SetModel
+    sun_torque: float
+    given: dict[str, tuple[float, ...] | None]
+    at_speed: bool
+    name: str = field(compare=False)
+
+
+def planetary_part(scene: Scene, name: str) -> PlanetaryPart:
+    """The table of a set."""
+    return scene.case.planetary[name]
+
+
+def set_inputs(scene: Scene, name: str) -> SetInputs:
+    """Collect what a case says of a set.
+
+    Raises
+    ------
+    GeometryError
+        If it cannot be assembled; the key is the one of the case file.
+    """
+    part = planetary_part(scene, name)
+    sun, planet, pair = scene.gears[part.sun], scene.gears[part.planet], scene.pairs[sun_pair(name)]
+    if sun.helix_angle:
+        raise InputError(
+            f"planetary.{name}.sun", f'"{part.sun}"', "is helical, and sets of helical gears are not known yet",
+            "give spur gears",
+        )  # fmt: skip
+    tooth = planet.tooth
+    at_pitch = planet.base_radius / math.cos(pair.working_pressure_angle) / planet.module
+    half = float(tooth.half_thickness_angle(at_pitch)) + float(inv(pair.working_pressure_angle))
+    try:
+        found = PlanetarySet(
+            sun.teeth, planet.teeth, part.ring_teeth, pair.base_pitch, pair.centre_distance,
+            np.array(angles_of(part)), half, planet.tip_radius,
+        )  # fmt: skip
+    except InputError as error:
+        raise at(f"planetary.{name}", error, {"ring": "ring_teeth"}) from None
+    speed = (part.speed or _ANY_SPEED) * (-1.0 if part.clockwise else 1.0)
+    run = running(found, part.fixed, part.input, speed, part.torque, part.mesh_efficiency)
+    phases = mesh_phases(found, clockwise=run.sun_turns < 0.0, sun_drives=run.sun_drives)
+    model = SetModel(
+        found, _central(part, "sun", sun), _central(part, "ring"), _central(part, "carrier"),
+        PlanetBody(*_mass(part.body.planet, planet), pin=part.stiffness.pin or math.inf), run.mirrored,
+    )  # fmt: skip
+    meshes = {"sun": part.stiffness.sun_mesh, "ring": part.stiffness.ring_mesh}
+    given = {mesh: None if one is None else tuple(one) for mesh, one in meshes.items()}
+    return SetInputs(
+        found, run, phases, model, part.sun_torque(sun.teeth), given, part.speed is not None, name
+    )  # fmt: skip
+
+
+def _mass(body: SetBodyPart | None, gear: Gear | None) -> tuple[float, float]:
+    """Mass and inertia [kg, kg m^2]: as given, or of the gear's disc; nan where neither is known."""
+    if body is not None:
+        return body.mass, body.inertia
+    if gear is None:
+        return math.nan, math.nan
+    density, width = gear.material.density, gear.face_width
+    mass = math.pi * density * width * (gear.pitch_radius**2 - gear.bore_radius**2)
+    return mass, disc_inertia(gear.pitch_radius, width, density, gear.bore_radius)
+
+
+def _central(part: PlanetaryPart, member: Central, gear: Gear | None = None) -> CentralBody:
+    bearing = getattr(part.stiffness, member)
+    if bearing is None:
+        bearing = 0.0 if member in part.floating else math.inf
+    turning = 0.0
+    if member == part.fixed:
+        turning = math.inf if part.stiffness.turning is None else part.stiffness.turning
+    return CentralBody(*_mass(getattr(part.body, member), gear), bearing, turning)
+
+
+def check_masses(scene: Scene, name: str) -> None:
+    """Refuse vibration of bodies that can move and whose mass nobody knows."""
+    inputs = set_inputs(scene, name)
+    for member in CENTRALS:
+        body = inputs.model.central(member)
+        moves = math.isfinite(body.bearing) or math.isfinite(body.turning)
+        if moves and math.isnan(body.mass):
+            raise InputError(
+                f"planetary.{name}.body.{member}", "(not given)", f"is needed for vibration, as the {member} can move",
+                f'write body = {{ {member} = {{ mass = "2 kg", inertia = "0.01 kg*m^2" }} }}',
+            )  # fmt: skip
+
+
+def pin_errors(part: PlanetaryPart) -> Array:
+    """Displacement of the pins, radial (0) and counter-clockwise (1) [m], shape (2, planets)."""
+    none = [0.0] * part.count
+    return np.array([part.pin_errors.radial or none, part.pin_errors.tangential or none])
+
+
+def given_teeth(stiffness: Sequence[float]) -> MeshExcitation:
+    """Teeth of a mesh by their stiffness [N/m] at places evenly over the base pitch, straight lines between."""
+    from fegear.dynamics.train.excitation import MeshExcitation
+    from fegear.dynamics.train.periodic import Periodic
+
+    values = np.append(stiffness, stiffness[0])
+    if len(stiffness) == 1:
+        return MeshExcitation.from_mesh(Periodic.constant(values[0]))
+    return MeshExcitation.from_mesh(Periodic.through_points(np.linspace(0.0, 1.0, values.size), values))

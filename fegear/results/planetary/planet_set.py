@@ -1,0 +1,183 @@
+"""Stage ``planet-set``: speeds, torques, frequencies and mesh phases of a planetary set, and what phasing cancels."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fegear.base.shown import declared
+from fegear.case.built.planetary import planetary_part, set_inputs
+from fegear.dynamics.planetary.kinematics import passing, sidebands
+from fegear.dynamics.planetary.phases import phasing
+from fegear.dynamics.planetary.planet_set import CENTRALS
+from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of, columns_of, value_of
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Bars, Curve, Points
+from fegear.engine.outcome import Outcome
+from fegear.engine.stage import Stage
+from fegear.engine.table import Column, Table
+from fegear.results import forecasts
+
+if TYPE_CHECKING:
+    from fegear.case.built.planetary import SetInputs
+    from fegear.case.reading import Scene
+    from fegear.dynamics.planetary.kinematics import Passing, Sidebands
+    from fegear.dynamics.planetary.phases import Phasing
+    from fegear.engine.stage import Upstream, Work
+
+
+@dataclass(frozen=True)
+class PlanetSetData:
+    """What follows from the assembly of a set alone."""
+
+    passing: Passing
+    sidebands: Sidebands
+    phasing: Phasing
+
+
+@dataclass(frozen=True)
+class PlanetSetInputs:
+    """The set, and how many harmonics are looked at."""
+
+    asked: SetInputs
+    harmonics: int
+
+
+def planetary_sets(scene: Scene) -> tuple[str, ...]:
+    """All planetary sets of a case."""
+    return tuple(scene.case.planetary)
+
+
+def _inputs(scene: Scene, name: str) -> PlanetSetInputs:
+    return PlanetSetInputs(set_inputs(scene, name), planetary_part(scene, name).harmonics)
+
+
+def _compute(inputs: PlanetSetInputs, _upstream: Upstream, _work: Work) -> PlanetSetData:
+    found, run = inputs.asked.found, inputs.asked.run
+    return PlanetSetData(passing(found, run), sidebands(found, run), phasing(found, inputs.harmonics))
+
+
+def _members(asked: SetInputs) -> Table:
+    run = asked.run
+    speed, torque = (np.array([of[name] for name in CENTRALS]) for of in (run.speed, run.torque))
+    return Table(
+        f"planet_members_{asked.name}",
+        (
+            Column("member", np.array(CENTRALS), "", "of the set"),
+            Column("speed", speed, "rpm", "counter-clockwise"),
+            Column("torque", torque, "N.m", "from outside, counter-clockwise"),
+            Column("power", torque * speed, "W", "into the set"),
+        ),
+        f"Speeds and torques of set {asked.name}",
+    )
+
+
+def _present(data: PlanetSetData, inputs: PlanetSetInputs) -> Outcome:
+    asked, rule = inputs.asked, data.phasing
+    name, found, run, phases = asked.name, asked.found, asked.run, asked.phases
+    tables = [_members(asked)]
+    if asked.at_speed:
+        tables.append(Table(
+            f"planet_passing_{name}",
+            (Column("what", np.array(data.passing.what), "", "what happens"), *columns_of(data.passing, "frequency")),
+            f"How often things meet in set {name}",
+        ))  # fmt: skip
+        tables.append(Table(
+            f"planet_sidebands_{name}", columns_of(data.sidebands, "harmonic", "order", "frequency", "share"),
+            f"Sidebands that a pick-up on the ring of set {name} sees",
+        ))  # fmt: skip
+    tables.append(Table(
+        f"planet_phases_{name}",
+        (Column("planet", np.arange(1, found.count + 1), "", "counter-clockwise"),
+         *columns_of(phases, "angle", "sun", "ring")),
+        f"Phases of the meshes of set {name}",
+    ))  # fmt: skip
+    excites = declared(type(rule), "excites")
+    tables.append(Table(
+        f"planet_phasing_{name}",
+        (*columns_of(rule, "harmonic", "torque", "force"), Column("excites", np.array(rule.excites), "",
+                                                                  excites.meaning)),
+        f"What the phases of set {name} leave of each harmonic",
+    ))  # fmt: skip
+    values = [
+        value_of(run, "ratio", name),
+        value_of(run, "efficiency", name),
+        value_of(phases, "ring_behind_sun", name),
+        value_of(found, "sun_angle", name),
+        value_of(found, "ring_angle", name),
+    ]
+    if found.count > 1:
+        values.append(value_of(found, "neighbour_clearance", name))
+    if asked.at_speed:
+        values += [value_of(run, "mesh_frequency", name), value_of(run, "planet_speed", name)]
+    return Outcome(data, tuple(tables), tuple(values), {"mirrored": run.mirrored}, _remarks(asked),
+                   (_drawing(asked), _phasing_figure(name, rule)))  # fmt: skip
+
+
+def _remarks(asked: SetInputs) -> tuple[str, ...]:
+    name, found = asked.name, asked.found
+    teeth = found.sun_teeth + found.ring_teeth
+    said = [f"Set {name}: teeth fit between sun and ring at whole multiples of 360/{teeth} deg."]
+    if found.count > 1:
+        said[0] += f" Neighbours clear each other by {found.neighbour_clearance * 1e3:.4g} mm."
+    if not asked.at_speed:
+        said.append(f"Set {name}: no speed is given; frequencies need planetary.{name}.speed, and speeds of "
+                    "the table of members are those at 1 rad/s of the input.")  # fmt: skip
+    return tuple(said)
+
+
+def _drawing(asked: SetInputs) -> Figure:
+    """Pitch circles of the members, with the phase of each planet."""
+    found, phases = asked.found, asked.phases
+    a, round_ = found.centre_distance * 1e3, np.linspace(0.0, 2.0 * math.pi, 181)
+    radii = {
+        "sun": found.base_radius("sun") / math.cos(found.sun_angle) * 1e3,
+        "ring": found.base_radius("ring") / math.cos(found.ring_angle) * 1e3,
+        "planets": found.base_radius("planet") / math.cos(found.sun_angle) * 1e3,
+    }
+    items = [Curve(radii[one] * np.cos(round_), radii[one] * np.sin(round_), one, role, markers=False)
+             for one, role in (("sun", "series:0"), ("ring", "series:1"))]  # fmt: skip
+    x, y = a * np.cos(found.angles), a * np.sin(found.angles)
+    wheel = radii["planets"] * np.cos(round_), radii["planets"] * np.sin(round_)
+    items += [
+        Curve(across + wheel[0], up + wheel[1], "planets", "series:2", markers=False)
+        for across, up in zip(x, y, strict=True)
+    ]
+    notes = tuple(f"{n + 1}: gamma {s:.4g}" for n, s in enumerate(phases.sun))
+    points = Points(x, y, "", "series:2", "circle", notes=notes, written=True)
+    plane = Axis("x", "mm"), Axis("y", "mm")
+    return Figure(
+        f"planet_set_{asked.name}", f"Planetary set {asked.name}",
+        f"Set {asked.name}: working pitch circles, and the phase gamma_sn of each planet's mesh with the sun behind "
+        f"that of planet 1 in base pitches; the meshes with the ring follow by {phases.ring_behind_sun:.4g}.",
+        (Panel(*plane, (*items, points), equal=True, height=2.0),),
+    )  # fmt: skip
+
+
+def _phasing_figure(name: str, rule: Phasing) -> Figure:
+    return Figure(
+        f"planet_phasing_{name}", f"Phasing of set {name}",
+        f"Set {name}: what is left of each mesh harmonic when all planets are added up, as a torque about the axis and "
+        "as a force across it; where both are zero, planets vibrate alone.",
+        (Panel(axis_of(type(rule), "harmonic", whole=True), Axis("share of the planets' sum", limits=(0.0, 1.05)), (
+            Bars(rule.harmonic, rule.torque, "torque", "series:0"), Bars(rule.harmonic, rule.force, "force",
+                                                                         "series:1"),
+        )),),
+    )  # fmt: skip
+
+
+PLANET_SET = Stage(
+    subjects=planetary_sets,
+    inputs=_inputs,
+    compute=_compute,
+    present=_present,
+    cites=citing(
+        Citation("parker", "which modes a harmonic of phased planets excites"),
+        Citation("mcfadden-smith", "sidebands of planets that pass a pick-up"),
+    ),
+    forecast=lambda _scene, _name: forecasts.constant(0.005),
+)

@@ -1,0 +1,204 @@
+"""Stages ``planet-modes`` and ``planet-vibration``: natural modes of a set by kind, and what its meshes excite."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from fegear.base.errors import InputError
+from fegear.base.shown import declared
+from fegear.case.built.planetary import check_masses, planetary_part, set_inputs
+from fegear.dynamics.planetary.planet_set import CENTRALS
+from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import columns_of
+from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.figure.items import Bars, Curve
+from fegear.engine.outcome import Outcome, Value
+from fegear.engine.stage import Stage, Task
+from fegear.engine.table import Column, Table
+from fegear.results import forecasts
+from fegear.results.planetary.planet_load_sharing import meshed_set, needs_meshed
+from fegear.results.planetary.planet_set import planetary_sets
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
+    from fegear.case.reading import Scene
+    from fegear.dynamics.planetary.set_modes import SetModes
+    from fegear.dynamics.planetary.set_response import ForcedResponse, LinearSet
+    from fegear.engine.stage import Upstream, Work
+
+#: Coordinates of a central body.
+_ALONG = ("x", "y", "turn")
+
+
+@dataclass(frozen=True)
+class VibrationInputs:
+    """What the vibration of a set depends on besides its teeth.
+
+    Parameters
+    ----------
+    speeds : ndarray
+        Of the driving member [rad/s].
+    teeth_per_turn : float
+        Mesh cycles per turn of the driving member.
+    damping_ratio : float
+    harmonics : int
+    driving, name : str
+    """
+
+    speeds: Array
+    teeth_per_turn: float
+    damping_ratio: float
+    harmonics: int
+    driving: str
+    name: str
+
+
+def _inputs(scene: Scene, name: str) -> VibrationInputs:
+    part, run = planetary_part(scene, name), set_inputs(scene, name).run
+    speeds = np.zeros(0) if part.speeds is None else part.speeds.array
+    per_turn = run.mesh_frequency * 2.0 * math.pi / abs(run.speed[run.input])
+    return VibrationInputs(speeds, per_turn, part.damping_ratio, part.harmonics, part.input, name)
+
+
+def _linear(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> LinearSet:
+    from fegear.dynamics.planetary.set_response import linear_set
+
+    return linear_set(meshed_set(upstream, inputs.name), inputs.damping_ratio, inputs.harmonics)
+
+
+def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:
+    data, name = linear.modes, inputs.name
+    number = np.arange(data.frequency.size)
+    columns = (
+        Column("mode", number, "", "by rising frequency"),
+        *columns_of(data, "frequency"),
+        Column("kind", np.array(data.kind), "", declared(type(data), "kind").meaning),
+        Column("speed", data.frequency / inputs.teeth_per_turn * 2.0 * math.pi, "rpm",
+               f"of the {inputs.driving}, at which the mesh frequency meets it"),
+        *columns_of(data, "turning", "moving", "sun_mesh", "ring_mesh"),
+    )  # fmt: skip
+    values = tuple(
+        Value(f"{name}.natural_frequency_{k}", float(data.frequency[k]), "Hz", None, f"undamped, {data.kind[k]}")
+        for k in number if data.frequency[k] > 0.0
+    )  # fmt: skip
+    counted = ", ".join(f"{count} of kind {kind}" for kind, count in Counter(data.kind).items())
+    table = Table(f"planet_modes_{name}", columns, f"Natural modes of set {name}", printed=True)
+    said = f"Set {name}: {counted}; gyroscopic forces of the carrier's rotation are neglected."
+    return Outcome(linear, (table,), values, {}, (said,), (_modes_figure(name, data),))
+
+
+def _modes_figure(name: str, data: SetModes) -> Figure:
+    own = np.flatnonzero(data.frequency > 0.0)
+    words = tuple(f"{data.frequency[k]:.4g} Hz\n{data.kind[k]}" for k in own)
+    parts = {"meshes with the sun": data.sun_mesh, "meshes with the ring": data.ring_mesh}
+    parts["pins and bearings"] = 1.0 - data.sun_mesh - data.ring_mesh
+    bars = tuple(
+        Bars(np.arange(own.size), one[own], word, f"series:{k}") for k, (word, one) in enumerate(parts.items())
+    )
+    return Figure(
+        f"planet_modes_{name}", f"Natural modes of set {name}",
+        f"Set {name}: where each mode deforms, as shares of its strain energy, with its frequency and kind.",
+        (Panel(Axis("mode", categories=words), Axis("share of strain energy", limits=(0.0, 1.0)), bars,
+               stacked=True),),
+    )  # fmt: skip
+
+
+PLANET_MODES = Stage(
+    subjects=planetary_sets,
+    needs=needs_meshed,
+    inputs=_inputs,
+    compute=_linear,
+    present=_present_modes,
+    check=check_masses,
+    cites=citing(Citation("lin-parker", "model of the set and kinds of its modes")),
+    forecast=lambda _scene, _name: forecasts.constant(1.5),
+)
+
+
+def _check(scene: Scene, name: str) -> None:
+    check_masses(scene, name)
+    if planetary_part(scene, name).speeds is None:
+        raise InputError(
+            f"planetary.{name}.speeds", "(not given)", "is needed for this result",
+            'write speeds = { start = "200 rpm", stop = "6000 rpm", count = 200 }',
+        )  # fmt: skip
+
+
+def _vibration(inputs: VibrationInputs, upstream: Upstream, _work: Work) -> ForcedResponse:
+    from fegear.dynamics.planetary.set_response import forced_response
+
+    linear = cast("LinearSet", upstream[Task("planet-modes", inputs.name)])
+    return forced_response(linear, inputs.speeds * inputs.teeth_per_turn / (2.0 * math.pi))
+
+
+def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome:
+    name = inputs.name
+    speed = Column("speed", inputs.speeds, "rpm", f"of the {inputs.driving}")
+    moves = [
+        Column(f"{member}_{word}", data.amplitude(member, axis), "um", "root of the sum of squares of its harmonics, "
+               "0-peak" + ("; at the base circle or the pins" if axis == 2 else ""))
+        for member in CENTRALS for axis, word in enumerate(_ALONG)
+    ]  # fmt: skip
+    columns = (speed, *columns_of(data, "mesh_frequency", "sun_force", "ring_force", "least_share"), *moves)
+    top = int(np.argmax(np.maximum(data.sun_force, data.ring_force)))
+    values = (
+        Value(f"{name}.dynamic_force", float(max(data.sun_force[top], data.ring_force[top])), "N", None,
+              "largest dynamic force in a mesh over all speeds"),
+        Value(f"{name}.dynamic_force_speed", float(inputs.speeds[top]), "rpm", None, "speed at which it stands"),
+    )  # fmt: skip
+    said = [f"Set {name}: linear about the mean load, all modes damped by {inputs.damping_ratio:.3g} of critical."]
+    low = int(np.argmin(data.least_share))
+    if data.least_share[low] < 0.0:
+        said.append(
+            f"Set {name}: at {inputs.speeds[low] * 30.0 / math.pi:.5g} rpm the linear mesh force falls to "
+            f"{data.least_share[low]:.3g} of its mean, so teeth part, which this result neglects; "
+            "fegear.dynamics.planetary.set_motion integrates it."
+        )
+    table = Table(f"planet_vibration_{name}", columns, f"Vibration of set {name} over speed")
+    return Outcome(data, (table,), values, {}, tuple(said), (_figure(name, data, inputs),))
+
+
+def _figure(name: str, data: ForcedResponse, inputs: VibrationInputs) -> Figure:
+    rpm = inputs.speeds * 30.0 / math.pi
+    x = Axis(f"speed of the {inputs.driving}", "rpm")
+    forces = tuple(
+        Curve(rpm, force, f"mesh with the {one}", role, markers=False)
+        for force, one, role in ((data.sun_force, "sun", "series:0"), (data.ring_force, "ring", "series:1"))
+    )
+    moves = tuple(
+        Curve(
+            rpm,
+            np.hypot(data.amplitude(member, 0), data.amplitude(member, 1)) * 1e6,
+            member,
+            f"series:{k}",
+            markers=False,
+        )
+        for k, member in enumerate(CENTRALS)
+    )
+    return Figure(
+        f"planet_vibration_{name}", f"Vibration of set {name} over speed",
+        f"Set {name}: largest dynamic force in the meshes over their mean force of {data.mean_force:.5g} N, and motion "
+        "of sun, ring and carrier across the axis (0-peak), excited by the transmission errors of the meshes with "
+        "their phases.",
+        (Panel(x, Axis("dynamic mesh force", "N", zero=True), forces), Panel(x, Axis("motion across the axis", "um"),
+                                                                             moves)),
+    )  # fmt: skip
+
+
+PLANET_VIBRATION = Stage(
+    subjects=planetary_sets,
+    needs=lambda _scene, name: (Task("planet-modes", name),),
+    inputs=_inputs,
+    compute=_vibration,
+    present=_present_vibration,
+    check=_check,
+    cites=citing(
+        Citation("lin-parker", "model of the set"), Citation("mark", "linear train with transmission errors", "2.9b")
+    ),
+    forecast=lambda _scene, _name: forecasts.constant(0.02),
+)

@@ -1,0 +1,112 @@
+"""``[planetary.NAME]``: from the table to numbers, and what is refused."""
+
+import copy
+
+import numpy as np
+import pytest
+
+from fegear.base.errors import FegearError
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.reading import build_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
+from fegear.results.catalogue import STAGES
+
+BODIES = {"carrier": {"mass": "3 kg", "inertia": "0.01 kg*m^2"}}
+CASE = {
+    "results": ["planet-set", "planet-load-sharing", "planet-modes", "planet-vibration"],
+    "gear": {
+        "s": {"teeth": 25, "module": "2 mm", "face_width": "25 mm"},
+        "p": {"teeth": 29, "module": "2 mm", "face_width": "25 mm"},
+    },
+    "planetary": {
+        "P": {
+            "sun": "s", "planet": "p", "ring_teeth": 83, "planets": 4, "torque": "320 N*m", "speed": "1800 rpm",
+            "speeds": ["1000 rpm", "2000 rpm"], "body": BODIES,
+            "stiffness": {"sun_mesh": "300 N/um", "ring_mesh": "480 N/um", "pin": "250 N/um", "carrier": "150 N/um"},
+            "pin_errors": {"tangential": ["20 um", "0 um", "-10 um", "0 um"]},
+        }
+    },
+}  # fmt: skip
+
+
+def changed(**keys):
+    case = copy.deepcopy(CASE)
+    part = case["planetary"]["P"] | keys
+    case["planetary"]["P"] = {key: one for key, one in part.items() if one is not None}
+    return case
+
+
+def run(case, cache=None):
+    scene = build_scene(case, "case", None)
+    return run_plan(scene, make_plan(scene, STAGES), cache=cache or SolutionCache())
+
+
+def values(results):
+    return {value.name: value.si for value in results.values}
+
+
+@pytest.fixture(scope="module")
+def ran():
+    return run(CASE)
+
+
+def test_the_case_gives_what_the_mechanics_does(ran):
+    """K_gamma by the closed form: opposite pins 20 um ahead and 10 um behind, the sun takes up the rest."""
+    found = values(ran)
+    alpha = np.radians(20.0)
+    k = 1.0 / (1.0 / 300e6 + 1.0 / 480e6 + (2.0 * np.cos(alpha)) ** 2 / 250e6)
+    force = 320.0 / (25e-3 * np.cos(alpha)) / 4.0
+    assert found["P.K_gamma"] == pytest.approx(1.0 + 2.0 * np.cos(alpha) * k * 10e-6 / 4.0 / force, rel=1e-9)
+    assert found["P.ratio"] == pytest.approx(1.0 + 83.0 / 25.0)
+    assert found["P.mesh_frequency"] == pytest.approx(30.0 * 83.0 * 25.0 / 108.0)
+    assert {table.name for table in ran.tables} >= {"planet_phases_P", "planet_shares_P", "planet_modes_P",
+                                                    "planet_vibration_P", "planet_sidebands_P"}  # fmt: skip
+
+
+def test_each_arrangement_runs_and_shares_alike():
+    """Fixed ring, sun or carrier, driven from either side, either way round: loads follow the torque on the sun."""
+    for fixed, driving in (("ring", "carrier"), ("carrier", "sun"), ("sun", "ring"), ("sun", "carrier")):
+        for clockwise in (False, True):
+            case = changed(fixed=fixed, input=driving, clockwise=clockwise, body=BODIES | {
+                "ring": {"mass": "5 kg", "inertia": "0.04 kg*m^2"}})  # fmt: skip
+            found = values(run(case | {"results": ["planet-load-sharing"]}))
+            assert 1.0 < found["P.K_gamma"] < 1.5
+
+
+def test_a_changed_pin_error_solves_nothing_else_again():
+    cache = SolutionCache()
+    run(CASE, cache)
+    results = run(changed(pin_errors={"tangential": ["30 um", "0 um", "0 um", "0 um"]}), cache)
+    again = [str(task) for task, timing in results.timings.items() if timing.origin == "computed"]
+    assert again == ["planet-load-sharing of P"]
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({"planets": 5, "pin_errors": {}}, "108 / 5 = 21.6 is not whole"),
+        ({"planets": 6, "pin_errors": {}}, "neighbours meet"),
+        ({"planets": None}, "must be given in one way"),
+        ({"input": "ring"}, "is fixed as well"),
+        ({"sun": "q"}, "is no gear of this case"),
+        ({"pin_errors": {"tangential": ["1 um"]}}, "has 1 entries for 4 planets"),
+        ({"floating": ["carrier"]}, "contradicts the bearing of the carrier"),
+        ({"stiffness": {"sun_mesh": "300 N/um"}}, "stiffness.ring_mesh"),
+        ({"speeds": None}, "planetary.P.speeds"),
+        ({"body": {}}, "planetary.P.body.carrier"),
+        ({"ring_teeth": 20}, "must have more teeth"),
+    ],
+)
+def test_what_is_refused_names_its_key_and_remedy(keys, said):
+    with pytest.raises(FegearError) as caught:
+        run(changed(**keys))
+    assert said in str(caught.value)
+
+
+def test_a_pair_of_the_case_may_stand_for_the_sun_mesh():
+    case = CASE | {"pair": {"P_sun": {"driver": "s", "driven": "p", "speed": "1000 rpm"}}}
+    scene = build_scene(case, "case", None)
+    assert scene.case.pair["P_sun"].torque == pytest.approx(80.0)
+    with pytest.raises(FegearError, match="in which s drives p"):
+        build_scene(CASE | {"pair": {"P_sun": {"driver": "p", "driven": "s"}}}, "case", None)
