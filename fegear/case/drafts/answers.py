@@ -138,7 +138,17 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
     """
     several = len(KINDS[kind].gears) > 1
     found = [
-        Question("teeth", "Teeth of pinion and wheel" if several else "Teeth", "21 53" if several else "28", "teeth"),
+        Question(
+            "teeth",
+            *(
+                ("Teeth of sun and planet", "25 29")
+                if kind == "planetary"
+                else ("Teeth of pinion and wheel", "21 53")
+                if several
+                else ("Teeth", "28")
+            ),
+            "teeth",
+        ),
         Question("module", "Normal module" if kind == "helical" else "Module", "3 mm", "length"),
     ]
     module = _readable(given.get("module", found[1].default), "length")
@@ -243,5 +253,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType({
     "helical": Kind("a helical pair: where its face carries, transmission error, errors of its assembly",
                     ("pinion", "wheel"), ("helix_angle", *_RELIEVED, "lead_error")),
     "train": Kind("motor, pair and machine in motion: resonances, dynamic factor", ("pinion", "wheel"), _RELIEVED),
+    "planetary": Kind("a planetary set: load sharing of its planets, phases, modes, vibration", ("sun", "planet"),
+                      _LOADED),
     "study": Kind("root-stress formulas against finite elements over many gears", ("gear",), _TOOTH),
 })  # fmt: skip

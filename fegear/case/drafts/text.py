@@ -90,6 +90,8 @@ _SLOWEST, _FASTEST = 0.5, 1.5
 #: Inertia of motor and machine over that of the gear beside them, assumed.
 _BODIES = 10.0
 _STEEL = 7850.0
+#: Mesh stiffness per face width, assumed for a ring [Pa]: c_gamma of ISO 6336 for steel.
+_PER_WIDTH = 20e9
 
 
 def draft(answers: Answers, stem: str, schema: str = "") -> str:
@@ -130,6 +132,7 @@ def draft(answers: Answers, stem: str, schema: str = "") -> str:
         "relief": _EFFECTS["tip_relief"][not answers.has("tip_relief")],
         "misalignment": _EFFECTS["lead_error"][not answers.has("lead_error")],
         **(_train(answers) if answers.kind == "train" else {}),
+        **(_planetary(answers) if answers.kind == "planetary" else {}),
         **(_study(answers) if answers.kind == "study" else {}),
     }
     template = files("fegear.case.drafts").joinpath("templates", f"{answers.kind}.toml").read_text("utf-8")
@@ -193,6 +196,33 @@ def _train(answers: Answers) -> Mapping[str, str]:
         "output_diameter": millimetres(1.2 * radii[0] * (radii[1] / radii[0]) ** (1.0 / 3.0)),
         "slowest": _amount(_SLOWEST * speed, "rpm"),
         "fastest": _amount(_FASTEST * speed, "rpm"),
+    }
+
+
+def _planetary(answers: Answers) -> Mapping[str, str]:
+    """A ring that suits, and as many planets as stand evenly between the teeth, three if they do."""
+    sun, planet = map(int, answers.numbers("teeth"))
+    module, face, both = answers.si("module"), answers.si("face_width"), sun + planet
+    shift = max(0.0, float(answers.numbers("profile_shift")[1]))
+    tip = planet + 2.0 + 2.0 * shift
+    fit = [n for n in (3, 4, 5, 2) if 2 * both % n == 0 and both * math.sin(math.pi / n) > tip]
+    planets = next(iter(fit), 1)
+    radius = 0.5 * both * module
+    carrier = math.pi * _STEEL * face * radius**2
+    speed, stiffness = answers.si("speed"), _PER_WIDTH * face
+    torque, at = (json.dumps(answers[key], ensure_ascii=False) for key in ("torque", "speed"))
+    return {
+        "ring_teeth": str(sun + 2 * planet),
+        "planets": str(planets),
+        "set_torque": torque,
+        "set_speed": at,
+        "slowest": _amount(_SLOWEST * speed, "rpm"),
+        "fastest": _amount(_FASTEST * speed, "rpm"),
+        "ring_mesh": _amount(stiffness, "N/um"),
+        "pin": _amount(0.5 * stiffness, "N/um"),
+        "carrier_mass": f"{carrier:.3g} kg",
+        "carrier_inertia": f"{0.5 * carrier * radius**2:.3g} kg*m^2",
+        "pin_errors": ", ".join(['"20 um"', *['"0 um"'] * (planets - 1)]),
     }
 
 
