@@ -93,8 +93,10 @@ def _present_modes(linear: LinearSet, inputs: VibrationInputs) -> Outcome:
 
 
 def _modes_figure(name: str, data: SetModes) -> Figure:
-    own = np.flatnonzero(data.frequency > 0.0)
-    words = tuple(f"{data.frequency[k]:.4g} Hz\n{data.kind[k]}" for k in own)
+    moving = data.frequency > 0.0
+    other = np.append(True, np.diff(data.frequency) > 1e-8 * data.frequency[-1])  # pairs of one frequency stand once
+    own = np.flatnonzero(moving & other)
+    words = tuple(f"{data.frequency[k] * 1e-3:.3g}\n{data.kind[k][0].upper()}" for k in own)
     parts = {"meshes with the sun": data.sun_mesh, "meshes with the ring": data.ring_mesh}
     parts["pins and bearings"] = 1.0 - data.sun_mesh - data.ring_mesh
     bars = tuple(
@@ -102,9 +104,12 @@ def _modes_figure(name: str, data: SetModes) -> Figure:
     )
     return Figure(
         f"planet_modes_{name}", f"Natural modes of set {name}",
-        f"Set {name}: where each mode deforms, as shares of its strain energy, with its frequency and kind.",
-        (Panel(Axis("mode", categories=words), Axis("share of strain energy", limits=(0.0, 1.0)), bars,
-               stacked=True),),
+        f"Set {name}: where each mode deforms, as shares of its strain energy. R: sun, ring and carrier turn; T: they "
+        "move across the axis, two modes of one frequency; P: planets move alone; M: mixed.",
+        (Panel(
+            Axis("natural frequency [kHz] and kind", categories=words),
+            Axis("share of strain energy", limits=(0.0, 1.0)), bars, stacked=True,
+        ),),
     )  # fmt: skip
 
 
