@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from fegear.case.reading import Scene
 
 
+#: Why a task runs that no result of the case asks for.
+ON_REQUEST = "shown on request"
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """One task of the plan and the reasons for it."""
@@ -106,7 +110,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
             require(Task(stage.name, subject), f'requested by results = ["{result}"]')
 
     for task in more:
-        require(task, "shown on request")
+        require(task, ON_REQUEST)
 
     on = scene.case.effects.on()
     steps = tuple(

@@ -13,6 +13,7 @@ from fegear.base.plain import content_key
 from fegear.base.solution_cache import SolutionCache
 from fegear.engine.executor import Executor
 from fegear.engine.outcome import Named
+from fegear.engine.plan import ON_REQUEST
 from fegear.engine.stage import Work
 
 if TYPE_CHECKING:
@@ -182,11 +183,14 @@ def run_plan(
     watcher = watcher or Silence()
     work = Work(watcher.advance, SolutionCache() if cache is None else cache, executor or Executor())
     done: dict[Task, _Finished] = {}
+    own: dict[Task, _Finished] = {}
     for number, step in enumerate(plan.steps, start=1):
         title = f"{step.stage.title} ({step.task.subject})" if step.task.subject else step.stage.title
         watcher.begin(title, number, len(plan.steps) + following)
         done[step.task] = _finish(scene, step, done, work)
-        _refuse_one_name_for_two(done, step.task)
+        if step.reasons != (ON_REQUEST,):  # what is shown beside may be a result of the case found in another way
+            own[step.task] = done[step.task]
+            _refuse_one_name_for_two(own, step.task)
         watcher.end(done[step.task].timing.seconds)
         if found is not None:
             found(step.task, done[step.task].outcome)

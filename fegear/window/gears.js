@@ -97,7 +97,8 @@ const fegearGears = (() => {
       let i = roll.findIndex((one) => one > kept.place);
       if (i < 0) i = roll.length;
       const [before, a] = at(i - 1), [after, b] = at(i);
-      return a + (b - a) * (kept.place - before) / (after - before);
+      const span = after - before; // two positions may stand at one jump
+      return span > 1e-6 ? a + (b - a) * Math.max(0, Math.min(1, (kept.place - before) / span)) : b;
     }
     function loadAt(x, k) {
       const table = loadsOf.get(pair);

@@ -77,7 +77,14 @@ def glance_tasks(scene: Scene, pictures: tuple[str, ...]) -> list[Task]:
     usual = USUAL_WIDE if scene.wide_pairs else USUAL
     names = dict.fromkeys((*_ALWAYS, *(PICTURES[one].stage for one in pictures or usual if one in PICTURES)))
     stages = {stage.name: stage for stage in STAGES if stage.name in names}
-    return [Task(name, one) for name in names for one in stages[name].subjects(scene)]
+    # Of a pair with a width both tell its load and pressure: the case's own, or that over the face.
+    twice = "load-distribution" if "load-sharing" in scene.case.results else "load-sharing"
+    return [
+        Task(name, one)
+        for name in names
+        for one in stages[name].subjects(scene)
+        if not (name == twice and one in scene.wide_pairs)
+    ]
 
 
 def field_tasks(scene: Scene) -> list[Task]:

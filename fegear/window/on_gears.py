@@ -206,6 +206,7 @@ def gears_in_mesh(scene: Scene, name: str) -> dict[str, Any]:
     ratios = {"transverse": pair.contact_ratio} | ({"overlap": pair.overlap_ratio} if pair.driver.helix_angle else {})
     return found | {
         "ratios": ratios,
+        "wide": name in scene.wide_pairs,
         "refused": {kind: _NOT_PLANE for kind in _STAGES if kind not in _stages(scene, name)},
     }
 

@@ -47,8 +47,10 @@ from fegear.window.designs import draft_of
 from fegear.window.document import Desk
 from fegear.window.drag_handles import hands_of
 from fegear.window.form import fields, fields_told, form, tables_to_add
+from fegear.window.glance import glance_tasks, numbers_of, plan_with
 from fegear.window.job_queue import Asked, Compute, Design, Export, Inbox, Said, Unwanted
 from fegear.window.journal import Scratch, journal_folder, left_behind, sweep
+from fegear.window.on_gears import gears_in_mesh
 from fegear.window.order import HarrisMaps, in_order
 from fegear.window.server import free_port, serve
 from fegear.window.worker import scene_of
@@ -872,6 +874,24 @@ def test_while_a_value_moves_what_it_is_moved_for_is_found_and_the_rest_when_it_
     assert geometry[-1]["figures"]
     assert [one.get("same") for one in again["figures"]] == [True] * len(geometry[-1]["figures"])
     assert whole(again, geometry[-1])["figures"] == geometry[-1]["figures"]
+
+
+@pytest.mark.parametrize("result", ["load-distribution", "load-sharing"])
+def test_a_glance_at_a_pair_with_a_width_refuses_nothing_that_the_case_has(tmp_path, result):
+    """Load over the face and load sharing both tell the largest pressure: one of them stands beside the other."""
+    text = TWO.replace('compliance = { source = "weber-banaschek" }', 'width = "slices"').replace(
+        "load-sharing", result
+    )
+    text += "[load_distribution]\npositions = 6\npanels = 4\n[accuracy]\ntolerance = 0.1\n"
+    scene = scene_of(Asked(text, "c", str(tmp_path)))
+    plan = plan_with(scene, glance_tasks(scene, ("sharing", "line-load", "te")), [Task("load-sharing", "I")])
+    cache = SolutionCache()
+    found, own = (run_plan(scene, one, cache=cache) for one in (plan, make_plan(scene, STAGES)))
+    for task, outcome in own.outcomes.items():
+        assert found.outcomes[task].values == outcome.values
+    names = {name for outcome in found.outcomes.values() for name in numbers_of(outcome.values)}
+    assert gears_in_mesh(scene, "I")["wide"]
+    assert {"I.te_peak_to_peak", "I.largest_hertz_pressure", "I.driver.largest_root_tension"} <= names
 
 
 def test_answers_come_before_what_is_in_sight_and_that_before_the_rest(tmp_path):
