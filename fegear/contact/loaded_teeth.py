@@ -8,7 +8,7 @@ kind is one more maker. What is known of one kind alone is a part of an answer t
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
@@ -20,10 +20,13 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
+    from fegear.base.errors import InputError
     from fegear.contact.fourier import FourierSeries
     from fegear.contact.plane.pair_history import PairHistory
     from fegear.contact.plane.shifted_compliance import TransmissionErrorShift
     from fegear.contact.plane.tooth_stress import ToothStress
+    from fegear.contact.surface import FrictionLaw
+    from fegear.contact.tooth_loss import ToothLoss
     from fegear.contact.wide.root_stress import StressOverFace
     from fegear.fem.plane.influence import Side
     from fegear.geometry.pair import GearPair, Member
@@ -35,6 +38,55 @@ HARMONICS = 64
 POSITIONS = 200
 #: Largest number of base pitches over which rotational harmonics of spacing errors are computed.
 MOST_CYCLES = 10_000
+#: What may change with an effect that is neglected.
+Answer = Literal["transmission error", "load on a tooth pair", "root tension", "mean transmission error", "K_Hbeta"]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What one more effect does to one answer.
+
+    Parameters
+    ----------
+    answer : str
+        Which of a loaded pair.
+    size : float
+        Largest change over the base pitch [m, N or Pa], with its sign; for root tension, mean and factor that of the
+        number itself.
+    scale : float
+        What it is compared with: mean transmission error, total load, largest root tension, K_Hbeta.
+    load : float
+        Load at which its share is largest [N].
+    x : float
+        Roll position where it is largest [m]; nan for numbers of the whole base pitch.
+    """
+
+    answer: Answer
+    size: float
+    scale: float
+    load: float
+    x: float
+
+    @property
+    def share(self) -> float:
+        """Size over scale, positive."""
+        return abs(self.size) / self.scale
+
+
+@dataclass(frozen=True)
+class Neglected:
+    """Effects that are off.
+
+    Parameters
+    ----------
+    changes : mapping of str to tuple of Change
+        What each of them would change, if it were on.
+    wrong : mapping of str to InputError
+        Those whose data are wrong, which stops nothing while they are off.
+    """
+
+    changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)
+    wrong: Mapping[str, InputError] = field(default_factory=dict)
 
 
 class LoadedTeeth(Protocol):
@@ -55,6 +107,10 @@ class LoadedTeeth(Protocol):
     @property
     def about(self) -> str:
         """Where its compliances come from, as a sentence for figures."""
+
+    @property
+    def neglected(self) -> Neglected:
+        """What the effects that are off would change."""
 
     def history(self) -> LoadHistory:
         """One tooth pair from first to last contact under every load."""
@@ -105,6 +161,51 @@ class LoadedTeeth(Protocol):
         estimates : bool
             Whether errors are estimated, where that is a choice.
         """
+
+    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], ToothLoss]:
+        """Power that tooth friction takes under every load, and at the nominal one once more, computed more coarsely.
+
+        Parameters
+        ----------
+        speed : float
+            Of the driver [rad/s].
+        law : callable
+            Friction law under a load [N].
+        """
+
+    def flank_load(self, pair: GearPair) -> FlankLoad:
+        """Line load all over the flank at the nominal load.
+
+        Parameters
+        ----------
+        pair : GearPair
+            Whose path of contact is looked at, without errors of the housing.
+        """
+
+
+@dataclass(frozen=True)
+class FlankLoad:
+    """Line load over the path of contact and the face, without load factors.
+
+    Parameters
+    ----------
+    x : ndarray, shape (X,)
+        On the line of action [m].
+    z : ndarray, shape (Z,)
+        Along the face, from its middle [m]; one place for plane teeth.
+    line_load : ndarray, shape (Z, X)
+        [N/m].
+    over_face : bool
+        Whether its distribution over the face is computed.
+    outside : float
+        Largest share of the load that tip corners bear off the path.
+    """
+
+    x: Array
+    z: Array
+    line_load: Array
+    over_face: bool
+    outside: float
 
 
 @dataclass(frozen=True)

@@ -65,7 +65,7 @@ def test_drawn_flanks_touch_and_every_layer_is_painted(program, tmp_path):
     script = (resources.files("fegear.window") / "layers.js").read_text("utf-8")
     page = tmp_path / "page.html"
     page.write_text(PAGE % (script, json.dumps({**found, "tool": tool, "mesh": gears_in_mesh(scene, "I")})))
-    e = ran.outcomes[Task("loaded-pair", "I")].data.pair.engagement
+    e = ran.outcomes[Task("loaded-pair", "I")].data.engagement
     with chromium.Browser(program("chromium"), 900, 600) as browser:
         browser.open(page)
         # True to scale the flanks of loaded pairs touch, as far as points of the outline show the dents.

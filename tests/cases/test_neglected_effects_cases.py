@@ -80,7 +80,7 @@ def true_load_change(before, after, load: float) -> float:
     """Between two runs' engagements, a tooth pair followed over twenty thousand positions."""
     histories = []
     for results in (before, after):
-        engagement = results.outcomes[Task("loaded-pair", "I")].data.pair.engagement
+        engagement = results.outcomes[Task("loaded-pair", "I")].data.engagement
         histories.append(pair_history(engagement, [load], 20_000))
     x = np.unique(np.concatenate([h.x for h in histories]))
     a, b = (np.interp(x, h.x, h.load[:, 0], left=0.0, right=0.0) for h in histories)
@@ -123,7 +123,7 @@ def test_the_reported_size_is_that_of_the_run_with_the_effect_on(name, effect, a
     off = {**OFF, **among, effect: OFF[effect]}
     before = run(name, *effects(**off))
     after = run(name, *effects(**{**off, effect: ON[effect]}))
-    pair = before.outcomes[Task("loaded-pair", "I")].data.pair
+    pair = before.outcomes[Task("loaded-pair", "I")].data
     inputs = LOADED_PAIR.inputs(before.scene, "I")
     compared = 0
     for load in (pair.loads[0], pair.nominal, pair.loads[-1]):
@@ -152,7 +152,7 @@ def test_it_is_reported_above_the_tolerance_and_not_below(effect):
         run("calculix_pair", *asked),
         run("calculix_pair", *results, *effects(**{**off, effect: ON[effect]})),
     )
-    pair = before.outcomes[Task("loaded-pair", "I")].data.pair
+    pair = before.outcomes[Task("loaded-pair", "I")].data
     load, te = pair.loads[-1], columns(before, "transmission_error_loads_I")
     share = true_change(before, after, "transmission error", load) / te["te"][te["total_load"] == load].mean()
 
@@ -220,7 +220,7 @@ def random_pair(seed: int):
 
 def largest_tension(results, load: float) -> float:
     """Of both gears over four thousand roll positions."""
-    e = results.outcomes[Task("loaded-pair", "I")].data.pair.engagement
+    e = results.outcomes[Task("loaded-pair", "I")].data.engagement
     x = e.pair.x_start + e.pair.base_pitch * (np.arange(4000) + 0.5) / 4000
     beside = [b + side * 1e-7 * e.pair.base_pitch for b in e.breaks for side in (-1.0, 1.0)]
     state = e.solve(e.grid(np.concatenate([x, beside]), again=False), [load])
@@ -242,7 +242,7 @@ def test_sizes_of_root_tension_of_random_pairs(seed):
     for effect in WHOLE:
         before = made("root-stress-history", **{name: value for name, value in WHOLE.items() if name != effect})
         inputs = LOADED_PAIR.inputs(before.scene, "I")
-        pair = before.outcomes[Task("loaded-pair", "I")].data.pair
+        pair = before.outcomes[Task("loaded-pair", "I")].data
         (change,) = neglected_effects(inputs.asked, pair, inputs.answers, [load]).changes[effect]
         true = stress - largest_tension(before, load)
         if abs(true) < 3e-4 * change.scale:
@@ -262,7 +262,7 @@ def test_sizes_of_random_pairs_and_loads(seed):
     for effect in WHOLE:
         before = made(*results, **{name: value for name, value in WHOLE.items() if name != effect})
         inputs = LOADED_PAIR.inputs(before.scene, "I")
-        pair = before.outcomes[Task("loaded-pair", "I")].data.pair
+        pair = before.outcomes[Task("loaded-pair", "I")].data
         for change in neglected_effects(inputs.asked, pair, inputs.answers, [load]).changes[effect]:
             if change.answer == "load on a tooth pair":
                 true = true_load_change(before, after, load)

@@ -92,7 +92,7 @@ def test_without_coupling_a_load_moves_its_own_tooth_alone(cache):
 
 
 def _touching(ran):
-    found, e = ran.outcomes[DEFORMED].data, ran.outcomes[Task("loaded-pair", "I")].data.pair.engagement
+    found, e = ran.outcomes[DEFORMED].data, ran.outcomes[Task("loaded-pair", "I")].data.engagement
     state = e.solve(e.grid(found.roll), [2500.0])
     contacts, te = state.grid.contacts, found.transmission_error
     np.testing.assert_allclose(te, state.transmission_error[:, 0], rtol=1e-12)

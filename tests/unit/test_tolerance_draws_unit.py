@@ -28,7 +28,8 @@ from fegear.geometry.pair import MEMBERS, GearPair
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
 from fegear.results.catalogue import STAGES
-from fegear.results.relief.tolerance_robustness import TOLERANCE_ROBUSTNESS, _bench
+from fegear.results.relief.tolerance_benches import set_up
+from fegear.results.relief.tolerance_robustness import TOLERANCE_ROBUSTNESS
 
 LIMITS = Limits(20e-6, (7e-6, 8e-6), (9e-6, 9e-6), (0.0, 0.0), (9e-6, 10e-6))
 LOAD = 2000.0
@@ -379,7 +380,7 @@ def test_a_draw_over_the_face_is_an_ordinary_case_with_its_deviations_written_do
     cache = SolutionCache()
     drawn_too = {**WIDE, "robustness": WIDE["robustness"] | {"centre_distance": "30 um"}}
     data = next(
-        one.data for task, one in run(drawn_too, cache).outcomes.items() if task.stage == "flank-tolerance-robustness"
+        one.data for task, one in run(drawn_too, cache).outcomes.items() if task.stage == "tolerance-robustness"
     )
     assert (np.ptp(data.values["as the case"], axis=0) > 0.0).all()
     d, row = data.deviations, 7
@@ -470,7 +471,7 @@ def test_a_stated_percentile_of_a_relief_is_that_of_draws_of_one_s_own(draws):
     case["robustness"]["reliefs"] = {"draws": 20, "amounts": ["6 um", "14 um"], "lengths": [0.3, 0.6]}
     results = run(case)
     asked = TOLERANCE_ROBUSTNESS.inputs(results.scene, "I")
-    own = _bench(asked, {task: outcome.data for task, outcome in results.outcomes.items()})
+    own = set_up(asked, {task: outcome.data for task, outcome in results.outcomes.items()})
     found = results.outcomes[Task("tolerance-robustness", "I")].data
     tips = replace(own.engagement, driver_relief=found.relief.driver, driven_relief=found.relief.driven)
     fresh = draw(asked.limits, draws, 12345, own.teeth, "random")

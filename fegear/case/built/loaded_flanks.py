@@ -18,8 +18,6 @@ from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import refuse_load
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from fegear.case.built.flank_errors import FlankErrors
     from fegear.case.built.flank_modifications import FaceModifications
     from fegear.case.built.pair_inputs import Flanks
@@ -28,15 +26,8 @@ if TYPE_CHECKING:
     from fegear.geometry.flank_modification import FlankModification
     from fegear.geometry.pair import GearPair
 
-#: Effects that change a pair with a width, and what a report says where they are off though the case has their data.
-FLANK_EFFECTS: Mapping[str, str] = {
-    "neighbour_coupling": "coupling between tooth pairs is neglected",
-    "hertz": "contacts do not widen with their load",
-    "relief": "gears have a relief or lead modifications that are neglected",
-    "spacing_errors": "gears have spacing_errors that are neglected",
-    "corner_contact": "contact lines end at the tips instead of going on along their edges",
-    "misalignment": "the pair has a misalignment or line_error that is neglected",
-}
+#: Effects that change a pair with a width.
+FLANK_EFFECTS = ("neighbour_coupling", "hertz", "relief", "spacing_errors", "corner_contact", "misalignment")
 #: Panels per module of face.
 _PANELS_PER_MODULE = 4.0
 
@@ -66,6 +57,8 @@ class FlanksToLoad:
         What the gears are solved as.
     name : str
         Of the pair.
+    tolerance : float
+        That the changes by neglected effects are compared with.
     """
 
     pair: GearPair
@@ -81,6 +74,7 @@ class FlanksToLoad:
     width: Literal["solid", "slices"] = "solid"
     base_pitch: int = 0
     name: str = field(default="", compare=False)
+    tolerance: float = field(default=0.0, compare=False)
 
     @property
     def gears(self) -> tuple[str, str]:
@@ -152,7 +146,7 @@ def flanks_to_load(scene: Scene, name: str) -> FlanksToLoad:
         pair = _placed(pair, errors.apart, name)
     return FlanksToLoad(
         pair, own, (first, second), faces, cutter_modification(scene, name), errors, part.all_loads(pair), nominal,
-        asked.positions, panels, width, asked.base_pitch, name,
+        asked.positions, panels, width, asked.base_pitch, name, scene.case.accuracy.tolerance,
     )  # fmt: skip
 
 

@@ -15,6 +15,7 @@ from fegear.base.tally import tallying
 from fegear.case.built.loaded_pair import relieved, spaced
 from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.train import motion_model
+from fegear.contact.loaded_teeth import Neglected
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -23,38 +24,26 @@ if TYPE_CHECKING:
     from fegear.case.built.pair_inputs import PairInputs
     from fegear.case.built.train import MotionInputs
     from fegear.case.effects import EffectsPart
+    from fegear.contact.loaded_teeth import Answer, Change
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.loaded_pair import LoadedPair
-    from fegear.contact.plane.neglected_effects import Answer, Change
     from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.dynamics.train.gear_train import GearTrain
 
 
-_UNITS = {"transmission error": ("um", 1e6), "load on a tooth pair": ("N", 1.0), "root tension": ("MPa", 1e-6)}
+#: Unit of an answer, its factor, and what a share is of.
+_SAID: dict[Answer, tuple[str, float, str]] = {
+    "transmission error": (" um", 1e6, "its mean"),
+    "load on a tooth pair": (" N", 1.0, "the load"),
+    "root tension": (" MPa", 1e-6, "its largest value"),
+    "mean transmission error": (" um", 1e6, "it"),
+    "K_Hbeta": ("", 1.0, "it"),
+}
 
 
 #: Contact ratios nearer to a whole number than this leave transmission error a spike of almost no width.
 _NEAR_WHOLE = 1e-3
-
-
-_SCALES = {"transmission error": "its mean", "load on a tooth pair": "the load", "root tension": "its largest value"}
-
-
-@dataclass(frozen=True)
-class Neglected:
-    """Effects of load sharing that are off.
-
-    Parameters
-    ----------
-    changes : mapping of str to tuple of Change
-        What each of them would change.
-    wrong : mapping of str to InputError
-        Those whose data are wrong, which stops nothing while they are off.
-    """
-
-    changes: Mapping[str, tuple[Change, ...]]
-    wrong: Mapping[str, InputError]
 
 
 def percent(share: float) -> str:
@@ -136,7 +125,7 @@ def neglected_effects(
     from fegear.contact.plane.neglected_effects import changes
 
     if not answers:
-        return Neglected({}, {})
+        return Neglected()
     others: dict[str, Engagement] = {}
     wrong: dict[str, InputError] = {}
     with tallying():  # what the estimate runs is no part of the case's own work
@@ -234,14 +223,11 @@ def design_remarks(
 
 
 def _size(change: Change, nominal: float) -> str:
-    unit, factor = _UNITS[change.answer]
-    largest = "largest root tension" if change.answer == "root tension" else change.answer
+    unit, factor, scale = _SAID[change.answer]
+    what = {"root tension": "the largest root tension", "K_Hbeta": "K_Hbeta"}.get(change.answer, f"the {change.answer}")
     where = "" if np.isnan(change.x) else f", at x = {change.x * 1e3:.4g} mm"
     load = "" if change.load == nominal else f" under {change.load:.5g} N"
-    return (
-        f"the {largest} by {change.size * factor:+.3g} {unit} "
-        f"({percent(change.share)} of {_SCALES[change.answer]}{where}{load})"
-    )
+    return f"{what} by {change.size * factor:+.3g}{unit} ({percent(change.share)} of {scale}{where}{load})"
 
 
 def _uneven(engagement: Engagement) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,9 @@ from fegear.contact.loaded_teeth import (
     MOST_CYCLES,
     POSITIONS,
     ErrorOverPitch,
+    FlankLoad,
     LoadHistory,
+    Neglected,
     RootStressInMesh,
 )
 from fegear.contact.plane.pair_history import pair_history
@@ -39,7 +41,13 @@ if TYPE_CHECKING:
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.pair_history import PairHistory
     from fegear.contact.plane.tooth_stress import ToothStress
+    from fegear.contact.surface import FrictionLaw
+    from fegear.contact.tooth_loss import ToothLoss
     from fegear.geometry.pair import GearPair, Member
+
+#: Places along the path at which losses are integrated (half as many for the estimate of their error), and at which the
+#: state of the flanks is looked at.
+_LOSSES, _SURFACE = 801, 400
 
 
 @dataclass(frozen=True)
@@ -58,6 +66,8 @@ class LoadedPair:
         The load that the contract's tables are for [N].
     sources : tuple of str
         How the compliance sources describe themselves.
+    neglected : Neglected
+        What the effects that are off would change.
     """
 
     engagement: Engagement
@@ -65,6 +75,7 @@ class LoadedPair:
     loads: tuple[float, ...]
     nominal: float
     sources: tuple[str, ...]
+    neglected: Neglected = field(default_factory=Neglected, compare=False)
 
     @property
     def pair(self) -> GearPair:
@@ -162,3 +173,19 @@ class LoadedPair:
             progress((number + 1) / len(MEMBERS))
         notes = {member: {name: source.remarks for name, source in sources[member].items()} for member in MEMBERS}
         return RootStressInMesh(stress, notes)
+
+    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], ToothLoss]:
+        """See `LoadedTeeth`."""
+        from fegear.contact.tooth_loss import loss_over_path
+
+        pair, i = self.pair, self._at
+        fine, coarse = (pair_history(self.engagement, self.loads, count) for count in (_LOSSES, _LOSSES // 2))
+        found = (loss_over_path(pair, fine, k, speed, law(load)) for k, load in enumerate(self.loads))
+        return tuple(found), loss_over_path(pair, coarse, i, speed, law(self.nominal))
+
+    def flank_load(self, pair: GearPair) -> FlankLoad:
+        """See `LoadedTeeth`."""
+        found = pair_history(self.engagement, [self.nominal], _SURFACE)
+        off = self._off_path(found) > 0.0
+        outside = float(np.where(off, found.share[:, 0], 0.0).max(initial=0.0))
+        return FlankLoad(found.x[~off], np.zeros(1), (found.load[~off, 0] / pair.face_width)[None, :], False, outside)

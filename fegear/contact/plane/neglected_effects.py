@@ -9,12 +9,12 @@ positions would differ by what both miss.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.loaded_teeth import Change
 from fegear.contact.plane.pair_history import refined_peaks
 from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.geometry.pair import MEMBERS
@@ -25,9 +25,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
+    from fegear.contact.loaded_teeth import Answer
     from fegear.contact.plane.engagement import Engagement, Loaded
-
-Answer = Literal["transmission error", "load on a tooth pair", "root tension"]
 
 #: Roll positions spread over the base pitch.
 _SPREAD = 32
@@ -36,36 +35,6 @@ _SPREAD = 32
 _NARROW = (1.0, 6, 2)
 #: Distances from a jump at which both sides of it are looked at [base pitches]: corners take over within hundredths.
 _BESIDE = (1e-7, *(float(d) for d in np.geomspace(1e-3, 6e-2, 13)))
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """What one more effect does to one answer.
-
-    Parameters
-    ----------
-    answer : str
-        "transmission error", "load on a tooth pair" or "root tension".
-    size : float
-        Largest change over the base pitch [m, N or Pa], with its sign; for the root tension that of its largest value.
-    scale : float
-        What it is compared with: mean transmission error, total load, largest root tension.
-    load : float
-        Load at which its share is largest [N].
-    x : float
-        Roll position where it is largest [m]; nan for the root tension, whose largest value has a place of its own.
-    """
-
-    answer: Answer
-    size: float
-    scale: float
-    load: float
-    x: float
-
-    @property
-    def share(self) -> float:
-        """Size over scale, positive."""
-        return abs(self.size) / self.scale
 
 
 def few_positions(engagements: Sequence[Engagement]) -> Array:

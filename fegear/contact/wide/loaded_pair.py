@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from fegear.contact.loaded_teeth import ErrorOverPitch, LoadHistory, RootStressInMesh
+from fegear.contact.loaded_teeth import ErrorOverPitch, FlankLoad, LoadHistory, Neglected, RootStressInMesh
 from fegear.contact.plane.tooth_stress import ToothStress
 from fegear.contact.wide.pair_history import flank_pair_history, history_error
 from fegear.contact.wide.root_stress import rooted_lines
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.shifted_compliance import TransmissionErrorShift
+    from fegear.contact.surface import FrictionLaw
+    from fegear.contact.tooth_loss import ToothLoss
     from fegear.contact.wide.compliance import FlankCompliance
     from fegear.contact.wide.error import FlankError
     from fegear.contact.wide.gaps import FlankGaps
@@ -37,6 +39,9 @@ if TYPE_CHECKING:
 
 #: Places along the face per module, at which root stress is looked for, and how many at least.
 _PER_MODULE, _FEWEST = 4.0, 17
+#: Places along path and face at which the state of the flanks is looked at, and the share of both at either end at
+#: which the load is known by extrapolation alone.
+_SURFACE, _MARGIN = (121, 41), 1e-3
 #: Both fillets, and the sign of the stress that is looked for.
 _SIDES: Final[tuple[tuple[Side, float], ...]] = (("tension", 1.0), ("compression", -1.0))
 
@@ -63,9 +68,8 @@ class LoadedWidePair:
         What is stated of the whole base pitch under every load, at as many roll positions as that needs.
     error : FlankError
         Estimated errors of `found`, and of what is stated.
-    neglected : mapping of str to (float, float)
-        By the effects that are off: what each of them would change, if it were on, of mean transmission error [m] and
-        K_Hbeta at the nominal load.
+    neglected : Neglected
+        What the effects that are off would change of mean transmission error and K_Hbeta at the nominal load.
     unloaded : ndarray, shape (P,)
         Transmission error of the rigid flanks at the roll positions of `found` [m].
     beside : float
@@ -83,7 +87,7 @@ class LoadedWidePair:
     found: LoadedFlanks
     over: OverPitch
     error: FlankError
-    neglected: Mapping[str, tuple[float, float]]
+    neglected: Neglected
     unloaded: Array
     beside: float
     missed: float
@@ -238,6 +242,41 @@ class LoadedWidePair:
         largest = rooted.largest("tension", self.found.contact.force[:, :, i], self.places_along, across=True)
         worst = stress.worst(i)
         return largest, float(stress.tension_error[worst, i] / stress.tension[worst, i] * largest)
+
+    def losses(self, speed: float, law: Callable[[float], FrictionLaw]) -> tuple[tuple[ToothLoss, ...], ToothLoss]:
+        """See `LoadedTeeth`."""
+        from fegear.contact.tooth_loss import loss_over_face
+
+        found = (loss_over_face(self.found, k, speed, law(load)) for k, load in enumerate(self.loads))
+        return tuple(found), loss_over_face(self.error.coarse, self.at, speed, law(self.nominal))
+
+    def flank_load(self, pair: GearPair) -> FlankLoad:
+        """See `LoadedTeeth`."""
+        found, (along, across) = self.found, _SURFACE
+        x = _between(pair.x_start, pair.x_end, along)
+        z = _between(found.lines.low, found.lines.high, across)
+        return FlankLoad(x, z, np.maximum(found.spread(x, z, _without_edges(found, self.at)), 0.0), True, 0.0)
+
+
+def _without_edges(found: LoadedFlanks, case: int) -> Array:
+    """Line load at the stations; at tips and form circles that of the station beside them, (P, M) [N/m].
+
+    An edge of an unrelieved tooth presses harder than smooth flanks do, and no formula of the surface is for edges.
+    """
+    lines, load = found.lines, found.line_load[:, :, case].copy()
+    for p in range(lines.roll.size):
+        for s in lines.at(p):
+            inner = s.start + np.flatnonzero(~lines.at_edge[p, s])
+            if inner.size:
+                load[p, s] = np.interp(lines.z[p, s], lines.z[p, inner], load[p, inner])
+    return np.asarray(load)
+
+
+def _between(low: float, high: float, count: int) -> Array:
+    """Places from end to end, those of the path with the pitch point among them."""
+    room = _MARGIN * (high - low)
+    places = np.linspace(low + room, high - room, count)
+    return np.unique(np.append(places, 0.0)) if low < 0.0 < high else places
 
 
 def _missed_too(shift: TransmissionErrorShift, te: FlankTransmissionError, missed: float) -> TransmissionErrorShift:

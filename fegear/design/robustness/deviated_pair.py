@@ -6,7 +6,7 @@ Loaded flanks with deviations of manufacture: compliances over the face stay, co
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from fegear.base.errors import FegearError
 from fegear.contact.fourier import panels
 from fegear.contact.plane.fe_compliance import RootTable, light, root_table
 from fegear.contact.plane.load_sharing import share_load
+from fegear.contact.plane.transmission_error import transmission_error
 from fegear.contact.wide.complementarity import solve_contact
 from fegear.contact.wide.loaded import LoadedFlanks
 from fegear.design.robustness.tolerance_draws import HelixDeviation, ProfileDeviation
@@ -55,6 +56,29 @@ _WAVES, _ORDER = 12, 12
 _BETWEEN = 6
 
 
+class DrawBench(Protocol):
+    """A pair of any kind set up for deviations, see `Bench` and `FlankBenches`."""
+
+    @property
+    def load(self) -> float:
+        """Along the line of action [N]."""
+
+    @property
+    def teeth(self) -> int:
+        """Teeth on either side of one whose spacing counts."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the numbers that are kept of a draw."""
+
+    @property
+    def exact(self) -> float:
+        """Peak-to-peak transmission error without deviations, with points at its jumps [m]; NaN where unknown."""
+
+    def of_draw(self, deviations: Deviations, row: int) -> Array:
+        """Numbers of one draw, in the order of their names."""
+
+
 @dataclass(frozen=True)
 class Bench:
     """A pair set up for deviations: small enough to be sent to other processes.
@@ -78,6 +102,20 @@ class Bench:
         """Teeth on either side of one that meet while it is in contact."""
         numbers = self.engagement.meshing.pair_numbers
         return int(numbers.max() - numbers.min())
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the numbers that are kept of a draw."""
+        return OUTCOMES
+
+    @property
+    def exact(self) -> float:
+        """Peak-to-peak transmission error of the pair without deviations, with points at its jumps [m]."""
+        return transmission_error(self.engagement, self.load, 12).peak_to_peak
+
+    def of_draw(self, deviations: Deviations, row: int) -> Array:
+        """Numbers of one draw."""
+        return outcomes(self, deviated(self, deviations, row))
 
 
 class State(NamedTuple):
@@ -253,12 +291,12 @@ class Drawn(NamedTuple):
     reasons: dict[int, str]
 
 
-def drawn_outcomes(bench: Bench, deviations: Deviations) -> Drawn:
+def drawn_outcomes(bench: DrawBench, deviations: Deviations) -> Drawn:
     """Outcomes of every draw, each computed alone, so that its bits are the same in any company."""
-    values, reasons = np.full((len(deviations), len(OUTCOMES)), np.nan), {}
+    values, reasons = np.full((len(deviations), len(bench.names)), np.nan), {}
     for row in range(len(deviations)):
         try:
-            values[row] = outcomes(bench, deviated(bench, deviations, row))
+            values[row] = bench.of_draw(deviations, row)
         except FegearError as error:
             reasons[row] = str(error)
     return Drawn(values, reasons)
@@ -288,6 +326,30 @@ class FlankBenches:
     nearer: FlankBench | None = None
     farther: FlankBench | None = None
     largest: float = 0.0
+
+    @property
+    def load(self) -> float:
+        """Along the transverse line of action [N]."""
+        return self.nominal.load
+
+    @property
+    def teeth(self) -> int:
+        """Teeth on either side of tooth 0 that are in reach in one base pitch."""
+        return self.nominal.teeth
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the numbers that are kept of a draw."""
+        return FLANK_OUTCOMES
+
+    @property
+    def exact(self) -> float:
+        """None is known: points stand where contact lines do."""
+        return np.nan
+
+    def of_draw(self, deviations: Deviations, row: int) -> Array:
+        """Numbers of one draw."""
+        return self.outcomes(deviated_gaps(self.nominal, deviations, row), float(deviations.centre_distance[row]))
 
     def outcomes(self, gaps: FlankGaps, moved: float) -> Array:
         """What comes of a pair whose centre distance is off by `moved` [m], in the order of `FLANK_OUTCOMES`.
@@ -377,15 +439,3 @@ def flank_outcomes(bench: FlankBench, gaps: FlankGaps) -> Array:
         np.ptp(te), (share * te).sum(), *amplitudes, found.face_load_factor[0], *roots, found.largest_pressure[0],
         found.largest_line_load[0],
     ])  # fmt: skip
-
-
-def drawn_flank_outcomes(benches: FlankBenches, deviations: Deviations) -> Drawn:
-    """Outcomes of every draw, each computed alone, so that its bits are the same in any company."""
-    values, reasons = np.full((len(deviations), len(FLANK_OUTCOMES)), np.nan), {}
-    for row in range(len(deviations)):
-        try:
-            gaps = deviated_gaps(benches.nominal, deviations, row)
-            values[row] = benches.outcomes(gaps, float(deviations.centre_distance[row]))
-        except FegearError as error:
-            reasons[row] = str(error)
-    return Drawn(values, reasons)

@@ -123,7 +123,7 @@ CONTACT_PATTERN = Stage(
     compute=_compute,
     present=_present,
     needs=needs_flanks,
-    effects=tuple(FLANK_EFFECTS),
+    effects=FLANK_EFFECTS,
     cites=citing(Citation("iso-21771", "contact lines in the plane of action", "5.4")),
     forecast=lambda _scene, _name: forecasts.constant(0.1),
 )

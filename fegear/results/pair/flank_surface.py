@@ -1,4 +1,4 @@
-"""Stages of the result ``flank-surface``: sliding, pressure, temperatures and lubricant film from A to E."""
+"""Stage ``flank-surface``: sliding, pressure, temperatures and lubricant film from A to E."""
 
 from __future__ import annotations
 
@@ -9,33 +9,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS
-from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.pair_surface import pair_surface, tip_reliefs
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
 from fegear.results.pair.flank_surface_tables import surface_figures, surface_tables, surface_values
-from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
-from fegear.results.pair.loaded_teeth import loaded_pair, needs_teeth, plane_pairs, wide_pairs
+from fegear.results.pair.loaded_teeth import (
+    TEETH_EFFECTS,
+    check_teeth,
+    effects_of_teeth,
+    loaded_pairs,
+    loaded_teeth,
+    needs_teeth,
+)
 
 if TYPE_CHECKING:
-    from fegear.base.arrays import Array
     from fegear.case.built.pair_surface import PairSurface
     from fegear.case.reading import Scene
     from fegear.contact.surface import FlankSurface
-    from fegear.contact.wide.loaded import LoadedFlanks
     from fegear.engine.stage import Upstream, Work
     from fegear.formulas.iso6336.part20_flash import FlashTemperatures
     from fegear.formulas.iso6336.part21_integral import IntegralTemperature
     from fegear.formulas.iso6336.part22_micropitting import RatedFilm
     from fegear.geometry.pair import GearPair
-
-#: Places along the path of a plane pair, and along path and face of one with a width.
-_PATH, _WIDE_PATH, _FACE = 400, 121, 41
-#: Ends of path and face at which the load of a pair with a width is shown by extrapolation alone, of their length.
-_MARGIN = 1e-3
 
 
 @dataclass(frozen=True)
@@ -100,11 +96,7 @@ def _inputs(scene: Scene, name: str) -> FlankSurfaceInputs:
 
 
 def _check(scene: Scene, name: str) -> None:
-    check_relief(scene, name)
-    pair_surface(scene, name, tip_reliefs(scene, name))
-
-
-def _check_wide(scene: Scene, name: str) -> None:
+    check_teeth(scene, name)
     pair_surface(scene, name, tip_reliefs(scene, name))
 
 
@@ -137,57 +129,15 @@ def _standards(asked: PairSurface, computed: FlankSurface, *, wide: bool, outsid
 
 
 def _compute(inputs: FlankSurfaceInputs, upstream: Upstream, _work: Work) -> FlankSurfaceData:
-    from fegear.contact.plane.pair_history import pair_history
     from fegear.contact.surface import flank_surface
 
-    asked, loaded = inputs.surface, loaded_pair(upstream, inputs.name)
-    rated, factors = asked.rated, asked.rated.factors
-    history = pair_history(loaded.engagement, [rated.load], _PATH)
-    pair = rated.pair
-    on = (history.x >= pair.x_start) & (history.x <= pair.x_end)
-    outside = float(np.where(on, 0.0, history.share[:, 0]).max(initial=0.0))
-    # uneven sharing is computed; load over the face, shocks and what machines add are not
-    scale = factors.application * factors.dynamic * factors.face
-    load = (history.load[on, 0] * scale / pair.face_width)[None, :]
-    law = asked.friction.of(pair, rated.speed, rated.load * scale) if asked.friction else None
-    computed = flank_surface(rated, history.x[on], np.zeros(1), load, law)
-    return _standards(asked, computed, wide=False, outside=outside)
-
-
-def _compute_wide(inputs: FlankSurfaceInputs, upstream: Upstream, _work: Work) -> FlankSurfaceData:
-    from fegear.contact.surface import flank_surface
-
-    asked, loaded = inputs.surface, loaded_flanks(upstream, inputs.name)
-    rated, factors, found = asked.rated, asked.rated.factors, loaded.found
-    pair, lines = rated.pair, found.lines
-    x = _between(pair.x_start, pair.x_end, _WIDE_PATH)
-    z = _between(lines.low, lines.high, _FACE)
-    scale = factors.application * factors.dynamic
-    load = np.maximum(found.spread(x, z, _without_edges(found, loaded.at)), 0.0) * scale
-    law = asked.friction.of(pair, rated.speed, rated.load * scale) if asked.friction else None
-    computed = flank_surface(rated, x, z, load, law)
-    return _standards(asked, computed, wide=True, outside=0.0)
-
-
-def _without_edges(found: LoadedFlanks, case: int) -> Array:
-    """Line load at the stations; at tips and form circles that of the station beside them, (P, M) [N/m].
-
-    An edge of an unrelieved tooth presses harder than smooth flanks do, and no formula of the surface is for edges.
-    """
-    lines, load = found.lines, found.line_load[:, :, case].copy()
-    for p in range(lines.roll.size):
-        for s in lines.at(p):
-            inner = s.start + np.flatnonzero(~lines.at_edge[p, s])
-            if inner.size:
-                load[p, s] = np.interp(lines.z[p, s], lines.z[p, inner], load[p, inner])
-    return np.asarray(load)
-
-
-def _between(low: float, high: float, count: int) -> Array:
-    """Places from end to end, those of the path with the pitch point among them."""
-    room = _MARGIN * (high - low)
-    places = np.linspace(low + room, high - room, count)
-    return np.unique(np.append(places, 0.0)) if low < 0.0 < high else places
+    asked, rated = inputs.surface, inputs.surface.rated
+    found, factors = loaded_teeth(upstream, inputs.name).flank_load(rated.pair), rated.factors
+    # uneven sharing is computed, and load over the face for teeth with a width; shocks and what machines add are not
+    scale = factors.application * factors.dynamic * (1.0 if found.over_face else factors.face)
+    law = asked.friction.of(rated.pair, rated.speed, rated.load * scale) if asked.friction else None
+    computed = flank_surface(rated, found.x, found.z, found.line_load * scale, law)
+    return _standards(asked, computed, wide=found.over_face, outside=found.outside)
 
 
 def _present(data: FlankSurfaceData, inputs: FlankSurfaceInputs) -> Outcome:
@@ -277,7 +227,7 @@ def _recalled(name: str, asked: PairSurface) -> list[str]:
 
 
 def _forecast(_scene: Scene, _name: str) -> Forecast:
-    return Forecast({"positions": _PATH}, 0.05)
+    return Forecast({}, 0.05)
 
 
 _CITES = citing(
@@ -288,25 +238,14 @@ _CITES = citing(
 )
 
 FLANK_SURFACE = Stage(
-    subjects=plane_pairs,
+    subjects=loaded_pairs,
     needs=needs_teeth,
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
-    effects=EFFECTS,
-    cites=_CITES,
-    forecast=_forecast,
-)
-
-WIDE_FLANK_SURFACE = Stage(
-    subjects=wide_pairs,
-    needs=needs_flanks,
-    inputs=_inputs,
-    compute=_compute_wide,
-    present=_present,
-    check=_check_wide,
-    effects=tuple(FLANK_EFFECTS),
+    effects=TEETH_EFFECTS,
+    effects_of=effects_of_teeth,
     cites=_CITES,
     forecast=_forecast,
 )

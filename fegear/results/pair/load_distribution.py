@@ -328,7 +328,7 @@ LOAD_DISTRIBUTION = Stage(
     present=_present,
     needs=needs_flanks,
     check=_check,
-    effects=tuple(FLANK_EFFECTS),
+    effects=FLANK_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
 )

@@ -174,7 +174,7 @@ FLANK_LOAD_FACTORS = Stage(
     compute=_compute,
     present=_present,
     needs=_needs,
-    effects=tuple(FLANK_EFFECTS),
+    effects=FLANK_EFFECTS,
     cites=citing(*RING, Citation("iso-6336-1", "face and transverse load factors", "clauses 7 to 9")),
     forecast=_forecast,
 )

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS, check_flanks_to_load, flanks_to_load
+from fegear.case.built.neglected_effects import neglected_remarks
 from fegear.case.built.pair_inputs import gear_name
+from fegear.contact.loaded_teeth import Change, Neglected
 from fegear.engine.citation import Citation, citing
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage, Task
@@ -115,11 +118,23 @@ def _compute(asked: FlanksToLoad, upstream: Upstream, work: Work) -> LoadedWideP
         for effect in FLANK_EFFECTS
         if not effects.is_on(effect) and asked.has_data(effect)
     }
+    stated, i = over.stated, asked.loads.index(asked.nominal)
+    changes = {effect: _changes(sizes, stated, i, asked.nominal) for effect, sizes in neglected.items()}
     unloaded = unloaded_error(asked.pair, gaps, found.lines.roll)
     beside = beside_the_lines(asked.pair, gaps, found.lines)
     apart = asked.gaps(relief=False, misalignment=effects.misalignment)
     return LoadedWidePair(
-        flanks, asked.loads, asked.nominal, known, gaps, apart, found, over, error, neglected, unloaded, beside, missed
+        flanks, asked.loads, asked.nominal, known, gaps, apart, found, over, error, Neglected(changes), unloaded,
+        beside, missed,
+    )  # fmt: skip
+
+
+def _changes(sizes: tuple[float, float], stated: Stated, i: int, load: float) -> tuple[Change, Change]:
+    """What was found to change of mean transmission error and K_Hbeta under a load [N], of number `i`."""
+    mean, factor = float(stated.mean[i]), float(stated.face_load_factor[i])
+    return (
+        Change("mean transmission error", sizes[0], mean, load, math.nan),
+        Change("K_Hbeta", sizes[1], factor, load, math.nan),
     )
 
 
@@ -165,8 +180,13 @@ def _present(data: LoadedWidePair, asked: FlanksToLoad) -> Outcome:
         "positions_of_stated": data.over.found.lines.roll.size,
         "seconds": {key: round(seconds, 6) for key, seconds in found.seconds.items()},
     }  # fmt: skip
-    said = (one(asked.name, data) for one in (_heavy, _sliced, _neglected, _beside, _short))
-    return Outcome(data, settings=settings, remarks=tuple(remark for some in said for remark in some))
+    name = asked.name
+    said = (
+        *_heavy(name, data), *_sliced(name, data),
+        *neglected_remarks(name, data.neglected, asked.effects, asked.tolerance, asked.nominal), *_beside(name, data),
+        *_short(name, data),
+    )  # fmt: skip
+    return Outcome(data, settings=settings, remarks=said)
 
 
 def _heavy(name: str, data: LoadedWidePair) -> tuple[str, ...]:
@@ -209,20 +229,9 @@ def _short(name: str, data: LoadedWidePair) -> tuple[str, ...]:
     i = int(fewest.argmin())
     remark = (
         f"Pair {name}: under {found.load[i]:.4g} N the flanks touch at {fewest[i]} places of a roll "
-        "position, too few to tell how the load spreads between them. Raise load_distribution.panels."
+        "position, too few to resolve how the load spreads between them. Raise load_distribution.panels."
     )
     return (remark,)
-
-
-def _neglected(name: str, data: LoadedWidePair) -> tuple[str, ...]:
-    """Say how much the effects would change that are off."""
-    i = data.at
-    mean, factor = float(data.stated.mean[i]), float(data.stated.face_load_factor[i])
-    return tuple(
-        f"Pair {name}: {FLANK_EFFECTS[effect]} (effects.{effect}). With it the mean transmission error would be "
-        f"{(mean + te) * 1e6:.4g} um for {mean * 1e6:.4g} um, and K_Hbeta {factor + k:.4g} for {factor:.4g}."
-        for effect, (te, k) in data.neglected.items()
-    )
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
@@ -243,7 +252,7 @@ LOADED_FLANKS = Stage(
     present=_present,
     needs=_needs,
     check=check_flanks_to_load,
-    effects=tuple(FLANK_EFFECTS),
+    effects=FLANK_EFFECTS,
     cites=citing(*RING, HERTZ, INVOLUTE, Citation("johnson", "half-space under the contacts", "sections 3.2 and 4.2")),
     forecast=_forecast,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from fegear.base.plain import content_key
@@ -13,7 +13,7 @@ from fegear.case.built.loaded_pair import (
     engagement_at_rest,
     shifted_sources,
 )
-from fegear.case.built.neglected_effects import Neglected, neglected_effects, neglected_remarks, whole_ratio_remarks
+from fegear.case.built.neglected_effects import neglected_effects, neglected_remarks, whole_ratio_remarks
 from fegear.case.built.pair_inputs import EFFECTS, pair_inputs
 from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Stage
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from fegear.case.built.pair_inputs import PairInputs
     from fegear.case.effects import EffectsPart
     from fegear.case.reading import Scene
+    from fegear.contact.loaded_teeth import Answer
     from fegear.contact.plane.engagement import Engagement
     from fegear.contact.plane.loaded_pair import LoadedPair
-    from fegear.contact.plane.neglected_effects import Answer
     from fegear.engine.citation import Citation
     from fegear.engine.stage import Task, Upstream, Work
 
@@ -48,14 +48,6 @@ _ANSWERS: dict[str, Answer] = {
 }  # fmt: skip
 #: Results that are for every load of the case.
 _FOR_ALL_LOADS = frozenset({"load-sharing", "transmission-error", "root-stress-history", "relief", "relief-chart"})
-
-
-@dataclass(frozen=True)
-class LoadedPairData:
-    """A pair ready for load sharing, and what its case neglects."""
-
-    pair: LoadedPair
-    neglected: Neglected
 
 
 @dataclass(frozen=True)
@@ -116,18 +108,18 @@ def _at_rest(asked: PairInputs, upstream: Upstream, work: Work) -> Engagement:
     return work.cache.solve(key, lambda: engagement_at_rest(asked, compliance_sources(asked, influences))).value
 
 
-def _compute(inputs: LoadedPairInputs, upstream: Upstream, work: Work) -> LoadedPairData:
+def _compute(inputs: LoadedPairInputs, upstream: Upstream, work: Work) -> LoadedPair:
     asked = inputs.asked
     at_rest = _at_rest(asked, upstream, work)
     shifted = shifted_sources(asked, (at_rest.compliance.driver, at_rest.compliance.driven)) if inputs.estimates else ()
     pair = build_loaded_pair(asked, at_rest, shifted)
     if not inputs.estimates:
-        return LoadedPairData(pair, Neglected({}, {}))
-    return LoadedPairData(pair, neglected_effects(asked, pair, inputs.answers, inputs.loads))
+        return pair
+    return replace(pair, neglected=neglected_effects(asked, pair, inputs.answers, inputs.loads))
 
 
-def _present(data: LoadedPairData, inputs: LoadedPairInputs) -> Outcome:
-    asked, pair = inputs.asked, data.pair
+def _present(pair: LoadedPair, inputs: LoadedPairInputs) -> Outcome:
+    asked = inputs.asked
     settings: dict[str, object] = {
         "compliance": "; ".join(pair.sources),
         "hertz": asked.effects.hertz,
@@ -137,9 +129,9 @@ def _present(data: LoadedPairData, inputs: LoadedPairInputs) -> Outcome:
         "nominal_load": pair.nominal,
         "loads": list(pair.loads),
     }
-    neglected = neglected_remarks(asked.name, data.neglected, inputs.effects, inputs.tolerance, pair.nominal)
+    neglected = neglected_remarks(asked.name, pair.neglected, inputs.effects, inputs.tolerance, pair.nominal)
     whole = whole_ratio_remarks(asked.name, pair.engagement, inputs.effects)
-    return Outcome(data, (), (), settings, tuple(dict.fromkeys((*asked.assumed, *whole, *neglected))))
+    return Outcome(pair, (), (), settings, tuple(dict.fromkeys((*asked.assumed, *whole, *neglected))))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:

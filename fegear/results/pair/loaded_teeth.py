@@ -77,7 +77,7 @@ class Kind:
 
 
 PLANE = Kind("loaded-pair", EFFECTS, needs_solution, check_relief)
-WIDE = Kind("loaded-flanks", tuple(FLANK_EFFECTS), needs_solid_solution)
+WIDE = Kind("loaded-flanks", FLANK_EFFECTS, needs_solid_solution)
 #: Effects that change a loaded pair of any kind.
 TEETH_EFFECTS = tuple(dict.fromkeys((*PLANE.effects, *WIDE.effects)))
 
@@ -117,7 +117,7 @@ def teeth_of(task: Task, data: Any) -> LoadedTeeth | None:
     """The loaded pair that a task computed; None where it is none of its makers."""
     if task.stage not in (PLANE.stage, WIDE.stage):
         return None
-    return cast("LoadedTeeth", data.pair if task.stage == PLANE.stage else data)
+    return cast("LoadedTeeth", data)
 
 
 def loaded_teeth(upstream: Upstream, name: str) -> LoadedTeeth:
@@ -128,7 +128,7 @@ def loaded_teeth(upstream: Upstream, name: str) -> LoadedTeeth:
 
 def loaded_pair(upstream: Mapping[Task, object], name: str) -> LoadedPair:
     """A pair of plane teeth, for what is known of these alone."""
-    return cast("LoadedPair", cast("Any", upstream[Task(PLANE.stage, name)]).pair)
+    return cast("LoadedPair", upstream[Task(PLANE.stage, name)])
 
 
 def gears_of(scene: Scene, name: str) -> dict[Member, str]:

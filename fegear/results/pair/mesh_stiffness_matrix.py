@@ -360,7 +360,7 @@ MESH_STIFFNESS_MATRIX = Stage(
     present=_present,
     needs=needs_flanks,
     check=_check,
-    effects=tuple(FLANK_EFFECTS),
+    effects=FLANK_EFFECTS,
     cites=citing(Citation("blankenship-singh", "mesh stiffness matrix, kappa and mu", "Eqs. 2 to 7")),
     forecast=lambda _scene, _name: Forecast({}, 0.1),
 )

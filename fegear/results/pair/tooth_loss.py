@@ -12,9 +12,6 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import RangeError
-from fegear.case.built.loaded_flanks import FLANK_EFFECTS
-from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.pair_surface import check_speed, pair_friction, pair_speed
 from fegear.case.built.train import build_train, check_train, train_inputs, train_part
 from fegear.engine.citation import Citation
@@ -24,8 +21,14 @@ from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
-from fegear.results.pair.loaded_flanks import loaded_flanks, needs_flanks
-from fegear.results.pair.loaded_teeth import loaded_pair, needs_teeth, plane_pairs, wide_pairs
+from fegear.results.pair.loaded_teeth import (
+    TEETH_EFFECTS,
+    check_teeth,
+    effects_of_teeth,
+    loaded_pairs,
+    loaded_teeth,
+    needs_teeth,
+)
 from fegear.results.train.gear_train import the_train
 
 if TYPE_CHECKING:
@@ -38,10 +41,6 @@ if TYPE_CHECKING:
     from fegear.contact.tooth_loss import ToothLoss
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import GearPair
-
-
-#: Places along the path, and half as many for the estimate of the error.
-_POSITIONS = 801
 
 
 #: Laws by the works that they stand in.
@@ -126,40 +125,16 @@ def _inputs(scene: Scene, name: str) -> ToothLossInputs:
     return ToothLossInputs(law, speed, loads, loads.index(load), part.friction is not None, name)
 
 
-def _check_wide(scene: Scene, name: str) -> None:
+def _check(scene: Scene, name: str) -> None:
+    check_teeth(scene, name)
     check_speed(scene, name, "tooth-loss")
     pair_friction(scene, name, "tooth-loss")
 
 
-def _check(scene: Scene, name: str) -> None:
-    check_relief(scene, name)
-    _check_wide(scene, name)
-
-
 def _compute(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
-    from fegear.contact.plane.pair_history import pair_history
-    from fegear.contact.tooth_loss import loss_over_path
-
-    engagement = loaded_pair(upstream, inputs.name).engagement
-    pair = engagement.pair
-    fine, coarse = (pair_history(engagement, inputs.loads, count) for count in (_POSITIONS, _POSITIONS // 2))
-    found = tuple(
-        loss_over_path(pair, fine, i, inputs.speed, inputs.law(pair, load)) for i, load in enumerate(inputs.loads)
-    )
-    i = inputs.nominal
-    return _data(pair, found, i, loss_over_path(pair, coarse, i, inputs.speed, inputs.law(pair, inputs.load)))
-
-
-def _compute_wide(inputs: ToothLossInputs, upstream: Upstream, _work: Work) -> ToothLossData:
-    from fegear.contact.tooth_loss import loss_over_face
-
-    loaded = loaded_flanks(upstream, inputs.name)
-    pair = loaded.found.pair
-    found = tuple(
-        loss_over_face(loaded.found, i, inputs.speed, inputs.law(pair, load)) for i, load in enumerate(inputs.loads)
-    )
-    i = inputs.nominal
-    return _data(pair, found, i, loss_over_face(loaded.error.coarse, i, inputs.speed, inputs.law(pair, inputs.load)))
+    teeth = loaded_teeth(upstream, inputs.name)
+    losses, coarse = teeth.losses(inputs.speed, lambda load: inputs.law(teeth.pair, load))
+    return _data(teeth.pair, losses, inputs.nominal, coarse)
 
 
 def _data(pair: GearPair, losses: tuple[ToothLoss, ...], nominal: int, coarse: ToothLoss) -> ToothLossData:
@@ -300,20 +275,7 @@ def _cites(scene: Scene, name: str) -> Iterator[Citation]:
 
 
 def _forecast(_scene: Scene, _name: str) -> Forecast:
-    return Forecast({"positions": _POSITIONS}, 0.05)
-
-
-def loss_task(scene: Scene, pair: str) -> Task:
-    """The task that tells the loss of a pair."""
-    return Task("wide-tooth-loss" if pair in scene.wide_pairs else "tooth-loss", pair)
-
-
-def loss_of(upstream: Upstream, pair: str) -> ToothLossData:
-    """What it computed."""
-    for stage in ("tooth-loss", "wide-tooth-loss"):
-        if (task := Task(stage, pair)) in upstream:
-            return cast("ToothLossData", upstream[task])
-    raise KeyError(pair)
+    return Forecast({}, 0.05)
 
 
 #: Speeds of pair and train may differ by this share without a remark.
@@ -372,7 +334,7 @@ class TrainLossData:
 
 def _needs(scene: Scene, _subject: str) -> tuple[Task, ...]:
     part = train_part(scene)
-    return tuple(loss_task(scene, pair) for pair in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh))
+    return tuple(Task("tooth-loss", pair) for pair in dict.fromkeys(part.loaded_pair_of(mesh) for mesh in part.mesh))
 
 
 def _train_inputs(scene: Scene, _subject: str) -> TrainLossInputs:
@@ -405,7 +367,7 @@ def _train_inputs(scene: Scene, _subject: str) -> TrainLossInputs:
 
 
 def _compute_train(asked: TrainLossInputs, upstream: Upstream, _work: Work) -> TrainLossData:
-    found = [loss_of(upstream, pair) for pair in asked.pairs]
+    found = [cast("ToothLossData", upstream[Task("tooth-loss", pair)]) for pair in asked.pairs]
     power = np.array(asked.power)
     share = np.array([one.found.loss / one.found.transmitted for one in found])
     return TrainLossData(
@@ -464,26 +426,14 @@ def _check_train(scene: Scene, _subject: str) -> None:
 
 
 TOOTH_LOSS = Stage(
-    subjects=plane_pairs,
+    subjects=loaded_pairs,
     needs=needs_teeth,
     inputs=_inputs,
     compute=_compute,
     present=_present,
     check=_check,
-    effects=EFFECTS,
-    cites=_cites,
-    forecast=_forecast,
-)
-
-
-WIDE_TOOTH_LOSS = Stage(
-    subjects=wide_pairs,
-    needs=needs_flanks,
-    inputs=_inputs,
-    compute=_compute_wide,
-    present=_present,
-    check=_check_wide,
-    effects=tuple(FLANK_EFFECTS),
+    effects=TEETH_EFFECTS,
+    effects_of=effects_of_teeth,
     cites=_cites,
     forecast=_forecast,
 )

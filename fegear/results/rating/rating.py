@@ -487,7 +487,7 @@ RATING = Stage(
     present=_present,
     needs=_needs,
     check=_check,
-    effects=tuple(FLANK_EFFECTS),
+    effects=FLANK_EFFECTS,
     cites=_cites,
     forecast=_forecast,
 )

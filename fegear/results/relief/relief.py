@@ -160,8 +160,8 @@ def _compute(inputs: ReliefInputs, upstream: Upstream, work: Work) -> ReliefData
     from fegear.design.relief_design import DesignTask, design_relief, relief_at
     from fegear.design.root_stress_loading import Allowed
 
-    (found,) = upstream.values()
-    pair: LoadedPair = found.pair
+    pair: LoadedPair
+    (pair,) = upstream.values()
     part = inputs.part
     load = part.load or pair.nominal
     limits = part.allowable

@@ -74,8 +74,8 @@ def _compute_chart(inputs: ChartInputs, upstream: Upstream, work: Work) -> Relie
     from fegear.design.charts import relief_chart, unit_amount
     from fegear.design.tip_relief.grindable import optimise_tip_relief
 
-    (found,) = upstream.values()
-    pair: LoadedPair = found.pair
+    pair: LoadedPair
+    (pair,) = upstream.values()
     asked, e = inputs.part, pair.engagement.unmodified()
     loads = np.array(asked.loads or pair.loads)
     delta = unit_amount(e, pair.nominal)

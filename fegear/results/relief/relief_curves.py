@@ -99,8 +99,8 @@ def _compute(inputs: CurvesInputs, upstream: Upstream, work: Work) -> ReliefCurv
     from fegear.design.charts import welbourn_amount
     from fegear.geometry.relief import normalised_tip_relief
 
-    (found,) = upstream.values()
-    pair: LoadedPair = found.pair
+    pair: LoadedPair
+    (pair,) = upstream.values()
     plain, part = pair.engagement.unmodified(), inputs.part
     delta = welbourn_amount(plain, pair.nominal)
     amounts = part.amounts or [delta * share for share in part.amounts_over_delta or [1.0]]

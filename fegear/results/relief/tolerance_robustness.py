@@ -1,52 +1,39 @@
 """Stage ``tolerance-robustness``: a pair whose gears and housing deviate inside the tolerances of the drawing.
 
+What is drawn of a pair, how it is set up and what that takes stands in `fegear.results.relief.tolerance_benches`.
+
 Figures of deviations drawn inside tolerances: distributions, which deviation matters, reliefs side by side.
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from fegear.base.errors import FegearError, InputError
 from fegear.base.units import from_si
-from fegear.case.built.flank_errors import (
-    chosen_pair,
-    limits_of,
-    refuse_jammed,
-    refuse_no_tolerance,
-    tolerance_part,
-    untold,
-)
-from fegear.case.built.loaded_pair import check_relief
-from fegear.case.built.pair_inputs import (
-    EFFECTS,
-    FINITE_ELEMENTS,
-    check_formulas,
-    gear_name,
-    pair_inputs,
-    root_stress_source,
-)
-from fegear.case.built.tooth_influence import gear_to_solve
 from fegear.engine.citation import Citation, citing
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
 from fegear.engine.outcome import Outcome
-from fegear.engine.stage import Forecast, Stage
-from fegear.geometry.pair import MEMBERS
+from fegear.engine.stage import Stage
 from fegear.results.forecasts import HERTZ
-from fegear.results.gear.stiffness import solution_of
-from fegear.results.pair.loaded_teeth import loaded_pair, needs_teeth
-from fegear.results.pair.root_stress_history import needs_sources, stress_sources
+from fegear.results.pair.loaded_teeth import TEETH_EFFECTS, effects_of_teeth
+from fegear.results.relief.tolerance_benches import (
+    check_draws,
+    draw_inputs,
+    forecast_draws,
+    needs_of_draws,
+    pairs_to_draw,
+    set_up,
+)
 from fegear.results.relief.tolerance_tables import (
     NOMINAL,
     OWN,
     ROBUST,
     SHOWN,
-    PairDrawn,
     influence_table,
     leading_told,
     nominal,
@@ -60,88 +47,38 @@ from fegear.results.relief.tolerance_tables import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from fegear.base.arrays import Array
-    from fegear.case.built.pair_inputs import PairInputs
-    from fegear.case.built.tooth_influence import GearToSolve
-    from fegear.case.reading import Scene
-    from fegear.case.studies import TolerancePart
-    from fegear.design.robustness.deviated_pair import Bench
-    from fegear.design.robustness.tolerance_draws import Deviations, Kind, Limits
+    from fegear.design.robustness.deviated_pair import Bench, DrawBench
+    from fegear.design.robustness.tolerance_draws import Deviations
     from fegear.design.tip_relief.robust import RobustRelief
-    from fegear.engine.stage import Task, Upstream, Work
+    from fegear.engine.stage import Upstream, Work
     from fegear.geometry.relief import Relief
-
-
-#: Draws that a process is given at a time; each is computed alone, so that the number changes no bit.
-CHUNK = 25
-
+    from fegear.results.relief.tolerance_benches import DrawInputs
 
 #: Beside the seed of the case, that of the draws over which reliefs are searched for.
 _SEARCHED = 1
-
-
-#: Processor seconds of a draw without and with corner contact, and of the search over its draws.
-_DRAW, _DRAW_CORNERS, _SEARCH = 0.005, 0.014, 0.035
-
-
-#: Kinds that are drawn of plane teeth unless the case names others.
-_PLANE: tuple[Kind, ...] = ("centre-distance", "profile-slope", "profile-form", "pitch")
-
-
 #: Chunks that are done here sooner than other processes start.
 _FEW = 4
 
 
 @dataclass(frozen=True)
-class DrawInputs:
-    """What the draws of a pair depend on.
+class Chunk:
+    """Some draws of a pair: all that a process needs.
 
     Parameters
     ----------
-    part : TolerancePart
-    teeth : PairInputs
-    limits : Limits
-    source : str
-        Of root stress.
-    solved : tuple of GearToSolve
-        Gears whose finite elements are behind compliances or root stress.
-    name : str
-        Of the pair.
-    gears : tuple of (str, str)
-        Driver and driven.
-    untold : tuple of str
-        Sentences on deviations that the case does not tell.
+    inputs : DrawInputs
+    relief : tuple of float
+        Numbers of a relief that is not the case's own.
+    bench : DrawBench
+    deviations : Deviations
     """
-
-    part: TolerancePart
-    teeth: PairInputs
-    limits: Limits
-    source: str
-    solved: tuple[GearToSolve, ...]
-    name: str = field(compare=False)
-    gears: tuple[str, str] = field(compare=False)
-    untold: tuple[str, ...] = field(compare=False)
-
-    @property
-    def load(self) -> float:
-        """[N]."""
-        return self.teeth.nominal
-
-    @property
-    def own_spacing(self) -> bool:
-        """Whether the case has spacing errors, which draws replace."""
-        return self.teeth.effects.spacing_errors
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Some draws of one relief: all that a process needs."""
 
     inputs: DrawInputs
     relief: tuple[float, ...]
-    bench: Bench
+    bench: DrawBench
     deviations: Deviations
 
 
@@ -190,108 +127,58 @@ def compute_chunk(chunk: Chunk) -> dict[str, object]:
 def chunk_content(chunk: Chunk) -> object:
     """All that the numbers of a chunk depend on: its own draws, not how many there are besides."""
     asked = chunk.inputs
-    return asked.teeth, asked.source, asked.solved, chunk.relief, chunk.deviations
-
-
-def _subjects(scene: Scene) -> tuple[str, ...]:
-    return tuple(name for name in chosen_pair(scene) if name in scene.plane_pairs)
-
-
-def _check(scene: Scene, name: str) -> None:
-    part = tolerance_part(scene)
-    if part.deviations and "helix-slope" in part.deviations:
-        raise InputError(
-            "robustness.deviations", '"helix-slope"', "has no meaning for plane teeth, which are alike along the face",
-            f'leave it out, or give pair.{name} width = "solid"',
-        )  # fmt: skip
-    limits = limits_of(scene, name, _PLANE)
-    refuse_no_tolerance(scene, name, limits)
-    refuse_jammed(scene.pairs[name], name, limits)
-    check_relief(scene, name)
-    check_formulas(scene, name, tips=scene.case.effects.corner_contact)
-
-
-def _inputs(scene: Scene, name: str) -> DrawInputs:
-    teeth = pair_inputs(scene, name)
-    source = stress_sources(scene, name)[0]
-    solved = teeth.gears if FINITE_ELEMENTS in (source, teeth.compliance.source) else ()
-    gears = gear_name(scene, name, "driver"), gear_name(scene, name, "driven")
-    return DrawInputs(
-        tolerance_part(scene), teeth, limits_of(scene, name, _PLANE), source,
-        tuple(gear_to_solve(scene, gear) for gear in dict.fromkeys(solved)), name, gears, untold(scene, gears, _PLANE),
-    )  # fmt: skip
-
-
-def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    return (*needs_teeth(scene, name), *needs_sources(scene, name))
-
-
-def _bench(asked: DrawInputs, upstream: Upstream) -> Bench:
-    from fegear.design.robustness.deviated_pair import bench
-
-    engagement = loaded_pair(upstream, asked.name).engagement
-    fe = asked.source == FINITE_ELEMENTS
-    solved = {gear: solution_of(upstream, gear) for gear in dict.fromkeys(asked.gears)} if fe else {}
-    driver, driven = (
-        root_stress_source(
-            asked.source, asked.name, gear, engagement.pair, member, solved, tips=engagement.corner_contact
-        )
-        for gear, member in zip(asked.gears, MEMBERS, strict=True)
-    )
-    return bench(engagement, asked.teeth.nominal, (driver, driven))
+    return asked.teeth, asked.source, asked.solved, asked.moved, chunk.relief, chunk.deviations
 
 
 def _compute(asked: DrawInputs, upstream: Upstream, work: Work) -> ToleranceData:
     from fegear.base.one_thread import one_thread
-    from fegear.contact.plane.transmission_error import transmission_error
-    from fegear.design.robustness.deviated_pair import OUTCOMES, drawn_outcomes
+    from fegear.design.robustness.deviated_pair import drawn_outcomes
     from fegear.design.robustness.tolerance_draws import NO_LIMITS, draw
 
-    part, own = asked.part, _bench(asked, upstream)
+    part, size = asked.part, asked.chunk
+    own = set_up(asked, upstream)
     deviations = draw(asked.limits, part.draws, part.seed, own.teeth, part.sequence, part.distribution)
-    benches: dict[str, tuple[tuple[float, ...], Bench]] = {OWN: ((), own)}
+    benches: dict[str, tuple[tuple[float, ...], DrawBench]] = {OWN: ((), own)}
     relief: RobustRelief | None = None
     numbers: tuple[float, ...] = ()
     with one_thread():
-        exact = transmission_error(own.engagement, own.load, 12).peak_to_peak
+        exact = own.exact
         if part.reliefs is not None:
-            numbers, relief, found = _reliefs(asked, own)
+            numbers, relief, found = _reliefs(asked, cast("Bench", own))
             benches |= found
         none = draw(NO_LIMITS, 1, 0, own.teeth)
         nominal = {state: drawn_outcomes(one, none).values[0] for state, (_, one) in benches.items()}
-    starts = range(0, part.draws, CHUNK)
+    starts = range(0, part.draws, size)
     chunks = [
-        Chunk(asked, key, one, deviations.rows(slice(first, first + CHUNK)))
+        Chunk(asked, key, one, deviations.rows(slice(first, first + size)))
         for key, one in benches.values()
         for first in starts
     ]
-    done = drawn(compute_chunk, chunks, chunk_content, asked.name, work)
+    done = _drawn(chunks, asked.name, work)
     values: dict[str, Array] = {}
     reasons: dict[int, str] = {}
     for number, state in enumerate(benches):
-        values[state], failed = together(done[number * len(starts) : (number + 1) * len(starts)], CHUNK)
+        values[state], failed = _together(done[number * len(starts) : (number + 1) * len(starts)], size)
         reasons |= failed
-    return ToleranceData(OUTCOMES, deviations, values, nominal, reasons, exact, relief, numbers)
+    return ToleranceData(own.names, deviations, values, nominal, reasons, exact, relief, numbers)
 
 
-def drawn(
-    function: Callable[..., object], chunks: Sequence[object], key: Callable[[Any], object], name: str, work: Work
-) -> list[dict[str, Any]]:
-    """What a function makes of every chunk of draws of a pair, on all cores where there are many."""
+def _drawn(chunks: Sequence[Chunk], name: str, work: Work) -> list[dict[str, Any]]:
+    """Outcomes of every chunk of draws of a pair, on all cores where there are many."""
     from fegear.engine.executor import map_points
     from fegear.engine.point_job import Failure
 
     executor = work.executor
     if executor.scheduler is None and len(chunks) <= _FEW:
         executor = replace(executor, here=True)
-    done = map_points(function, chunks, executor, work.cache, key=key, progress=work.progress)
+    done = map_points(compute_chunk, chunks, executor, work.cache, key=chunk_content, progress=work.progress)
     for one in done:
         if isinstance(one, Failure):
             raise FegearError(f"Draws of pair {name} failed: {one.reason}")
     return list(done)
 
 
-def together(done: Sequence[Mapping[str, Any]], size: int) -> tuple[Array, dict[int, str]]:
+def _together(done: Sequence[Mapping[str, Any]], size: int) -> tuple[Array, dict[int, str]]:
     """Outcomes of all draws of a state, and why some have none, from those of its chunks in their order."""
     reasons: dict[int, str] = {}
     for number, chunk in enumerate(done):
@@ -334,7 +221,7 @@ def _reliefs(
     }  # fmt: skip
 
 
-def present_draws(data: ToleranceData, asked: PairDrawn) -> Outcome:
+def _present(data: ToleranceData, asked: DrawInputs) -> Outcome:
     """Tables, values, remarks and figures of the draws of a pair."""
     part, limits = asked.part, asked.limits
     settings: dict[str, object] = {
@@ -349,15 +236,6 @@ def present_draws(data: ToleranceData, asked: PairDrawn) -> Outcome:
     )  # fmt: skip
 
 
-def _forecast(scene: Scene, _name: str) -> Forecast:
-    """Draws of every state of relief, and the search for the best."""
-    part = tolerance_part(scene)
-    each = _DRAW_CORNERS if scene.case.effects.corner_contact else _DRAW
-    states, search = (3, part.reliefs.draws * _SEARCH) if part.reliefs else (1, 0.0)
-    chunks = math.ceil(part.draws / CHUNK) * states
-    return Forecast({"draws": part.draws, "chunks": chunks}, part.draws * states * each + search)
-
-
 #: Deviations that the picture of influences has, and classes of a histogram.
 _MOST, _LEAST_CLASSES, _MOST_CLASSES = 12, 8, 60
 
@@ -365,7 +243,7 @@ _MOST, _LEAST_CLASSES, _MOST_CLASSES = 12, 8, 60
 _ROLES = {OWN: "relief of the case", NOMINAL: "designed", ROBUST: "linear tip relief"}
 
 
-def tolerance_figures(data: ToleranceData, asked: PairDrawn) -> tuple[Figure, ...]:
+def tolerance_figures(data: ToleranceData, asked: DrawInputs) -> tuple[Figure, ...]:
     """Of one pair; none where no draw has a result."""
     if not np.isfinite(outcome(data, "te_peak_to_peak")).any():
         return ()
@@ -387,7 +265,7 @@ def _histogram(values: Array) -> tuple[Array, Array]:
     return 0.5 * (edges[1:] + edges[:-1]), 100.0 * counts / values.size
 
 
-def _distributions(data: ToleranceData, asked: PairDrawn) -> Figure:
+def _distributions(data: ToleranceData, asked: DrawInputs) -> Figure:
     views = []
     for name in (key for key in told(data) if key != "te_harmonic_1"):
         one, factor = SHOWN[name], from_si(SHOWN[name].unit) if SHOWN[name].unit else 1.0
@@ -414,7 +292,7 @@ def _distributions(data: ToleranceData, asked: PairDrawn) -> Figure:
     )
 
 
-def _drawn_influences(data: ToleranceData, asked: PairDrawn) -> Figure:
+def _drawn_influences(data: ToleranceData, asked: DrawInputs) -> Figure:
     rows = influence_table(data, asked.gears)
     views = []
     for name in told(data):
@@ -443,7 +321,7 @@ def _drawn_influences(data: ToleranceData, asked: PairDrawn) -> Figure:
     )
 
 
-def _drawn_reliefs(data: ToleranceData, asked: PairDrawn) -> Figure:
+def _drawn_reliefs(data: ToleranceData, asked: DrawInputs) -> Figure:
     name, factor = "te_peak_to_peak", 1e6
     curves, marks = [], []
     percent = asked.part.reliefs.percentile if asked.part.reliefs else 95.0
@@ -470,16 +348,17 @@ def _drawn_reliefs(data: ToleranceData, asked: PairDrawn) -> Figure:
 
 
 TOLERANCE_ROBUSTNESS = Stage(
-    subjects=_subjects,
-    needs=_needs,
-    inputs=_inputs,
+    subjects=pairs_to_draw,
+    needs=needs_of_draws,
+    inputs=draw_inputs,
     compute=_compute,
-    present=present_draws,
-    check=_check,
-    effects=EFFECTS,
+    present=_present,
+    check=check_draws,
+    effects=TEETH_EFFECTS,
+    effects_of=effects_of_teeth,
     cites=citing(
         Citation("iso-1328-1", "tolerances that deviations are drawn inside", "5.3, formulas (5) to (12)"),
         Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ,
     ),
-    forecast=_forecast,
+    forecast=forecast_draws,
 )  # fmt: skip

@@ -5,7 +5,7 @@ What draws inside tolerances tell in sentences: what a percentile is worth, what
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,9 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fegear.base.arrays import Array
-    from fegear.case.studies import TolerancePart
     from fegear.design.robustness.draw_statistics import Influence, Percentile
-    from fegear.design.robustness.tolerance_draws import Limits
+    from fegear.results.relief.tolerance_benches import DrawInputs
     from fegear.results.relief.tolerance_robustness import ToleranceData
 
 
@@ -65,38 +64,6 @@ _TOLD = (
     "te_peak_to_peak", "te_harmonic_1", "face_load_factor", "driver_root_tension", "driven_root_tension",
     "hertz_pressure",
 )  # fmt: skip
-
-
-class PairDrawn(Protocol):
-    """What tables and pictures want to know of the inputs of draws."""
-
-    @property
-    def part(self) -> TolerancePart:
-        """Of the case."""
-
-    @property
-    def limits(self) -> Limits:
-        """Largest deviations."""
-
-    @property
-    def name(self) -> str:
-        """Of the pair."""
-
-    @property
-    def gears(self) -> tuple[str, str]:
-        """Driver and driven."""
-
-    @property
-    def untold(self) -> tuple[str, ...]:
-        """Gears without a tolerance class."""
-
-    @property
-    def load(self) -> float:
-        """[N]."""
-
-    @property
-    def own_spacing(self) -> bool:
-        """Whether the case has spacing errors, which draws replace."""
 
 
 def told(data: ToleranceData) -> tuple[str, ...]:
@@ -181,7 +148,7 @@ def shared_together(data: ToleranceData, gears: tuple[str, str], name: str) -> t
     return together([found[name] for _, found in influence_table(data, gears)])
 
 
-def tolerance_tables(data: ToleranceData, asked: PairDrawn) -> tuple[Table, ...]:
+def tolerance_tables(data: ToleranceData, asked: DrawInputs) -> tuple[Table, ...]:
     """Draws, percentiles, influences, and the reliefs that were compared."""
     tables = [_draws(data, asked), _percentiles(data, asked), _influences(data, asked)]
     if data.relief is not None:
@@ -189,7 +156,7 @@ def tolerance_tables(data: ToleranceData, asked: PairDrawn) -> tuple[Table, ...]
     return tuple(tables)
 
 
-def _draws(data: ToleranceData, asked: PairDrawn) -> Table:
+def _draws(data: ToleranceData, asked: DrawInputs) -> Table:
     count = len(data.deviations)
     columns = [Column("draw", np.arange(count), "", "in the order of the sequence"), *varied(data, asked.gears)]
     for state in data.values:
@@ -204,7 +171,7 @@ def _draws(data: ToleranceData, asked: PairDrawn) -> Table:
     return Table(f"robustness_draws_{asked.name}", tuple(columns), f"Every draw of {asked.name} and what came of it")
 
 
-def _percentiles(data: ToleranceData, asked: PairDrawn) -> Table:
+def _percentiles(data: ToleranceData, asked: DrawInputs) -> Table:
     columns = [Column("percentile", np.array(PERCENTS), "", "of the draws")]
     for name, one in ((key, SHOWN[key]) for key in data.outcomes):
         found = percentiles(data, name)
@@ -216,7 +183,7 @@ def _percentiles(data: ToleranceData, asked: PairDrawn) -> Table:
     return Table(f"robustness_percentiles_{asked.name}", tuple(columns), f"Percentiles of the draws of {asked.name}")
 
 
-def _influences(data: ToleranceData, asked: PairDrawn) -> Table:
+def _influences(data: ToleranceData, asked: DrawInputs) -> Table:
     rows = influence_table(data, asked.gears)
     columns = [
         Column("deviation", np.array([column.name for column, _ in rows]), "", "that was drawn"),
@@ -241,7 +208,7 @@ def _influences(data: ToleranceData, asked: PairDrawn) -> Table:
     return Table(f"robustness_influences_{asked.name}", tuple(columns), f"Which deviations of {asked.name} matter most")
 
 
-def _reliefs(data: ToleranceData, asked: PairDrawn) -> Table:
+def _reliefs(data: ToleranceData, asked: DrawInputs) -> Table:
     states = list(data.values)
     relief, part = data.relief, asked.part.reliefs
     if relief is None or part is None:
@@ -277,7 +244,7 @@ def _position_error(data: ToleranceData, name: str) -> float | None:
     return abs(nominal(data, name) - data.exact) if known else None
 
 
-def tolerance_values(data: ToleranceData, asked: PairDrawn) -> tuple[Value, ...]:
+def tolerance_values(data: ToleranceData, asked: DrawInputs) -> tuple[Value, ...]:
     """Nominal and percentiles of what is told, half their 95 % intervals and what positions miss as errors; reliefs."""
     name, values = asked.name, []
     for key in told(data):
@@ -324,7 +291,7 @@ def tolerance_values(data: ToleranceData, asked: PairDrawn) -> tuple[Value, ...]
     return tuple(values)
 
 
-def tolerance_remarks(data: ToleranceData, asked: PairDrawn) -> tuple[str, ...]:
+def tolerance_remarks(data: ToleranceData, asked: DrawInputs) -> tuple[str, ...]:
     """What a percentile is worth here, what matters most, how the relief was found, and what is left out."""
     name, part = asked.name, asked.part
     p = percentiles(data, "te_peak_to_peak")[-1]
@@ -373,7 +340,7 @@ def leading_told(data: ToleranceData, gears: tuple[str, str]) -> str:
     return f" Of the peak-to-peak transmission error: {shares}; together (interactions) {rest:.0%} +- {error:.0%}."
 
 
-def search_told(data: ToleranceData, asked: PairDrawn) -> str:
+def search_told(data: ToleranceData, asked: DrawInputs) -> str:
     """How the relief was found that is best in a percentile."""
     from fegear.design.tip_relief.robust import LED, SCREENING
 

@@ -17,7 +17,6 @@ import numpy as np
 from fegear.base.errors import RangeError
 from fegear.base.solution_cache import SolutionCache
 from fegear.case.built.loaded_pair import build_loaded_pair, engagement_at_rest
-from fegear.case.built.neglected_effects import Neglected
 from fegear.case.built.pair_inputs import gear_name, pair_compliance_table, pair_inputs
 from fegear.case.built.train import motion_inputs, motion_model, train_inputs
 from fegear.contact.plane.closed_form_compliance import ConstantCompliance, closed_form_compliance
@@ -32,7 +31,6 @@ from fegear.formulas.outcome import attempt
 from fegear.formulas.sources import ROOT_STRESS_SOURCES
 from fegear.formulas.sources import source as formula_source
 from fegear.geometry.pair import MEMBERS, GearPair
-from fegear.results.pair.loaded_pair import LoadedPairData
 from fegear.results.train.gear_train import compute_train
 from fegear.studies.cost.ladder import ISO_STIFFNESS
 
@@ -85,8 +83,7 @@ def pair_compliance(asked: Asked, source: Source) -> Array:
 
 def train_of(asked: Asked, source: Source) -> GearTrain:
     """The train with the compliances of a source in all its meshes."""
-    nothing = Neglected({}, {})
-    done = {Task("loaded-pair", name): LoadedPairData(loaded(asked, source, name), nothing) for name in asked.pairs}
+    done = {Task("loaded-pair", name): loaded(asked, source, name) for name in asked.pairs}
     work = Work(lambda _fraction: None, SolutionCache(), Executor(here=True))
     return compute_train(train_inputs(asked.scene), done, work)
 
