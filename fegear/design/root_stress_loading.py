@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.contact.plane.compliance import largest_stress
 from fegear.design.loading import LoadingFunction, Ramp
 from fegear.geometry.pair import MEMBERS
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.pair_compliance import PairCompliance
+    from fegear.fem.plane.root_stress import FilletCurve
     from fegear.geometry.pair import Member
 
 
@@ -31,18 +33,22 @@ class DesignStress:
     ----------
     kernels : mapping of member to list of (x of the load, ndarray (points, P))
         Fillet stress of the tooth at x per unit line load on the pair at x + k A.
+    curves : mapping of member to FilletCurve or None
+        How the largest stress of a fillet is found.
     """
 
     compliance: PairCompliance
     x: Array
     kernels: dict[Member, list[tuple[Array, Array]]]
+    curves: dict[Member, FilletCurve | None]
 
     def largest(self, loading: LoadingFunction, member: Member) -> float:
         """Largest root tension over the path [Pa] for a design load of 1 N."""
         total: Array = np.zeros(1)
         for where, kernel in self.kernels[member]:
             total = total + kernel * (loading.fraction(where) / self.compliance.face_width)
-        return float(total.max())
+        radius = self.compliance.pair.radius(self.x, member)
+        return float(largest_stress(self.curves[member], total, "tension", radius).max())
 
     def worst(self, loading: LoadingFunction) -> float:
         """The larger of both gears."""
@@ -103,7 +109,8 @@ def design_stress(compliance: PairCompliance, positions: int = 121) -> DesignStr
             kernels[member] = found
     if not kernels:
         raise InputError("design", "root stress", "is unknown to these compliance sources", 'set source = "fe"')
-    return DesignStress(compliance, x, kernels)
+    curves = {member: compliance.source(member).fillet_curve("tension") for member in kernels}
+    return DesignStress(compliance, x, kernels, curves)
 
 
 @dataclass(frozen=True)

@@ -39,5 +39,8 @@ class SmoothTooth:
     def root_stress(self, k, radius_q, side):
         return None
 
+    def fillet_curve(self, side):
+        return None
+
     def describe(self):
         return "made up"

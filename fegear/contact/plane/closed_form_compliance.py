@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.contact.plane.compliance import Side
+    from fegear.fem.plane.root_stress import FilletCurve
     from fegear.formulas.outcome import ComplianceSource, RootStressSource
     from fegear.geometry.gear import Gear
 
@@ -163,6 +164,10 @@ class FormulaRootStress:
             return np.zeros((1, r.size))
         length, at = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0)), self.over_length
         return np.asarray(at(np.clip(length, at.x[0], at.x[-1])))[None]
+
+    def fillet_curve(self, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
+        """None: a formula knows the largest stress alone."""
+        return None
 
     def root_stress_error(self, radius_q: ArrayLike) -> Array:
         """Not a number [1/m]: a formula does not know how far it is off."""

@@ -9,6 +9,7 @@ the pair's Hertzian half-width b(W)
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
+    from fegear.fem.plane.root_stress import FilletCurve
 
 Side = Literal["tension", "compression"]
 
@@ -35,6 +37,9 @@ class RootStressInfluence(Protocol):
 
     def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """Stress along a fillet of tooth k per unit line load at q of tooth 0, (points, Q) [1/m]; None if unknown."""
+
+    def fillet_curve(self, side: Side) -> FilletCurve | None:
+        """How the largest stress is found between the points of a fillet; None where they are all that is known."""
 
     def root_stress_error(self, radius_q: ArrayLike) -> Array:
         """Estimated error of the largest root tension under the tooth's own load, (Q,) [1/m]; NaN if unknown."""
@@ -71,6 +76,23 @@ class GearCompliance(RootStressInfluence, Protocol):
         """Return one sentence: what this source includes and what not."""
 
 
+def largest_stress(curve: FilletCurve | None, stress: Array, side: Side, radius: ArrayLike = math.inf) -> Array:
+    """Largest tension or most negative compression of a fillet under whatever loads, shape (Q,).
+
+    Parameters
+    ----------
+    curve : FilletCurve or None
+        Of the source; without one the largest is that of the points.
+    stress : ndarray, shape (points, Q)
+    side : {"tension", "compression"}
+    radius : array_like, shape (Q,)
+        Of the contact on the tooth itself [m]; infinite where nothing touches it.
+    """
+    if curve is not None:
+        return curve.largest(stress, radius)[0]
+    return np.asarray(stress.max(axis=0) if side == "tension" else stress.min(axis=0))
+
+
 class OneTooth:
     """Base of compliance sources that know one tooth: neither its neighbours nor its root stress."""
 
@@ -82,6 +104,10 @@ class OneTooth:
         return np.zeros(np.broadcast_shapes(np.shape(radius_p), np.shape(radius_q)))
 
     def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:  # noqa: ARG002  (the interface)
+        """Unknown."""
+        return None
+
+    def fillet_curve(self, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
         """Unknown."""
         return None
 

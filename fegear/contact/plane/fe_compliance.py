@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.compliance import GearCompliance, RootStressInfluence, Side
     from fegear.contact.plane.root_stress_history import StressRows
     from fegear.fem.plane.gear import GearInfluence
+    from fegear.fem.plane.root_stress import FilletCurve
     from fegear.geometry.gear import Gear
 
 
@@ -119,6 +120,10 @@ class FiniteElementCompliance:
         if abs(k) > self.reach:
             return np.zeros_like(self.influence.fillet_stress(0, side, radius_q))
         return self.influence.fillet_stress(k, side, radius_q)
+
+    def fillet_curve(self, side: Side) -> FilletCurve | None:
+        """That of the solution."""
+        return self.influence.fine.fillet_curve(side, self.influence.gear.module)
 
     def root_stress_error(self, radius_q: ArrayLike) -> Array:
         """What the finite elements leave in the largest root tension under the tooth's own load [1/m]."""
@@ -262,6 +267,10 @@ class ToothTable:
         """Unknown: see `RootTable`."""
         return None
 
+    def fillet_curve(self, side: Side) -> FilletCurve | None:  # noqa: ARG002  (the interface)
+        """Unknown."""
+        return None
+
     def root_stress_error(self, radius_q: ArrayLike) -> Array:
         """Unknown."""
         return np.full(np.shape(radius_q), np.nan)
@@ -288,12 +297,15 @@ class RootTable:
         Roll length of the first entry and distance of the next [m].
     tension : mapping of int to ndarray, shape (N, points)
         Stress along the fillet of tooth k per unit line load on tooth 0 [1/m], by k.
+    curve : FilletCurve or None
+        How its largest value is found.
     """
 
     base_radius: float
     lowest: float
     step: float
     tension: Mapping[int, Array]
+    curve: FilletCurve | None
 
     @property
     def reach(self) -> int:
@@ -337,7 +349,7 @@ def root_table(source: RootStressInfluence, gear: Gear, lowest: float, highest: 
         kernel = source.root_stress(k, radii, "tension")
         if kernel is not None:
             found[k] = np.ascontiguousarray(kernel.T)
-    return RootTable(rb, low, (high - low) / (_RADII - 1), found)
+    return RootTable(rb, low, (high - low) / (_RADII - 1), found, source.fillet_curve("tension"))
 
 
 @dataclass(frozen=True)

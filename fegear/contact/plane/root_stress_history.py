@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.contact.plane.compliance import largest_stress
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -61,6 +62,8 @@ def root_stress_history(
 ) -> RootStressHistory:
     """Superpose the fillet stress of a tooth's own load and of its neighbours' loads, then take the extreme.
 
+    Between the points of a fillet where its source knows how (`FilletCurve`), as `Influence.largest_root_stress` does.
+
     Parameters
     ----------
     engagement : Engagement
@@ -78,13 +81,28 @@ def root_stress_history(
     InputError
         If the source knows no root stress.
     """
-    signed = np.max if side == "tension" else np.min
-    stress = np.stack(
-        [signed(total, axis=-1) for total in superposed_stress(engagement, loaded, member, side, beyond, source)]
-    )
+    known = source or engagement.compliance.source(member)
+    along = np.stack(list(superposed_stress(engagement, loaded, member, side, beyond, known)))  # (teeth, P, L, points)
+    touching = np.broadcast_to(touching_radius(loaded, member, beyond)[:, :, None], along.shape[:3])
+    flat = along.reshape(-1, along.shape[3]).T
+    stress = largest_stress(known.fillet_curve(side), flat, side, touching.ravel()).reshape(touching.shape)
     contacts = loaded.grid.contacts
     teeth = np.arange(-beyond, contacts.x.shape[0] + beyond)
     return RootStressHistory(member, side, contacts.x[0] + teeth[:, None] * engagement.pair.base_pitch, stress)
+
+
+def touching_radius(loaded: Loaded, member: Member, beyond: int = 0) -> Array:
+    """Radii at which the teeth of a gear are touched, infinite where they are not, shape (n + 2 beyond, P) [m].
+
+    Parameters
+    ----------
+    loaded, member, beyond
+        See `root_stress_history`.
+    """
+    contacts = loaded.grid.contacts
+    radius = contacts.radius_driver if member == "driver" else contacts.radius_driven
+    found = np.where(contacts.present, radius, np.inf)
+    return np.pad(found, ((beyond, beyond), (0, 0)), constant_values=np.inf)
 
 
 def superposed_stress(

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from fegear.contact.plane.fe_compliance import FiniteElementCompliance
     from fegear.contact.plane.pair_history import PairHistory
     from fegear.contact.plane.transmission_error import TransmissionError
+    from fegear.fem.plane.root_stress import FilletCurve
 
 
 _POINTS = 25
@@ -84,6 +85,10 @@ class ShiftedCompliance:
     def root_stress(self, k: int, radius_q: ArrayLike, side: Side) -> Array | None:
         """As the base."""
         return self.base.root_stress(k, radius_q, side)
+
+    def fillet_curve(self, side: Side) -> FilletCurve | None:
+        """As the base."""
+        return self.base.fillet_curve(side)
 
     def root_stress_error(self, radius_q: ArrayLike) -> Array:
         """As the base."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from fegear.base.errors import FegearError
 from fegear.contact.fourier import panels
+from fegear.contact.plane.compliance import largest_stress
 from fegear.contact.plane.fe_compliance import RootTable, light, root_table
 from fegear.contact.plane.load_sharing import share_load
 from fegear.contact.plane.transmission_error import transmission_error
@@ -24,7 +25,7 @@ from fegear.geometry.relief import CombinedRelief
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fegear.base.arrays import Array
+    from fegear.base.arrays import Array, Mask
     from fegear.contact.fourier import Panels
     from fegear.contact.plane.compliance import RootStressInfluence
     from fegear.contact.plane.engagement import Engagement
@@ -259,18 +260,18 @@ def _extremes(bench: Bench, engagement: Engagement, state: State) -> Array:
     pressure = engagement.compliance.pressure(own, c.relative_radius)
     line_load = state.loads / engagement.compliance.face_width
     roots = [
-        _root_tension(bench.roots[i], radius, line_load, towards)
+        _root_tension(bench.roots[i], radius, c.present, line_load, towards)
         for i, (radius, towards) in enumerate(((c.radius_driver, 1), (c.radius_driven, -1)))
     ]
     return np.array([te.max(), -te.min(), *roots, pressure.max(), own.max()])
 
 
-def _root_tension(table: RootTable, radius: Array, line_load: Array, towards_load: int) -> float:
+def _root_tension(table: RootTable, radius: Array, present: Mask, line_load: Array, towards_load: int) -> float:
     """Largest root tension of tooth 0 over its way through the mesh, its neighbours' loads included [Pa].
 
     Tooth +1 is ahead of a driving tooth and behind a driven one, as in `root_stress_history`.
     """
-    largest = 0.0
+    totals, touching = [np.zeros((next(iter(table.tension.values())).shape[1], 1))], [np.array([np.inf])]
     for row in range(radius.shape[0]):
         loads = line_load[:, :, row]
         total: Array | None = None
@@ -280,8 +281,10 @@ def _root_tension(table: RootTable, radius: Array, line_load: Array, towards_loa
                 part = table.at(k, radius[other]) * loads[other][:, None]
                 total = part if total is None else total + part
         if total is not None:
-            largest = max(largest, float(total.max()))
-    return largest
+            totals.append(total.T)
+            touching.append(np.where(present[row], radius[row], np.inf))
+    along, own = np.concatenate(totals, axis=1), np.concatenate(touching)
+    return float(largest_stress(table.curve, along, "tension", own).max())
 
 
 class Drawn(NamedTuple):

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.contact.plane.compliance import largest_stress
 from fegear.contact.wide.lines import life_of_contact
 from fegear.dynamics.train.mesh_excitation import tooth_pair_at
 from fegear.dynamics.train.tooth_force import dynamic_error, root_stress, tooth_force
@@ -210,11 +211,13 @@ def tooth_root_stress(
         See `forces_around`.
     """
     kernels = _kernels(source, pair, member, around)
+    touched = pair.radius(np.clip(around[0].x, pair.x_start, pair.x_end), member)
+    curve = source.fillet_curve("tension")
     return ToothRootStress(
-        root_stress({k: f.with_others for k, f in around.items()}, kernels),
-        _at_worst_phases(around, kernels),
-        root_stress({k: f.total for k, f in around.items()}, kernels),
-        root_stress({k: f.static for k, f in around.items()}, kernels),
+        root_stress({k: f.with_others for k, f in around.items()}, kernels, curve, touched),
+        largest_stress(curve, _at_worst_phases(around, kernels), "tension", touched),
+        root_stress({k: f.total for k, f in around.items()}, kernels, curve, touched),
+        root_stress({k: f.static for k, f in around.items()}, kernels, curve, touched),
         _own_error(source, pair, member, around[0]),
     )
 
@@ -260,12 +263,12 @@ def _kernels(
 
 
 def _at_worst_phases(around: dict[int, ToothForce], kernels: dict[int, Array]) -> Array:
-    """Bound of the root tension: each other mesh does its worst to each force, in the sense that each point feels."""
-    fillet = 0.0
+    """Bound of the stress along the fillet: each other mesh does its worst to each force, as each point feels it."""
+    fillet: Array = np.zeros(1)
     for k, force in around.items():
         push, pull = force.cross_reach.sum(axis=0), force.cross_least.sum(axis=0)
         fillet = fillet + kernels[k] * force.total + np.maximum(kernels[k] * push, kernels[k] * pull)
-    return np.asarray(np.max(fillet, axis=0))
+    return fillet
 
 
 def _own_error(source: RootStressInfluence, pair: GearPair, member: Member, force: ToothForce) -> Array:

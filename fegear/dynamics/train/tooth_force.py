@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.contact.plane.compliance import largest_stress
 from fegear.dynamics.train.increments import dynamic_increments
 from fegear.dynamics.train.spectra import mesh_force_spectrum
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.train.gear_train import GearTrain
     from fegear.dynamics.train.periodic import Periodic
     from fegear.dynamics.train.train import Train
+    from fegear.fem.plane.root_stress import FilletCurve
 
 
 #: Harmonics summed at once.
@@ -183,7 +185,12 @@ def tooth_force(
     return ToothForce(place, time, static, own, cross, reach, least)
 
 
-def root_stress(forces: Mapping[int, ArrayLike], kernels: Mapping[int, ArrayLike]) -> Array:
+def root_stress(
+    forces: Mapping[int, ArrayLike],
+    kernels: Mapping[int, ArrayLike],
+    curve: FilletCurve | None = None,
+    radius: ArrayLike = math.inf,
+) -> Array:
     """Largest root tension of a tooth at each position (3.37), from its own force and its neighbours'.
 
     Parameters
@@ -192,6 +199,10 @@ def root_stress(forces: Mapping[int, ArrayLike], kernels: Mapping[int, ArrayLike
         Force on the tooth pair k base pitches ahead of this one at the same moment [N]; 0 is this one's own.
     kernels : mapping of int to array_like, shape (points, n)
         Stress along the fillet of this tooth per unit of that force [Pa/N].
+    curve : FilletCurve, optional
+        How the largest is found between the points.
+    radius : array_like, shape (n,)
+        At which this tooth is touched [m].
 
     Returns
     -------
@@ -199,7 +210,7 @@ def root_stress(forces: Mapping[int, ArrayLike], kernels: Mapping[int, ArrayLike
         [Pa].
     """
     fillet = sum(np.asarray(kernels[k]) * np.asarray(force)[None, :] for k, force in forces.items())
-    return np.asarray(np.max(fillet, axis=0))
+    return largest_stress(curve, np.asarray(fillet), "tension", radius)
 
 
 class Pull(NamedTuple):

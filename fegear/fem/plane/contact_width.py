@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 REFERENCE_HALF_WIDTH = 0.02
 
 
+#: Half-width of a load that is as good as concentrated [modules].
+POINT = 1e-4
+
+
 #: Wider contacts than this [modules] are refused: the flank is too short to hold them.
 LARGEST_HALF_WIDTH = 0.5
 

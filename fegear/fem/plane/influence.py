@@ -12,10 +12,10 @@ import numpy as np
 
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
-from fegear.fem.plane.contact_width import REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
+from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
 from fegear.fem.plane.elasticity import assemble
 from fegear.fem.plane.ring import close_ring
-from fegear.fem.plane.root_stress import FilletStrain, extreme, fillet_strain, search_end
+from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, contact_width, fillet_strain
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
 
 if TYPE_CHECKING:
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
 Side = Literal["tension", "compression"]
 SIDES: tuple[Side, ...] = ("tension", "compression")
-#: Half-width of a load that is as good as concentrated [modules].
-_POINT = 1e-4
 #: The narrower of the two pressures that load the mesh, as a share of the wider one.
 _NARROWER = 0.6
 #: The wider pressure takes this share of the room to the nearest corner or curvature jump: what the corner does to it
@@ -43,9 +41,6 @@ _ROOM_SHARE = 0.7
 _BESIDE_TIP = 0.15
 #: How far down the flank its compliance is compared, at most [modules] and as a share of the distance from the tip.
 _STEP, _STEP_SHARE = 0.05, 0.25
-#: How far below the edge of a contact root tension begins [modules]: nearer, stress is what the contact itself leaves,
-#: and a coarse mesh does not resolve it.
-CLEARANCE = 0.05
 #: Mean distance of two points of a semi-elliptic pressure over its half-width.
 _MEAN = 256.0 / (45.0 * np.pi**2)
 
@@ -148,10 +143,10 @@ class Influence:
             return kept[1]
         arc = np.atleast_1d(self.flank.arc_of_radius(np.asarray(radius, dtype=float)))
         room = np.minimum(arc - self.flank.flank_start, self.flank.flank_end - arc)
-        low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
+        low, high = self.flank.arc[0] + POINT, self.flank.arc[-1] - POINT
         # Two pressures in such a mixture that the second moment vanishes: a concentrated load, seen from afar.
-        wide = np.maximum(np.minimum(patch, room), _POINT)
-        narrow = np.maximum(_NARROWER * wide, 0.5 * _POINT)
+        wide = np.maximum(np.minimum(patch, room), POINT)
+        narrow = np.maximum(_NARROWER * wide, 0.5 * POINT)
         loads = self.flank.patches(np.tile(np.clip(arc, low, high), 2), np.concatenate([wide, narrow]))
         share = -(narrow**2) / (wide**2 - narrow**2)
         found = np.asarray(share * loads[:, : arc.size] + (1.0 - share) * loads[:, arc.size :])
@@ -172,8 +167,8 @@ class Influence:
             return self._last["loads"]
         arc = np.atleast_1d(self.flank.arc_of_radius(r))
         above = arc - self.flank.flank_start
-        width = np.minimum(half, np.maximum(np.minimum(above, self.flank.flank_end - arc), _POINT))
-        low, high = self.flank.arc[0] + _POINT, self.flank.arc[-1] - _POINT
+        width = contact_width(half, above, self.flank.flank_end - arc)
+        low, high = self.flank.arc[0] + POINT, self.flank.arc[-1] - POINT
         loads = self.flank.few_patches(np.clip(arc, low, high), width), above, width
         self._last.update(key=key, loads=loads)
         return loads
@@ -231,7 +226,7 @@ class Influence:
         below = np.maximum(arc - step, self.flank.flank_start + np.minimum(width, 0.5 * (arc - self.flank.flank_start)))
         both = np.concatenate([arc, self._placed(below, width)]), np.concatenate([width, width])
         at, lower = np.split(self._deflection(*both, patch), 2)
-        slope = (at - lower) / np.maximum(arc - below, _POINT)
+        slope = (at - lower) / np.maximum(arc - below, POINT)
         return at, np.asarray(0.1875 * slope**2 * width**2 / self.log_slope / (1.0 + (off / _BESIDE_TIP) ** 2))
 
     def _deflection(self, arc: Array, width: Array, patch: float) -> Array:
@@ -325,12 +320,16 @@ class Influence:
         That of the whole fillet, up to the start of the flank, but no nearer than .05 modules to the contact's edge;
         of a fillet that this would leave less than half of, that of its lower half (`search_end`).
         """
-        fillet = self.fillets[side]
         loads, above, width = self._fillet_loads(radius_q, half_width)
-        beside = k == 0 and side == "tension"
-        end = search_end(fillet.length, above, width, CLEARANCE) if beside else np.full(above.shape, fillet.length)
-        sign, stress = 1.0 if side == "tension" else -1.0, (loads @ self.stress[k, side].T).T
-        return extreme(stress, fillet.arc, sign, end, CLEARANCE if beside else math.inf)
+        if k or side == "compression":
+            above = np.full(above.shape, math.inf)
+        return self.fillet_curve(side).largest_below((loads @ self.stress[k, side].T).T, above, width)
+
+    def fillet_curve(self, side: Side, module: float = 1.0) -> FilletCurve:
+        """Where the largest stress of a fillet is looked for, radii and places in the unit of the module given."""
+        fillet, flank = self.fillets[side], self.flank
+        ends = float(flank.roll_squared[0]), float(flank.roll_squared[-1])
+        return FilletCurve(side, fillet.arc, fillet.length, flank.base_radius, ends, module)
 
 
 @tallied("tooth shapes")

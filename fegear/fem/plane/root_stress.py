@@ -11,10 +11,11 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH
 from fegear.fem.plane.trace import lagrange, lagrange_slope
 
 if TYPE_CHECKING:
@@ -103,6 +104,73 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
     )
 
 
+#: How far below the edge of a contact root tension begins [modules]: nearer, stress is what the contact itself leaves,
+#: and a coarse mesh does not resolve it.
+CLEARANCE = 0.05
+
+
+@dataclass(frozen=True)
+class FilletCurve:
+    """What the largest stress of a fillet needs besides stress at its points, whatever the loads: small, and plain.
+
+    Parameters
+    ----------
+    side : {"tension", "compression"}
+    arc : ndarray, shape (points,)
+        Arc length of the points from the root land [modules].
+    length : float
+        Of the fillet [modules].
+    base_radius : float
+        [modules].
+    flank : tuple of float
+        Squares of the involute's roll angles at the ends of the loaded flank.
+    module : float
+        In the unit of radii and places.
+    """
+
+    side: Literal["tension", "compression"]
+    arc: Array
+    length: float
+    base_radius: float
+    flank: tuple[float, float]
+    module: float = 1.0
+
+    def largest(
+        self, stress: Array, radius: ArrayLike = math.inf, half_width: float = REFERENCE_HALF_WIDTH
+    ) -> tuple[Array, Array]:
+        """Largest tension or most negative compression, and its arc length from the root land, shape (Q,) each.
+
+        Parameters
+        ----------
+        stress : ndarray, shape (points, Q)
+            By whatever loads.
+        radius : array_like, shape (Q,)
+            Of contacts on this tooth itself; infinite where nothing touches it.
+        half_width : float
+            Of those contacts [modules].
+        """
+        roll_squared = (np.asarray(radius, dtype=float) / (self.module * self.base_radius)) ** 2 - 1.0
+        above, room = (
+            0.5 * self.base_radius * off for off in (roll_squared - self.flank[0], self.flank[1] - roll_squared)
+        )
+        value, place = self.largest_below(stress, above, contact_width(half_width, above, room))
+        return value, place * self.module
+
+    def largest_below(self, stress: Array, above: Array, width: Array) -> tuple[Array, Array]:
+        """The same below contacts that stand so far above the fillet, of those half-widths [modules].
+
+        Root tension is looked for no nearer to a contact's edge than `CLEARANCE` (`search_end`).
+        """
+        if self.side == "compression":
+            return extreme(stress, self.arc, -1.0, self.length)
+        return extreme(stress, self.arc, 1.0, search_end(self.length, above, width, CLEARANCE), CLEARANCE)
+
+
+def contact_width(half_width: ArrayLike, below: Array, above: Array) -> Array:
+    """Half-widths of contacts with so much flank on either side, narrowed where they would reach past its end."""
+    return np.minimum(half_width, np.maximum(np.minimum(below, above), POINT))
+
+
 #: Each point of the curve along a fillet is smoothed by a polynomial of this degree through so many Gauss points about
 #: it: the fillet is analytic, so stress away from the contact is too, and the fit averages out the scatter of edges.
 _POINTS, _DEGREE = 10, 5
@@ -156,27 +224,32 @@ def extreme(values: Array, arc: Array, sign: float, end: ArrayLike, clearance: f
     smoothing, slopes = _smoothing(np.ascontiguousarray(arc).tobytes())
     height, step = sign * (smoothing @ values), np.diff(arc)[:, None]
     rise = sign * (slopes @ values)
-    a, p, q = height[:-1], rise[:-1] * step, rise[1:] * step
-    square, cube = 3.0 * np.diff(height, axis=0) - 2.0 * p - q, p + q - 2.0 * np.diff(height, axis=0)
-    low, high = np.zeros_like(step), np.ones_like(step)
-    low[0], high[-1] = -arc[0] / step[0], np.inf
+    p, q = rise[:-1] * step, rise[1:] * step
     within = (ends - arc[:-1, None]) / step
-    high = np.clip(within, low, high)
+    # A cubic lies no higher than its ends by more than 4/27 of each slope: few pieces can have the largest value.
+    reached = np.where(arc[:, None] <= ends, height, -np.inf).max(axis=0)
+    may = np.maximum(height[:-1], height[1:]) + (np.abs(p) + np.abs(q)) * (4.0 / 27.0) >= reached
+    may[1:] &= within[1:] >= 0.0
+    may[[0, -1]] |= within[[0, -1]] >= 0.0  # beyond the outer points a cubic goes on
+    may[0] = True
+    column, piece = np.nonzero(may.T)
+    a, p, q, within = height[piece, column], p[piece, column], q[piece, column], within[piece, column]
+    b = height[piece + 1, column]
+    square, cube = 3.0 * (b - a) - 2.0 * p - q, p + q - 2.0 * (b - a)
+    low = np.where(piece == 0, -arc[0] / step[0, 0], 0.0)
+    high = np.clip(within, low, np.where(piece == step.size - 1, np.inf, 1.0))
     # Where the slope p + 2 square t + 3 cube t^2 vanishes, without cancellation; where it does not, any place will do.
     root = -(square + np.copysign(np.sqrt(np.maximum(square**2 - 3.0 * cube * p, 0.0)), square))
     flat = [
         np.divide(over, under, out=np.zeros_like(a), where=np.abs(under) > np.abs(over) * 1e-9)
         for over, under in ((root, 3.0 * cube), (p, root))
     ]
-    best = np.full(a.shape, -np.inf)
-    at = np.zeros_like(a)
-    for t in (low, high, *(np.clip(place, low, high) for place in flat)):
-        found = a + t * (p + t * (square + t * cube))
-        higher = found > best
-        best, at = np.where(higher, found, best), np.where(higher, t, at)
-    best[1:][within[1:] < 0.0] = -np.inf
-    top, columns = np.argmax(best, axis=0), np.arange(values.shape[1])
-    return sign * best[top, columns], arc[top] + at[top, columns] * step[top, 0]
+    at = np.stack([low, high, *(np.clip(place, low, high) for place in flat)])
+    found = a + at * (p + at * (square + at * cube))
+    which = found.argmax(axis=0)
+    best, at = (np.take_along_axis(of, which[None], axis=0)[0] for of in (found, at))
+    last = np.lexsort((-piece, best, column))[np.append(np.diff(column) > 0, True)]
+    return sign * best[last], arc[piece[last]] + at[last] * step[piece[last], 0]
 
 
 def _without_contact(values: Array, arc: Array, ends: Array, clearance: float) -> Array:

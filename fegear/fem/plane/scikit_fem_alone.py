@@ -30,9 +30,8 @@ from skfem.models.elasticity import linear_elasticity  # the equation is not feg
 from fegear.fem.plane.boundary import sector_boundary
 from fegear.fem.plane.elasticity import lame
 from fegear.fem.plane.elements import sector_elements
-from fegear.fem.plane.influence import CLEARANCE
 from fegear.fem.plane.mesh import SectorMesh
-from fegear.fem.plane.root_stress import search_end
+from fegear.fem.plane.root_stress import CLEARANCE, search_end
 from fegear.fem.plane.sector import mesh_inside, mesh_sector
 from fegear.fem.plane.settings import COARSEST_LEVEL, settings_at
 from fegear.geometry.outline import turned

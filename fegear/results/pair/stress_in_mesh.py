@@ -126,7 +126,7 @@ class StressInMeshData:
 
 
 def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshData:
-    from fegear.contact.plane.root_stress_history import superposed_stress
+    from fegear.contact.plane.root_stress_history import superposed_stress, touching_radius
     from fegear.contact.plane.tooth_stress import with_peaks
     from fegear.contact.plane.transmission_error import BESIDE, roll_positions
 
@@ -157,7 +157,8 @@ def _stress(asked: MeshInputs, upstream: Upstream, _work: Work) -> StressInMeshD
             places[side] = np.stack([placed_in_mesh(pair, member, own, j) for j in pairs.tolist()])
             stress[side] = np.stack(teeth, axis=1)
         gears[member] = FilletStress(places, stress)
-    largest = _largest(state.x, pairs, gears, solved, asked)
+    touched = {member: touching_radius(state, member, 1).T for member in MEMBERS}
+    largest = _largest(state.x, pairs, gears, solved, asked, touched)
     few = picture_positions(state.x, pair.base_pitch, largest.roll)
     drawn = {
         member: FilletStress(one.places, {side: all_of[few].astype(np.float32) for side, all_of in one.stress.items()})
@@ -172,17 +173,20 @@ def _largest(
     gears: Mapping[Member, FilletStress],
     solved: Mapping[str, GearInfluence],
     asked: MeshInputs,
+    touched: Mapping[Member, Array],
 ) -> LargestStress:
     found = []
     for member, one in gears.items():
-        values = one.stress["tension"]
-        p, tooth, at = (int(i) for i in np.unravel_index(int(values.argmax()), values.shape))
-        known = solved[asked.gears[member]]
-        radius = float(known.fine.fillets["tension"].radius[at]) * known.gear.module
-        place = one.places["tension"][tooth, :, at]
-        found.append(
-            LargestStress(float(values[p, tooth, at]), member, int(pairs[tooth]), float(roll[p]), place, radius)
+        along, known = one.stress["tension"], solved[asked.gears[member]]
+        fillet, m = known.fine.fillets["tension"], known.gear.module
+        values, arc = known.fine.fillet_curve("tension", m).largest(
+            along.reshape(-1, along.shape[2]).T, touched[member].ravel()
         )
+        most = int(values.argmax())
+        p, tooth = divmod(most, pairs.size)
+        place = np.array([np.interp(arc[most], fillet.arc * m, axis) for axis in one.places["tension"][tooth]])
+        radius = float(np.interp(arc[most], fillet.arc * m, fillet.radius * m))
+        found.append(LargestStress(float(values[most]), member, int(pairs[tooth]), float(roll[p]), place, radius))
     return max(found, key=lambda one: one.value)
 
 

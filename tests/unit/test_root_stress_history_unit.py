@@ -1,0 +1,58 @@
+"""Root stress of a tooth on its way through the mesh: the largest of the curve along its fillet, between any points."""
+
+import numpy as np
+import pytest
+
+from fegear.contact.plane.engagement import Engagement
+from fegear.contact.plane.fe_compliance import finite_element_compliance
+from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.root_stress_history import root_stress_history
+from fegear.fem.plane.settings import MeshSettings
+from fegear.fem.plane.solution import solve_gear
+from fegear.geometry.gear import Gear
+from fegear.geometry.pair import GearPair
+from fegear.geometry.rack import BasicRack
+from fegear.geometry.tooth import Tooth
+
+MODULE, WIDTH, LOAD = 3e-3, 0.02, 4000.0
+
+
+@pytest.fixture(scope="module")
+def engagement():
+    teeth = [Tooth(z, BasicRack(1.0, 1.25, 0.38)) for z in (21, 34)]
+    gears = [Gear(one, MODULE, 0.5 * one.root_radius * MODULE, WIDTH) for one in teeth]
+    sources = [finite_element_compliance(solve_gear(one, MeshSettings().scaled(2.0), reach=1)) for one in gears]
+    return Engagement(PairCompliance(GearPair(*gears), *sources))
+
+
+@pytest.mark.parametrize("member", ["driver", "driven"])
+@pytest.mark.parametrize("side", ["tension", "compression"])
+def test_a_tooth_that_bears_alone_has_the_root_stress_of_its_load(engagement, member, side):
+    pair = engagement.pair
+    alone = PairCompliance(pair, engagement.compliance.driver, engagement.compliance.driven, coupling=False)
+    e = Engagement(alone)
+    x = np.linspace(pair.x_end - pair.base_pitch, pair.x_start + pair.base_pitch, 25)[1:-1]
+    state = e.solve(e.grid(x), [LOAD])
+    history = root_stress_history(e, state, member, side)
+    own = int(np.flatnonzero(state.grid.contacts.number == 0)[0])
+    assert state.loads[own] == pytest.approx(np.full((x.size, 1), LOAD), rel=1e-12)
+    value, _ = e.compliance.source(member).influence.largest_root_stress(0, side, pair.radius(x, member))
+    assert history.stress[own, :, 0] == pytest.approx(value * LOAD / WIDTH, rel=1e-9)
+
+
+@pytest.mark.parametrize("member", ["driver", "driven"])
+@pytest.mark.parametrize("side", ["tension", "compression"])
+def test_it_is_smooth_over_the_roll_where_a_tooth_bears_alone(engagement, member, side):
+    """The place of the largest wanders along the fillet; from point to point of the mesh the curve would have corners.
+
+    Neighbours without load feel this tooth's: theirs is smooth, too.
+    """
+    pair = engagement.pair
+    x = np.linspace(pair.x_end - pair.base_pitch, pair.x_start + pair.base_pitch, 402)[1:-1]
+    state = engagement.solve(engagement.grid(x), [LOAD])
+    stress = root_stress_history(engagement, state, member, side, 1).stress[:, :, 0]
+    feel = stress.any(axis=1)
+    assert feel.sum() == 3
+    for one in stress[feel]:
+        bend = np.diff(one, 2) / np.abs(one).max()
+        assert np.abs(np.diff(bend)).max() < 5e-7
