@@ -218,6 +218,12 @@ class InvoluteTooth(ABC):
         """Radius at which the involute ends: the tip circle, or where its rounding or chamfer starts [modules]."""
         return self._involute_end(self._edge_key, self.tip_rounding + self.tip_chamfer)
 
+    @property
+    def involute_radii(self) -> tuple[float, float]:
+        """Least and largest radius of the usable involute [modules]."""
+        low, high = sorted((self.form_radius, self.involute_tip_radius))
+        return low, high
+
     @cached_property
     def tip_half_angle(self) -> float:
         """Half the angle of the tip land that is left [rad]."""

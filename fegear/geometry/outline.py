@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.geometry.curves import Involute
     from fegear.geometry.gear import Gear
+    from fegear.geometry.involute_tooth import InvoluteTooth
     from fegear.geometry.relief import Relief
     from fegear.geometry.tooth import Tooth
 
@@ -55,7 +56,7 @@ def turned(points: Array, angle: float) -> Array:
     return np.stack([c * points[0] + s * points[1], c * points[1] - s * points[0]])
 
 
-def tooth_outline(tooth: Tooth, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:
+def tooth_outline(tooth: InvoluteTooth, tolerance: float = 1e-4, pieces: Sequence[Drawn] | None = None) -> Array:
     """One tooth from the middle of its left space over the tip to the middle of its right space [modules], (2, N).
 
     Parameters

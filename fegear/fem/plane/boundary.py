@@ -2,7 +2,7 @@
 
 The sector of one tooth runs from side A (clockwise angle -pi/z from the tooth's centre line) to side B (+pi/z), from
 the bore to the outline. Side B's nodes are side A's turned by one pitch, so that the sectors fit together exactly. The
-right flank is the loaded one.
+right flank is the loaded one. A ring gear is held at its outer circle, which is called bore here as well.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
     #: Edge length as a function of arc length, both in modules.
     Law = Callable[[Array], Array]
@@ -41,6 +41,8 @@ _SHORTEST_JOINT = 0.03
 #: the radius, that nothing is left of the digits of a tooth's own strain; a thinner rim [modules] takes elements
 #: without number.
 _SMALLEST_BORE, _THINNEST_RIM = 1e-4, 5e-3
+#: Outer radius of the thickest ring over its root radius: beyond, nothing changes but the number of elements.
+_LARGEST_RING = 10.0
 #: Widest angle of an edge on the bore [rad]: a cubic edge misses its circle by the fourth power of it over 384.
 _WIDEST_BORE_EDGE = 0.15
 #: An edge on a tip rounding that turns by more than this [rad] is shorter than what matters there and stays straight:
@@ -97,8 +99,11 @@ def graded(length: float, size: Law, *, fewest: int = 1, at: Array | None = None
     return nodes
 
 
-def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1, *, dense: bool = False) -> Chain:
-    """Edges along a curve; where `dense`, the law is sampled more and more densely toward the start."""
+def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1, *, dense: bool = False, side: int = 1) -> Chain:
+    """Edges along a curve; where `dense`, the law is sampled more and more densely toward the start.
+
+    The material lies on the left of an external tooth's curves (side 1), on the right of an internal one's (-1).
+    """
     parameter, length = arc_length(curve)
     end = float(length[-1])
     at = np.union1d(np.linspace(0.0, end, 513), np.geomspace(1e-6 * end, end, 257)) if dense else None
@@ -107,7 +112,7 @@ def _on_curve(name: str, curve: Curve, size: Law, fewest: int = 1, *, dense: boo
     points = curve.points(np.interp(halves, length, parameter))
     points[:, 0], points[:, -1] = curve.points(curve.start), curve.points(curve.end)
     normals = curve.normals(np.interp(nodes, length, parameter))
-    vertices, middles, tangents = points[:, ::2], points[:, 1::2], np.stack([-normals[1], normals[0]])
+    vertices, middles, tangents = points[:, ::2], points[:, 1::2], side * np.stack([-normals[1], normals[0]])
     if name == "tip_rounding":
         sharp = (tangents[:, 1:] * tangents[:, :-1]).sum(axis=0) < math.cos(_SHARPEST_TURN)
         middles = np.where(sharp, 0.5 * (vertices[:, 1:] + vertices[:, :-1]), middles)
@@ -121,15 +126,15 @@ def _mirrored(chain: Chain, name: str) -> Chain:
 
 
 def sector_boundary(
-    tooth: Tooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
+    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
 ) -> list[Chain]:
     """Discretise the closed boundary of one sector, counterclockwise from the bore on side A.
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     bore_radius : float
-        [modules].
+        Radius at which the body is held: of the bore, or of the outer circle of a ring gear [modules].
     settings : MeshSettings
         Edge lengths in modules.
     contacts : sequence of (float, float)
@@ -147,13 +152,13 @@ def sector_boundary(
         If the bore lies so near the centre or the outline that elements cannot resolve what is left.
     """
     check_bore(tooth, bore_radius)
-    pieces = tooth.outline
+    pieces, side = tooth.outline, tooth.side
     pitch_angle = 2.0 * math.pi / tooth.teeth
     short = tooth.root_radius * tooth.root_land_half_angle < _SHORTEST_LAND
     land = (
         []
         if tooth.root_land is None or short
-        else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings))]
+        else [_on_curve("root_land", tooth.root_land, _land_size(tooth, settings), side=side)]
     )
     front_laws = _front_sizes(tooth, settings, contacts)
     fewest = _fewest_edges(tooth, settings)
@@ -165,6 +170,7 @@ def sector_boundary(
             law,
             fewest if piece == "fillet" else 1,
             dense=short_fillet and piece == "flank",
+            side=side,
         )
         for piece, law in front_laws.items()
         if piece in pieces
@@ -173,20 +179,20 @@ def sector_boundary(
         front[0] = _from_the_side(front[0], tooth)
     back_laws = _back_sizes(tooth, settings)
     back_tip = [
-        _mirrored(_on_curve(_boundary(piece, tooth), pieces[piece], law), "tip")
+        _mirrored(_on_curve(_boundary(piece, tooth), pieces[piece], law, side=side), "tip")
         for piece, law in reversed(back_laws.items())
         if piece in pieces and piece != "flank"
     ]
-    back_flank = _mirrored(_on_curve("flank", tooth.involute, back_laws["flank"]), "back_flank")
-    fillet = _on_curve("fillet", tooth.fillet, _fillet_size(tooth, settings), fewest)
+    back_flank = _mirrored(_on_curve("flank", tooth.involute, back_laws["flank"], side=side), "back_flank")
+    fillet = _on_curve("fillet", tooth.fillet, _fillet_size(tooth, settings), fewest, side=side)
     back_fillet = _mirrored(fillet if land else _from_the_side(fillet, tooth), "back_fillet")
     top = (land + front)[0].vertices
     first = float(np.hypot(*(top[:, 1] - top[:, 0])))
     outer = float(np.hypot(*top[:, 0]))
 
     def body_size(depth: Array) -> Array:
-        width = settings.body_fraction * pitch_angle * (outer - depth)
-        rim = settings.rim_fraction * (outer - bore_radius)
+        width = settings.body_fraction * pitch_angle * (outer - side * depth)
+        rim = settings.rim_fraction * side * (outer - bore_radius)
         return np.minimum(first + settings.side_growth * depth, np.minimum(width, rim))
 
     side_b = _side(top[:, 0], bore_radius, body_size)
@@ -194,19 +200,25 @@ def sector_boundary(
         turned(part, -pitch_angle)[:, ::-1] for part in (side_b.vertices, side_b.middles, -side_b.tangents)
     )
     side_a = Chain("side_a", vertices, middles, tangents)
-    by_size = round(pitch_angle * bore_radius / float(body_size(np.array(outer - bore_radius))))
+    by_size = round(pitch_angle * bore_radius / float(body_size(np.array(side * (outer - bore_radius)))))
     bore_edges = max(1, by_size, math.ceil(pitch_angle / _WIDEST_BORE_EDGE))
     bore = _bore(side_b.vertices[:, 0], bore_radius, bore_edges, pitch_angle)
     back_land = [_mirrored(chain, "root_land") for chain in land]
-    return [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]
+    chains = [bore, side_b, *land, *front, *back_tip, back_flank, back_fillet, *back_land, side_a]
+    # Round the sector of a ring gear, which lies outside its outline, this runs clockwise.
+    return chains if side > 0 else [_reversed(chain) for chain in reversed(chains)]
 
 
-def check_bore(tooth: Tooth, bore_radius: float, module: float | None = None) -> None:
+def _reversed(chain: Chain) -> Chain:
+    return Chain(chain.name, chain.vertices[:, ::-1], chain.middles[:, ::-1], -chain.tangents[:, ::-1])
+
+
+def check_bore(tooth: InvoluteTooth, bore_radius: float, module: float | None = None) -> None:
     """Refuse bores so near the centre or the outline that elements cannot resolve what is left.
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     bore_radius : float
         [modules].
     module : float, optional
@@ -217,10 +229,13 @@ def check_bore(tooth: Tooth, bore_radius: float, module: float | None = None) ->
     RangeError
     """
     root = tooth.root_radius
+    unit, name = (1.0, "modules") if module is None else (1e3 * module, "mm")
+    if tooth.internal:
+        _check_rim(root, bore_radius, unit, name)
+        return
     lowest, highest = _SMALLEST_BORE * root, root - _THINNEST_RIM
     if lowest <= bore_radius <= highest:
         return
-    unit, name = (1.0, "modules") if module is None else (1e3 * module, "mm")
     near = "the centre" if bore_radius < lowest else f"the root circle of radius {root * unit:.6g} {name}"
     # rounded inward, so that what is reported is accepted
     step = 10.0 ** (math.floor(math.log10(highest * unit)) - 5)
@@ -233,7 +248,24 @@ def check_bore(tooth: Tooth, bore_radius: float, module: float | None = None) ->
     )
 
 
-def _from_the_side(fillet: Chain, tooth: Tooth) -> Chain:
+def _check_rim(root: float, outer: float, unit: float, name: str) -> None:
+    """Refuse the outer circle of a ring gear that is no rim's."""
+    lowest, highest = root + _THINNEST_RIM, _LARGEST_RING * root
+    if lowest <= outer <= highest:
+        return
+    rule = "lies too near" if outer < lowest else "lies too far outside"
+    # rounded inward, so that what is reported is accepted
+    step = 10.0 ** (math.floor(math.log10(highest * unit)) - 5)
+    raise RangeError(
+        "outer_radius",
+        f"{outer * unit:.9g} {name}",
+        f"{rule} the root circle of radius {root * unit:.6g} {name} for finite elements",
+        f"choose between {math.ceil(lowest * unit / step) * step:.6g} and "
+        f"{math.floor(highest * unit / step) * step:.6g} {name}: the radius at which the ring is held",
+    )
+
+
+def _from_the_side(fillet: Chain, tooth: InvoluteTooth) -> Chain:
     """Fillet that starts in the middle of the tooth space, on the side of the sector."""
     vertices = fillet.vertices.copy()
     half = math.pi / tooth.teeth
@@ -241,7 +273,7 @@ def _from_the_side(fillet: Chain, tooth: Tooth) -> Chain:
     return Chain(fillet.name, vertices, fillet.middles, fillet.tangents)
 
 
-def _boundary(piece: str, tooth: Tooth) -> str:
+def _boundary(piece: str, tooth: InvoluteTooth) -> str:
     """Name of the boundary that a piece of the outline belongs to; a rounding carries load as the flank does."""
     if piece == "tip_edge" and tooth.tip_rounding > 0.0:
         return "tip_rounding"
@@ -252,14 +284,14 @@ def _length(curve: Curve) -> float:
     return float(arc_length(curve)[1][-1])
 
 
-def _land_size(tooth: Tooth, settings: MeshSettings) -> Law:
+def _land_size(tooth: InvoluteTooth, settings: MeshSettings) -> Law:
     """Edges on the root land grow away from the fillet."""
     length = tooth.root_radius * tooth.root_land_half_angle
     first = float(_fillet_size(tooth, settings)(np.zeros(1))[0])
     return lambda s: first + settings.growth * (length - s)
 
 
-def _fewest_edges(tooth: Tooth, settings: MeshSettings) -> int:
+def _fewest_edges(tooth: InvoluteTooth, settings: MeshSettings) -> int:
     """Least number of edges along a fillet."""
     if _length(tooth.fillet) >= _SHORT_FILLET:
         return _FEWEST_FILLET_EDGES
@@ -267,7 +299,7 @@ def _fewest_edges(tooth: Tooth, settings: MeshSettings) -> int:
     return max(_FEWEST_FILLET_EDGES, round(graded_by_level))
 
 
-def _fillet_size(tooth: Tooth, settings: MeshSettings) -> Law:
+def _fillet_size(tooth: InvoluteTooth, settings: MeshSettings) -> Law:
     """Edges on a fillet follow its curvature: their shape is quadratic, and what that misses is a notch."""
     parameter, length = arc_length(tooth.fillet)
     radius = 1.0 / np.maximum(np.abs(tooth.fillet.curvatures(parameter)), 1e-9)
@@ -281,7 +313,7 @@ def _fillet_size(tooth: Tooth, settings: MeshSettings) -> Law:
     return lambda s: np.interp(s, length, sizes)
 
 
-def _back_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
+def _back_sizes(tooth: InvoluteTooth, settings: MeshSettings) -> dict[str, Law]:
     """Edge lengths along the other side from its fillet to the tooth's centre line.
 
     Nothing is loaded there: edges grow away from the fillet, from the centre line, where they are as long as the loaded
@@ -308,7 +340,9 @@ def _back_sizes(tooth: Tooth, settings: MeshSettings) -> dict[str, Law]:
     }
 
 
-def _front_sizes(tooth: Tooth, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()) -> dict[str, Law]:
+def _front_sizes(
+    tooth: InvoluteTooth, settings: MeshSettings, contacts: Sequence[tuple[float, float]] = ()
+) -> dict[str, Law]:
     """Edge lengths along the loaded side, from the fillet to the tooth's centre line."""
     grow, root, corner = settings.growth, _fillet_size(tooth, settings), settings.tip_edge_length
     fillet, flank = _length(tooth.fillet), _length(tooth.involute)
@@ -334,14 +368,16 @@ def _front_sizes(tooth: Tooth, settings: MeshSettings, contacts: Sequence[tuple[
 
 def _side(top: Array, bore_radius: float, size: Law) -> Chain:
     outer = float(np.hypot(*top))
+    side = 1.0 if outer > bore_radius else -1.0
+    total = side * (outer - bore_radius)
     # Evenly in depth down to the bore, and evenly in the logarithm of the radius for bores near the centre.
-    depths = outer - np.geomspace(outer, bore_radius, 513)
-    depths[0], depths[-1] = 0.0, outer - bore_radius
-    at = np.union1d(np.linspace(0.0, outer - bore_radius, 513), np.clip(depths, 0.0, outer - bore_radius))
-    radii = outer - graded(outer - bore_radius, size, at=at)[::-1]
+    depths = side * (outer - np.geomspace(outer, bore_radius, 513))
+    depths[0], depths[-1] = 0.0, total
+    at = np.union1d(np.linspace(0.0, total, 513), np.clip(depths, 0.0, total))
+    radii = outer - side * graded(total, size, at=at)[::-1]
     direction = top / outer
     middles = np.multiply.outer(direction, 0.5 * (radii[1:] + radii[:-1]))
-    tangents = np.repeat(direction[:, None], radii.size, axis=1)
+    tangents = np.repeat(side * direction[:, None], radii.size, axis=1)
     return Chain("side_b", np.multiply.outer(direction, radii), middles, tangents)
 
 

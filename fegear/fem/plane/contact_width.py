@@ -15,7 +15,7 @@ from fegear.base.errors import RangeError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 
 #: A contact's usual half-width [modules], at which what depends on it is reported.
@@ -100,7 +100,7 @@ def wedge_slope(angle: float) -> float:
     return 2.0 * (along / (angle + math.sin(angle)) + across / (angle - math.sin(angle)))
 
 
-def corner_angles(tooth: Tooth) -> tuple[float, float]:
+def corner_angles(tooth: InvoluteTooth) -> tuple[float, float]:
     """Angles inside the material where the flank starts and where it ends [rad]; pi where the outline goes on smoothly.
 
     A tip rounding counts as the corner that it rounds off.

@@ -174,7 +174,8 @@ class Estimate:
     def _samples(self) -> Array:
         """Radii at which errors are looked for: `_SAMPLES` evenly in roll angle, those between, and near the ends."""
         flank, tooth = self.fine.flank, self.fine.tooth
-        low, high = max(flank.lowest_radius, tooth.form_radius), min(flank.highest_radius, tooth.involute_tip_radius)
+        least, most = tooth.involute_radii
+        low, high = max(flank.lowest_radius, least), min(flank.highest_radius, most)
         first, last = tooth.roll(np.array([max(low, tooth.base_radius), high])).tolist()
         evenly = np.clip(tooth.radius_of_roll(np.linspace(first, last, _SAMPLES)), low, high)
         between = np.sqrt(0.5 * (evenly[1:] ** 2 + evenly[:-1] ** 2))

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.mesh import SectorMesh
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Two triangles become a quadrilateral whose corners are at least so square: the sine of its most oblique angle.
 _SQUAREST = 0.55
@@ -120,12 +120,14 @@ def gear_section(sectors: Mapping[int, SectorMesh]) -> Section:
     return Section(every[:, used], number[triangles_], number[quadrilaterals_], kept, teeth, closed)
 
 
-def uneven_section(tooth: Tooth, bore_radius: float, coarseness: float = 1.0, others: float | None = None) -> Section:
+def uneven_section(
+    tooth: InvoluteTooth, bore_radius: float, coarseness: float = 1.0, others: float | None = None
+) -> Section:
     """All teeth of a gear for one load: tooth 0 fine, its neighbours less so, the others coarse.
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     bore_radius : float
         [modules].
     coarseness : float

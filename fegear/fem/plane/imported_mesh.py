@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.base.arrays import Array, Index
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
     Refuse = Callable[[str, str], InputError]
 
@@ -39,7 +39,7 @@ GROUPS = ("flank", "fillet", "bore", "side_a", "side_b")
 
 def read_sector_mesh(
     path: Path,
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     module: float,
     bore_radius: float,
     unit: float = 1e-3,
@@ -51,7 +51,7 @@ def read_sector_mesh(
     Parameters
     ----------
     path : Path
-    tooth : Tooth
+    tooth : InvoluteTooth
         The gear that the mesh is of.
     module : float
         The gear's module [m].
@@ -251,7 +251,7 @@ def _check_boundary(points: Array, corners: Index, where: Callable[[Array], str]
 
 
 def check_gear(
-    points: Array, edges: Mapping[str, Index], tooth: Tooth, bore_radius: float, module: float, refuse: Refuse
+    points: Array, edges: Mapping[str, Index], tooth: InvoluteTooth, bore_radius: float, module: float, refuse: Refuse
 ) -> None:
     """Refuse boundaries that are not the gear's.
 
@@ -260,7 +260,7 @@ def check_gear(
     points : ndarray, shape (2, N)
         [modules].
     edges : mapping of str to ndarray of int, shape (3, n)
-    tooth : Tooth
+    tooth : InvoluteTooth
     bore_radius : float
         [modules]; NaN leaves it unchecked.
     module : float
@@ -294,7 +294,9 @@ def check_gear(
         )
 
 
-def check_fillet(points: Array, edges: Mapping[str, Index], tooth: Tooth, module: float, refuse: Refuse) -> None:
+def check_fillet(
+    points: Array, edges: Mapping[str, Index], tooth: InvoluteTooth, module: float, refuse: Refuse
+) -> None:
     """Refuse fillets that the gear's rack does not cut; arguments as of `check_gear`."""
     outline = [piece.points(np.linspace(piece.start, piece.end, 4001)) for piece in tooth.outline.values()]
     tree = cKDTree(np.hstack(outline).T)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Plane
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 Side = Literal["tension", "compression"]
 SIDES: tuple[Side, ...] = ("tension", "compression")
@@ -55,11 +55,12 @@ def log_slope(poisson_ratio: float, plane: Plane) -> float:
 
 
 def curvature_slope(poisson_ratio: float, plane: Plane) -> float:
-    """How the deflection near a line load on a convex surface of curvature 1/rho departs from the half-plane's, E = 1.
+    """How the deflection near a line load on a surface of curvature 1/rho departs from the half-plane's, E = 1.
 
-    At a distance s it is larger by curvature_slope * s / rho. The exact disc under pressure of n waves round its rim
-    deflects (1/(n - 1) + (3 - 4 nu)/(n + 1)) (1 + nu)/2 (from Michell's stress function; Barber, Elasticity, table
-    9.1). Its 1/n is the half-plane's logarithm; its 1/n^2, which vanishes with 1 - 2 nu, is this.
+    At a distance s it is larger by curvature_slope * s / rho, or smaller on a hollow surface, whose rho is negative.
+    The exact disc under pressure of n waves round its rim deflects (1/(n - 1) + (3 - 4 nu)/(n + 1)) (1 + nu)/2 (from
+    Michell's stress function; Barber, Elasticity, table 9.1). Its 1/n is the half-plane's logarithm; its 1/n^2, which
+    vanishes with 1 - 2 nu, is this.
     """
     nu = poisson_ratio
     return 0.5 * (1.0 - 2.0 * nu) * (1.0 + nu) if plane == "strain" else 0.5 * (1.0 - nu)
@@ -71,7 +72,7 @@ class Influence:
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     poisson_ratio : float
     plane : {"strain", "stress"}
     mesh : SectorMesh
@@ -91,7 +92,7 @@ class Influence:
     seconds : mapping of str to float
     """
 
-    tooth: Tooth
+    tooth: InvoluteTooth
     poisson_ratio: float
     plane: Plane
     mesh: SectorMesh
@@ -284,10 +285,14 @@ class Influence:
         return curvature_slope(self.poisson_ratio, self.plane)
 
     def _curvature(self, arc: Array) -> Array:
-        """Curvature of the flank, no nearer to its start than the corner distance, shape (P,) [1/module]."""
+        """Curvature of the flank, no nearer to its start than the corner distance, shape (P,) [1/module].
+
+        Negative on the hollow flank of an internal tooth.
+        """
         inside = np.maximum(arc - self.flank.flank_start, self.corner_distance) + self.flank.flank_start
         run = self.flank.arc[self.flank.first_flank_edge : self.flank.after_flank_edge + 1]
-        return np.asarray(1.0 / (self.flank.base_radius * np.sqrt(np.interp(inside, run, self.flank.roll_squared))))
+        roll = self.flank.side * np.sqrt(np.interp(inside, run, self.flank.roll_squared))
+        return np.asarray(1.0 / (self.flank.base_radius * roll))
 
     def mean_compliance(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
         """c_0 straight from a pressure as wide as the contact itself, as far as the mesh resolves it: a check."""
@@ -334,7 +339,7 @@ class Influence:
 
 @tallied("tooth shapes")
 def solve_influence(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     mesh: SectorMesh,
     poisson_ratio: float,
     plane: Plane,
@@ -349,7 +354,7 @@ def solve_influence(
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     mesh : SectorMesh
     poisson_ratio : float
     plane : {"strain", "stress"}
@@ -374,7 +379,7 @@ def solve_influence(
 
 
 def _solve(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     mesh: SectorMesh,
     poisson_ratio: float,
     plane: Plane,
@@ -389,8 +394,8 @@ def _solve(
     elasticity = assemble(mesh, poisson_ratio, plane, order)
     flank = loaded_flank(mesh, elasticity, tooth, margin)
     fillets: dict[Side, FilletStrain] = {
-        "tension": fillet_strain(mesh, elasticity, "fillet"),
-        "compression": fillet_strain(mesh, elasticity, "back_fillet"),
+        "tension": fillet_strain(mesh, elasticity, "fillet", tooth.side),
+        "compression": fillet_strain(mesh, elasticity, "back_fillet", tooth.side),
     }
     assembled = time.perf_counter()
     watch = np.concatenate([flank.dofs, fillets["tension"].dofs, fillets["compression"].dofs])

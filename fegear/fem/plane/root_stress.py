@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH
-from fegear.fem.plane.trace import lagrange, lagrange_slope
+from fegear.fem.plane.trace import lagrange, lagrange_slope, toward_tip
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -53,7 +53,7 @@ class FilletStrain:
     length: float
 
 
-def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> FilletStrain:
+def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str, side: int = 1) -> FilletStrain:
     """Strain functionals along one fillet, from the root land up to the flank.
 
     Parameters
@@ -61,6 +61,8 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
     mesh : SectorMesh
     elasticity : SectorElasticity
     name : {"fillet", "back_fillet"}
+    side : {1, -1}
+        Of an external or an internal tooth, whose flank lies inward.
 
     Returns
     -------
@@ -68,14 +70,8 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
     """
     p = elasticity.order
     xi = 0.5 + 0.5 * np.polynomial.legendre.leggauss(p)[0]
-    edges, dofs = mesh.edges[name], elasticity.edge_dofs[name]
-    upward = np.hypot(*mesh.points[:, edges[0]]) < np.hypot(*mesh.points[:, edges[1]])
-    # The middle node decides for edges whose ends lie on the root circle alike.
-    order = np.argsort(np.hypot(*mesh.points[:, edges[2]]))
-    edges = np.where(upward, edges, edges[[1, 0, 2]])[:, order]
-    dofs = np.where(upward, dofs, dofs[:, ::-1])[:, :, order]
-    places = elasticity.edge_places[name]
-    places = np.where(upward, places, places[:, ::-1])[:, :, order]
+    _, dofs = toward_tip(mesh, elasticity.edge_dofs[name], name, side)
+    _, places = toward_tip(mesh, elasticity.edge_places[name], name, side)
     curve = places.shape[1] - 1
     position = np.einsum("cin,iq->cnq", places, lagrange(curve, xi))
     tangent = np.einsum("cin,iq->cnq", places, lagrange_slope(curve, xi))
@@ -92,7 +88,7 @@ def fillet_strain(mesh: SectorMesh, elasticity: SectorElasticity, name: str) -> 
     length = (speed * weights).sum(axis=1)
     arc = np.concatenate([[0.0], np.cumsum(length)])[:-1, None] + length[:, None] * xi
     flat = position.reshape(2, -1)
-    lean = np.arctan2(np.abs(tangent[0]), tangent[1]).reshape(-1)
+    lean = np.arctan2(np.abs(tangent[0]), side * tangent[1]).reshape(-1)
     return FilletStrain(
         dofs=unknowns,
         strain=strain.reshape(n * q, -1),

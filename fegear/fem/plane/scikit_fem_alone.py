@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Plane
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: Edges of tooth 0, as a share of those that the gear was solved with; those of other teeth are longer by as much.
 _FINER = 0.5
@@ -77,7 +77,7 @@ class WholeGearAlone:
 
 
 def solve_alone(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     bore_radius: float,
     poisson_ratio: float,
     plane: Plane,
@@ -89,7 +89,7 @@ def solve_alone(
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     bore_radius : float
         [modules].
     poisson_ratio : float
@@ -103,7 +103,7 @@ def solve_alone(
     """
     arc = _flank_arc(tooth, radius)
     mesh = _whole_gear(tooth, bore_radius, settings.refined(_FINER), [(s, half_width) for s in arc])
-    ring = _Ring(mesh)
+    ring = _Ring(mesh, tooth.side)
     lam, mu = lame(poisson_ratio, plane)
     stiffness = asm(linear_elasticity(lam, mu), ring.bases())
     own = [ring.pressure(tooth, s, half_width) for s in arc]
@@ -131,15 +131,15 @@ def _factored(matrix: Any, right: Array) -> Array:
     return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options).solve(right)
 
 
-def _flank_arc(tooth: Tooth, radius: Array) -> Array:
+def _flank_arc(tooth: InvoluteTooth, radius: Array) -> Array:
     """Arc length of radii from the start of the flank."""
     roll = tooth.roll(np.maximum(np.append(radius, tooth.form_radius), tooth.base_radius))
     arc = 0.5 * tooth.base_radius * np.asarray(roll) ** 2
-    return arc[:-1] - arc[-1]
+    return np.asarray(tooth.side * (arc[:-1] - arc[-1]))
 
 
 def _whole_gear(
-    tooth: Tooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]]
+    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]]
 ) -> SectorMesh:
     """All sectors joined, boundaries by name and tooth: ``flank:1`` is that of the tooth clockwise of tooth 0."""
     coarse = min(settings_at(COARSEST_LEVEL), settings.refined(_FINER**-2), key=lambda s: s.root_edge_length)
@@ -215,8 +215,8 @@ class _Edges:
 class _Ring:
     """The whole gear's grid, numbering and functions."""
 
-    def __init__(self, mesh: SectorMesh) -> None:
-        self._elements, self._mesh = sector_elements(mesh, 4), mesh
+    def __init__(self, mesh: SectorMesh, side: int) -> None:
+        self._elements, self._mesh, self._side = sector_elements(mesh, 4), mesh, side
         self._grid = self._elements.grid
         self._curves = MappingIsoparametric(self._grid, self._grid.elem())
         self._vector = ElementVector(ElementTriP4())
@@ -258,7 +258,7 @@ class _Ring:
             normal = np.where((normal * inward).sum(axis=0) > 0.0, -normal, normal)
             yield _Edges(basis, place, normal, tangent, length)
 
-    def pressure(self, tooth: Tooth, arc: float, half_width: float) -> Array:
+    def pressure(self, tooth: InvoluteTooth, arc: float, half_width: float) -> Array:
         """Nodal forces of a semi-elliptic pressure of unit load on tooth 0, exact below its ends inside an edge."""
         forces = np.zeros(self.dofs.N)
         for facet in self.facets("flank:0"):
@@ -303,6 +303,6 @@ class _Ring:
             places.append(edges.place.reshape(2, -1))
             stresses.append(np.stack(found, axis=-1).reshape(-1, len(found)))
         place, stress = np.hstack(places), np.vstack(stresses)
-        order = np.argsort(np.hypot(*place), kind="stable")
+        order = np.argsort(self._side * np.hypot(*place), kind="stable")
         arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(place[:, order])))])
         return arc, stress[order]

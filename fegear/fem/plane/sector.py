@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fegear.fem.plane.settings import MeshSettings
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 #: What gmsh's wheel needs from the system, for the error message.
 SYSTEM_PACKAGES = "libglu1-mesa libxcursor1 libxft2 libxinerama1"
@@ -129,12 +129,14 @@ def _forget_the_last_model(gmsh: Any) -> None:
     gmsh.model.remove()
 
 
-def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings, *, frontal: bool = False) -> SectorMesh:
+def mesh_sector(
+    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, *, frontal: bool = False
+) -> SectorMesh:
     """Mesh the sector of one tooth.
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     bore_radius : float
         [modules].
     settings : MeshSettings
@@ -170,7 +172,9 @@ def mesh_sector(tooth: Tooth, bore_radius: float, settings: MeshSettings, *, fro
     ) from refused
 
 
-def _mesh(tooth: Tooth, bore_radius: float, settings: MeshSettings, started: float, frontal: bool) -> SectorMesh:
+def _mesh(
+    tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, started: float, frontal: bool
+) -> SectorMesh:
     growth = None if frontal else settings.side_growth
     mesh = mesh_inside(sector_boundary(tooth, bore_radius, settings), tooth.teeth, started, growth)
     if settings.order > 2:

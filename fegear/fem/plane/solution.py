@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from fegear.geometry.gear import Gear, Plane
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
     Progress = Callable[[str], None]
 
@@ -75,7 +75,7 @@ class Round:
 
 
 def influence_of_shape(
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     bore_radius: float,
     poisson_ratio: float,
     plane: Plane,
@@ -231,7 +231,7 @@ def _with_errors(known: GearInfluence, key: str, cache: SolutionCache) -> GearIn
     return replace(known, estimate=cache.solve(key, looked_for).value)
 
 
-def _shape(gear: Gear) -> tuple[Tooth, float, float, Plane]:
+def _shape(gear: Gear) -> tuple[InvoluteTooth, float, float, Plane]:
     return gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption
 
 
@@ -251,7 +251,7 @@ _PLANE: tuple[type, ...] = (Influence, SectorMesh, LoadedFlank, FilletStrain)
 
 def known_or_solved(
     cache: SolutionCache,
-    tooth: Tooth,
+    tooth: InvoluteTooth,
     what: tuple[object, ...],
     solve: Callable[[], Shape],
     kinds: tuple[type, ...] = _PLANE,
@@ -261,7 +261,7 @@ def known_or_solved(
     Parameters
     ----------
     cache : SolutionCache
-    tooth : Tooth
+    tooth : InvoluteTooth
     what : tuple
         All else that the solution depends on; anything that `content_key` takes.
     solve : callable
@@ -283,7 +283,7 @@ def _plain(item: object, kinds: tuple[type, ...]) -> object:
     return item
 
 
-def _restored(data: bytes | memoryview, tooth: Tooth, kinds: tuple[type, ...]) -> Any:
+def _restored(data: bytes | memoryview, tooth: InvoluteTooth, kinds: tuple[type, ...]) -> Any:
     """Rebuild a solution; None if the bytes do not fit."""
     names = {kind.__name__: kind for kind in kinds}
 

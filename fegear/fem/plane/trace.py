@@ -10,18 +10,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
 from fegear.base.errors import RangeError
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from scipy.sparse import csr_array
 
     from fegear.base.arrays import Array, Index
     from fegear.fem.plane.mesh import SectorMesh
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 _GAUSS = np.polynomial.legendre.leggauss(6)
 
@@ -71,9 +72,15 @@ def quadratic_edge(points: Array, xi: Array) -> tuple[Array, Array]:
     return np.einsum("cin,iq->cnq", points, shape), np.einsum("cin,iq->cnq", points, slope)
 
 
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+
 @dataclass(frozen=True)
 class LoadedFlank:
     """The run of edges on which a contact may press: the flank, and the fillet just below it.
+
+    It runs from the fillet to the tip: outward on an external tooth, inward on an internal one, whose material then
+    lies on the other side of the run.
 
     Parameters
     ----------
@@ -93,6 +100,8 @@ class LoadedFlank:
     lower_corner, upper_corner : bool
         Whether the flank starts in a corner (undercut) instead of running smoothly into the fillet, and whether it
         ends in one instead of running smoothly into a tip rounding.
+    side : {1, -1}
+        Of an external or an internal tooth.
     """
 
     dofs: Index
@@ -105,6 +114,7 @@ class LoadedFlank:
     order: int
     lower_corner: bool
     upper_corner: bool
+    side: int = 1
 
     @property
     def flank_start(self) -> float:
@@ -126,7 +136,7 @@ class LoadedFlank:
         """Angle from the tooth's centre line at which the involute leaves the base circle [rad]."""
         x, y = self.points[:, 1, self.after_flank_edge - 1]
         roll = math.sqrt(self.roll_squared[-1])
-        return math.atan2(x, y) + roll - math.atan(roll)
+        return math.atan2(x, y) + self.side * roll - self.side * math.atan(roll)
 
     @property
     def nodes(self) -> int:
@@ -135,13 +145,13 @@ class LoadedFlank:
 
     @property
     def lowest_radius(self) -> float:
-        """Radius at which the flank starts [modules]."""
-        return float(self.base_radius * np.sqrt(1.0 + self.roll_squared[0]))
+        """Radius at which the flank starts, or an internal one ends [modules]."""
+        return float(self.base_radius * np.sqrt(1.0 + min(self.roll_squared[0], self.roll_squared[-1])))
 
     @property
     def highest_radius(self) -> float:
-        """Radius at which the flank ends [modules]."""
-        return float(self.base_radius * np.sqrt(1.0 + self.roll_squared[-1]))
+        """Radius at which the flank ends, or an internal one starts [modules]."""
+        return float(self.base_radius * np.sqrt(1.0 + max(self.roll_squared[0], self.roll_squared[-1])))
 
     def arc_of_radius(self, radius: Array) -> Array:
         """Arc length along the run of flank points at `radius` [modules].
@@ -160,7 +170,8 @@ class LoadedFlank:
                 "radius", f"{off:.8g} modules", f"lies off the flank, which runs from {low:.8g} to {high:.8g}"
             )
         roll_squared = np.maximum(r * r / self.base_radius**2 - 1.0, 0.0)
-        return np.interp(roll_squared, self.roll_squared, self.arc[self.first_flank_edge : self.after_flank_edge + 1])
+        run = self.arc[self.first_flank_edge : self.after_flank_edge + 1]
+        return np.interp(self.side * roll_squared, self.side * self.roll_squared, run)
 
     def radius_of_arc(self, arc: Array) -> Array:
         """Radius of flank points, the reverse of `arc_of_radius` [modules]."""
@@ -181,14 +192,14 @@ class LoadedFlank:
         e = edge[on_flank] - self.first_flank_edge
         along = xi[on_flank]
         low, high = (self.roll_squared[i].reshape(-1, *[1] * (along.ndim - 1)) for i in (e, e + 1))
-        phi = self.base_half_angle - np.sqrt(np.maximum(low + (high - low) * along, 0.0))
+        phi = self.base_half_angle - self.side * np.sqrt(np.maximum(low + (high - low) * along, 0.0))
         normal[:, on_flank] = np.stack([-np.cos(phi), np.sin(phi)])
         if not on_flank.all():
             off = ~on_flank
             beside = xi[off]
             slope = np.stack([4 * beside - 3, 4 * beside - 1, 4 - 8 * beside])
             tangent = np.einsum("cin,in...->cn...", self.points[:, :, edge[off]], slope)
-            normal[:, off] = np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
+            normal[:, off] = self.side * np.stack([-tangent[1], tangent[0]]) / np.hypot(*tangent)
         return normal
 
     def patches(self, arc: Array, half_width: Array) -> Array:
@@ -297,14 +308,12 @@ class BoundaryUnknowns(Protocol):
         """Order of the elements."""
 
 
-def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: Tooth, margin: float) -> LoadedFlank:
+def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: InvoluteTooth, margin: float) -> LoadedFlank:
     """Collect the loaded run: the right flank, and `margin` [modules] of a smooth fillet or tip rounding beside it."""
 
     def upward(name: str) -> tuple[Index, Index, Array]:
-        order = np.argsort(np.hypot(*mesh.points[:, mesh.edges[name][2]]))
-        edges = mesh.edges[name][:, order]
-        lengths = np.hypot(*(mesh.points[:, edges[1]] - mesh.points[:, edges[0]]))
-        return edges, elasticity.edge_dofs[name][:, :, order], lengths
+        edges, dofs = toward_tip(mesh, elasticity.edge_dofs[name], name, tooth.side)
+        return edges, dofs, np.hypot(*(mesh.points[:, edges[1]] - mesh.points[:, edges[0]]))
 
     edges, dofs, _ = upward("flank")
     first, after = 0, edges.shape[1]
@@ -336,4 +345,15 @@ def loaded_flank(mesh: SectorMesh, elasticity: BoundaryUnknowns, tooth: Tooth, m
         order=elasticity.order,
         lower_corner=tooth.undercut,
         upper_corner=not rounded,
+        side=tooth.side,
     )
+
+
+def toward_tip(mesh: SectorMesh, along: NDArray[Scalar], name: str, side: int) -> tuple[Index, NDArray[Scalar]]:
+    """Edges of a boundary from the root to the tip, and what is known along them, (c, nodes, n), in the same order."""
+    edges = mesh.edges[name]
+    first, second, middle = (side * np.hypot(*mesh.points[:, ends]) for ends in edges)
+    # The middle node decides for edges whose ends lie on the root circle alike.
+    onward, order = first < second, np.argsort(middle)
+    edges = np.where(onward, edges, edges[[1, 0, 2]])[:, order]
+    return edges, np.where(onward, along, along[:, ::-1])[:, :, order]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.fem.plane.settings import MeshSettings
     from fegear.geometry.gear import Gear, Plane
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 
 #: Boundaries that vanish when the sectors are joined.
@@ -143,13 +143,13 @@ class GearField:
 
 
 def gear_field(
-    tooth: Tooth, mesh: SectorMesh, poisson_ratio: float, plane: Plane, radius: float, half_width: float
+    tooth: InvoluteTooth, mesh: SectorMesh, poisson_ratio: float, plane: Plane, radius: float, half_width: float
 ) -> GearField:
     """Solve the whole gear under one semi-elliptic contact pressure on tooth 0.
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     mesh : SectorMesh
     poisson_ratio : float
     plane : {"strain", "stress"}
