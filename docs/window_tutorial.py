@@ -27,6 +27,8 @@ PAGE = DOCS / "tutorial-in-the-window.md"
 FOLDER = MADE / "tutorial"
 log = logging.getLogger("mkdocs.plugins.window_tutorial")
 _SIZE = (1300, 900)
+#: Seconds until the window has to show what the page says.
+_PATIENCE = 60.0
 _PICTURE = re.compile(r"^!\[[^\]]*\]\(tutorial-in-the-window_files/([\w-]+)\.png\)\n*", re.MULTILINE)
 _VALUE = re.compile(r"`(\w+(?:\.\w+)+)` is (-?[\d.]+)")
 _IDLE = "!document.body.classList.contains('computing')"
@@ -181,7 +183,10 @@ def take_all() -> None:
         for name, said in told:
             steps[name](at)
             at.still()
-            if wrong := held(said, browser.run(_VALUES)):
+            end = time.monotonic() + _PATIENCE
+            while (wrong := held(said, browser.run(_VALUES))) and time.monotonic() < end:
+                time.sleep(0.5)  # on a busy machine the window may not have begun to compute
+            if wrong:
                 raise PluginError(f"{PAGE.name}, below the picture {name}: {'; '.join(wrong)}")
             shot = b64decode(browser("Page.captureScreenshot", format="png")["data"])
             Image.open(io.BytesIO(shot)).convert("RGB").save(FOLDER / f"{name}.png", optimize=True)
