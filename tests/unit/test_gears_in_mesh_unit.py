@@ -2,6 +2,7 @@
 
 import base64
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -59,17 +60,19 @@ def test_colours_of_the_fillets_are_the_root_stress_through_the_mesh(ran):
             on = (own > x[0]) & (own < x[-1])
             near = np.abs(x[:, None] - own[on]).argmin(axis=0)
             assert np.abs(x[near] - own[on]).max() < 1e-12
-            np.testing.assert_allclose(
-                found.gears[member].stress["tension"][on, t].max(axis=1), largest[near], rtol=1e-6
-            )
+            # Colours stand at the mesh's points; the table has the largest of the curve between them, which ends a
+            # clearance below a contact on this tooth.
+            coloured = found.gears[member].stress["tension"][on, t].max(axis=1)
+            np.testing.assert_allclose(coloured, largest[near], rtol=0.0, atol=1e-3 * largest.max())
     value = max(ran.values[f"I.{member}.largest_root_tension"].si for member in MEMBERS)
     assert found.largest.value == pytest.approx(value, rel=1e-12)
     # Where it is marked it is.
     one = found.gears[found.largest.member]
     p, t = np.flatnonzero(found.roll == found.largest.roll)[0], list(found.pairs).index(found.largest.pair)
     at = one.stress["tension"][p, t].argmax()
-    assert one.stress["tension"][p, t, at] == pytest.approx(found.largest.value, rel=1e-6)
-    np.testing.assert_array_equal(one.places["tension"][t, :, at], found.largest.place)
+    assert one.stress["tension"][p, t, at] == pytest.approx(found.largest.value, rel=5e-4)
+    near = one.places["tension"][t, :, max(at - 1, 0) : at + 2]
+    assert math.dist(near[:, 1], found.largest.place) <= np.hypot(*np.diff(near)).max()
     # Compression lies on the other fillet of the same tooth: on its other side.
     middle = placed_in_mesh(found.pair, "driver", np.array([[0.0], [3e-2]]), 0)
     sides = [
