@@ -175,7 +175,7 @@ class PlanetaryPart(Part):
     @property
     def count(self) -> int:
         """Number of planets."""
-        return self.planets if self.angles is None else len(self.angles)  # type: ignore[return-value]
+        return len(self.angles) if self.angles is not None else self.planets or 0
 
     def sun_torque(self, sun_teeth: int) -> float:
         """Size of the torque on the sun without losses [N m]."""

@@ -49,6 +49,8 @@ TWICE = [
 IDLE = "!document.body.classList.contains('computing')"
 DRAWN = f"{IDLE} && document.querySelector('[data-picture=sharing] .small-plot path') !== null"
 PAINTED = f"{IDLE} && document.querySelector('#plot-load_sharing_I .main-svg') !== null"
+#: The map below the load slider comes last, when nothing else is left to compute.
+MAPPED = "document.querySelector('#plot-slider_map_I .main-svg') !== null"
 
 
 def outside_of_tests() -> dict[str, str]:
@@ -485,6 +487,7 @@ def test_a_page_on_which_values_were_moved_shows_what_a_fresh_page_shows(browser
     browser.until(f"{DRAWN} && {field('pair.I.load')} !== null")
     browser.click(button("All results"))
     browser.until(PAINTED)
+    browser.until(MAPPED)
     settled = json.loads(browser.run(STATE))
     browser.run("window.cheap = 0; const animate = Plotly.animate;"
                 "Plotly.animate = (...given) => { cheap += 1; return animate(...given); }")  # fmt: skip
@@ -510,6 +513,7 @@ def test_a_page_on_which_values_were_moved_shows_what_a_fresh_page_shows(browser
     moved = json.loads(browser.run(STATE))
     go(browser, served.address)
     browser.until(PAINTED)  # it was left with all results
+    browser.until(MAPPED)
     fresh = json.loads(browser.run(STATE))
     assert moved.keys() == fresh.keys() == settled.keys()
     for name, one in fresh.items():
