@@ -25,8 +25,9 @@ from fegear.case.part import (
 from fegear.case.relief import BiasPart, LeadPart, ReliefPart, SpacingErrorsPart, TopographyPart
 from fegear.case.strength import DeviationsPart, StrengthPart
 from fegear.case.surface import FlankTreatment, RoughnessPart
-from fegear.geometry.gear import Gear, Material
+from fegear.geometry.gear import USUAL_RING_RIM, Gear, Material
 from fegear.geometry.inspection import over_balls
+from fegear.geometry.internal_tooth import InternalTooth, PinionCutter
 from fegear.geometry.plausible import refuse_material
 from fegear.geometry.rack import BasicRack
 from fegear.geometry.tooth import Tooth
@@ -111,6 +112,48 @@ class RackPart(Part):
         return BasicRack(addendum, dedendum, tip_radius, pressure_angle, *more)
 
 
+class CutterPart(Part):
+    """``cutter = { teeth, profile_shift, addendum, tip_radius }``, lengths in modules."""
+
+    teeth: int = Field(description="Number of teeth of the cutter, at least three fewer than the gear has.")
+    profile_shift: Number = Field(
+        default=0.0, description="Profile shift coefficient x_0 of the cutter in its present state of sharpening."
+    )
+    addendum: Number | None = Field(
+        default=None,
+        description="Addendum h_a0 of the cutter in modules, above its reference circle shifted by x_0; without it "
+        "1.25. Give this or `root_diameter`.",
+    )
+    root_diameter: PositiveLength | None = Field(
+        default=None, description="Root diameter of the gear that the cutter makes; give this or `addendum`."
+    )
+    tip_radius: Number = Field(
+        default=0.2, description="Radius of the rounding of the cutter's tip in modules, which makes the fillet."
+    )
+
+    @model_validator(mode="after")
+    def _one_height(self) -> Self:
+        if self.addendum is not None and self.root_diameter is not None:
+            raise refuse("contradicts addendum", "give either addendum or root_diameter", key="root_diameter")
+        return self
+
+    def build(self, module: float) -> PinionCutter:
+        """Make the cutter of a gear of this module [m]."""
+        addendum = 1.25 if self.addendum is None else self.addendum
+        root = math.nan if self.root_diameter is None else 0.5 * self.root_diameter / module
+        return PinionCutter(self.teeth, self.profile_shift, addendum, root, self.tip_radius)
+
+
+#: Keys of gears that an internal one has not, and what it has instead.
+_EXTERNAL_ONLY = {
+    "rack": "describe its cutter",
+    "bore_radius": "write outer_radius or rim_thickness, for its body is held outside the teeth",
+    "web_thickness": "leave it out",
+    "tooth_mesh": "leave it out: its mesh is generated",
+    "tooth_mesh_fillet": "leave it out",
+}
+
+
 class GearPart(Part):
     """One gear: tooth, size, body and material."""
 
@@ -147,10 +190,23 @@ class GearPart(Part):
         default=None,
         description="Radius at which the body is held fast, inside the root circle; without it half the root radius.",
     )
+    internal: bool = Field(
+        default=False,
+        description="Whether the gear is a ring gear, whose teeth point toward its centre; it wants a `cutter`. A "
+        "positive `profile_shift` moves its teeth toward their tips (ISO 21771), so that its diameters shrink.",
+    )
+    cutter: CutterPart | None = Field(
+        default=None, description="The pinion-type cutter that cuts an internal gear, in the place of `rack`."
+    )
+    outer_radius: PositiveLength | None = Field(
+        default=None,
+        description="Radius at which an internal gear is held fast, outside its root circle; give this or "
+        "`rim_thickness`.",
+    )
     rim_thickness: PositiveLength | None = Field(
         default=None,
-        description="Rim s_R below the root circle, for Y_B and C_R of ISO 6336 and K_B of AGMA 2101; without it what "
-        "`bore_radius` leaves, and a gear without both is solid.",
+        description="Rim s_R below the root circle, for Y_B, C_R and K_B of the ratings; without it what `bore_radius` "
+        f"leaves, or none. Internal gears: the held rim outside it, without it {USUAL_RING_RIM:g} modules.",
     )
     web_thickness: PositiveLength | None = Field(
         default=None,
@@ -266,6 +322,7 @@ class GearPart(Part):
                 key="face_width",
             )  # fmt: skip
         self._check_web()
+        self._check_internal()
         if self.is_helical:
             self._check_helical()
             return self
@@ -281,6 +338,24 @@ class GearPart(Part):
                 'is missing, but plane = "auto" decides by it', 'write face_width = "6.35 mm"', key="face_width"
             )
         return self
+
+    def _check_internal(self) -> None:
+        """Refuse keys of external gears on internal ones, and of internal gears on external ones."""
+        if not self.internal:
+            for key in ("cutter", "outer_radius"):
+                if getattr(self, key) is not None:
+                    raise refuse("has a meaning only for internal gears", "write internal = true", key=key)
+            return
+        for key, remedy in _EXTERNAL_ONLY.items():
+            if key in self.model_fields_set:
+                raise refuse("has no meaning for an internal gear", remedy, key=key)
+        if self.cutter is None:
+            raise refuse(
+                "is missing, but it makes the teeth of an internal gear",
+                "write cutter = { teeth = 20, addendum = 1.25, tip_radius = 0.2 }", key="cutter",
+            )  # fmt: skip
+        if self.outer_radius is not None and self.rim_thickness is not None:
+            raise refuse("contradicts outer_radius", "give either rim_thickness or outer_radius", key="rim_thickness")
 
     def _check_web(self) -> None:
         """Refuse webs of no rim, and wider than any."""
@@ -331,20 +406,10 @@ class GearPart(Part):
         """
         m = self.module_length
         try:
-            tooth = Tooth(
-                self.teeth,
-                self.rack.build(self.pressure_angle),
-                profile_shift=self.profile_shift,
-                thickness_allowance=self.thickness_allowance / m,
-                tip_radius=math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter / m,
-                tip_rounding=self.tip_radius_rounding / m,
-                tip_chamfer=self.tip_chamfer / m,
-                helix_angle=self.helix_angle or 0.0,
-            )
-            self._refuse_thick_rim(tooth.root_radius * m)
-            bore = 0.5 * tooth.root_radius * m if self.bore_radius is None else self.bore_radius
+            tooth = self._tooth(m)
             width = 1e-3 if self.face_width is None else self.face_width
-            gear = Gear(tooth, m, bore, width, self.material.build(), self.plane, self.hand or "spur")
+            held = self._held_radius(tooth.root_radius * m)
+            gear = Gear(tooth, m, held, width, self.material.build(), self.plane, self.hand or "spur")
             if self.ball_diameter is not None:
                 over_balls(gear, self.ball_diameter)  # refuses balls that no gauge could use
             told = self.deviations is not None and self.deviations.enough_to_rate
@@ -354,16 +419,32 @@ class GearPart(Part):
                 tolerances_of(gear, self.tolerance_class)  # refuses sizes that the standard knows no tolerance of
         except InputError as error:
             names = _KEYS | ({"module": "normal_module"} if self.is_helical else {"normal_module": "module"})
+            names |= {"bore_radius": "outer_radius"} if self.internal else {}
             raise at(prefix, self._in_words_of_the_case(error), names) from None
         return gear
 
-    def _refuse_thick_rim(self, root_radius: float) -> None:
-        """Refuse a rim that reaches beyond the gear's centre."""
+    def _tooth(self, module: float) -> Tooth | InternalTooth:
+        """The tooth in modules, as the rack or the cutter makes it."""
+        tip = math.nan if self.tip_diameter is None else 0.5 * self.tip_diameter / module
+        shape = (
+            self.profile_shift, self.thickness_allowance / module, tip, self.tip_radius_rounding / module,
+            self.tip_chamfer / module, self.helix_angle or 0.0,
+        )  # fmt: skip
+        if self.cutter is not None:
+            return InternalTooth(self.teeth, self.cutter.build(module), self.pressure_angle, *shape)
+        return Tooth(self.teeth, self.rack.build(self.pressure_angle), *shape)
+
+    def _held_radius(self, root_radius: float) -> float:
+        """Where the body is held [m]; refuses a rim that reaches beyond the gear's centre."""
+        if self.internal:
+            rim = USUAL_RING_RIM * self.module_length if self.rim_thickness is None else self.rim_thickness
+            return root_radius + rim if self.outer_radius is None else self.outer_radius
         if self.rim_thickness is not None and self.rim_thickness > root_radius:
             raise InputError(
                 "rim_thickness", f"{self.rim_thickness * 1e3:.6g} mm",
                 f"must lie inside (0, root radius = {root_radius * 1e3:.6g} mm)", "leave it out for a solid gear",
             )  # fmt: skip
+        return 0.5 * root_radius if self.bore_radius is None else self.bore_radius
 
     def _in_words_of_the_case(self, error: InputError) -> InputError:
         """Report lengths that the tooth takes in modules as the case gave them."""

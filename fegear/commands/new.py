@@ -35,7 +35,7 @@ def new(
         str | None,
         typer.Option(
             "--kind",
-            help="gear, pair, relief, helical, train, planetary or study; default by the numbers of teeth.",
+            help="gear, pair, relief, helical, train, planetary, ring or study; default by the numbers of teeth.",
             autocompletion=complete_kinds,
         ),
     ] = None,

@@ -83,7 +83,7 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
     RangeError
         If a radius is off the involute.
     """
-    tooth, nu, e = gear.tooth, gear.material.poisson_ratio, gear.material.young_modulus
+    tooth, nu, e = gear.external_tooth, gear.material.poisson_ratio, gear.material.young_modulus
     plane = gear.plane_assumption
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
     root = fillet_parameter(tooth, min(FOUNDATION_TANGENT, tangent_range(tooth)[1]))

@@ -50,7 +50,7 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
     RangeError
         If a radius is off the involute, or the body lies outside the range of Sainsot's fit.
     """
-    tooth, nu, e = gear.tooth, gear.material.poisson_ratio, gear.material.young_modulus
+    tooth, nu, e = gear.external_tooth, gear.material.poisson_ratio, gear.material.young_modulus
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
     i = beam.integrals(beam.sections(tooth, load, tooth.trochoid.start, nodes), load.y)
     c, s = np.cos(load.angle), np.sin(load.angle)

@@ -71,7 +71,7 @@ def tooth_frequency(gear: Gear, nodes: int = _NODES) -> float:
 
     Built in where Cornell's foundation begins, the gear's plane assumption deciding between his wide and narrow tooth.
     """
-    tooth, material, plane, nu = gear.tooth, gear.material, gear.plane_assumption, gear.material.poisson_ratio
+    tooth, material, plane, nu = gear.external_tooth, gear.material, gear.plane_assumption, gear.material.poisson_ratio
     root = fillet_parameter(tooth, min(FOUNDATION_TANGENT, tangent_range(tooth)[1]))
     half, foot = (float(v) for v in tooth.trochoid.points(root))
     cut = beam.sections(tooth, load_line(tooth, np.array([tooth.involute_tip_radius])), root, nodes)

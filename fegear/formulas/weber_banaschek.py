@@ -61,7 +61,7 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
     RangeError
         If a radius is off the involute.
     """
-    tooth, e = gear.tooth, gear.material.young_modulus
+    tooth, e = gear.external_tooth, gear.material.young_modulus
     k = coefficients(gear.material.poisson_ratio, gear.plane_assumption)
     load = load_line(tooth, np.asarray(radius, dtype=float) / gear.module)
     half, foot = beam.root_circle_chord(tooth)
@@ -80,7 +80,7 @@ def tooth_compliance(gear: Gear, radius: ArrayLike, nodes: int = beam.NODES) -> 
 def contact_approach(gear: Gear, radius: ArrayLike, line_load: ArrayLike, half_width: ArrayLike) -> Array:
     """Contact deflection of one tooth [m]: Hertz down to the tooth's centre line along the line of action."""
     r = np.asarray(radius, dtype=float)
-    depth = load_line(gear.tooth, r / gear.module).depth.reshape(r.shape) * gear.module
+    depth = load_line(gear.external_tooth, r / gear.module).depth.reshape(r.shape) * gear.module
     m = gear.material
     return hertz.approach(line_load, half_width, depth, m.young_modulus, m.poisson_ratio, gear.plane_assumption)
 

@@ -65,12 +65,13 @@ def gear_checks(name: str, gear: Gear) -> tuple[Check, ...]:
     gear : Gear
     """
     tooth, m = gear.tooth, gear.module
-    depth = (tooth.tip_radius - tooth.root_radius) * m
-    rim = gear.root_radius - gear.bore_radius
+    depth = tooth.side * (tooth.tip_radius - tooth.root_radius) * m
+    rim = tooth.side * (gear.root_radius - gear.bore_radius)
+    hole = "take a larger outer radius" if tooth.internal else "take a smaller bore"
     return (
         Check(name, "tooth thickness at the tip", tip_thickness(gear), LEAST_TIP_THICKNESS * m, "mm",
               "take less profile shift or a smaller tip diameter"),
-        Check(name, "rim below the teeth", rim, LEAST_RIM * depth, "mm", "take a smaller bore"),
+        Check(name, "rim below the teeth", rim, LEAST_RIM * depth, "mm", hole),
         Check(name, "undercut", -float(tooth.undercut), 0.0, "", "take more profile shift or more teeth"),
     )  # fmt: skip
 

@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING, Literal
 from fegear.base.errors import GeometryError, InputError
 from fegear.base.shown import shown, shows
 from fegear.geometry.plausible import is_of_pure_numbers, refuse_material, refuse_size
+from fegear.geometry.tooth import Tooth
 
 if TYPE_CHECKING:
-    from fegear.geometry.tooth import Tooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
 
 Plane = Literal["strain", "stress"]
 Hand = Literal["left", "right", "spur"]
 #: Compliances at this value are within 1e-4 of those at 0.5; beyond it elements stiffen and digits are lost.
 _LARGEST_POISSON_RATIO = 0.4999
+#: Rim of a ring gear outside its root circle when none is given [modules]: some 1.5 times its teeth.
+USUAL_RING_RIM = 3.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +65,13 @@ class Gear:
 
     Parameters
     ----------
-    tooth : Tooth
-        Shape of the transverse section in normal modules, with the helix angle.
+    tooth : InvoluteTooth
+        Shape of the transverse section in normal modules, with the helix angle: external (`Tooth`) or internal
+        (`InternalTooth`).
     module : float
         m_n, the normal module [m].
     bore_radius : float
-        Radius at which the body is held fast [m], inside (0, root radius).
+        Radius at which the body is held fast [m]: inside (0, root radius), or, of a ring gear, outside its root circle.
     face_width : float
         b [m].
     material : Material
@@ -84,7 +88,7 @@ class Gear:
         If the plane assumption is unknown, or plane strain meets a material that is as good as incompressible.
     """
 
-    tooth: Tooth
+    tooth: InvoluteTooth
     module: float = shown("mm", "module")
     bore_radius: float = shown("mm", "radius at which the body is held")
     face_width: float = shown("mm", "face width", default=1e-3)
@@ -110,13 +114,7 @@ class Gear:
         if not is_of_pure_numbers(self.material):
             refuse_size(self.module, self.face_width)
             refuse_material(self.material)
-        if self.bore_radius >= self.root_radius:
-            raise GeometryError(
-                "bore_radius",
-                f"{self.bore_radius * 1e3:.6g} mm",
-                f"must lie inside (0, root radius = {self.root_radius * 1e3:.6g} mm)",
-                f"half the root radius, {self.root_radius * 500:.4g} mm, is a usual start",
-            )
+        self._check_held_radius()
         if self.plane not in ("strain", "stress", "auto"):
             raise InputError("plane", f'"{self.plane}"', 'must be "strain", "stress" or "auto"')
         if self.plane == "auto":
@@ -131,6 +129,41 @@ class Gear:
                 "is incompressible, which plane strain with displacements alone cannot distinguish from rigid",
                 f"choose at most {_LARGEST_POISSON_RATIO}, which is within 1e-4 of the limit, or plane stress",
             )
+
+    def _check_held_radius(self) -> None:
+        """Refuse bodies that are held within their own teeth."""
+        held, root, internal = self.bore_radius, self.root_radius, self.tooth.internal
+        if not internal and held >= root:
+            raise GeometryError(
+                "bore_radius",
+                f"{held * 1e3:.6g} mm",
+                f"must lie inside (0, root radius = {root * 1e3:.6g} mm)",
+                f"half the root radius, {root * 500:.4g} mm, is a usual start",
+            )
+        if internal and held <= root:
+            usual = root + USUAL_RING_RIM * self.module
+            raise GeometryError(
+                "bore_radius",
+                f"{held * 1e3:.6g} mm",
+                f"must lie outside the root circle of an internal gear, whose radius is {root * 1e3:.6g} mm",
+                f"{usual * 1e3:.4g} mm, a rim of {USUAL_RING_RIM:g} modules, is a usual start",
+            )
+
+    @property
+    def external_tooth(self) -> Tooth:
+        """The tooth of an external gear, cut by a rack.
+
+        Raises
+        ------
+        GeometryError
+            Of an internal gear: it is what formulas and effects take that are made for racks.
+        """
+        if not isinstance(self.tooth, Tooth):
+            raise GeometryError(
+                "internal", "true", "is an internal gear; this result is computed for external gears alone",
+                "ask for the finite-element results of the gear",
+            )  # fmt: skip
+        return self.tooth
 
     @property
     def plane_assumption(self) -> Plane:
@@ -194,8 +227,8 @@ class Gear:
 
     @property
     def normal_pressure_angle(self) -> float:
-        """alpha_n [rad], that of the rack."""
-        return self.tooth.rack.pressure_angle
+        """alpha_n [rad], that of the tool."""
+        return self.tooth.normal_pressure_angle
 
     @property
     def transverse_pressure_angle(self) -> float:
@@ -237,6 +270,12 @@ class Gear:
     def involute_tip_radius(self) -> float:
         """r_Fa, where the involute ends [m]."""
         return self.tooth.involute_tip_radius * self.module
+
+    @property
+    def involute_radii(self) -> tuple[float, float]:
+        """Least and largest radius of the usable involute [m]."""
+        low, high = sorted((self.form_radius, self.involute_tip_radius))
+        return low, high
 
     def normal_thickness(self, radius: float) -> float:
         """Thickness of a tooth at a radius [m], normal to its helix there: s_n = s_t cos(beta) [m]."""

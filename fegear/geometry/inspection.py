@@ -1,6 +1,7 @@
 """Span measurement: what a disc micrometer reads over several teeth (ISO 21771, 5.6: base tangent length W_k).
 
-Dimension over two balls or pins in opposite tooth spaces (ISO 21771, 5.6: M_dK and M_dR).
+Dimension over two balls or pins in opposite tooth spaces (ISO 21771, 5.6: M_dK and M_dR), or, of an internal gear,
+between them.
 """
 
 from __future__ import annotations
@@ -31,8 +32,11 @@ def span(gear: Gear, teeth: int) -> float:
     Raises
     ------
     GeometryError
-        If k is less than 1, the discs do not touch involutes, or the face is narrower than W_k sin(beta_b).
+        If the gear is internal, k is less than 1, the discs do not touch involutes, or the face is narrower than
+        W_k sin(beta_b).
     """
+    if gear.tooth.internal:
+        raise GeometryError("internal", "true", "has no room for the discs of a span", "measure between balls")
     if teeth < 1:
         raise GeometryError("teeth", teeth, "must be at least 1")
     lean = math.cos(gear.base_helix_angle)
@@ -60,8 +64,11 @@ def span(gear: Gear, teeth: int) -> float:
 def usual_span(gear: Gear) -> tuple[int, float] | None:
     """Number of teeth and base tangent length [m] of the measurement that `span_teeth` would take.
 
-    A face too narrow for the lean of helical teeth takes fewer teeth; None where no number is left.
+    A face too narrow for the lean of helical teeth takes fewer teeth; None where no number is left, and of internal
+    gears.
     """
+    if gear.tooth.internal:
+        return None
     for teeth in range(span_teeth(gear), 0, -1):
         try:
             return teeth, span(gear, teeth)
@@ -87,7 +94,7 @@ _R40 = (
 
 
 class OverBalls(NamedTuple):
-    """What a gauge reads over two balls; spur gears read the same over pins.
+    """What a gauge reads over two balls, or between those of an internal gear; spur gears read the same over pins.
 
     Attributes
     ----------
@@ -105,11 +112,12 @@ class OverBalls(NamedTuple):
 
 
 def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
-    """Dimension over two balls in opposite tooth spaces, or in the two that are nearest to it with odd teeth.
+    """Dimension over (internal gears: between) two balls in opposite tooth spaces, or the nearest two of odd teeth.
 
     Thickness allowances count, as in `span`. With alpha_K the transverse pressure angle at the centre of the ball,
-    inv(alpha_K) = D_M / (d_b cos(beta_b)) - (half the angle of a tooth space on the base circle). On helical teeth the
-    balls lie in one section across the axis; pins along an odd number of helical spaces would read otherwise.
+    inv(alpha_K) = D_M / (d_b cos(beta_b)) - (half the angle of a tooth space on the base circle); of an internal gear
+    both terms have the other sign, for the ball lies on the flanks' hollow side. On helical teeth the balls lie in one
+    section across the axis; pins along an odd number of helical spaces would read otherwise.
 
     Parameters
     ----------
@@ -125,23 +133,25 @@ def over_balls(gear: Gear, ball_diameter: float) -> OverBalls:
     if not (math.isfinite(ball_diameter) and ball_diameter > 0.0):
         raise GeometryError("ball_diameter", ball_diameter, "must be positive and finite")
     base, space = gear.base_radius, math.pi / gear.teeth - gear.tooth.base_half_angle
-    lean = math.cos(gear.base_helix_angle)
-    rise = 0.5 * ball_diameter / lean / base - space
+    lean, side = math.cos(gear.base_helix_angle), gear.tooth.side
+    rise = side * (0.5 * ball_diameter / lean / base - space)
     if rise <= 0.0:
-        raise _refused(gear, ball_diameter, "is so small that it falls between the base circle's points")
+        size = "small that it falls between the base circle's points" if side > 0 else "large that it has no room"
+        raise _refused(gear, ball_diameter, f"is so {size}")
     angle = float(pressure_angle_of_inv(rise))
-    contact = math.hypot(base, base * math.tan(angle) - 0.5 * ball_diameter * lean)
-    if base * math.tan(angle) < 0.5 * ball_diameter * lean or contact < gear.form_radius:
+    length = base * math.tan(angle) - side * 0.5 * ball_diameter * lean
+    contact = math.hypot(base, length)
+    if length < 0.0 or side * contact < side * gear.form_radius:
         raise _refused(gear, ball_diameter, "touches the flanks below the start of the involute")
-    if contact > gear.involute_tip_radius:
+    if side * contact > side * gear.involute_tip_radius:
         raise _refused(gear, ball_diameter, "touches no involute: it lies on the tips")
     centre = base / math.cos(angle)
-    if centre - 0.5 * ball_diameter <= gear.root_radius:
+    if side * (centre - gear.root_radius) <= 0.5 * ball_diameter:
         raise _refused(gear, ball_diameter, "rests on the root circle")
-    if centre + 0.5 * ball_diameter <= gear.tip_radius:
+    if side * (centre - gear.tip_radius) <= -0.5 * ball_diameter:
         raise _refused(gear, ball_diameter, "stays below the tip circle, where no gauge reaches it")
     across = centre if gear.teeth % 2 == 0 else centre * math.cos(0.5 * math.pi / gear.teeth)
-    return OverBalls(2.0 * across + ball_diameter, ball_diameter, contact)
+    return OverBalls(2.0 * across + side * ball_diameter, ball_diameter, contact)
 
 
 def _refused(gear: Gear, ball_diameter: float, rule: str) -> GeometryError:
@@ -150,13 +160,13 @@ def _refused(gear: Gear, ball_diameter: float, rule: str) -> GeometryError:
 
 
 def touching_ball(gear: Gear) -> float:
-    """Diameter of the ball that touches both flanks at the V-circle d + 2 x m [m].
+    """Diameter of the ball that touches both flanks at the V-circle d + 2 x m, d - 2 x m of an internal gear [m].
 
     Where that circle lies beyond the involute's ends, the ball touches in the middle of the involute.
     """
     tooth = gear.tooth
-    radius = tooth.pitch_radius + tooth.profile_shift
-    if not tooth.form_radius < radius < tooth.involute_tip_radius:
+    radius, (low, high) = tooth.pitch_radius + tooth.side * tooth.profile_shift, tooth.involute_radii
+    if not low < radius < high:
         radius = 0.5 * (tooth.form_radius + tooth.involute_tip_radius)
     roll = float(tooth.roll(radius))
     space = math.pi / tooth.teeth - float(tooth.half_thickness_angle(radius))

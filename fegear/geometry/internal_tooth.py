@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from fegear.geometry.curves import Involute, PinionTipFillet
 from fegear.geometry.involute import inv, pressure_angle_of_inv, roll_of_polar_angle
 from fegear.geometry.involute_tooth import InvoluteTooth
 from fegear.geometry.rack import transverse_angle
+
+if TYPE_CHECKING:
+    from fegear.base.arrays import Array
 
 #: Fewest teeth by which a ring exceeds its cutter: with less, cutter and ring hardly roll on each other.
 _FEWEST_MORE = 3
@@ -170,6 +173,20 @@ class InternalTooth(InvoluteTooth):
         inner = math.sqrt(max(centre - base, 0.0) * (centre + base))
         normal = half_angle - (radius + inner) / base
         return radius + inner, normal, normal + math.atan(inner / base)
+
+    def cutter_tooth(self, count: int = 25) -> Array:
+        """Outline of the cutter's tooth in its own frame, +y along its centre line [modules], shape (2, N)."""
+        end, normal, centre = self._rounding(self.cutter.tip_radius)
+        first = self._cutter_base * max(math.sqrt(max(1.0 - 2.0 / self._cutter_base, 0.0)), 1e-3)
+        b = np.linspace(0.5 * math.pi + normal, max(centre, 0.0), count)
+        at, rho = self._cutter_tip - self.cutter.tip_radius, self.cutter.tip_radius
+        rounding = at * np.array([[math.sin(centre)], [math.cos(centre)]]) + rho * np.stack([np.sin(b), np.cos(b)])
+        roll = np.linspace(0.0, end / self._cutter_base, count)
+        half = normal + end / self._cutter_base
+        flank = Involute(self._cutter_base, half, 0.0, float(roll[-1])).points(roll)
+        foot = flank[:, :1] * first / self._cutter_base
+        right = np.hstack([foot, flank, rounding])
+        return np.hstack([right, right[:, ::-1] * np.array([[-1.0], [1.0]])])
 
     @cached_property
     def limit_radius(self) -> float:

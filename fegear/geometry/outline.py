@@ -18,6 +18,8 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.geometry.curves import Arc, Line
+from fegear.geometry.internal_tooth import InternalTooth
+from fegear.geometry.tooth import Tooth
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,7 +31,6 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Gear
     from fegear.geometry.involute_tooth import InvoluteTooth
     from fegear.geometry.relief import Relief
-    from fegear.geometry.tooth import Tooth
 
 
 _LARGEST_COUNT = 1 << 14
@@ -104,17 +105,33 @@ def rack_in_gear(tooth: Tooth, rolled: float) -> Array:
     return turned(placed, math.pi / tooth.teeth - rolled)
 
 
-def tool_in_space(tooth: Tooth, count: int) -> Array:
+def _cutter_in_gear(tooth: InternalTooth, rolled: float) -> Array:
+    """The pinion-type cutter's tooth in the frame of an internal gear that has turned by an angle [rad], likewise."""
+    placed = turned(tooth.cutter_tooth(), rolled * tooth.teeth / tooth.cutter.teeth)
+    placed[1] += tooth.generating_distance
+    return turned(placed, math.pi / tooth.teeth - rolled)
+
+
+def tool_in_gear(tooth: InvoluteTooth, rolled: float) -> Array:
+    """The tool, rack or pinion-type cutter, in the frame of a gear that has turned by an angle [rad], (2, N)."""
+    if isinstance(tooth, InternalTooth):
+        return _cutter_in_gear(tooth, rolled)
+    if isinstance(tooth, Tooth):
+        return rack_in_gear(tooth, rolled)
+    raise TypeError(f"no tool is known of a {type(tooth).__name__}")
+
+
+def tool_in_space(tooth: InvoluteTooth, count: int) -> Array:
     """Positions of the tool as it rolls through the space right of the tooth, shape (count, 2, N) [modules].
 
     Parameters
     ----------
-    tooth : Tooth
+    tooth : InvoluteTooth
     count : int
         Even steps of the roll, from before the first touch to after the last.
     """
     reach = 1.6 * math.pi / tooth.teeth + 0.6 / math.sqrt(tooth.teeth)
-    return np.stack([rack_in_gear(tooth, rolled) for rolled in np.linspace(-reach, reach, count).tolist()])
+    return np.stack([tool_in_gear(tooth, rolled) for rolled in np.linspace(-reach, reach, count).tolist()])
 
 
 class Drawn(Protocol):

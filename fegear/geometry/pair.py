@@ -126,7 +126,7 @@ class GearPair:
     def _working_angle(self, *, allowance: bool) -> float:
         a, b = self.driver.tooth, self.driven.tooth
         shifts = a.generating_shift + b.generating_shift if allowance else a.profile_shift + b.profile_shift
-        value = float(inv(a.pressure_angle)) + 2.0 * shifts * math.tan(a.rack.pressure_angle) / (a.teeth + b.teeth)
+        value = float(inv(a.pressure_angle)) + 2.0 * shifts * math.tan(a.normal_pressure_angle) / (a.teeth + b.teeth)
         if value <= 0.0:
             raise GeometryError(
                 "profile_shift", f"sum {shifts:.6g}", "is so negative that the pair has no working pressure angle"

@@ -222,7 +222,7 @@ class RackFlank:
     def s_form(self) -> float:
         """Parameter of the start of the flank [m]: where the cutter's ends, or where undercut ends it."""
         g = self.gear
-        rack, m = g.tooth.rack, g.module
+        rack, m = g.external_tooth.rack, g.module
         depth = rack.tip_centre_depth + rack.tip_radius * math.sin(rack.pressure_angle)
         deepest, pitch_line = -depth * m / math.cos(rack.pressure_angle), self._straight(g.pitch_radius)
         if deepest < pitch_line:

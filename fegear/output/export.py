@@ -163,7 +163,10 @@ def _export_meshes(scene: Scene, folder: Path, name: str, wanted: set[str]) -> t
         from fegear.output.mesh_export import write_meshes
 
         written += write_meshes(gear, folder, file_name(name), plane, settings, mesh)
-    if solid := meshes & _SOLID:
+    solid = meshes & _SOLID
+    if solid and gear.tooth.internal:
+        return written, [f"Gear {name} is internal: no {', '.join(sorted(solid))} is written for it."]
+    if solid:
         from fegear.output.solid_export import write_solid
 
         written += write_solid(gear, folder, file_name(name), solid, mesh=mesh)

@@ -208,7 +208,10 @@ class GearKeys(TypedDict, total=False):
     tip_diameter: Quantity
     tip_radius_rounding: Quantity
     tip_chamfer: Quantity
+    internal: bool
+    cutter: Mapping[str, Any]
     bore_radius: Quantity
+    outer_radius: Quantity
     rim_thickness: Quantity
     web_thickness: Quantity
     face_width: Quantity

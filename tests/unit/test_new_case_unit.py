@@ -124,7 +124,7 @@ def test_a_drawing_with_shifts_relief_and_helix_becomes_a_case(say, tmp_path):
         (("x", "--tip-relief", "-20 um", "4 mm"), "must be greater than zero"),
         (("x", "--tip-relief", "20 um", "none"), "must have both amount and length"),
         (("x", "--kind", "pair", "--lead-error", "9 um"), 'has no meaning for a case of kind "pair"'),
-        (("x", "--kind", "bevel"), "known here: gear, helical, pair, planetary, relief, study, train"),
+        (("x", "--kind", "bevel"), "known here: gear, helical, pair, planetary, relief, ring, study, train"),
         (("x", "--kind", "gear", "--torque", "3 N m"), '--torque = "3 N m": has no meaning for a case of kind "gear"'),
         (("x", "--rack", "E"), "ISO 53"),
         (("nowhere/x",), "lies in a folder that is not there"),

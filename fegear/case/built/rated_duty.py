@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fegear.base.errors import InputError
+from fegear.geometry.gear import USUAL_RING_RIM
 from fegear.geometry.pair import MEMBERS
 
 if TYPE_CHECKING:
@@ -156,7 +157,7 @@ def assumed_of_pair(scene: Scene, name: str, said: list[str]) -> None:
         _assumed_of_gear(scene, gear, said)
     for member, gear in zip(MEMBERS, (part.driver, part.driven), strict=True):
         made = pair.gear(member)
-        if made.tooth.undercut and not made.tooth.rack.residual_undercut:
+        if made.tooth.undercut and not made.external_tooth.rack.residual_undercut:
             said.append(
                 f"Gear {gear}: its root is undercut up to {2e3 * made.form_radius:.5g} mm of diameter; ISO 6336 is for "
                 "gears without undercut, and of its factors the contact ratio alone counts it (profile_shift)."
@@ -187,9 +188,14 @@ def _assumed_of_gear(scene: Scene, gear: str, said: list[str]) -> None:
 
 def bore_remarks(scene: Scene, gear: str) -> tuple[str, ...]:
     """Where the body of a gear is held fast, if the case does not say."""
-    if scene.case.gear[gear].bore_radius is not None:
+    part, bore = scene.case.gear[gear], scene.gears[gear].bore_radius * 1e3
+    if part.internal:
+        if part.outer_radius is not None or part.rim_thickness is not None:
+            return ()
+        held = f"held outside of a rim of {USUAL_RING_RIM:g} modules, at {bore:.6g} mm"
+        return (f"Gear {gear}: no outer_radius or rim_thickness was given; assumed default: the body is {held}.",)
+    if part.bore_radius is not None:
         return ()
-    bore = scene.gears[gear].bore_radius * 1e3
     held = f"held at half the root radius, {bore:.6g} mm"
     return (f"Gear {gear}: no bore_radius was given; assumed default: the body is {held}.",)
 

@@ -151,7 +151,7 @@ def solve_solid_influence(asked: SolidGearToSolve, cache: SolutionCache | None =
     gear, cache = asked.gear, cache or SolutionCache()
     try:
         found = solid_influence(
-            gear.tooth,
+            gear.external_tooth,
             gear.twist * gear.module,
             gear.face_width / gear.module,
             gear.material.poisson_ratio,

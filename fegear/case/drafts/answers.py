@@ -145,7 +145,7 @@ def questions(kind: str, given: Mapping[str, str]) -> list[Question]:
                 if kind == "planetary"
                 else ("Teeth of pinion and wheel", "21 53")
                 if several
-                else ("Teeth", "28")
+                else ("Teeth", "60" if kind == "ring" else "28")
             ),
             "teeth",
         ),
@@ -255,5 +255,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType({
     "train": Kind("motor, pair and machine in motion: resonances, dynamic factor", ("pinion", "wheel"), _RELIEVED),
     "planetary": Kind("a planetary set: load sharing of its planets, phases, modes, vibration", ("sun", "planet"),
                       _LOADED),
+    "ring": Kind("a ring gear: stiffness and root stress of its internal teeth", ("ring",),
+                 ("pressure_angle", "profile_shift", "face_width")),
     "study": Kind("root-stress formulas against finite elements over many gears", ("gear",), _TOOTH),
 })  # fmt: skip

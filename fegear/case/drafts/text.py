@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from fegear.base.units import from_si
 from fegear.case.drafts.answers import KINDS
+from fegear.geometry.gear import USUAL_RING_RIM
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -53,6 +54,20 @@ profile_shift = {profile_shift}{profile_shift_note}
 rack = {rack}{rack_note}
 face_width = {face_width}{face_width_note}
 {relief}
+"""
+_RING = """\
+[gear.{name}]
+internal = true
+teeth = {teeth}
+module = {module}{module_note}
+pressure_angle = {pressure_angle}
+profile_shift = {profile_shift}{profile_shift_note}     # above zero toward the tip: diameters shrink (ISO 21771)
+cutter = {{ teeth = {cutter}, profile_shift = 0.0, addendum = 1.25, tip_radius = 0.2 }}     # in modules; assumed
+rim_thickness = {rim}     # outside the root circle, held at its outside; assumed
+face_width = {face_width}{face_width_note}
+# tip_diameter = "{tip_diameter}"     # without it: this, the reference circle - 2 (1 + x) modules
+# thickness_allowance = "75 um"     # thinner teeth, for backlash
+# material = {{ young_modulus = "206 GPa", poisson_ratio = 0.3 }}     # without it steel
 """
 _PAIR = """\
 [pair.I]
@@ -158,11 +173,22 @@ def _gear(answers: Answers, number: int) -> str:
     texts |= {"name": kind.gears[number], "teeth": answers.numbers("teeth")[number]}
     shift = float(answers.numbers("profile_shift")[number])
     texts["profile_shift"] = repr(shift)
+    if answers.kind == "ring":
+        return _ring(answers, texts, shift)
     texts["rack"] = json.dumps(f"ISO 53 {answers['rack'].strip()[-1].upper()}")
     if answers.kind == "helical":
         return _HELICAL.format(**texts, hand=("right", "left")[number])
     texts["tip_diameter"] = _length(answers.si("module") * (int(texts["teeth"]) + 2.0 * (1.0 + shift)))
     return _SPUR.format(**texts)
+
+
+def _ring(answers: Answers, texts: Mapping[str, str], shift: float) -> str:
+    """A ring gear with a cutter of two fifths of its teeth, which makes involutes up to usual tip circles."""
+    teeth, module = int(texts["teeth"]), answers.si("module")
+    return _RING.format(
+        **texts, cutter=max(10, 2 * teeth // 5), rim=json.dumps(_length(USUAL_RING_RIM * module)),
+        tip_diameter=_length(module * (teeth - 2.0 * (1.0 + shift))),
+    )  # fmt: skip
 
 
 def _pair(answers: Answers) -> str:

@@ -111,7 +111,7 @@ def contact_zone(gear: Gear, radii: ArrayLike, half_width: ArrayLike) -> Array:
     Exact half-plane solution (`hertz.approach`), with the depth counted along the line of action.
     """
     r = np.atleast_1d(np.asarray(radii, dtype=float))
-    depth = load_line(gear.tooth, r / gear.module).depth * gear.module
+    depth = load_line(gear.external_tooth, r / gear.module).depth * gear.module
     m = gear.material
     return hertz.approach(1.0, half_width, depth, m.young_modulus, m.poisson_ratio, gear.plane_assumption)
 

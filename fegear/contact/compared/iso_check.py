@@ -110,7 +110,7 @@ def rated_spur_pair(
             found.append(_nothing(answer))
             continue
         one = answer.value
-        form = line_load * math.cos(gear.tooth.rack.pressure_angle) / gear.module * one.form.Y_F * one.form.Y_S
+        form = line_load * math.cos(gear.normal_pressure_angle) / gear.module * one.form.Y_F * one.form.Y_S
         at = np.array([0.5 * one.load_diameter * gear.module])
         tension = float(known.largest_root_stress(0, "tension", at)[0][0])
         found.append(RatedGear(answer, form, line_load * tension, ""))
@@ -198,7 +198,7 @@ def virtual_root_stress(
     counts = sorted({math.floor(z_n + 1e-9), math.ceil(z_n - 1e-9)})
     found = []
     for z in counts:
-        tooth = replace(gear.tooth, teeth=z, tip_radius=0.5 * z + addendum, helix_angle=0.0)
+        tooth = replace(gear.external_tooth, teeth=z, tip_radius=0.5 * z + addendum, helix_angle=0.0)
         radius = 0.5 * (load_diameter - z_n + z)
         wheel = Gear(tooth, m, 0.5 * tooth.root_radius * m)
         known = solve_gear(wheel, settings, reach=0, estimate_error=False, cache=cache)

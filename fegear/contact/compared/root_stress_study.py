@@ -87,7 +87,7 @@ def variants(
 ) -> list[Variant]:
     """Every combination; all keep the base gear's rack, module, tip shape and ratio of bore to root radius."""
     found = []
-    share, t = base.bore_radius / base.root_radius, base.tooth
+    share, t = base.bore_radius / base.root_radius, base.external_tooth
     for z, x, rho in product(teeth, profile_shift, rack_tip_radius):
         try:
             tooth = Tooth(
@@ -107,7 +107,7 @@ def of_population(population: Population) -> list[Variant]:
     """The gears of a population, each with its own load positions."""
     return [
         Variant(
-            d.gear.teeth, d.gear.tooth.profile_shift, d.gear.tooth.rack.tip_radius, d.gear,
+            d.gear.teeth, d.gear.tooth.profile_shift, d.gear.external_tooth.rack.tip_radius, d.gear,
             load_position=d.load_position,
         )
         for d in population.gears
@@ -151,7 +151,7 @@ def root_stress_study(
                 value, arc = known.largest_root_stress(0, "tension", radii)
                 fillet = known.fine.fillets["tension"]
                 angle = np.interp(arc / gear.module, fillet.arc, fillet.tangent_angle)
-                answers = root_stress_answers(gear.tooth, radii / gear.module)
+                answers = root_stress_answers(gear.external_tooth, radii / gear.module)
                 off = known.root_stress_error(0, "tension", radii) * gear.module if estimate_error else nothing
                 found.append(VariantStress(variant, at, radii, value * gear.module, angle, answers, off))
         if gear is None:
@@ -223,7 +223,7 @@ def drawn_gears(base: Gear, bounds: Mapping[str, tuple[float, float]], samples: 
     """
     from scipy.stats import qmc
 
-    t = base.tooth
+    t = base.external_tooth
     own = {
         "teeth": t.teeth, "profile_shift": t.profile_shift, "rack_tip_radius": t.rack.tip_radius,
         "rack_dedendum": t.rack.dedendum, "pressure_angle": t.rack.pressure_angle,

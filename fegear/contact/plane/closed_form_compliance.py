@@ -209,7 +209,7 @@ def formula_root_stress(
     stress, remarks = [], []
     for radius in np.clip(np.hypot(rb, lengths), lowest, highest):
         try:
-            found = source.formula(gear.tooth, float(radius) / gear.module)
+            found = source.formula(gear.external_tooth, float(radius) / gear.module)
             if not found.stress > 0.0:
                 raise RangeError(
                     "root tension", f"{found.stress:.3g}", "is none: its compression outweighs its bending"

@@ -59,7 +59,8 @@ def as_cut(gear: Gear, *, profile_angle: float = 0.0, lead_angle: float = 0.0) -
         hand = "left" if helix > 0.0 else "right"
     elif helix < 0.0:
         hand = "left" if hand == "right" else "right"
-    tooth, rack = gear.tooth, gear.tooth.rack
+    tooth = gear.external_tooth
+    rack = tooth.rack
     angle = rack.pressure_angle + profile_angle
     sharp = replace(rack, tip_radius=0.0, protuberance=0.0, grinding_allowance=0.0, pressure_angle=angle)
     room = sharp.full_fillet_radius + rack.residual_undercut / (1.0 - math.sin(angle))

@@ -98,7 +98,7 @@ def stiffness_table(
     started = time.perf_counter()
     r = np.atleast_1d(np.asarray(radii, dtype=float))
     b = np.broadcast_to(np.asarray(half_width, dtype=float), r.shape).copy()
-    low, high = gear.form_radius, gear.involute_tip_radius
+    low, high = gear.involute_radii
     off = ~((r >= low * (1 - 1e-9)) & (r <= high * (1 + 1e-9)))
     if off.any():
         raise RangeError(
@@ -113,7 +113,7 @@ def stiffness_table(
     for array in (r, b, *found.values()):
         array.flags.writeable = False
     errors = {name.removeprefix("error_of_"): found.pop(name) for name in tuple(found) if name.startswith("error_of_")}
-    angle = np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
+    angle = gear.tooth.side * np.sqrt((r - gear.base_radius) * (r + gear.base_radius)) / gear.base_radius
     return StiffnessTable(
         errors, known, time.perf_counter() - started, radius=r, roll_angle=angle, half_width=b, **found
     )
@@ -157,6 +157,7 @@ def check_contacts(gear: Gear, radii: ArrayLike, half_width: ArrayLike, key: str
     RangeError
     """
     r, m = np.asarray(radii, dtype=float), gear.module
+    low, high = gear.involute_radii
     # On an involute the squared radius grows by twice the base radius times the arc length.
-    room = np.minimum(r**2 - gear.form_radius**2, gear.involute_tip_radius**2 - r**2) / (2.0 * gear.base_radius)
+    room = np.minimum(r**2 - low**2, high**2 - r**2) / (2.0 * gear.base_radius)
     check_half_widths(np.asarray(half_width) / m, room / m, unit="mm", scale=1e3 * m, key=key)

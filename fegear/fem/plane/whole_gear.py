@@ -217,8 +217,9 @@ def loaded_gear(
     if settings.order > _FIELD_ORDER:
         settings = replace(settings.scaled(_SIX_NODE_EDGES), order=_FIELD_ORDER)
     shape = mesh or mesh_sector(gear.tooth, gear.bore_radius / gear.module, settings)
-    place = min(max(gear.pitch_radius if radius is None else radius, gear.form_radius), gear.involute_tip_radius)
-    room = min(place - gear.form_radius, gear.involute_tip_radius - place) / gear.module
+    low, high = gear.involute_radii
+    place = min(max(gear.pitch_radius if radius is None else radius, low), high)
+    room = min(place - low, high - place) / gear.module
     half_width = max(min(settings.patch_half_width, room), settings.corner_distance)
     nu, plane = gear.material.poisson_ratio, gear.plane_assumption
     return whole_gear(shape), gear_field(gear.tooth, shape, nu, plane, place / gear.module, half_width)

@@ -84,7 +84,7 @@ def write_step(
     left = [Spline(s.knots, s.control * np.array([-1.0, 1.0])) for s in right]
     helix = fitted(lambda z: _turn(gear, z), -half, half, tolerance / gear.tooth.tip_radius)
     bore = gear.bore_radius * _MM
-    area = 2.0 * abs(enclosed_area(right)) * gear.teeth * scale**2 - math.pi * bore**2
+    area = abs(2.0 * abs(enclosed_area(right)) * gear.teeth * scale**2 - math.pi * bore**2)
     with gmsh_session("fegear solid") as gmsh:
         try:
             solid = _build(gmsh.model.occ, gear, (*left, *right), scale, helix, bore)
@@ -114,8 +114,9 @@ def _build(occ: Any, gear: Gear, tooth: Sequence[Spline], scale: float, helix: S
     rings = low, [high[k : k + len(tooth)] for k in range(0, len(high), len(tooth))]
     circle = occ.addCircle(0.0, 0.0, -0.5 * height, bore)
     other, wall = occ.extrude([(1, circle)], 0.0, 0.0, height)[:2]
+    inward = -1 if gear.tooth.internal else 1  # the outer loop of a face comes first: the teeth, or a ring's circle
     caps = [
-        (2, occ.addPlaneSurface([occ.addCurveLoop(_loop(ring)), occ.addCurveLoop([hole])]))
+        (2, occ.addPlaneSurface([occ.addCurveLoop(_loop(ring)), occ.addCurveLoop([hole])][::inward]))
         for ring, hole in zip(rings, (circle, other[1]), strict=True)
     ]
     parts = [*(face for one in flanks for face in one), *caps, wall]

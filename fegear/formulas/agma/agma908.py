@@ -187,7 +187,7 @@ def bending_factor(pair: GearPair, member: Member, contact: ContactGeometry | No
             1.0, 1.0,
         )  # fmt: skip
     refuse_undercut(pair)
-    tooth, phi, psi = gear.tooth, gear.normal_pressure_angle, gear.helix_angle
+    tooth, phi, psi = gear.external_tooth, gear.normal_pressure_angle, gear.helix_angle
     if tooth.rack.residual_undercut > 0.0:
         raise RangeError(
             "rack.protuberance", "(given)", "is left out of AGMA 908 for helical gears", "rate by ISO 6336"
@@ -374,7 +374,7 @@ def pair_geometry_factor(pair: GearPair, member: Member, *, tip: bool = False) -
     gear = pair.gear(member)
     at = pair.x_hpstc if member == "driver" else pair.x_lpstc
     radius = gear.involute_tip_radius if tip else float(pair.radius(at, member))
-    return geometry_factor(gear.tooth, radius / gear.module, pair.working_pressure_angle)
+    return geometry_factor(gear.external_tooth, radius / gear.module, pair.working_pressure_angle)
 
 
 def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:

@@ -245,7 +245,7 @@ SOLID = Body()
 
 
 def _shape(gear: Gear, body: Body) -> GearShape:
-    tooth = gear.tooth
+    tooth = gear.external_tooth
     return GearShape(
         teeth=gear.teeth,
         profile_shift=tooth.profile_shift,

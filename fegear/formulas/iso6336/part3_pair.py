@@ -134,19 +134,19 @@ def rate_spur(
 ) -> RootRating:
     """Rate one gear of a spur pair under a line load [N/m] normal to the flank; rim thickness in m, None for solid."""
     gear = pair.gear(member)
-    refuse_helix(gear.tooth)
-    load = ToothLoad(line_load * math.cos(gear.tooth.rack.pressure_angle), pair.contact_ratio)
+    refuse_helix(gear.external_tooth)
+    load = ToothLoad(line_load * math.cos(gear.normal_pressure_angle), pair.contact_ratio)
     at = pair.x_hpstc if member == "driver" else pair.x_lpstc
     height = gear.tip_radius - gear.root_radius
     backup = math.inf if rim_thickness is None else rim_thickness / height
     d_en = 2.0 * float(pair.radius(at, member)) / gear.module
-    return rate(root.rack_tooth(gear.tooth), d_en, gear.module, load, choice, backup)
+    return rate(root.rack_tooth(gear.external_tooth), d_en, gear.module, load, choice, backup)
 
 
 def virtual_tooth(gear: Gear) -> root.RackTooth:
     """The virtual spur tooth of a helical gear: its rack and its profile shift on z_n teeth."""
     z_n = root.virtual_teeth(gear.teeth, gear.helix_angle, gear.normal_pressure_angle)
-    return replace(root.rack_tooth(gear.tooth), teeth=z_n)
+    return replace(root.rack_tooth(gear.external_tooth), teeth=z_n)
 
 
 def virtual_contact_ratio(gear: Gear, contact_ratio: float) -> float:

@@ -314,7 +314,7 @@ def pair_root_form(pair: GearPair, member: Member) -> RootForm:
         )
     gear = pair.gear(member)
     at = pair.x_hpstc if member == "driver" else pair.x_lpstc
-    return root_form(rack_tooth(gear.tooth), 2.0 * float(pair.radius(at, member)) / gear.module)
+    return root_form(rack_tooth(gear.external_tooth), 2.0 * float(pair.radius(at, member)) / gear.module)
 
 
 def tooth_root_stress(tooth: Tooth, radius: float) -> RootStress:

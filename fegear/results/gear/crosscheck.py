@@ -137,9 +137,10 @@ def _compute(asked: CrosscheckInputs, upstream: Upstream, work: Work) -> Crossch
     for name, gear in asked.gears.items():
         fe: StiffnessTable = upstream[Task("stiffness", name)]
         gears[name] = GearAnswers(
-            fe, root_stress_answers(gear.tooth, fe.radius / gear.module), tooth_compliance_answers(gear, fe.radius),
+            fe, root_stress_answers(gear.external_tooth, fe.radius / gear.module),
+            tooth_compliance_answers(gear, fe.radius),
             contact_zone(gear, fe.radius, fe.half_width),
-            attempt(partial(radial_section_lengths, gear.tooth, fe.radius / gear.module)),
+            attempt(partial(radial_section_lengths, gear.external_tooth, fe.radius / gear.module)),
         )  # fmt: skip
         work.progress(len(gears) / count)
     for name, check in asked.pairs.items():

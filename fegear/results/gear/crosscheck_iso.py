@@ -217,5 +217,6 @@ def _fe_place(gear: Gear, fe: StiffnessTable, i: int) -> tuple[Array, float]:
     from fegear.formulas.root_section import fillet_parameter, fillet_point, tangent_range
 
     angle = float(fe.root_tension_angle[i])
-    p = fillet_point(gear.tooth, fillet_parameter(gear.tooth, float(np.clip(angle, *tangent_range(gear.tooth)))))
+    tooth = gear.external_tooth
+    p = fillet_point(tooth, fillet_parameter(tooth, float(np.clip(angle, *tangent_range(tooth)))))
     return np.array([p.half_thickness, p.height]) * gear.module, math.degrees(angle)

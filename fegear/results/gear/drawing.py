@@ -18,7 +18,7 @@ import numpy as np
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.engine.figure.figure import Axis, Figure, MeshField, Panel
 from fegear.engine.figure.items import Curve, Mark, Points, TriangleField, edges, outline, polylines
-from fegear.geometry.outline import rack_in_gear, tool_in_space, tooth_outline, turned
+from fegear.geometry.outline import tool_in_gear, tool_in_space, tooth_outline, turned
 from fegear.geometry.pair import MEMBERS, path_points, specific_sliding
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
     shape, pitch = tooth_outline(tooth, _CHORD) * m, 2.0 * math.pi / tooth.teeth
     height, radius = float(np.ptp(shape[1])), gear.pitch_radius * 1e3
     around = np.linspace(-1.6 * pitch, 1.6 * pitch, 121)
+    tool = "pinion cutter" if tooth.internal else "rack"
 
     def circle(r: float) -> Array:
         return np.stack([r * np.sin(around), r * np.cos(around)])
@@ -61,7 +62,7 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
     lines = (
         outline(polylines(tool_in_space(tooth, _TOOL_POSITIONS) * m),
               "positions of the tool", "sky", width=0.6),
-        outline(rack_in_gear(tooth, 0.0) * m, "tool (rack)", "tool"),
+        outline(tool_in_gear(tooth, 0.0) * m, f"tool ({tool})", "tool"),
         outline(polylines(turned(shape, k * pitch) for k in (-1, 1)), "", "outline", width=1.0),
         outline(shape, "tooth", "outline", width=2.2),
         outline(circle(radius), "pitch circle", "grey", dash="dashdot", width=1.0),
@@ -71,26 +72,29 @@ def tooth_figure(name: str, gear: Gear, mesh: SectorMesh) -> Figure:
     sides = np.hstack([t[[a, b, c]] for a, b, c in ((0, 3, 1), (1, 4, 2), (2, 5, 0))])
     sides = sides[:, np.unique(sides[1], return_index=True)[1]]  # each side once, by its middle node
     fillets = np.hstack([mesh.edges[side][[0, 2, 1]] for side in ("fillet", "back_fillet")])
-    root = float(np.hypot(*points[:, np.unique(mesh.edges["fillet"])]).min())
-    top = float(np.hypot(*points).max())
-    across = 1.05 * max(float(np.abs(points[0]).max()), top - root)
+    side = tooth.side
+    root = side * float((side * np.hypot(*points[:, np.unique(mesh.edges["fillet"])])).min())
+    top = side * float((side * np.hypot(*points)).max())
+    across = 1.05 * max(float(np.abs(points[0]).max()), abs(top - root))
+    below, above = sorted((root - 1.2 * (top - root), top + 0.15 * (top - root)))
     sector = (
         outline(edges(points, sides), "element", "grey", width=0.4),
         outline(edges(points, mesh.edges["flank"][[0, 2, 1]]), "loaded flank", "orange", width=2.0),
         outline(edges(points, fillets), "fillets", "red", width=2.0),
     )
     space = (-0.62 * pitch * radius, 1.12 * pitch * radius)
-    depth = (float(shape[1].min()) - 0.25 * height, float(shape[1].max()) + 0.55 * height)
+    room = (0.55, 0.25) if tooth.internal else (0.25, 0.55)
+    depth = (float(shape[1].min()) - room[0] * height, float(shape[1].max()) + room[1] * height)
     return Figure(
         f"tooth_{name}",
         f"Tooth, tool and mesh of gear {name}",
-        f"Gear {name}: {gear.teeth} teeth, module {m:.6g} mm. The rack tool rolls through the space and leaves the "
+        f"Gear {name}: {gear.teeth} teeth, module {m:.6g} mm. The {tool} tool rolls through the space and leaves the "
         "tooth standing; the one sector of the mesh is solved for the whole ring.",
         (
             Panel(Axis("x", "mm", limits=space), Axis("y", "mm", limits=depth), lines,
                   title="Tooth and the tool that generates it", height=1.5, equal=True),
             Panel(Axis("x", "mm", limits=(-across, across)),
-                  Axis("y", "mm", limits=(root - 1.2 * (top - root), top + 0.15 * (top - root))), sector,
+                  Axis("y", "mm", limits=(below, above)), sector,
                   title=f"Sector mesh: {mesh.triangles.shape[1]} six-node triangles", height=1.5, equal=True),
         ),
         columns=2,
@@ -111,7 +115,8 @@ def deformed_figure(name: str, influence: GearInfluence, line_load: float) -> Fi
     points = rest + scale * moved
     near = np.hypot(rest[0], rest[1] - gear.pitch_radius * 1e3) < 4.0 * m
     top = float(np.percentile(fields["von_mises"][near], _TOP))
-    low, high = gear.root_radius * 1e3 - 1.8 * m, gear.tip_radius * 1e3 + 0.5 * m
+    side = gear.tooth.side
+    low, high = sorted((gear.root_radius * 1e3 - side * 1.8 * m, gear.tip_radius * 1e3 + side * 0.5 * m))
     shown = whole.triangles[:, near[whole.triangles].any(axis=0)]
     finer = np.hstack([shown[[a, b, c]] for a, b, c in ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))])
     undeformed = outline(edges(rest, whole.outline), "", "ink", 0.5)
@@ -122,7 +127,7 @@ def deformed_figure(name: str, influence: GearInfluence, line_load: float) -> Fi
             title=title, height=1.26, equal=True,
         )
         for half, centre, triangles, title in (
-            (1.06 * gear.tip_radius * 1e3, 0.0, whole.triangles[:3], "Whole gear"),
+            (1.06 * max(gear.tip_radius, gear.bore_radius) * 1e3, 0.0, whole.triangles[:3], "Whole gear"),
             (0.5 * (high - low), 0.5 * (high + low), finer, "Loaded tooth"),
         )
     ]  # fmt: skip

@@ -133,6 +133,8 @@ def measurement_columns(drawing: Drawing, names: Sequence[str]) -> tuple[Column,
     found = [measured(drawing.gears[name], drawing.balls.get(name)) for name in names]
     spans = [usual_span(gear) or (np.nan, np.nan) for gear in gears]
     normal = "normal tooth thickness s_n" if _helical(gears) else "tooth thickness s"
+    kinds = {gear.tooth.internal for gear in gears}
+    where = "over (internal gears: between)" if len(kinds) == 2 else "between" if kinds == {True} else "over"
 
     return (
         Column("tooth_thickness", np.array([gear.normal_thickness(gear.pitch_radius) for gear in gears]), "mm",
@@ -144,7 +146,7 @@ def measurement_columns(drawing: Drawing, names: Sequence[str]) -> tuple[Column,
         Column("ball_diameter", np.array([np.nan if one is None else one.ball_diameter for one in found]), "mm",
                "ball or pin D_M"),
         Column("over_balls", np.array([np.nan if one is None else one.dimension for one in found]), "mm",
-               "over balls or pins M_dK"),
+               f"{where} balls or pins M_dK"),
     )  # fmt: skip
 
 
@@ -157,10 +159,13 @@ def unmeasured_remarks(drawing: Drawing) -> tuple[str, ...]:
     spanless = tuple(
         f"Gear {name} has no span: its face is too narrow for discs that touch its leaning flanks."
         for name, gear in drawing.gears.items()
-        if usual_span(gear) is None
+        if usual_span(gear) is None and not gear.tooth.internal
     )
     return spanless + tuple(
-        f"Gear {name} has no dimension over balls: none that touches both flanks stands out of the tooth space."
+        f"Gear {name} has no dimension over or between balls: none that touches both flanks stands out of the tooth "
+        "space."
+        if gear.tooth.internal
+        else f"Gear {name} has no dimension over balls: none that touches both flanks stands out of the tooth space."
         for name, gear in drawing.gears.items()
         if measured(gear, drawing.balls.get(name)) is None
     )

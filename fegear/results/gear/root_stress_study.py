@@ -80,7 +80,7 @@ def _rack(v: Variant) -> tuple[float, float]:
     """Dedendum [modules] and pressure angle [rad] of a gear's rack."""
     if v.gear is None:
         return math.nan, math.nan
-    rack = v.gear.tooth.rack
+    rack = v.gear.external_tooth.rack
     return rack.dedendum, rack.pressure_angle
 
 
@@ -188,7 +188,7 @@ def _inputs(scene: Scene, _subject: str) -> StudyInputs:
 def _compute(asked: StudyInputs, _upstream: Upstream, work: Work) -> tuple[VariantStress, ...]:
     from fegear.contact.compared.root_stress_study import drawn_gears, of_population, root_stress_study, variants
 
-    study, tooth = asked.study, asked.base.tooth
+    study, tooth = asked.study, asked.base.external_tooth
     if study.samples:
         population = of_population(drawn_gears(asked.base, study.bounds, study.samples, study.seed))
         settings, progress, cache = asked.settings, work.progress, work.cache

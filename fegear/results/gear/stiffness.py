@@ -77,7 +77,8 @@ def _table(name: str, t: StiffnessTable) -> Table:
 
 def _values(name: str, gear: Gear, t: StiffnessTable) -> tuple[Value, ...]:
     found = []
-    if gear.form_radius <= gear.pitch_radius <= gear.involute_tip_radius:
+    low, high = gear.involute_radii
+    if low <= gear.pitch_radius <= high:
         known, at = t.influence, np.array([gear.pitch_radius])
         b = np.interp(gear.pitch_radius, t.radius[np.argsort(t.radius)], t.half_width[np.argsort(t.radius)])
         for key, (c, off), meaning in (
@@ -186,13 +187,14 @@ def _forecast(scene: Scene, _name: str) -> Forecast:
 def _roll_axis(gear: Gear, t: StiffnessTable, roll: Array) -> Axis:
     """Roll angle of the load, with the radius that belongs to it on the far side."""
     room = 0.05 * float(np.ptp(roll))
-    at = np.linspace(max(float(roll.min()) - room, 0.0), float(roll.max()) + room, 200)
+    first, last = float(roll.min()) - room, float(roll.max()) + room
+    at = np.linspace(max(first, 0.0) if first + last > 0.0 else first, last, 200)
     radius = gear.base_radius * 1e3 * np.hypot(1.0, np.deg2rad(at))
     return axis_of(t, "roll_angle", second=Scale("load radius", "mm", at, radius))
 
 
 def _pitch_mark(gear: Gear, roll: Array) -> tuple[Mark, ...]:
-    at = float(np.rad2deg(np.sqrt(max((gear.pitch_radius / gear.base_radius) ** 2 - 1.0, 0.0))))
+    at = gear.tooth.side * float(np.rad2deg(np.sqrt(max((gear.pitch_radius / gear.base_radius) ** 2 - 1.0, 0.0))))
     return (Mark("x", at, "pitch point"),) if roll.min() <= at <= roll.max() else ()
 
 
@@ -282,7 +284,7 @@ def check_contacts_of(scene: Scene, name: str) -> None:
         )
     gear = scene.gears[name]
     for i, radius in enumerate(part.radii or ()):
-        low, high = gear.form_radius, gear.involute_tip_radius
+        low, high = gear.involute_radii
         if not low * (1 - 1e-9) <= radius <= high * (1 + 1e-9):
             raise InputError(
                 f"stiffness.radii[{i}]",
@@ -309,13 +311,13 @@ def load_radii(scene: Scene, name: str) -> Array:
         pair, member = found
         ends = np.sort(pair.radius(np.array([pair.x_start, pair.x_end]), member))
     else:
-        ends = np.array([gear.form_radius, gear.involute_tip_radius])
-    low, high = np.clip(ends, gear.form_radius, gear.involute_tip_radius)
+        ends = np.array(gear.involute_radii)
+    low, high = np.clip(ends, *gear.involute_radii)
     first, last = (float(np.sqrt((r - gear.base_radius) * (r + gear.base_radius))) for r in (low, high))
     if part.face_positions is None:
         return np.clip(np.hypot(gear.base_radius, np.linspace(first, last, part.positions)), low, high)
     # Arc lengths go with the squares; within this share of the flank's ends a solid's bands are poorly resolved.
-    low_2, high_2 = (r**2 - gear.base_radius**2 for r in (gear.form_radius, gear.involute_tip_radius))
+    low_2, high_2 = (r**2 - gear.base_radius**2 for r in gear.involute_radii)
     inner = [np.sqrt(low_2 + share * (high_2 - low_2)) for share in (END_SHARE, 1.0 - END_SHARE)]
     return np.hypot(gear.base_radius, np.linspace(max(first, inner[0]), min(last, inner[1]), part.band_radii))
 

@@ -219,7 +219,7 @@ class StressFormula:
     def of_gear(self, quantity: str, asked: Asked) -> Array:
         """NaN where the formula refuses or finds no tension."""
         gear, formula = asked.scene.gears[asked.gear], ROOT_STRESS_SOURCES[self.name].formula
-        found = [attempt(partial(formula, gear.tooth, float(r))) for r in asked.radii / gear.module]
+        found = [attempt(partial(formula, gear.external_tooth, float(r))) for r in asked.radii / gear.module]
         values = np.array([np.nan if one.value is None else one.value.stress for one in found]) / gear.module
         if not np.isfinite(values).any():
             raise RangeError(quantity, self.name, found[0].reason)

@@ -1,0 +1,168 @@
+"""Ring gears in case files and in Python: their keys, what is refused, exports and figures."""
+
+from __future__ import annotations
+
+import copy
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fegear
+from fegear.base.errors import GeometryError, InputError
+from fegear.case.reading import build_scene, read_scene
+from fegear.fem.solid.step_model import write_step
+from fegear.formulas.cornell import tooth_compliance
+from fegear.geometry.inspection import over_balls, touching_ball
+from fegear.geometry.outline import gear_outline, tool_in_space, tooth_outline
+from fegear.output.dxf import write_dxf
+
+CASES = Path(__file__).parents[2] / "cases"
+CASE = {
+    "results": ["geometry"],
+    "gear": {
+        "r": {
+            "internal": True,
+            "teeth": 60,
+            "module": "4 mm",
+            "profile_shift": 0.2,
+            "cutter": {"teeth": 20, "profile_shift": 0.1, "addendum": 1.25, "tip_radius": 0.25},
+        }
+    },
+}
+
+
+def ring(**changed):
+    document = copy.deepcopy(CASE)
+    keys = {**document["gear"]["r"], **changed}
+    document["gear"]["r"] = {key: value for key, value in keys.items() if value is not None}
+    return build_scene(document, "ring", Path()).gears["r"]
+
+
+def test_keys_arrive_in_the_gear():
+    gear = ring(rim_thickness="12 mm", thickness_allowance="40 um", tip_radius_rounding="0.4 mm")
+    tooth = gear.tooth
+    assert tooth.internal
+    assert (tooth.teeth, tooth.profile_shift, tooth.cutter.teeth) == (60, 0.2, 20)
+    assert tooth.cutter.tip_radius == 0.25
+    assert (tooth.thickness_allowance, tooth.tip_rounding) == pytest.approx((0.01, 0.1))
+    assert gear.tip_radius == pytest.approx(4e-3 * (30.0 - 0.2 - 1.0))
+    assert gear.bore_radius == pytest.approx(gear.root_radius + 12e-3)
+    assert ring(outer_radius="140 mm").bore_radius == pytest.approx(0.14)
+    assert ring().bore_radius == pytest.approx(ring().root_radius + 3.5 * 4e-3)
+    assert ring(tip_diameter="231 mm").tip_radius == pytest.approx(0.1155)
+
+
+def test_the_root_diameter_says_what_the_addendum_says():
+    by_addendum = ring()
+    cutter = {"teeth": 20, "profile_shift": 0.1, "tip_radius": 0.25}
+    by_root = ring(cutter={**cutter, "root_diameter": f"{2e3 * by_addendum.root_radius:.15g} mm"})
+    assert by_root.form_radius == pytest.approx(by_addendum.form_radius, rel=1e-13)
+
+
+def test_python_takes_the_same_keys():
+    keys = {key: value for key, value in CASE["gear"]["r"].items() if key not in ("teeth", "module")}
+    assert fegear.Gear(60, "4 mm", name="r", **keys).geometry == ring()
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"cutter": None}, "gear.r.cutter = (not given)"),
+        ({"rack": "A"}, "has no meaning for an internal gear; describe its cutter"),
+        ({"bore_radius": "50 mm"}, "write outer_radius or rim_thickness"),
+        ({"outer_radius": "140 mm", "rim_thickness": "12 mm"}, "contradicts outer_radius"),
+        ({"outer_radius": "120 mm"}, "gear.r.outer_radius = 120 mm: must lie outside the root circle"),
+        ({"internal": False}, "gear.r.cutter"),
+        ({"cutter": {"teeth": 58}}, "gear.r.cutter.teeth = 58: leaves a difference below 3"),
+        ({"cutter": {"teeth": 20, "addendum": 1.2, "root_diameter": "248 mm"}}, "contradicts addendum"),
+        ({"tip_diameter": "226 mm"}, "gear.r.tip_diameter = 226 mm"),
+        ({"ball_diameter": "12 mm"}, "gear.r.ball_diameter = 12 mm"),
+    ],
+)
+def test_what_no_ring_gear_has_is_refused_in_one_sentence(changed, words):
+    with pytest.raises(InputError) as refused:
+        ring(**changed)
+    assert words in str(refused.value)
+    assert str(refused.value).count("\n") == 0
+
+
+def test_formulas_of_external_teeth_refuse_a_ring_gear():
+    with pytest.raises(GeometryError, match="is an internal gear; this result is computed for external gears alone"):
+        tooth_compliance(ring(), np.array([0.12]))
+
+
+@pytest.mark.parametrize(("teeth", "helix"), [(60, None), (61, None), (60, "15 deg")])
+@pytest.mark.parametrize("size", [0.99, 1.0, 1.15])
+def test_balls_touch_the_flanks_of_the_drawn_outline(teeth, helix, size):
+    """The gap between a ball at its place and the flank's own curve is zero, by brute force over curve and ball."""
+    turned = {"module": None, "normal_module": "4 mm", "helix_angle": helix, "hand": "right", "face_width": "40 mm"}
+    gear = ring(teeth=teeth, **(turned if helix else {}))
+    found = over_balls(gear, size * touching_ball(gear))
+    nearer = math.cos(0.5 * math.pi / gear.teeth) if gear.teeth % 2 else 1.0
+    centre = 0.5 * (found.dimension + found.ball_diameter) / nearer
+    flank = gear.tooth.involute
+    x, y = flank.points(np.linspace(flank.start, flank.end, 4001)) * gear.module
+    # the flank at heights along the axis, which a helix turns; the ball lies in the middle of the space at its right
+    z = np.linspace(-1.2e-3, 1.2e-3, 1201)[:, None] if helix else np.zeros((1, 1))
+    c, s = np.cos(gear.twist * z), np.sin(gear.twist * z)
+    middle = math.pi / gear.teeth
+    distance = np.sqrt(
+        (c * x - s * y - centre * math.sin(middle)) ** 2 + (s * x + c * y - centre * math.cos(middle)) ** 2 + z**2
+    )
+    assert distance.min() == pytest.approx(0.5 * found.ball_diameter, abs=3e-9)
+    if not helix:
+        radius = np.hypot(x, y)[np.argmin(distance[0])]
+        assert radius == pytest.approx(found.contact_radius, abs=1e-6)
+
+
+def test_the_tool_s_positions_touch_the_outline_and_do_not_cut_it():
+    tooth = ring().tooth
+    shape = tooth_outline(tooth, 1e-6)
+    half = shape.shape[1] // 2
+    right = shape[:, half:]
+    angle = np.arctan2(*right)
+    positions = tool_in_space(tooth, 401)
+    # of all tool points nearest to the flank's angle at their radius: none beyond it, some on it
+    radius, at = (
+        np.hypot(*positions.reshape(401, 2, -1).transpose(1, 0, 2)),
+        np.arctan2(positions[:, 0], positions[:, 1]),
+    )
+    own = np.hypot(*right)
+    order = np.argsort(own)
+    inside = (radius > own.min()) & (radius < own.max() - 1e-6)
+    room = (at - np.interp(radius, own[order], angle[order])) * radius
+    near = inside & (at < math.pi / tooth.teeth)
+    assert room[near].min() > -1e-4
+    assert room[near].min() < 1e-4
+
+
+SMALL = {"teeth": 45, "cutter": {"teeth": 20}, "tip_diameter": "174 mm", "face_width": "5 mm"}
+
+
+def test_drawings_hold_the_ring_s_outside(tmp_path):
+    import ezdxf
+
+    gear = ring(**SMALL)
+    drawing = ezdxf.readfile(write_dxf(gear, tmp_path, "r")[1]).modelspace()
+    (circle,) = drawing.query("CIRCLE")
+    assert circle.dxf.radius == pytest.approx(gear.bore_radius * 1e3)
+    (teeth,) = drawing.query("LWPOLYLINE")
+    assert max(math.hypot(x, y) for x, y in teeth.vertices()) == pytest.approx(gear.root_radius * 1e3)
+
+
+@pytest.mark.long
+def test_the_solid_of_a_ring_is_the_disc_without_its_teeth_s_spaces(tmp_path):
+    gear = ring(**SMALL)
+    x, y = gear_outline(gear, 1e-5)
+    space = 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+    made = write_step(tmp_path / "r.step", gear)
+    assert made.expected == pytest.approx((math.pi * gear.bore_radius**2 - space) * 5e-3, rel=1e-5)
+    assert made.volume == pytest.approx(made.expected, rel=1e-7)
+
+
+def test_the_case_of_a_ring_gear_is_read():
+    scene = read_scene(CASES / "ring_gear.toml")
+    assert scene.gears["ring"].tooth.internal
+    assert set(scene.case.results) == {"geometry", "stiffness", "root-stress"}
