@@ -7,4 +7,6 @@ fegear_setup "${FEGEAR_VENV:-$root/.venv}" docs
 cd "$root"
 # Pages and cases start the program some hundred times: its bytecode is kept.
 unset PYTHONDONTWRITEBYTECODE
+# The theme speaks of its successor at each build.
+export NO_MKDOCS_2_WARNING=1
 exec "${FEGEAR_VENV:-$root/.venv}/bin/python" -m mkdocs build --strict "$@"

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from case_run import run_case
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
-from pygments.formatters import HtmlFormatter
+from pathspec.gitignore import GitIgnoreSpec
 
 from fegear.base.plain import code_version, content_key
 from fegear.engine.citation import bibliography
@@ -38,7 +38,7 @@ _ROWS = 8
 #: Characters of a case's comment after which no further sentence of it is on the gallery's first page.
 _ABOUT = 200
 #: Pages outside docs/ that belong to the site, and where links to them are found.
-_OUTSIDE = {"index.md": ROOT / "README.md", "meshes.md": ROOT / "meshes" / "README.md"} | {
+_OUTSIDE = {"readme.md": ROOT / "README.md", "meshes.md": ROOT / "meshes" / "README.md"} | {
     f"{name.lower()}.md": ROOT / f"{name}.md" for name in ("CONTRIBUTING", "SECURITY", "CHANGELOG")
 }
 
@@ -120,6 +120,7 @@ def page(path: Path) -> str:
     summary = json.loads((out / "summary.json").read_text("utf-8"))
     pictures = [name for name in summary["files"] if name.endswith(".png")]
     parts = [
+        f"[Gallery]({'../' * case_name(path).count('/')}index.md)",
         f"# {_title(path)}",
         _comment(path),
         f"```sh\nfegear run cases/{case_name(path)}.toml\n```",
@@ -158,28 +159,15 @@ def jobs() -> list[Callable[[], None]]:
 
 
 # ---- what mkdocs calls -------------------------------------------------------------------------------------------
-def _with_unlisted(nav: list[dict[str, object]]) -> list[dict[str, object]]:
-    """Navigation with every page: those that mkdocs.yml does not list come last in "How it is done"."""
-    listed, docs = json.dumps(nav), ROOT / "docs"
-    names = [path.relative_to(docs).as_posix() for path in sorted(docs.rglob("*.md"))]
-    unlisted = [name for name in names if f'"{name}"' not in listed]
-    (section,) = (pages for part in nav for title, pages in part.items() if title == "How it is done")
-    section += [{(docs / name).read_text("utf-8").splitlines()[0].lstrip("# "): name} for name in unlisted]
-    return nav
-
-
 def on_config(config):
-    """Put pages without a place and the gallery into the navigation."""
-    config.nav = _with_unlisted(config.nav)
-    pages = [{_title(path): f"gallery/{case_name(path)}.md"} for path in cases()]
-    config.nav.append({"Gallery": [{"All cases": "gallery/index.md"}, *pages]})
+    """Put the gallery into the menu: its first page leads to the pages of the cases, and their name leads back."""
+    config.nav.append({"Gallery": "gallery/index.md"})
+    config.not_in_nav = GitIgnoreSpec.from_lines(["gallery/*", "!gallery/index.md"])
     return config
 
 
 def on_files(files, config):
     """Add the pages of the cases, which docs/made.py has run, with all that these show."""
-    colours = HtmlFormatter(style="default").get_style_defs(".highlight")
-    files.append(File.generated(config, "code.css", content=colours))
     files.append(File.generated(config, "references.md", content=references()))
     for name, source in _OUTSIDE.items():
         files.append(File.generated(config, name, content=source.read_text("utf-8")))

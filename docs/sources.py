@@ -145,10 +145,10 @@ def page(source: Source) -> str:
 
 # ---- what mkdocs calls -------------------------------------------------------------------------------------------
 def on_config(config):
-    """Put the pages into the navigation, after the theory."""
+    """Put the pages into the menu, among the proofs."""
     pages = [{source.title.partition(":")[0]: f"sources/{name}.md"} for name, source in sources().items()]
-    place = next(k for k, part in enumerate(config.nav) if "Theory" in part) + 1
-    config.nav.insert(place, {"Sources": [{"All figures and tables": "sources/index.md"}, *pages]})
+    (proofs,) = (group["Proofs"] for group in config.nav if "Proofs" in group)
+    proofs.append({"What five papers print": ["sources/index.md", *pages]})
     return config
 
 
