@@ -188,6 +188,12 @@ class InternalTooth(InvoluteTooth):
         right = np.hstack([foot, flank, rounding])
         return np.hstack([right, right[:, ::-1] * np.array([[-1.0], [1.0]])])
 
+    @property
+    def cutter_tip_corner(self) -> tuple[float, float, float]:
+        """Centre of the rounding of the cutter's tip: radius, angle to its tooth's centre line; the rounding itself."""
+        rounding = self.cutter.tip_radius
+        return self._cutter_tip - rounding, max(self._rounding(rounding)[2], 0.0), rounding
+
     @cached_property
     def limit_radius(self) -> float:
         """Radius inside which the cutter makes no involute, for its own starts on its base circle [modules]."""

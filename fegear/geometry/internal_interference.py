@@ -1,0 +1,214 @@
+"""Where an external gear inside a ring gear fouls it: tips in roots, tips that part, assembly, the cutter's feed.
+
+Every check is geometry of the two teeth in the section across the axes, lengths in normal modules.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fegear.base.errors import GeometryError
+from fegear.geometry.curves import Arc
+from fegear.geometry.internal_tooth import leaving_margin
+from fegear.geometry.involute import inv
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fegear.base.arrays import Array
+    from fegear.geometry.curves import Curve
+    from fegear.geometry.internal_tooth import InternalTooth
+    from fegear.geometry.involute_tooth import InvoluteTooth
+
+#: Turns of a pair that are looked at for the least room, and how often more closely; points of a fillet.
+_TURNS, _CLOSER, _FILLET = 257, 4, 1025
+
+
+@dataclass(frozen=True, slots=True)
+class InternalCheck:
+    """One way in which an external gear and a ring gear may foul each other.
+
+    Parameters
+    ----------
+    name : str
+    margin : float
+        Room that is left [modules]; negative where material meets, infinite where nothing can meet.
+    trouble : str
+        What happens where it is negative.
+    refused : bool
+        Whether a pair without room cannot run; otherwise its path of contact is shorter, or it is made or put together
+        in another way.
+    """
+
+    name: str
+    margin: float
+    trouble: str
+    refused: bool
+
+    def sentence(self, module: float) -> str:
+        """What a designer should know of it, with the margin [m at `module`]."""
+        if self.margin >= 0.0:
+            return f"{self.name}: free by {self.margin * module * 1e3:.4g} mm"
+        return f"{self.name}: {self.trouble}, by {-self.margin * module * 1e3:.4g} mm"
+
+
+class TipCorner(NamedTuple):
+    """The end of a tooth's flank at its tip: a point, or a rounding about one [modules, rad from the centre line]."""
+
+    radius: float
+    angle: float
+    rounding: float
+
+
+def internal_checks(planet: InvoluteTooth, ring: InternalTooth, distance: float) -> tuple[InternalCheck, ...]:
+    """Every check of an external gear inside a ring gear.
+
+    Parameters
+    ----------
+    planet : InvoluteTooth
+        The external gear, called planet here.
+    ring : InternalTooth
+    distance : float
+        Between the axes [modules].
+
+    Raises
+    ------
+    GeometryError
+        If the line of action does not touch both base circles.
+
+    Notes
+    -----
+    Tips count as sharp where contact with a fillet and the parting of tips are checked, which is on the safe side of
+    rounded ones. A tip that reaches below the start of an undercut flank may find room there. One that touches the
+    mate on its involute alone may still cut its fillet on the way there: of a ring cut by few teeth the fillet stands
+    further out than a planet of many teeth leaves room for.
+    """
+    base1, base3 = planet.base_radius, ring.base_radius
+    if not 0.0 < base3 - base1 < distance:
+        raise GeometryError(
+            "centre_distance", f"{distance:.6g} modules", f"must exceed {base3 - base1:.6g} modules, and the ring's "
+            "base circle the planet's", "raise it, or check the numbers of teeth",
+        )  # fmt: skip
+    along = math.sqrt((distance - base3 + base1) * (distance + base3 - base1))  # between the feet on the base circles
+    tip1, tip3 = planet.tip_radius, ring.tip_radius
+    rho1, rho3 = math.sqrt(tip1**2 - base1**2), math.sqrt(tip3**2 - base3**2)
+    passed = leaving_margin((planet.teeth, tip1, base1), (ring.teeth, tip3, base3), distance)
+    cutter = ring.cutter_tip_corner
+    past_ring, past_planet = _past_fillets(planet, ring, distance)
+    feed = radial_room(TipCorner(*cutter), ring.cutter.teeth, ring, ring.generating_distance)
+    return (
+        InternalCheck("clearance of the planet's tip", ring.root_radius - distance - tip1,
+                      "it cuts into the ring's root circle", refused=True),
+        InternalCheck("clearance of the ring's tip", tip3 - distance - planet.root_radius,
+                      "it cuts into the planet's root circle", refused=True),
+        InternalCheck("ring tip on planet root", rho3 - along - float(planet.base_radius * planet.involute.start),
+                      "it runs into the planet's fillet, and the path of contact ends before it", refused=False),
+        InternalCheck("planet tip in ring fillet", ring.form_radius - math.hypot(base3, along + rho1),
+                      "it runs into the ring's fillet, and the path of contact ends before it", refused=False),
+        InternalCheck("ring's corner past the planet's fillet", past_planet, "it cuts into the fillet", refused=True),
+        InternalCheck("planet's corner past the ring's fillet", past_ring, "it cuts into the fillet", refused=True),
+        InternalCheck("tips on leaving", passed / ring.teeth * tip3,
+                      "tips of planet and ring meet as the teeth part", refused=True),
+        InternalCheck("radial assembly", radial_room(_tip_corner(planet), planet.teeth, ring, distance),
+                      "the planet cannot be put in across the axis at every angle; put it in along the axis",
+                      refused=False),
+        InternalCheck("feed of the cutter", feed,
+                      f"a cutter of {ring.cutter.teeth} teeth fed straight across the axis trims tips of the ring; "
+                      "take one of fewer teeth, or feed it otherwise", refused=False),
+    )  # fmt: skip
+
+
+def _tip_corner(tooth: InvoluteTooth) -> TipCorner:
+    edge = tooth.tip_edge
+    if isinstance(edge, Arc):
+        x, y = edge.centre
+        return TipCorner(math.hypot(x, y), math.atan2(x, y), edge.radius)
+    return TipCorner(tooth.tip_radius, float(tooth.half_thickness_angle(tooth.tip_radius)), 0.0)
+
+
+def radial_room(corner: TipCorner, teeth: int, ring: InternalTooth, distance: float) -> float:
+    """Least room between a gear's tips and those of a ring when it leaves the mesh straight across the axis [modules].
+
+    Parameters
+    ----------
+    corner : TipCorner
+        Of the gear.
+    teeth : int
+        Of the gear.
+    ring : InternalTooth
+    distance : float
+        Between the axes in mesh [modules].
+
+    Returns
+    -------
+    float
+        Over all angles at which the pair may stand, in the middle of its backlash; infinite where no tip of the gear
+        stands behind one of the ring.
+
+    Notes
+    -----
+    The gear moves along the line between the axes, so a tip passes if it stands nearer to that line than the ring's
+    tip in front of it. At an inner least the two move alike, which is the condition sin^2 t_1 = (1 - (cos a_a1 / cos
+    a_a3)^2) / (1 - (z_1/z_3)^2) of books on ring gears.
+    """
+    ratio, tip3 = teeth / ring.teeth, ring.tip_radius
+    space = math.pi / ring.teeth - float(ring.half_thickness_angle(tip3))
+
+    def room(turn: Array) -> Array:
+        own, other = turn + corner.angle, turn * ratio + space
+        behind = (distance + corner.radius * np.cos(own) > tip3 * np.cos(other)) & (own < 0.5 * math.pi)
+        across = tip3 * np.sin(other) - corner.radius * np.sin(own) - corner.rounding
+        return np.where(behind, across, np.inf)
+
+    return _least(room, 0.0, 0.5 * math.pi)
+
+
+def _least(room: Callable[[Array], Array], low: float, high: float) -> float:
+    """Least value of a function of the turn between two turns, looked at more and more closely."""
+    turns = np.linspace(low, high, _TURNS)
+    for _ in range(_CLOSER):
+        at, step = float(turns[int(np.argmin(room(turns)))]), float(turns[1] - turns[0])
+        turns = np.linspace(max(at - step, low), min(at + step, high), _TURNS)
+    return float(np.min(room(turns)))
+
+
+def _past_fillets(planet: InvoluteTooth, ring: InternalTooth, distance: float) -> tuple[float, float]:
+    """Least room between a tip corner's path and the mating fillet: planet's past the ring's, ring's past the planet's.
+
+    The planet's tooth stands `turn` ahead of the line between the axes, its leading flank on the ring's.
+    """
+    inv_working = float(inv(math.acos((ring.base_radius - planet.base_radius) / distance)))
+    ratio, half_pitch = planet.teeth / ring.teeth, math.pi / ring.teeth
+    front = planet.base_half_angle - inv_working
+    behind = half_pitch - ring.base_half_angle - inv_working
+    own = float(planet.half_thickness_angle(planet.tip_radius))
+    other = float(ring.half_thickness_angle(ring.tip_radius))
+
+    def of_planet(turn: Array) -> tuple[Array, Array]:
+        x, y = distance + planet.tip_radius * np.cos(turn + own), planet.tip_radius * np.sin(turn + own)
+        return np.hypot(x, y), half_pitch + (turn + front) * ratio - behind - np.arctan2(y, x)
+
+    def of_ring(turn: Array) -> tuple[Array, Array]:
+        at = (turn + front) * ratio - behind + half_pitch - other
+        x, y = ring.tip_radius * np.cos(at) - distance, ring.tip_radius * np.sin(at)
+        return np.hypot(x, y), np.arctan2(y, x) - turn
+
+    def least(path: Callable[[Array], tuple[Array, Array]], fillet: Curve) -> float:
+        x, y = fillet.points(np.linspace(fillet.start, fillet.end, _FILLET))
+        radius, half = np.hypot(x, y), np.arctan2(x, y)
+        order = np.argsort(radius)
+        radius, half = radius[order], half[order]
+
+        def room(turn: Array) -> Array:
+            at, beside = path(turn)
+            inside = (at > radius[0]) & (at < radius[-1])
+            return np.where(inside, (beside - np.interp(at, radius, half)) * at, np.inf)
+
+        reach = 6.0 * math.pi / planet.teeth
+        return _least(room, -reach, reach)
+
+    return least(of_planet, ring.fillet), least(of_ring, planet.fillet)
