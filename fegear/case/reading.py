@@ -204,7 +204,7 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
             misaligned=case.effects.misalignment,
         )
         for key, pair in case.pair.items()
-        if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical
+        if case.gear[pair.driver].is_helical and case.gear[pair.driven].is_helical and not pairs[key].internal
     }
     scene = Scene(case, name, folder, gears, pairs, helical_pairs, document=document)
     check_references(scene)

@@ -88,6 +88,7 @@ def make_plan(scene: Scene, stages: Sequence[Stage], more: Sequence[Task] = ()) 
             return
         stage = known.called(task.stage)
         _require_effects(scene, stage)
+        _refuse_internal(scene, stage, task.subject)
         stage.check(scene, task.subject)
         reasons[task] = [reason]
         for need in stage.needs(scene, task.subject):
@@ -145,6 +146,22 @@ def _require_effects(scene: Scene, stage: Stage) -> None:
             f"is needed by {who}: {need.reason}",
             f"write {need.effect} = {scene.case.effects.example(need.effect)} under [effects], or do not ask for {who}",
         )
+
+
+def _refuse_internal(scene: Scene, stage: Stage, subject: str) -> None:
+    """Refuse internal gears and pairs where a stage is made for external ones."""
+    if stage.internal:
+        return
+    one = subject in scene.pairs or subject in scene.gears
+    pairs = [name for name, pair in scene.pairs.items() if pair.internal and (name == subject or not one)]
+    alone = subject == "" or (one and subject not in scene.pairs)
+    gears = [name for name, gear in scene.gears.items() if gear.tooth.internal and alone and subject in (name, "")]
+    for key in (*(f"pair.{name}" for name in pairs), *(f"gear.{name}" for name in gears)):
+        named = stage.results[0] if stage.results else stage.name
+        raise InputError(
+            key, "internal", f'is not taken by "{named}", which is computed for external gears alone',
+            "do not ask for it, or describe the external gears in a case of their own",
+        )  # fmt: skip
 
 
 def _why_not(stage: Entry, wanted: Sequence[str]) -> str:

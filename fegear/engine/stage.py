@@ -156,6 +156,8 @@ class Stage:
         ``forecast(scene, subject)`` -> `Forecast`, for ``fegear plan``.
     cites : callable
         ``cites(scene, subject)`` -> what the result rests on.
+    internal : bool
+        Whether it takes internal gears and pairs; a plan refuses those of other stages.
     name, title, results, about : str, str, tuple of str, str
         What it is called: given by the catalogue, see `Entry`.
     """
@@ -171,6 +173,7 @@ class Stage:
     requires: tuple[Need, ...] = ()
     forecast: Callable[[Scene, str], Forecast] = _unknown
     cites: Cites = _uncited
+    internal: bool = False
     name: str = ""
     title: str = ""
     results: tuple[str, ...] = ()

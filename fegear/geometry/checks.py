@@ -102,4 +102,9 @@ def pair_checks(name: str, pair: GearPair) -> tuple[Check, ...]:
                 Check(name, f"gap of the {member}'s tip to the mating fillet", found.fillet_gap, 0.0, "mm",
                       "shorten this tip or take a smaller rack tip radius on the mate")
             )  # fmt: skip
+    checks += [
+        Check(name, one.name, one.margin * module, 0.0, "mm", one.trouble)
+        for one in pair.internal_checks
+        if math.isfinite(one.margin)
+    ]
     return tuple(checks)

@@ -23,7 +23,8 @@ class Interference:
     below_form_circle : bool
         Whether that tip would touch the mate below the start of its involute; the path of contact then ends early.
     fillet_gap : float
-        Smallest distance between the tip corner's path and the mating fillet [m]; negative where it cuts into it.
+        Smallest distance between the tip corner's path and the mating fillet [m]; negative where it cuts into it. In an
+        internal pair, where the tip touches the fillet only below the start of the involute, it is infinite.
     root_clearance : float
         Room between the tip circle and the mating root circle [m].
     """
@@ -68,6 +69,8 @@ def interference(pair: GearPair, tip_of: Member, samples: int = 721) -> Interfer
     reach = float(pair.x_of_radius(tip, tip_of))
     limit = float(pair.x_of_radius(form, mate_name))
     below = reach > limit if tip_of == "driver" else reach < limit
+    if pair.internal:
+        return Interference(tip_of, below, math.inf, pair.tip_clearance(tip_of))
 
     # Mate below with its centre at the origin, gear above; the gear pushes the mate's right flank to the left. At
     # theta = 0 the flanks touch at the pitch point; the gear then turns clockwise, the mate counterclockwise.

@@ -14,6 +14,8 @@ import numpy as np
 
 from fegear.base.errors import GeometryError
 from fegear.base.shown import shown, shows
+from fegear.geometry.internal_interference import internal_checks
+from fegear.geometry.internal_tooth import InternalTooth
 from fegear.geometry.involute import inv, pressure_angle_of_inv
 
 if TYPE_CHECKING:
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 
     from fegear.base.arrays import Array
     from fegear.geometry.gear import Gear
+    from fegear.geometry.internal_interference import InternalCheck
 
 
 Member = Literal["driver", "driven"]
@@ -40,10 +43,12 @@ ROUNDED_JAM = 5e-4
 
 @dataclass(frozen=True)
 class GearPair:
-    """Two external gears on parallel axes, spur or helical, in the section across the axes.
+    """Two gears on parallel axes, spur or helical, one of them internal or none, in the section across the axes.
 
     x runs along the transverse line of action from the pitch point toward the driver's tip. Lengths and angles without
-    "normal" in their name are those of the section; those of spur gears are both.
+    "normal" in their name are those of the section; those of spur gears are both. Roll angles and radii of curvature
+    carry the sign of their flank: they are negative on the hollow flanks of an internal gear, as its number of teeth is
+    in ISO 21771, so that one formula serves both kinds of pairs.
 
     Parameters
     ----------
@@ -59,8 +64,8 @@ class GearPair:
     Raises
     ------
     GeometryError
-        If hands, helix angles or base pitches do not go together, the teeth jam or never meet, or the faces stand
-        beside each other.
+        If both gears are internal, tips of an internal pair meet what they must not (`internal_checks`), hands, helix
+        angles or base pitches do not go together, the teeth jam or never meet, or the faces stand beside each other.
     """
 
     driver: Gear
@@ -71,13 +76,7 @@ class GearPair:
     def __post_init__(self) -> None:
         """Fill in the centre distance and refuse pairs that cannot run."""
         a, b = self.driver, self.driven
-        if {a.hand, b.hand} not in ({"left", "right"}, {"spur"}):
-            raise GeometryError(
-                "hand",
-                f"{a.hand} driver, {b.hand} driven",
-                "parallel axes need opposite hands, or two spur gears",
-                "turn the hand of one gear",
-            )
+        self._check_hands()
         if a.hand != "spur":
             self._check_helix()
         if abs(a.base_pitch - b.base_pitch) > 1e-9 * a.base_pitch:
@@ -89,17 +88,26 @@ class GearPair:
             )
         tight = self.tight_centre_distance
         if math.isnan(self.centre_distance):
-            nominal = (a.base_radius + b.base_radius) / math.cos(self._working_angle(allowance=False))
+            nominal = self._base_radii / math.cos(self._working_angle(allowance=False))
             object.__setattr__(self, "centre_distance", nominal)
         distance = self.centre_distance
         if not (math.isfinite(distance) and distance > 0.0):
             raise GeometryError("centre_distance", distance, "must be positive and finite")
-        if distance < tight * (1.0 - 1e-9) - ROUNDED_JAM * a.module:
+        if self.side * distance < self.side * tight * (1.0 - self.side * 1e-9) - ROUNDED_JAM * a.module:
             raise GeometryError(
                 "centre_distance",
                 f"{distance * 1e3:.6g} mm",
                 f"jams the teeth: they touch on both flanks at {tight * 1e3:.6g} mm",
-                "raise the centre distance, lower the profile shifts or give a thickness allowance",
+                "lower the centre distance, the profile shifts or give a thickness allowance"
+                if self.internal
+                else "raise the centre distance, lower the profile shifts or give a thickness allowance",
+            )
+        if distance < self._base_radii * (1.0 - 1e-12):
+            raise GeometryError(
+                "centre_distance",
+                f"{distance * 1e3:.6g} mm",
+                f"is below the difference of the base radii, {self._base_radii * 1e3:.6g} mm",
+                "raise it, for without a common tangent of the base circles there is no line of action",
             )
         if self.x_end <= self.x_start:
             raise GeometryError(
@@ -110,6 +118,31 @@ class GearPair:
                 "axial_offset", f"{self.axial_offset * 1e3:.6g} mm", "puts the faces beside each other",
                 f"keep it under {0.5e3 * (a.face_width + b.face_width):.6g} mm",
             )  # fmt: skip
+        self._check_tips()
+
+    def _check_hands(self) -> None:
+        """Refuse two ring gears, and hands that do not mesh on parallel axes."""
+        a, b = self.driver, self.driven
+        if a.tooth.internal and b.tooth.internal:
+            raise GeometryError("internal", "true of both gears", "leaves no pair: a ring gear meshes with a pinion")
+        opposite = {a.hand, b.hand} == {"left", "right"}
+        if {a.hand, b.hand} != {"spur"} and opposite == self.internal:
+            hands = "the same hand in an internal pair" if self.internal else "opposite hands"
+            raise GeometryError(
+                "hand",
+                f"{a.hand} driver, {b.hand} driven",
+                f"parallel axes need {hands}, or two spur gears",
+                "turn the hand of one gear",
+            )
+
+    def _check_tips(self) -> None:
+        """Refuse gears inside ring gears whose tips meet what they must not."""
+        for one in self.internal_checks:
+            if one.refused and one.margin < 0.0:
+                raise GeometryError(
+                    "pair", one.name, f"fails: {one.trouble}, by {-one.margin * self.driver.module * 1e3:.4g} mm",
+                    "shorten that tip, or change profile shifts, centre distance or numbers of teeth",
+                )  # fmt: skip
 
     def _check_helix(self) -> None:
         """Refuse helical gears that are cut by different racks."""
@@ -123,26 +156,52 @@ class GearPair:
                     "give both gears the same normal module, pressure angle and helix angle",
                 )
 
+    @property
+    def side(self) -> int:
+        """1 for an external pair, -1 for an internal one."""
+        return self.driver.tooth.side * self.driven.tooth.side
+
+    @property
+    def internal(self) -> bool:
+        """Whether one of the gears is internal: both then turn the same way."""
+        return self.side < 0
+
+    @cached_property
+    def internal_checks(self) -> tuple[InternalCheck, ...]:
+        """Where a gear inside a ring gear may foul it; none for an external pair."""
+        planet, ring = sorted((self.driver, self.driven), key=lambda gear: gear.tooth.internal)
+        if not isinstance(ring.tooth, InternalTooth):
+            return ()
+        return internal_checks(planet.tooth, ring.tooth, self.centre_distance / ring.module)
+
+    @property
+    def _base_radii(self) -> float:
+        """Sum of the base radii, or their difference in an internal pair [m]."""
+        return abs(self.driver.base_radius + self.side * self.driven.base_radius)
+
     def _working_angle(self, *, allowance: bool) -> float:
         a, b = self.driver.tooth, self.driven.tooth
         shifts = a.generating_shift + b.generating_shift if allowance else a.profile_shift + b.profile_shift
-        value = float(inv(a.pressure_angle)) + 2.0 * shifts * math.tan(a.normal_pressure_angle) / (a.teeth + b.teeth)
+        teeth = a.side * a.teeth + b.side * b.teeth
+        value = float(inv(a.pressure_angle)) + 2.0 * shifts * math.tan(a.normal_pressure_angle) / teeth
         if value <= 0.0:
             raise GeometryError(
-                "profile_shift", f"sum {shifts:.6g}", "is so negative that the pair has no working pressure angle"
+                "profile_shift",
+                f"sum {shifts:.6g}",
+                f"is so {'large' if self.internal else 'negative'} that the pair has no working pressure angle",
             )
         return float(pressure_angle_of_inv(value))
 
     @cached_property
     def tight_centre_distance(self) -> float:
         """Centre distance at which both flanks touch [m] (ISO 21771, 5.4.4)."""
-        return (self.driver.base_radius + self.driven.base_radius) / math.cos(self._working_angle(allowance=True))
+        return self._base_radii / math.cos(self._working_angle(allowance=True))
 
     @cached_property
     @shows("deg", "working pressure angle")
     def working_pressure_angle(self) -> float:
         """alpha_wt [rad]."""
-        return math.acos(min((self.driver.base_radius + self.driven.base_radius) / self.centre_distance, 1.0))
+        return math.acos(min(self._base_radii / self.centre_distance, 1.0))
 
     @cached_property
     @shows("deg", "working helix angle")
@@ -157,7 +216,7 @@ class GearPair:
         turn = float(inv(self.working_pressure_angle)) - float(inv(self._working_angle(allowance=True)))
         if abs(turn) < _ROUND_OFF:  # the centre distance that leaves none: no backlash, not -8e-15 mm
             return 0.0
-        along = 2.0 * (self.driver.base_radius + self.driven.base_radius) * turn  # the transverse line of action
+        along = self.side * 2.0 * self._base_radii * turn  # the transverse line of action
         return along * math.cos(self.driver.base_helix_angle)
 
     @property
@@ -188,10 +247,11 @@ class GearPair:
         return self.driver if member == "driver" else self.driven
 
     def _curvature_at_pitch(self, member: Member) -> float:
-        return self.gear(member).base_radius * math.tan(self.working_pressure_angle)
+        gear = self.gear(member)
+        return gear.tooth.side * gear.base_radius * math.tan(self.working_pressure_angle)
 
     def flank_curvature_radius(self, x: ArrayLike, member: Member) -> Array:
-        """Radius of curvature rho = r_b tan(alpha_w) +- x of a flank at the contact point x [m]; linear in x."""
+        """Radius of curvature rho = r_b tan(alpha_w) +- x of a flank at x [m]; linear in x, negative where hollow."""
         sign = 1.0 if member == "driver" else -1.0
         return self._curvature_at_pitch(member) + sign * np.asarray(x, dtype=float)
 
@@ -205,9 +265,9 @@ class GearPair:
 
     def x_of_radius(self, radius: ArrayLike, member: Member) -> Array:
         """Contact position x [m] at which a gear touches at `radius` [m]."""
-        r, rb = np.asarray(radius, dtype=float), self.gear(member).base_radius
-        sign = 1.0 if member == "driver" else -1.0
-        return sign * (np.sqrt((r - rb) * (r + rb)) - self._curvature_at_pitch(member))
+        gear, sign = self.gear(member), 1.0 if member == "driver" else -1.0
+        r, rb = np.asarray(radius, dtype=float), gear.base_radius
+        return sign * (gear.tooth.side * np.sqrt((r - rb) * (r + rb)) - self._curvature_at_pitch(member))
 
     def x_of_roll(self, roll: ArrayLike, member: Member) -> Array:
         """Contact position x [m] at which a gear touches at a roll angle [rad]."""
@@ -283,7 +343,9 @@ class GearPair:
     def tip_clearance(self, member: Member) -> float:
         """Room between the tip circle of `member` and the root circle of its mate [m]."""
         mate = self.driven if member == "driver" else self.driver
-        return self.centre_distance - self.gear(member).tip_radius - mate.root_radius
+        own = self.gear(member)
+        tip, root = own.tooth.side * own.tip_radius, mate.tooth.side * mate.root_radius
+        return self.side * self.centre_distance - tip - root
 
     def reversed(self) -> GearPair:
         """The same gears with driver and driven exchanged; x changes sign."""
@@ -344,8 +406,8 @@ def active_profile(pair: GearPair, member: Member) -> ActiveProfile:
 def specific_sliding(pair: GearPair, x: ArrayLike, member: Member) -> Array:
     """Specific sliding zeta of a gear's flank: its sliding velocity over its own rolling velocity.
 
-    With the radii of curvature, zeta_1 = 1 - rho_2 / (u rho_1) and zeta_2 = 1 - u rho_1 / rho_2. Negative below the
-    pitch point of either flank, zero at it, and minus infinity on the base circle.
+    With the radii of curvature, zeta_1 = 1 - rho_2 / (u rho_1) and zeta_2 = 1 - u rho_1 / rho_2, u negative in an
+    internal pair. Negative below the pitch point of either flank, zero at it, and minus infinity on the base circle.
 
     Parameters
     ----------
@@ -359,7 +421,7 @@ def specific_sliding(pair: GearPair, x: ArrayLike, member: Member) -> Array:
     ndarray
     """
     mate: Member = "driven" if member == "driver" else "driver"
-    ratio = pair.gear(member).teeth / pair.gear(mate).teeth
+    ratio = pair.side * pair.gear(member).teeth / pair.gear(mate).teeth
     own, other = pair.flank_curvature_radius(x, member), pair.flank_curvature_radius(x, mate)
     with np.errstate(divide="ignore"):
         return np.asarray(1.0 - ratio * np.asarray(other) / np.asarray(own))

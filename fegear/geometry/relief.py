@@ -271,7 +271,7 @@ def _start(
 
 
 def crowning(gear: Gear, amount: float, start_radius: float, end_radius: float) -> Crowning:
-    """Profile crowning between two radii [m]."""
+    """Profile crowning between two radii [m], that toward the root first."""
     a, b = (float(roll_of_radius(gear, r)) for r in (start_radius, end_radius))
     if not b > a:
         raise InputError("relief.crowning", f"{start_radius:.6g} to {end_radius:.6g} m", "must have a length")

@@ -11,12 +11,17 @@ import pytest
 
 import fegear
 from fegear.base.errors import GeometryError, InputError
-from fegear.case.reading import build_scene, read_scene
+from fegear.base.solution_cache import SolutionCache
+from fegear.case.reading import apply_override, build_scene, read_scene
+from fegear.engine.plan import make_plan
+from fegear.engine.run import run_plan
 from fegear.fem.solid.step_model import write_step
 from fegear.formulas.cornell import tooth_compliance
 from fegear.geometry.inspection import over_balls, touching_ball
-from fegear.geometry.outline import gear_outline, tool_in_space, tooth_outline
+from fegear.geometry.outline import gear_outline, relieved_outline, tool_in_space, tooth_outline
+from fegear.geometry.relief import CombinedRelief, tip_relief
 from fegear.output.dxf import write_dxf
+from fegear.results.catalogue import STAGES
 
 CASES = Path(__file__).parents[2] / "cases"
 CASE = {
@@ -166,3 +171,86 @@ def test_the_case_of_a_ring_gear_is_read():
     scene = read_scene(CASES / "ring_gear.toml")
     assert scene.gears["ring"].tooth.internal
     assert set(scene.case.results) == {"geometry", "stiffness", "root-stress"}
+
+
+PLANET = {"teeth": 23, "module": "4 mm", "profile_shift": 0.3, "face_width": "40 mm"}
+RING = {
+    "internal": True, "teeth": 60, "module": "4 mm", "profile_shift": -0.3, "face_width": "40 mm",
+    "cutter": {"teeth": 25, "profile_shift": 0.1}, "tip_diameter": "236 mm", "thickness_allowance": "80 um",
+}  # fmt: skip
+MESHING = {
+    "results": ["transmission-error"],
+    "gear": {"p": PLANET, "r": RING},
+    "pair": {"I": {"driver": "p", "driven": "r", "load": "10 kN"}},
+    "effects": {"neighbour_coupling": True, "hertz": "load-dependent", "corner_contact": True},
+    "accuracy": {"tolerance": 1e-2},
+}
+
+
+def meshing(*overrides):
+    document = copy.deepcopy(MESHING)
+    for override in overrides:
+        apply_override(document, override)
+    return build_scene(document, "pair", Path())
+
+
+def te_of(scene, cache):
+    found = run_plan(scene, make_plan(scene, STAGES), cache=cache)
+    return {value.name: value.si for value in found.values}
+
+
+@pytest.fixture(scope="module")
+def cache():
+    return SolutionCache()
+
+
+def test_planet_or_ring_may_drive(cache):
+    """The same teeth touch the same way: transmission error and stiffness do not know which of them drives."""
+    one = te_of(meshing(), cache)
+    other = te_of(meshing("pair.I.driver=r", "pair.I.driven=p"), cache)
+    for name in ("I.te_mean", "I.te_peak_to_peak", "I.mesh_stiffness_mean"):
+        assert other[name] == pytest.approx(one[name], rel=1e-6)
+
+
+def test_reliefs_and_spacing_errors_of_a_ring_hold_its_flanks_back(cache):
+    """What all its teeth stand back is transmission error one for one."""
+    plain = te_of(meshing(), cache)
+    relief = 'gear.r.relief={ tip = { amount = "12 um", length = "4 mm" } }'
+    assert te_of(meshing(relief, "effects.relief=true"), cache)["I.te_mean"] > plain["I.te_mean"] + 0.2e-6
+    errors = ", ".join(['"5 um"'] * 60)
+    spaced = te_of(meshing(f"gear.r.spacing_errors=[{errors}]", "effects.spacing_errors=true"), cache)
+    assert spaced["I.te_mean"] == pytest.approx(plain["I.te_mean"] + 5e-6, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (['results=["rating"]'], 'pair.I = internal: is not taken by "rating"'),
+        (['results=["crosscheck"]'], "is computed for external gears alone"),
+        (['pair.I.compliance={ source = "cornell" }', "effects.neighbour_coupling=false"], "and r is internal"),
+        (['pair.I.root_stress={ source = "heywood" }', 'results=["root-stress-history"]'], "and r is internal"),
+        (['pair.I.width="slices"'], "is not computed for internal pairs"),
+        (['pair.I.centre_distance="75 mm"'], "jams the teeth"),
+    ],
+)
+def test_what_an_internal_pair_is_not_computed_for_is_refused_in_one_sentence(overrides, words):
+    with pytest.raises(InputError) as refused:
+        make_plan(meshing(*overrides), STAGES)
+    assert words in str(refused.value)
+
+
+def test_relief_of_a_ring_is_drawn_where_it_is_ground():
+    """Points of the relieved outline lie off the generated flank by the removal."""
+    gear = ring()
+    relief = CombinedRelief((tip_relief(gear, 30e-6, length=3e-3),))
+    shape = tooth_outline(gear.tooth, 1e-6, relieved_outline(gear, relief)) * gear.module
+    right = shape[:, shape.shape[1] // 2 :]
+    radius = np.hypot(*right)
+    on = (radius > gear.tip_radius * (1.0 + 1e-9)) & (radius < gear.form_radius * (1.0 - 1e-6))
+    flank = gear.tooth.involute
+    t = np.linspace(flank.start, flank.end + 0.01, 400001)
+    x, y = flank.points(t) * gear.module
+    for px, py in right[:, on].T[:: max(1, on.sum() // 40)]:
+        apart = np.hypot(x - px, y - py)
+        i = int(np.argmin(apart))
+        assert apart[i] == pytest.approx(float(relief.removal(t[i])), abs=2e-8)

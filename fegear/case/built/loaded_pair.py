@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.case.built.pair_inputs import pair_inputs
+from fegear.case.built.pair_inputs import pair_inputs, refuse_formulas
 from fegear.case.part import at
 from fegear.geometry.pair import MEMBERS
 from fegear.geometry.plausible import refuse_deep_relief, refuse_load, refuse_relief_elsewhere
@@ -93,8 +93,9 @@ def engagement_at_rest(asked: PairInputs, sources: Sources) -> Engagement:
 
 # ---- modifications -----------------------------------------------------------------------------------------------
 def _active_ends(pair: GearPair, member: Member) -> tuple[float, float]:
+    """Radii of the active profile's ends [m], that toward the root first."""
     a, b = sorted(float(r) for r in pair.radius(np.array([pair.x_start, pair.x_end]), member))
-    return a, b
+    return (b, a) if pair.gear(member).tooth.internal else (a, b)
 
 
 def build_relief(pair: GearPair, member: Member, flank: Flanks, delta: float) -> Relief:
@@ -242,6 +243,7 @@ def check_pair(scene: Scene, name: str) -> None:
     except InputError as error:
         raise at(key, error) from None
     source = part.compliance.source
+    refuse_formulas(scene, name)
     if effects.neighbour_coupling and source != "fe":
         raise InputError(
             "effects.neighbour_coupling", "true", f'is not known to the compliances of {key}, source = "{source}"',

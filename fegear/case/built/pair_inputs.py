@@ -348,8 +348,24 @@ def root_stress_source(
     return _formula(source, name, gear, pair, member, tips)
 
 
+def refuse_formulas(scene: Scene, name: str) -> None:
+    """Refuse formulas of external teeth as the source of an internal pair's compliance or root stress."""
+    part = scene.case.pair[name]
+    if not scene.pairs[name].internal:
+        return
+    ring = part.driver if scene.gears[part.driver].tooth.internal else part.driven
+    for key, sources in (("compliance", (part.compliance.source,)), ("root_stress", part.root_stress.source)):
+        for source in sources:
+            if source not in ("fe", "table"):
+                raise InputError(
+                    f"pair.{name}.{key}.source", f'"{source}"', f"is of external teeth, and {ring} is internal",
+                    'write source = "fe"',
+                )  # fmt: skip
+
+
 def check_formulas(scene: Scene, name: str, *, tips: bool) -> None:
     """Refuse a pair's root-stress formulas where they do not hold, from a few loads over each flank."""
+    refuse_formulas(scene, name)
     part, pair = scene.case.pair[name], scene.pairs[name]
     for source in part.root_stress.source:
         if source != FINITE_ELEMENTS:

@@ -10,6 +10,9 @@ from the end of the path outward:
 A_T and A_F the triangle's angles at the centres. The gap along the line of action is u_T - u_F; the position is taken
 midway, u = (u_T + u_F)/2, so that a pair and its reverse see the same. The rounding is an offset curve: the same
 formulas hold for its centre and the offset involute, which is an involute of the same base circle.
+
+In an internal pair the path may end beyond the pitch point: rho then falls before it rises, and it is the angle of the
+corner from the centre line that both positions follow from. The ring's roll lengths are negative, and so is its inv.
 """
 
 from __future__ import annotations
@@ -29,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from fegear.base.arrays import Array
+    from fegear.geometry.gear import Gear
     from fegear.geometry.pair import GearPair, Member
 
 
@@ -54,9 +58,8 @@ class CornerContact:
     @cached_property
     def exists(self) -> bool:
         """Whether the path ends at this tip (and not at the mate's form circle) and the mate's flank goes on."""
-        end = self.pair.x_start if self.tip_of == "driven" else self.pair.x_end
         tip = float(self.pair.x_of_radius(self.pair.gear(self.tip_of).involute_tip_radius, self.tip_of))
-        return abs(tip - end) <= 1e-12 * self.pair.base_pitch and self._span[1] > self._span[0]
+        return abs(tip - self._end) <= 1e-12 * self.pair.base_pitch and self._lengths[1] > self._lengths[0]
 
     @property
     def rounding(self) -> float:
@@ -66,10 +69,9 @@ class CornerContact:
 
     @property
     def radius_of_curvature(self) -> float:
-        """Of what touches the mate: the rounding, or the flank that a sharp corner ends [m]."""
+        """Of what touches the mate: the rounding, or the flank that a sharp corner ends [m], negative where hollow."""
         gear = self.pair.gear(self.tip_of)
-        tip, base = gear.involute_tip_radius, gear.base_radius
-        return self.rounding if self.rounding > 0.0 else math.sqrt((tip - base) * (tip + base))
+        return self.rounding if self.rounding > 0.0 else _roll_length(gear, gear.involute_tip_radius)
 
     def distance(self, x: ArrayLike) -> Array:
         """Length of flank [m] between the contact at x on the path and this tip's corner; infinite if rounded."""
@@ -78,43 +80,47 @@ class CornerContact:
             return np.full(at.shape, np.inf)
         gear = self.pair.gear(self.tip_of)
         length = self.pair.flank_curvature_radius(at, self.tip_of)
-        return np.maximum((self.radius_of_curvature**2 - length * length) / (2.0 * gear.base_radius), 0.0)
+        apart = gear.tooth.side * (self.radius_of_curvature**2 - length * length)
+        return np.maximum(apart / (2.0 * gear.base_radius), 0.0)
 
     @cached_property
     def _corner_radius(self) -> float:
         """Distance of the corner, or of its rounding's centre, from its gear's centre [m]."""
         gear, rounding = self.pair.gear(self.tip_of), self.rounding
-        return gear.involute_tip_radius if rounding == 0.0 else gear.tip_radius - rounding
+        return gear.involute_tip_radius if rounding == 0.0 else gear.tip_radius - gear.tooth.side * rounding
+
+    @property
+    def _end(self) -> float:
+        """Where the path ends on this side [m]."""
+        return self.pair.x_start if self.tip_of == "driven" else self.pair.x_end
+
+    @cached_property
+    def _lengths(self) -> tuple[float, float]:
+        """Roll lengths [m] of the (offset) flank at the end of the path and at its own tip."""
+        low = float(self.pair.flank_curvature_radius(self._end, self.flank_of)) + self.rounding
+        flank = self.pair.gear(self.flank_of)
+        return low, max(_roll_length(flank, flank.involute_tip_radius) + self.rounding, low)
 
     @cached_property
     def _span(self) -> tuple[float, float]:
-        """Smallest and largest roll length [m] of the (offset) flank that the corner meets."""
-        x = self.pair.x_start if self.tip_of == "driven" else self.pair.x_end
-        low = float(self.pair.flank_curvature_radius(x, self.flank_of)) + self.rounding
-        flank = self.pair.gear(self.flank_of)
-        top = math.sqrt(
-            (flank.involute_tip_radius - flank.base_radius) * (flank.involute_tip_radius + flank.base_radius)
-        )
-        return low, max(top + self.rounding, low)
+        """First and last place on the corner's way, as `_place` takes them."""
+        return self._lengths
 
-    def _angles(self, length: Array) -> tuple[Array, Array]:
-        """Angles of the tip's and the flank's gear for contact at a roll length of the (offset) flank."""
+    def _place(self, at: Array) -> tuple[Array, Array, Array]:
+        """Turns of the tip's and the flank's gear [rad], and the (offset) flank's roll length [m], which `at` is."""
         a, r, rbf = self.pair.centre_distance, self._corner_radius, self.pair.gear(self.flank_of).base_radius
-        rho = np.hypot(rbf, length)
-        # arccos of the law of cosines, written with half angles so that flat triangles keep their digits
+        rho = np.hypot(rbf, at)
         s = 0.5 * (a + r + rho)
-        at_f = 2.0 * np.arctan2(np.sqrt(np.maximum((s - a) * (s - rho), 0)), np.sqrt(np.maximum(s * (s - r), 0)))
-        at_t = 2.0 * np.arctan2(np.sqrt(np.maximum((s - a) * (s - r), 0)), np.sqrt(np.maximum(s * (s - rho), 0)))
-        return at_t, at_f - polar_angle(length / rbf)
+        return _triangle_angle(s, a, r, rho), _triangle_angle(s, a, rho, r) - polar_angle(at / rbf), at
 
     @cached_property
-    def _start(self) -> tuple[Array, Array]:
+    def _start(self) -> tuple[Array, Array, Array]:
         """Where the path ends."""
-        return self._angles(np.asarray(self._span[0]))
+        return self._place(np.asarray(self._span[0]))
 
-    def _rolled(self, length: Array) -> tuple[Array, Array]:
-        """Both gears' rolled lengths u_T, u_F for contact at a roll length of the (offset) flank."""
-        (start_t, start_f), (now_t, now_f) = self._start, self._angles(length)
+    def _rolled(self, at: Array) -> tuple[Array, Array]:
+        """Both gears' rolled lengths u_T, u_F at a place on the corner's way."""
+        (start_t, start_f, _), (now_t, now_f, _) = self._start, self._place(at)
         of_tip, of_flank = self.pair.gear(self.tip_of), self.pair.gear(self.flank_of)
         return of_tip.base_radius * (now_t - start_t), of_flank.base_radius * (now_f - start_f)
 
@@ -127,11 +133,11 @@ class CornerContact:
         return float(0.5 * (u_t + u_f))
 
     @cached_property
-    def _length_of_position(self) -> Spline:
-        """Roll length over the position u: u grows monotonely with it, so the inverse is a table read sideways."""
-        lengths = np.linspace(*self._span, 201)
-        u_t, u_f = self._rolled(lengths)
-        return spline(0.5 * (u_t + u_f), lengths)
+    def _place_of_position(self) -> Spline:
+        """Place over the position u: u grows monotonely with it, so the inverse is a table read sideways."""
+        places = np.linspace(*self._span, 201)
+        u_t, u_f = self._rolled(places)
+        return spline(0.5 * (u_t + u_f), places)
 
     @tallied("corner searches")
     def locate(self, beyond: ArrayLike) -> tuple[Array, Array, Array]:
@@ -152,23 +158,75 @@ class CornerContact:
             Angle [rad] between the two flanks' normals at the corner: they part inward from it with this slope.
         """
         u = np.asarray(beyond, dtype=float)
-        table, inside = self._length_of_position, np.clip(u, 0.0, self.reach)
+        table, inside = self._place_of_position, np.clip(u, 0.0, self.reach)
         wanted = table(inside)
-        length = np.clip(wanted, *self._span)
-        for _ in range(3):  # the table's own slope turns what is missing in u into length
-            u_t, u_f = self._rolled(length)
-            length = np.clip(length + wanted - table(0.5 * (u_t + u_f)), *self._span)
-        u_t, u_f = self._rolled(length)
+        place = np.clip(wanted, *self._span)
+        for _ in range(3):  # the table's own slope turns what is missing in u into a place
+            u_t, u_f = self._rolled(place)
+            place = np.clip(place + wanted - table(0.5 * (u_t + u_f)), *self._span)
+        u_t, u_f = self._rolled(place)
         gap = np.where(u > self.reach * (1.0 + 1e-12), np.inf, np.maximum(u_t - u_f, 0.0))
-        return gap, length - self.rounding, self._tilt(length)
+        return gap, self._place(place)[2] - self.rounding, self._tilt(place)
 
-    def _tilt(self, length: Array) -> Array:
+    def _tilt(self, at: Array) -> Array:
         """Angle between the tangents from the corner to the two base circles [rad]."""
         a, r = self.pair.centre_distance, self._corner_radius
         rbf, rbt = self.pair.gear(self.flank_of).base_radius, self.pair.gear(self.tip_of).base_radius
-        rho = np.hypot(rbf, length)
+        rho = np.hypot(rbf, at)
         # The corner sees the centres on opposite sides of the line of action: on the path the angle between them is
         # pi less the one tangent's angle to its centre plus the other's.
         at_corner = np.arccos(np.clip((rho * rho + r * r - a * a) / (2.0 * rho * r), -1.0, 1.0))
-        to_f, to_t = np.arctan2(rbf, length), math.asin(rbt / r)
+        to_f, to_t = np.arctan2(rbf, at), math.asin(rbt / r)
         return np.maximum(math.pi - at_corner + to_t - to_f, 0.0)
+
+
+class InternalCornerContact(CornerContact):
+    """The same in an internal pair, followed by the angle of the corner from the centre line.
+
+    The path may end beyond the pitch point: the radius of the contact then falls before it rises. Where the pinion's
+    centre lies between that of the ring and the contact, angles are counted from the centre line that runs on.
+    """
+
+    @cached_property
+    def _span(self) -> tuple[float, float]:
+        pair, gear, r = self.pair, self.pair.gear(self.tip_of), self._corner_radius
+        length = float(pair.flank_curvature_radius(self._end, self.tip_of)) - self.rounding
+        first = math.atan(length / gear.base_radius) - gear.tooth.side * pair.working_pressure_angle
+        top = np.hypot(pair.gear(self.flank_of).base_radius, self._lengths[1])
+        last = float(_triangle_angle(0.5 * (pair.centre_distance + r + top), pair.centre_distance, r, top))
+        return first, max(last if gear.tooth.internal else math.pi - last, first)
+
+    def _place(self, at: Array) -> tuple[Array, Array, Array]:
+        """Turns of the tip's and the flank's gear [rad], and the (offset) flank's roll length [m]; `at` is an angle."""
+        pair, r, flank = self.pair, self._corner_radius, self.pair.gear(self.flank_of)
+        along = r * np.cos(at) - flank.tooth.side * pair.centre_distance
+        across = r * np.sin(at)
+        rho, rb = np.hypot(along, across), flank.base_radius
+        length = flank.tooth.side * np.sqrt(np.maximum((rho - rb) * (rho + rb), 0.0))
+        return at, np.arctan2(across, along) - polar_angle(length / rb), length
+
+    def _tilt(self, at: Array) -> Array:
+        """By how far both normals have turned since the path's end: the flank's along its involute, too [rad]."""
+        u_t, u_f = self._rolled(at)
+        rb_t, rb_f = (self.pair.gear(member).base_radius for member in (self.tip_of, self.flank_of))
+        return np.abs(u_t / rb_t - (u_f + self._place(at)[2] - self._lengths[0]) / rb_f)
+
+
+def corner_contact(pair: GearPair, tip_of: Member) -> CornerContact:
+    """The tip of one gear of a pair, external or internal, against its mate's flank."""
+    return (InternalCornerContact if pair.internal else CornerContact)(pair, tip_of)
+
+
+def _triangle_angle(s: ArrayLike, a: float, own: ArrayLike, other: ArrayLike) -> Array:
+    """Angle at a gear's centre between the centre line and the contact, from half the circumference and the radii.
+
+    That is the arccos of the law of cosines, written with half angles so that flat triangles keep their digits.
+    """
+    s, own, other = (np.asarray(one) for one in (s, own, other))
+    across, along = np.sqrt(np.maximum((s - a) * (s - own), 0)), np.sqrt(np.maximum(s * (s - other), 0))
+    return np.asarray(2.0 * np.arctan2(across, along))
+
+
+def _roll_length(gear: Gear, radius: float) -> float:
+    """Roll length of the flank at a radius [m]; negative on an internal gear."""
+    return gear.tooth.side * math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))

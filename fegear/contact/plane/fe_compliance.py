@@ -50,7 +50,7 @@ class FiniteElementCompliance:
     own_spline : Spline
         c_0 at the reference half-width [m^2/N] over the roll length [m].
     lowest, highest : float
-        Roll lengths of the ends of the flank [m].
+        Roll lengths of the ends of the flank [m], rising toward the tip: those of internal gears are negative.
     """
 
     influence: GearInfluence
@@ -137,7 +137,7 @@ class FiniteElementCompliance:
 
 
 def roll_length(gear: Gear, radius: ArrayLike, lowest: float, highest: float) -> Array:
-    """Roll lengths [m] of radii [m] on a flank between two roll lengths [m].
+    """Roll lengths [m] of radii [m] on a flank between two roll lengths [m]; negative on internal gears.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def roll_length(gear: Gear, radius: ArrayLike, lowest: float, highest: float) ->
         If a radius is off the flank.
     """
     r, rb = np.asarray(radius, dtype=float), gear.base_radius
-    length = np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
+    length = gear.tooth.side * np.sqrt(np.maximum((r - rb) * (r + rb), 0.0))
     slack = 1e-6 * gear.module
     off = (length < lowest - slack) | (length > highest + slack)
     if off.any():
@@ -185,13 +185,12 @@ def finite_element_compliance(influence: GearInfluence) -> FiniteElementComplian
 
 def _tabulated(influence: GearInfluence) -> tuple[Spline, float, float]:
     gear = influence.gear
-    rb = gear.base_radius
-    bottom = max(influence.lowest_radius, gear.form_radius)
-    top = min(influence.highest_radius, gear.involute_tip_radius)
-    low, high = (math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (bottom, top))
+    rb, (lowest, highest) = gear.base_radius, gear.involute_radii
+    bottom, top = max(influence.lowest_radius, lowest), min(influence.highest_radius, highest)
+    low, high = sorted(gear.tooth.side * math.sqrt(max((r - rb) * (r + rb), 0.0)) for r in (bottom, top))
     # The compliance bends most where the patch has to shrink, within its own width of the tip corner: points crowd
     # there, half of them in the last tenth of a module, and a little where the flank starts.
-    corner = min(0.1 * gear.module * rb / high, 0.3 * (high - low))
+    corner = min(0.1 * gear.module * rb / max(abs(high), 1e-9 * rb), 0.3 * (high - low))
     s = np.linspace(0.0, 1.0, _OWN_POINTS // 2)
     lengths = np.concatenate([low + (high - corner - low) * (s * s * (3.0 - 2.0 * s))[:-1], high - corner * (1.0 - s)])
     radii = np.clip(np.hypot(rb, lengths), bottom, top)

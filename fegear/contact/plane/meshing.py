@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError
-from fegear.contact.plane.corner import CornerContact
+from fegear.contact.plane.corner import corner_contact
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from fegear.base.arrays import Array
+    from fegear.contact.plane.corner import CornerContact
     from fegear.geometry.pair import GearPair
 
 
@@ -36,7 +37,7 @@ class Contacts:
     roll_driver, roll_driven : ndarray
         Their roll angles [rad].
     relative_radius : ndarray
-        rho_1 rho_2 / (rho_1 + rho_2) of the flanks [m].
+        rho_1 rho_2 / (rho_1 + rho_2) of the flanks [m], rho negative on the hollow flank of a ring.
     edge : ndarray
         Slope at which the flanks part inward from the nearest tip corner times the relative radius [m]: minus the
         distance of the contact from the corner on the path; minus infinity where corners are rounded or ignored.
@@ -98,7 +99,7 @@ class Meshing:
     @cached_property
     def corners(self) -> tuple[CornerContact, CornerContact]:
         """The driven tip before the path and the driver's tip after it."""
-        return CornerContact(self.pair, "driven"), CornerContact(self.pair, "driver")
+        return corner_contact(self.pair, "driven"), corner_contact(self.pair, "driver")
 
     @property
     def pair_numbers(self) -> NDArray[np.int64]:

@@ -106,7 +106,9 @@ def _removed(e: Engagement, member: Member, points: Array, pairs: Sequence[int])
     roll = tooth.roll(np.maximum(radius, tooth.base_radius))
     half = tooth.half_thickness_angle(np.maximum(radius, tooth.base_radius))
     angle = np.arctan2(*points)
-    on = (radius >= tooth.form_radius * (1.0 - 1e-9)) & (np.abs(np.abs(angle) - half) < 1e-4)
+    on = (tooth.side * radius >= tooth.side * tooth.form_radius * (1.0 - tooth.side * 1e-9)) & (
+        np.abs(np.abs(angle) - half) < 1e-4
+    )
     lean = tooth.base_half_angle - roll
     inward = np.stack([-np.sign(angle) * np.cos(lean), np.sin(lean)])
     found = np.tile(np.where(on, relief.removal(roll), 0.0) * inward, (len(pairs), 1, 1))

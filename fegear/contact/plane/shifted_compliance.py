@@ -117,7 +117,8 @@ def neighbours_shifted_by_error(base: FiniteElementCompliance) -> ShiftedComplia
 def _flank(base: FiniteElementCompliance) -> tuple[float, float]:
     """Radii between which the flank is in use [m]."""
     known = base.influence
-    return max(known.lowest_radius, known.gear.form_radius), min(known.highest_radius, known.gear.involute_tip_radius)
+    low, high = known.gear.involute_radii
+    return max(known.lowest_radius, low), min(known.highest_radius, high)
 
 
 def solve_again(other: Engagement, loaded: Loaded) -> Loaded:

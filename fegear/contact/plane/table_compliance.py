@@ -105,7 +105,7 @@ class TableCompliance(OneTooth):
     base_radius : float
         [m].
     pitch_roll_length : float
-        Roll length (radius of curvature) of the flank at the pitch point [m].
+        Roll length (radius of curvature) of the flank at the pitch point [m], negative on an internal gear.
     face_width : float
         [m]; the table holds for it.
     sign : float
@@ -129,12 +129,13 @@ class TableCompliance(OneTooth):
     def kinks(self) -> tuple[float, ...]:
         """Radii of the knots [m]."""
         lengths = (self.pitch_roll_length + self.sign * x for x in self.knots)
-        return tuple(math.hypot(self.base_radius, rho) for rho in lengths if rho > 0.0)
+        return tuple(math.hypot(self.base_radius, rho) for rho in lengths if rho * self.pitch_roll_length > 0.0)
 
     def own(self, radius: ArrayLike) -> Array:
         """Compliance per unit face width [m^2/N], contact included."""
         r = np.asarray(radius, dtype=float)
         rho = np.sqrt(np.maximum((r - self.base_radius) * (r + self.base_radius), 0.0))
+        rho = np.copysign(rho, self.pitch_roll_length)
         return self.table(self.sign * (rho - self.pitch_roll_length)) * self.face_width
 
     def reference_half_width(self, radius: ArrayLike) -> Array:

@@ -186,7 +186,8 @@ def roll_marks(pair: GearPair, member: Member) -> tuple[Mark, ...]:
 def in_mesh(pair: GearPair, member: Member, teeth: int = 2, chord: float = _PAIR_CHORD) -> Array:
     """Outline of a gear's teeth near the pitch point, which is the origin; the flanks touch there, shape (2, N) [m].
 
-    The driver lies below and turns clockwise; along the line of action it pushes to the right and up.
+    The driver lies below and turns clockwise; along the line of action it pushes to the right and up, a driving ring
+    gear to the right and down. The centres of an internal pair both lie below.
 
     Parameters
     ----------
@@ -231,7 +232,8 @@ def placed_in_mesh(pair: GearPair, member: Member, points: Array, number: int, *
     ahead = number if member == "driver" else -number
     x, y = turned(points, ahead * 2.0 * math.pi / gear.teeth - half)
     line = np.stack([x, y if moved else y - working])
-    return line if member == "driver" else -line
+    # the driven gear stands opposite: turned by half a turn, or, its loaded flank at the left, mirrored inside the ring
+    return line if member == "driver" else np.stack([-line[0], -pair.side * line[1]])
 
 
 def _working_radius(pair: GearPair, gear: Gear) -> float:
@@ -243,33 +245,34 @@ def _arc(pair: GearPair, member: Member, radius: float, reach: float) -> Array:
     half = min(math.pi, 1.3 * reach / radius)
     angle = np.linspace(-half, half, 61)
     arc = np.stack([radius * np.sin(angle), radius * np.cos(angle) - _working_radius(pair, pair.gear(member))])
-    return arc if member == "driver" else arc * np.array([[1.0], [-1.0]])
+    return arc if member == "driver" else arc * np.array([[1.0], [-pair.side]])
 
 
 def pair_figure(name: str, drawing: Drawing) -> Figure:
     """A pair in mesh, and the specific sliding of its flanks over the path of contact."""
     pair, names = drawing.pairs[name], drawing.members[name]
     single = 1.0 <= pair.contact_ratio < 2.0
+    places = ("", "") if pair.internal else (" (below)", " (above)")
     alone = "; between B and D it is alone" if single else "; at every B and D the number of pairs in contact changes"
     alone += " in one section" if pair.driver.helix_angle else ""
     return Figure(
         f"gear_data_{name}",
         f"Pair {name} in mesh",
-        f"Pair {name}: {names[0]} drives (below), {names[1]} is driven (above). Drawn where the flanks touch at the "
-        f"pitch point. A tooth pair comes into contact at A and leaves it at E{alone}. Specific sliding is negative "
-        "where a flank is dragged, below its own pitch circle."
+        f"Pair {name}: {names[0]} drives{places[0]}, {names[1]} is driven{places[1]}. Drawn where the flanks touch at "
+        f"the pitch point. A tooth pair comes into contact at A and leaves it at E{alone}. Specific sliding is "
+        "negative where a flank is dragged, below its own pitch circle."
         + (" All of it lies in the section across the axes." if pair.driver.helix_angle else ""),
         (_drawn(pair), _sliding(pair)),
     )
 
 
 def _drawn(pair: GearPair) -> Panel:
-    module, along = pair.driver.module, pair.working_pressure_angle
+    module, along = pair.driver.module, pair.driver.tooth.side * pair.working_pressure_angle
     wide = max(_WIDE * math.pi * module, 1.15 * max(-pair.x_start, pair.x_end))
     tall = _TALL * module
     points = path_points(pair)
     x = np.array([point.x for point in points]) * 1e3
-    reach = np.array([-1.0, 1.0]) * min(wide, tall / math.sin(along)) * 1e3
+    reach = np.array([-1.0, 1.0]) * min(wide, tall / abs(math.sin(along))) * 1e3
     items: list[Curve | Points] = [
         outline(in_mesh(pair, member) * 1e3, member, member, 1.8, "solid") for member in MEMBERS
     ]
@@ -323,11 +326,12 @@ class MovingPair(ReadOnlyArrays):
     driver, driven : ndarray, shape (2, N)
         Outlines of their teeth near the mesh.
     driver_radius, driven_radius : float
-        Of the working pitch circles: the driver's centre lies so far below the origin, that of the driven gear above.
+        Of the working pitch circles: the driver's centre lies so far below the origin, that of the driven gear above,
+        or, negative, below it in an internal pair.
     driver_base, driven_base : float
-        Base radii.
+        Base radii; that of the driven gear of an internal pair is negative, for it turns as the driver does.
     pressure_angle : float
-        Working, in the section across the axes [rad].
+        Working, in the section across the axes [rad]; negative where a ring gear drives.
     start, end, base_pitch : float
         Of the path of contact.
     points : tuple of (str, float)
@@ -360,15 +364,15 @@ def moving_pair(pair: GearPair) -> MovingPair:
     ----------
     pair : GearPair
     """
-    base = pair.driver.base_radius, pair.driven.base_radius
-    share = pair.centre_distance / (base[0] + base[1])
+    base = pair.driver.base_radius, pair.side * pair.driven.base_radius
+    share = pair.centre_distance / abs(base[0] + base[1])
     return MovingPair(
         in_mesh(pair, "driver", _TEETH, _MOVING_CHORD),
         in_mesh(pair, "driven", _TEETH, _MOVING_CHORD),
         base[0] * share,
         base[1] * share,
         *base,
-        pair.working_pressure_angle,
+        pair.driver.tooth.side * pair.working_pressure_angle,
         pair.x_start,
         pair.x_end,
         pair.base_pitch,

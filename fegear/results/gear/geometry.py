@@ -77,6 +77,12 @@ def _present(_found: Drawing, drawing: Drawing) -> Outcome:
         for sentence in (interference(pair, "driver").sentence, interference(pair, "driven").sentence)
         if sentence
     )
+    remarks += tuple(
+        f"Pair {name}: {one.sentence(pair.driver.module)}."
+        for name, pair in pairs.items()
+        for one in pair.internal_checks
+        if one.margin < 0.0
+    )
     lone = lone_table(drawing)
     tables = (table, *(pair_table(name, drawing) for name in pairs), *(() if lone is None else (lone,)))
     figures = tuple(pair_figure(name, drawing) for name in pairs)
@@ -282,7 +288,7 @@ def _losses(name: str, pair: GearPair) -> tuple[Value, ...]:
     """What teeth without deflection lose; nothing where at times none of them is in contact."""
     from fegear.formulas.friction import wimmer
 
-    if pair.contact_ratio < 1.0:
+    if pair.contact_ratio < 1.0 or pair.internal:
         return ()
     return (Value(f"{name}.rigid_loss_factor", wimmer(pair), "", 0.0, "tooth loss factor H_V of rigid gears"),)
 
@@ -342,4 +348,5 @@ GEOMETRY = Stage(
     present=_present,
     cites=citing(INVOLUTE, Citation("iso-53", "standard basic racks", "Table 1")),
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
+    internal=True,
 )

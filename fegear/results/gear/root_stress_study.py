@@ -446,4 +446,5 @@ ROOT_STRESS_STUDY = Stage(
     check=_check,
     cites=citing(*ROOT_STRESS_FORMULAS, *RING),
     forecast=_forecast,
+    internal=True,
 )

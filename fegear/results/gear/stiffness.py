@@ -379,6 +379,7 @@ STIFFNESS = Stage(
     check=check_contacts_of,
     cites=citing(*RING, PATCH, HERTZ),
     forecast=_forecast,
+    internal=True,
 )
 
 
@@ -389,4 +390,5 @@ GEAR_SOLUTION = Stage(
     present=_present_solution,
     cites=citing(*RING),
     forecast=_solving_forecast,
+    internal=True,
 )

@@ -106,4 +106,5 @@ TOOTH_GEOMETRY_CHECK = Stage(
     present=_present,
     cites=citing(INVOLUTE),
     forecast=lambda _scene, _subject: Forecast({}, 0.01),
+    internal=True,
 )

@@ -63,6 +63,7 @@ OUTLINE_MOTION = Stage(
     present=lambda data, _inputs: Outcome(data),
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.25),
+    internal=True,
 )
 
 
@@ -153,4 +154,5 @@ DEFORMED_IN_MESH = Stage(
     effects=EFFECTS,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.05),
+    internal=True,
 )

@@ -136,4 +136,5 @@ LOAD_SHARING = Stage(
     effects_of=effects_of_teeth,
     cites=citing(Citation("mark", "load sharing of the tooth pairs in reach", "Appendix A"), HERTZ),
     forecast=_forecast,
+    internal=True,
 )

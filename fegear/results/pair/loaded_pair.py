@@ -160,4 +160,5 @@ LOADED_PAIR = Stage(
     effects=EFFECTS,
     cites=_cites,
     forecast=_forecast,
+    internal=True,
 )

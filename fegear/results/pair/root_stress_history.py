@@ -406,4 +406,5 @@ ROOT_STRESS_HISTORY = Stage(
     effects_of=effects_of_teeth,
     cites=_cites,
     forecast=_forecast,
+    internal=True,
 )

@@ -357,4 +357,5 @@ STRESS_IN_MESH = Stage(
     effects_of=effects_of_teeth,
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.15),
+    internal=True,
 )

@@ -104,6 +104,7 @@ INNER_STRESS = Stage(
     present=lambda data, _inputs: Outcome(data),
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.35),
+    internal=True,
 )
 
 
@@ -135,4 +136,5 @@ STRESS_INSIDE = Stage(
     present=lambda data, _inputs: Outcome(data),
     cites=citing(*RING),
     forecast=lambda _scene, _name: forecasts.constant(0.01),
+    internal=True,
 )

@@ -302,4 +302,5 @@ TRANSMISSION_ERROR = Stage(
         Citation("harris", "transmission error over the mesh cycle for a family of loads"),
     ),
     forecast=_forecast,
+    internal=True,
 )

@@ -122,6 +122,7 @@ PLANET_MODES = Stage(
     check=check_masses,
     cites=citing(Citation("lin-parker", "model of the set and kinds of its modes")),
     forecast=lambda _scene, _name: forecasts.constant(1.5),
+    internal=True,
 )
 
 
@@ -206,4 +207,5 @@ PLANET_VIBRATION = Stage(
         Citation("lin-parker", "model of the set"), Citation("mark", "linear train with transmission errors", "2.9b")
     ),
     forecast=lambda _scene, _name: forecasts.constant(0.02),
+    internal=True,
 )
