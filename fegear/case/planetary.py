@@ -33,6 +33,7 @@ from fegear.case.part import (
 
 if TYPE_CHECKING:
     from fegear.case.model import Case
+    from fegear.case.operation import OperationPart
 
 CentralName = Literal["sun", "ring", "carrier"]
 
@@ -186,6 +187,21 @@ class PlanetaryPart(Part):
         """Whether power rolls from the sun over the planets to the ring, in the motion relative to the carrier."""
         return self.input == "sun" or (self.input == "carrier" and self.fixed == "sun")
 
+    def sun_speed(self, sun_teeth: int) -> float | None:
+        """Speed of the sun relative to the carrier [rad/s], without its sign; None where none is given."""
+        if self.speed is None:
+            return None
+        teeth = sun_teeth + self.ring_teeth
+        share = {
+            ("carrier", "sun"): 1.0,
+            ("carrier", "ring"): self.ring_teeth / sun_teeth,
+            ("ring", "sun"): self.ring_teeth / teeth,
+            ("ring", "carrier"): self.ring_teeth / sun_teeth,
+            ("sun", "ring"): self.ring_teeth / teeth,
+            ("sun", "carrier"): 1.0,
+        }
+        return self.speed * share[self.fixed, self.input]
+
 
 def sun_pair(name: str) -> str:
     """Name of the pair of sun and planet of a set."""
@@ -193,7 +209,7 @@ def sun_pair(name: str) -> str:
 
 
 def with_set_pairs(case: Case) -> Case:
-    """The case with the pairs of its planetary sets, each with the load of equal shares.
+    """The case with the pairs of its planetary sets, each with the load of equal shares and as it runs in the set.
 
     Raises
     ------
@@ -223,8 +239,39 @@ def with_set_pairs(case: Case) -> Case:
         filled: dict[str, Any] = {} if given.load or given.torque else {"torque": torque}
         if given.centre_distance is None and part.centre_distance is not None:
             filled["centre_distance"] = part.centre_distance
+        speed = part.sun_speed(teeth)
+        if given.speed is None and speed is not None:
+            filled["speed"] = speed * (1.0 if drives else teeth / case.gear[part.planet].teeth)
+        filled["operation"] = _operation(part, given)
         pairs[own] = given.model_copy(update=filled)
     return case.model_copy(update={"pair": pairs}) if case.planetary else case
+
+
+def _operation(part: PlanetaryPart, given: PairPart) -> OperationPart:
+    """How the mesh of sun and planet runs, where its pair does not say: a sun's flank meets every planet in a turn.
+
+    A planet's teeth are bent to either side, by sun and ring.
+    """
+    drives, said = part.sun_drives(), given.operation.model_fields_set
+    filled: dict[str, Any] = {}
+    if "contacts" not in said:
+        filled["contacts"] = [part.count, 1] if drives else [1, part.count]
+    if not said & {"idler", "reversed_load", "mean_stress_factor"}:
+        filled["idler"] = "driven" if drives else "driver"
+    return given.operation.model_copy(update=filled)
+
+
+def set_of_pair(case: Case, pair: str) -> str | None:
+    """The planetary set to which a pair belongs; None where it belongs to none."""
+    return next((name for name in case.planetary if sun_pair(name) == pair), None)
+
+
+def set_that_shares(case: Case, pair: str) -> str | None:
+    """The set whose load sharing gives the K_gamma of a pair: its own, unless the case gives a K_gamma, or no ring."""
+    name = set_of_pair(case, pair)
+    if name is None or "mesh_load_factor" in case.pair[pair].operation.model_fields_set:
+        return None
+    return name if case.planetary[name].stiffness.ring_mesh is not None else None
 
 
 def angles_of(part: PlanetaryPart) -> list[float]:

@@ -7,6 +7,7 @@ import pytest
 
 from fegear.base.errors import FegearError
 from fegear.base.solution_cache import SolutionCache
+from fegear.case.built.planetary import set_inputs
 from fegear.case.reading import build_scene
 from fegear.engine.plan import make_plan
 from fegear.engine.run import run_plan
@@ -110,3 +111,42 @@ def test_a_pair_of_the_case_may_stand_for_the_sun_mesh():
     assert scene.case.pair["P_sun"].torque == pytest.approx(80.0)
     with pytest.raises(FegearError, match="in which s drives p"):
         build_scene(CASE | {"pair": {"P_sun": {"driver": "p", "driven": "s"}}}, "case", None)
+
+
+def rated_set(**operation):
+    strong = {"strength": {"material": "case-hardened-steel"}}
+    case = changed() | {"results": ["rating"], "gear": {name: one | strong for name, one in CASE["gear"].items()}}
+    if operation:
+        case["pair"] = {"P_sun": {"driver": "s", "driven": "p", "operation": operation}}
+    results = run(case)
+    table = next(one for one in results.tables if one.name == "rating_P_sun")
+    symbols, pinion, wheel = (list(table.column(key).values) for key in ("symbol", "driver", "driven"))
+    return {name: (one, two) for name, one, two in zip(symbols, pinion, wheel, strict=True)}, results
+
+
+def test_a_rating_takes_what_its_planetary_set_knows(ran):
+    found, results = rated_set()
+    assert found["K_gamma"][0] == pytest.approx(values(ran)["P.K_gamma"], rel=1e-12)
+    assert found["Y_M"][0] == 1.0
+    assert found["Y_M"][1] < 0.8  # of a planet bent to either side
+    assert any("K_gamma is that of its planet-load-sharing" in one for one in results.remarks)
+    own, _ = rated_set(mesh_load_factor=1.5, reversed_load=0.0)
+    assert own["K_gamma"][0] == 1.5
+    assert own["Y_M"] == (1.0, 1.0)
+    ratio = np.prod([own[key][0] / found[key][0] for key in ("K_gamma", "K_v", "K_Hbeta", "K_Halpha")])
+    assert own["sigma_H"][0] / found["sigma_H"][0] == pytest.approx(ratio**0.5, rel=1e-9)
+
+
+def test_the_pair_of_a_set_turns_as_relative_to_the_carrier():
+    shares = {
+        ("ring", "sun"): 83 / 108, ("carrier", "sun"): 1.0, ("ring", "carrier"): 83 / 25,
+        ("sun", "carrier"): 1.0, ("sun", "ring"): 83 / 108, ("carrier", "ring"): 83 / 25,
+    }  # fmt: skip
+    for (fixed, driving), share in shares.items():
+        scene = build_scene(changed(fixed=fixed, input=driving), "case", None)
+        run = set_inputs(scene, "P").run
+        pair = scene.case.pair["P_sun"]
+        teeth = scene.gears[pair.driver].teeth
+        assert pair.speed == pytest.approx(188.49555921538757 * share * 25 / teeth)
+        assert pair.speed * teeth == pytest.approx(abs(run.sun_turns) * 25)
+        assert pair.operation.contacts == ([4, 1] if pair.driver == "s" else [1, 4])

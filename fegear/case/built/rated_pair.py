@@ -20,6 +20,7 @@ from fegear.case.built.flank_errors import gear_deviations
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.rated_duty import assumed_of_pair, in_order, load_cycles, mates_of, refuse_fast, spectrum_levels
 from fegear.case.part import at
+from fegear.case.planetary import set_of_pair, set_that_shares
 from fegear.formulas.iso1328 import flank_tolerances
 from fegear.formulas.iso6336.conditions import Conditions
 from fegear.formulas.iso6336.pair_geometry import Body, of_pair
@@ -83,6 +84,8 @@ class PairToRate:
         Names of driver and driven.
     misaligned : bool
         Whether the case misaligns the flanks that are computed.
+    shares : str
+        Planetary set whose load sharing gives K_gamma; empty where the case gives it, or the pair is of no set.
     """
 
     conditions: Conditions
@@ -98,6 +101,7 @@ class PairToRate:
     name: str = field(compare=False)
     gears: tuple[str, str] = field(compare=False)
     misaligned: bool = field(default=False, compare=False)
+    shares: str = ""
 
     def of(self, member: Member) -> int:
         """Place of driver or driven among pinion and wheel."""
@@ -175,12 +179,30 @@ def pair_to_rate(scene: Scene, name: str) -> PairToRate:
         )
     if levels and (operation.idler is not None or operation.reversed_load):
         said.append(f"Pair {name}: every level of the spectrum bends the teeth to either side in the same ratio.")
+    said += _of_its_set(scene, name)
     return PairToRate(
         conditions, pair, load, {key: value for key, value in given.items() if value is not None}, levels,
         (one, other), None if own is None else in_order((own[0], own[1]), first=first), life, part.width_in(pair),
         tuple(dict.fromkeys(said)), name, gears,
         scene.case.effects.misalignment and not (part.misalignment is None and part.line_error is None),
+        set_that_shares(scene.case, name) or "",
     )  # fmt: skip
+
+
+def _of_its_set(scene: Scene, name: str) -> list[str]:
+    """What a rating takes over from the planetary set of a pair, in words."""
+    found = set_of_pair(scene.case, name)
+    if found is None:
+        return []
+    count, operation = scene.case.planetary[found].count, scene.case.pair[name].operation
+    told = f"Pair {name} belongs to planetary set {found}"
+    if operation.idler is not None:
+        told += f": the planet's teeth count as bent to either side, and contacts as {operation.contacts}"
+    if set_that_shares(scene.case, name):
+        return [f"{told}; K_gamma is that of its planet-load-sharing."]
+    if "mesh_load_factor" in operation.model_fields_set or count == 1:
+        return [f"{told}."]
+    return [f"{told}; K_gamma counts as 1, for planetary.{found}.stiffness.ring_mesh is not given."]
 
 
 #: The class whose helix slope a favourable contact pattern takes off.

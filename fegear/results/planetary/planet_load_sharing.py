@@ -173,12 +173,7 @@ def _present(data: PlanetLoads, inputs: LoadInputs) -> Outcome:
     name = inputs.name
     values = [value_of(data, key, name)
               for key in ("mesh_load_factor", "largest_share", "te_mean", "te_peak_to_peak")]  # fmt: skip
-    factor = max(data.mesh_load_factor, 1.0)
-    rated = (
-        f"Set {name}: for the rating of its meshes write operation = {{ mesh_load_factor = {factor:.4g} }} under "
-        f"pair.{sun_pair(name)}; it is not taken over by itself."
-    )
-    said = [rated]
+    said = []
     apart = [f"planet {n + 1} ({share:.0%} of the cycle)" for n, share in enumerate(data.lifted.max(axis=0)) if share]
     if apart:
         said.append(f"Set {name}: without contact: {', '.join(apart)}.")

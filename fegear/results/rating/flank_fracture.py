@@ -24,6 +24,8 @@ from fegear.engine.table import Column, Table
 from fegear.formulas.iso6336.part4_flank_fracture import CALIBRATION, HARDNESS_FACTOR, PERMISSIBLE
 from fegear.formulas.iso6336.part5_case_depth import recommended
 from fegear.geometry.pair import MEMBERS
+from fegear.results.rating.rating import given, rated
+from fegear.results.rating.shared_load import needs_shares, with_shares
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -149,15 +151,14 @@ def _inputs(scene: Scene, name: str) -> FlankFractureInputs:
     )  # fmt: skip
 
 
-def _compute(inputs: FlankFractureInputs, _upstream: Upstream, _work: Work) -> FlankFractureData:
+def _compute(inputs: FlankFractureInputs, upstream: Upstream, _work: Work) -> FlankFractureData:
     from fegear.formulas.flash_temperature import flank_speeds, reduced_modulus
     from fegear.formulas.iso6336.part4_flank_fracture import half_width
     from fegear.formulas.iso6336.part22_micropitting import load_sharing, pressure
     from fegear.formulas.iso6336.safety import rate_pair
     from fegear.geometry.pair import path_points
-    from fegear.results.rating.rating import given, rated
 
-    asked = inputs.asked
+    asked = with_shares(inputs.asked, upstream)
     try:
         conditions = rated(asked)
         level = max(asked.levels, key=lambda one: one.tangential, default=None)
@@ -408,6 +409,7 @@ def _figure(member: Member, data: FlankFractureData, inputs: FlankFractureInputs
 
 FLANK_FRACTURE = Stage(
     subjects=lambda scene: tuple(scene.pairs),
+    needs=needs_shares,
     inputs=_inputs,
     compute=_compute,
     present=_present,

@@ -34,6 +34,7 @@ from fegear.results.rating.rating_tables import (
     safety_table,
     spectrum_table,
 )
+from fegear.results.rating.shared_load import inputs_with_shares, needs_shares
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -177,6 +178,7 @@ def _compute(inputs: RatingInputs, upstream: Upstream, _work: Work) -> RatingDat
 def _rate(inputs: RatingInputs, upstream: Upstream) -> RatingData:
     from fegear.formulas.iso6336.safety import rate_pair, rate_spectrum, sn_curves
 
+    inputs = inputs_with_shares(inputs, upstream)
     asked, own = inputs.asked, given(inputs.asked)
     conditions = rated(asked)
     formula = rate_pair(conditions, own)
@@ -290,12 +292,13 @@ def _settings(data: RatingData, inputs: RatingInputs) -> dict[str, object]:
 
 
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
+    shares = needs_shares(scene, name)
     if "computed" not in scene.case.rating.beside:
-        return ()
+        return shares
     part = scene.case.pair[name]
     if not _wide(scene, name):
-        return needs_solution(part.driver, part.driven)
-    return (*needs_flanks(scene, name), *needs_solid_solution(part.driver, part.driven))
+        return (*shares, *needs_solution(part.driver, part.driven))
+    return (*shares, *needs_flanks(scene, name), *needs_solid_solution(part.driver, part.driven))
 
 
 def _forecast(scene: Scene, name: str) -> Forecast:

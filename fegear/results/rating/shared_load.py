@@ -1,0 +1,40 @@
+"""K_gamma of a rated pair from the load sharing of the planetary set to which it belongs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+from fegear.case.planetary import set_that_shares
+from fegear.engine.stage import Task
+
+if TYPE_CHECKING:
+    from fegear.case.built.rated_pair import PairToRate
+    from fegear.case.reading import Scene
+    from fegear.dynamics.planetary.planet_loads import PlanetLoads
+    from fegear.engine.stage import Upstream
+    from fegear.results.rating.rating import RatingInputs
+
+
+def needs_shares(scene: Scene, name: str) -> tuple[Task, ...]:
+    """The load sharing of the planetary set that gives the K_gamma of a pair; none for most pairs."""
+    found = set_that_shares(scene.case, name)
+    return () if found is None else (Task("planet-load-sharing", found),)
+
+
+def with_shares(asked: PairToRate, upstream: Upstream) -> PairToRate:
+    """The pair with the K_gamma of its planetary set, where the case does not give it."""
+    if not asked.shares:
+        return asked
+    loads = cast("PlanetLoads", upstream[Task("planet-load-sharing", asked.shares)])
+    duty = replace(asked.conditions.duty, mesh_load_factor=max(loads.mesh_load_factor, 1.0))
+    return replace(asked, conditions=replace(asked.conditions, duty=duty))
+
+
+def inputs_with_shares(inputs: RatingInputs, upstream: Upstream) -> RatingInputs:
+    """The same with K_gamma of the pair's planetary set, for AGMA 2101 as well."""
+    asked, agma = with_shares(inputs.asked, upstream), inputs.agma
+    if agma is not None and asked is not inputs.asked:
+        more = asked.conditions.duty.mesh_load_factor / inputs.asked.conditions.duty.mesh_load_factor
+        agma = replace(agma, service=replace(agma.service, overload=agma.service.overload * more))
+    return replace(inputs, asked=asked, agma=agma)
