@@ -268,6 +268,8 @@ PER_SI: dict[str, float] = {
     "arcsec": 206264.80624709636,
     "N/(mm.um)": 1e-9,
     "1/mm": 1e-3,
+    "kg/mm": 1e-3,
+    "MPa^0.5": 1e-3,
     "degC": 1.0,  # inside, too
     "K": 1.0,
     "mPa.s": 1e3,

@@ -38,6 +38,7 @@ from fegear.formulas.agma.agma2101_factors import (
     work_hardening_factor,
 )
 from fegear.formulas.iso6336.conditions import Factor
+from fegear.formulas.symbols import AGMA_2101
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -204,33 +205,33 @@ def rate(
     less = service.temperature * y_z
     contact_allowed = _both(a.contact * n * w / less for a, n, w in zip(allowed, z_n, (1.0, z_w), strict=True))
     bending_allowed = _both(a.bending * n / less for a, n in zip(allowed, y_n, strict=True))
-    same: list[tuple[str, float, str, str]] = [
-        ("F_t", service.tangential, "N", "7"), ("v_t", service.speed, "m/s", "7"), ("K_o", service.overload, "", "9"),
-        ("K_v", k_v, "", "8" if service.dynamic is None else "given"),
+    same: list[tuple[str, float, str]] = [
+        ("F_t", service.tangential, "7"), ("v_t", service.speed, "7"), ("K_o", service.overload, "9"),
+        ("K_v", k_v, "8" if service.dynamic is None else "given"),
     ]  # fmt: skip
     if spread:
         same += [
-            ("K_Hmc", spread.lead, "", "15.3"), ("K_Hpf", spread.proportion, "", "15.3"),
-            ("K_Hpm", spread.offset, "", "15.3"), ("K_Hma", spread.alignment, "", "15.3"),
-            ("K_He", spread.correction, "", "15.3"),
+            ("K_Hmc", spread.lead, "15.3"), ("K_Hpf", spread.proportion, "15.3"),
+            ("K_Hpm", spread.offset, "15.3"), ("K_Hma", spread.alignment, "15.3"),
+            ("K_He", spread.correction, "15.3"),
         ]  # fmt: skip
     same += [
-        ("K_H", k_h, "", "15" if spread else "given"), ("Z_E", z_e, "sqrt(Pa)", "12"),
-        ("Z_R", service.surface, "", "13"),
-        ("Z_I", shape.Z_I, "", "6, AGMA 908-B89, 4"), ("Y_Z", y_z, "", "18"),
-        ("Y_theta", service.temperature, "", "19"),
+        ("K_H", k_h, "15" if spread else "given"), ("Z_E", z_e, "12"),
+        ("Z_R", service.surface, "13"),
+        ("Z_I", shape.Z_I, "6, AGMA 908-B89, 4"), ("Y_Z", y_z, "18"),
+        ("Y_theta", service.temperature, "19"),
     ]  # fmt: skip
-    each: list[tuple[str, Both, str, str]] = [
-        ("K_s", service.size, "", "20"), ("K_B", k_b, "", "5.2.5"), ("Y_J", shape.Y_J, "", "6, AGMA 908-B89, 5"),
-        ("sigma_H", contact, "Pa", "5.1.1, (1)"), ("sigma_F", bending, "Pa", "5.2.1, (10)"),
-        ("sigma_HP", (allowed[0].contact, allowed[1].contact), "Pa", "16"),
-        ("sigma_FP", (allowed[0].bending, allowed[1].bending), "Pa", "16"),
-        ("Z_N", z_n, "", "17"), ("Y_N", y_n, "", "17"), ("Z_W", (1.0, z_w), "", "14"),
+    each: list[tuple[str, Both, str]] = [
+        ("K_s", service.size, "20"), ("K_B", k_b, "5.2.5"), ("Y_J", shape.Y_J, "6, AGMA 908-B89, 5"),
+        ("sigma_H", contact, "5.1.1, (1)"), ("sigma_F", bending, "5.2.1, (10)"),
+        ("sigma_HP", (allowed[0].contact, allowed[1].contact), "16"),
+        ("sigma_FP", (allowed[0].bending, allowed[1].bending), "16"),
+        ("Z_N", z_n, "17"), ("Y_N", y_n, "17"), ("Z_W", (1.0, z_w), "14"),
     ]  # fmt: skip
-    factors = [Factor(s, (v, v), u, _clause(c)) for s, v, u, c in same]
-    factors += [Factor(s, v, u, _clause(c)) for s, v, u, c in each]
+    factors = [Factor(AGMA_2101[s], (v, v), _clause(c)) for s, v, c in same]
+    factors += [Factor(AGMA_2101[s], v, _clause(c)) for s, v, c in each]
     made = AgmaRating((first, second), (), contact, contact_allowed, bending, bending_allowed)
-    factors += [Factor("S_H", made.S_H, "", _clause("11")), Factor("S_F", made.S_F, "", _clause("11"))]
+    factors += [Factor(AGMA_2101[s], v, _clause("11")) for s, v in (("S_H", made.S_H), ("S_F", made.S_F))]
     return AgmaRating((first, second), tuple(factors), contact, contact_allowed, bending, bending_allowed)
 
 

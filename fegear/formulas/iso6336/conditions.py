@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Literal
 
 from fegear.formulas.iso6336.part1_dynamic import running_in_relief
 from fegear.formulas.iso6336.part1_face_load import Alignment
+from fegear.formulas.symbols import ISO_6336
 
 if TYPE_CHECKING:
+    from fegear.base.shown import Shown
     from fegear.formulas.iso6336.pair_geometry import PairGeometry
     from fegear.formulas.iso6336.part2_pitting import TipRelief
     from fegear.formulas.iso6336.rated import Both, Duty, Edition, Quality, Strength
@@ -74,10 +76,10 @@ class FactorTable:
     def __init__(self) -> None:
         self.rows: list[Factor] = []
 
-    def add(self, symbol: str, value: float | Both, clause: str, unit: str = "", remark: str = "") -> None:
+    def add(self, symbol: str, value: float | Both, clause: str, remark: str = "") -> None:
         """Append a factor; one value stands for both gears."""
         values = value if isinstance(value, tuple) else (value, value)
-        self.rows.append(Factor(symbol, values, unit, clause, remark))
+        self.rows.append(Factor(ISO_6336[symbol], values, clause, remark))
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,23 +108,25 @@ class Factor:
 
     Parameters
     ----------
-    symbol : str
-        As the standard writes it, ASCII: "K_Hbeta", "Z_NT".
+    shown : Shown
+        Its symbol as the standard writes it, ASCII: "K_Hbeta", "Z_NT"; unit and meaning (`fegear.formulas.symbols`).
     values : (float, float)
-        Of pinion and wheel; equal where the pair has one.
-    unit : str
-        SI; empty for a pure number.
+        Of pinion and wheel in SI; equal where the pair has one.
     clause : str
         Where the standard gives it: part, edition, clause and, where it is known, the equation's number.
     remark : str
         What lies outside the stated range, or that the value was computed by other means; empty otherwise.
     """
 
-    symbol: str
+    shown: Shown
     values: Both
-    unit: str
     clause: str
     remark: str = ""
+
+    @property
+    def symbol(self) -> str:
+        """As the standard writes it, ASCII."""
+        return self.shown.name
 
     @property
     def value(self) -> float:

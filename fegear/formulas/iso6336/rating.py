@@ -68,13 +68,13 @@ def _stiffness(table: FactorTable, conditions: Conditions, line_load: float) -> 
         young_modulus=(one.young_modulus, two.young_modulus),
     )
     table.add("C_R", (blank_factor(*bodies[0]), blank_factor(*bodies[1])), "ISO 6336-1:2006, 9.3.1.3, Eqs. 84 and 85")
-    table.add("c'_th", found.theoretical, "ISO 6336-1:2006, 9.3.1.1, Eqs. 81 and 82", "Pa", found.remark)
-    table.add("c'", found.single, "ISO 6336-1:2006, 9.3.1, Eq. 80", "Pa")
+    table.add("c'_th", found.theoretical, "ISO 6336-1:2006, 9.3.1.1, Eqs. 81 and 82", found.remark)
+    table.add("c'", found.single, "ISO 6336-1:2006, 9.3.1, Eq. 80")
     short = ""
     if pair.contact_ratio < 1.2:
         short = f"c_gamma_alpha: up to 10 % lower for a contact ratio below 1.2 ({pair.contact_ratio:.3g})"
-    table.add("c_gamma_alpha", found.mesh_alpha, "ISO 6336-1:2006, 9.3.2, Eq. 91", "Pa", short)
-    table.add("c_gamma_beta", found.mesh_beta, "ISO 6336-1:2006, 9.3.2, Eq. 92", "Pa")
+    table.add("c_gamma_alpha", found.mesh_alpha, "ISO 6336-1:2006, 9.3.2, Eq. 91", short)
+    table.add("c_gamma_beta", found.mesh_beta, "ISO 6336-1:2006, 9.3.2, Eq. 92")
     return found
 
 
@@ -95,30 +95,30 @@ def _dynamic(
         )
         for deviation in (pitch, profile)
     )
-    table.add("f_pb", pitch, "ISO 1328-1, the worse gear", "m")
-    table.add("f_falpha", profile, "ISO 1328-1, the worse gear", "m")
+    table.add("f_pb", pitch, "ISO 1328-1, the worse gear")
+    table.add("f_falpha", profile, "ISO 1328-1, the worse gear")
     shared = max(pitch, profile)  # footnote 12 of 8.3.2: a larger form deviation stands for f_pb
-    table.add("y_alpha", y_p, "ISO 6336-1:2006, 8.3.5.1, Eqs. 75 to 77", "m")
+    table.add("y_alpha", y_p, "ISO 6336-1:2006, 8.3.5.1, Eqs. 75 to 77")
     grade = max(q.grade for q in quality)
     if computed.K_v is not None:
-        table.add("K_v", computed.K_v, "ISO 6336-1, clause 6", remark=f"K_v: {COMPUTED}")
+        table.add("K_v", computed.K_v, "ISO 6336-1, clause 6", f"K_v: {COMPUTED}")
         return computed.K_v, shared, y_p
     if conditions.dynamic_method == "C":
         found = dynamic.method_c(pair, line_load, velocity, grade)
-        table.add("K_v", found.K_v, "ISO 6336-1:2006, 6.5, method C", remark=found.remark)
+        table.add("K_v", found.K_v, "ISO 6336-1:2006, 6.5, method C", found.remark)
         return found.K_v, shared, y_p
     relief = min(q.tip_relief for q in quality)
     if relief == 0.0:
         relief = dynamic.running_in_relief((conditions.strength[0].contact, conditions.strength[1].contact))
     errors = dynamic.DynamicErrors(pitch, profile, y_p, y_f, relief, coarse=grade >= 6)
     found = dynamic.method_b(pair, (stiff.single, stiff.mesh_alpha), line_load, duty.speed, errors, duty.meshes)
-    table.add("m_red", found.reduced_mass, "ISO 6336-1:2006, 6.4.8, Eq. 30", "kg/m")
-    table.add("n_E1", found.resonance_speed, "ISO 6336-1:2006, 6.4.2, Eq. 6", "rad/s")
+    table.add("m_red", found.reduced_mass, "ISO 6336-1:2006, 6.4.8, Eq. 30")
+    table.add("n_E1", found.resonance_speed, "ISO 6336-1:2006, 6.4.2, Eq. 6")
     table.add("N", found.resonance_ratio, "ISO 6336-1:2006, 6.4.2, Eq. 9")
     table.add("N_S", found.lower_limit, "ISO 6336-1:2006, 6.4.2, Eqs. 11 and 12")
-    table.add("y_p", y_p, "ISO 6336-1:2006, 6.4.3, Eq. 18", "m")
-    table.add("y_f", y_f, "ISO 6336-1:2006, 6.4.3, Eq. 19", "m")
-    table.add("C_a", relief, "ISO 6336-1:2006, 6.4.3 and table 4", "m")
+    table.add("y_p", y_p, "ISO 6336-1:2006, 6.4.3, Eq. 18")
+    table.add("y_f", y_f, "ISO 6336-1:2006, 6.4.3, Eq. 19")
+    table.add("C_a", relief, "ISO 6336-1:2006, 6.4.3 and table 4")
     for name, value, equation in zip(("B_p", "B_f", "B_k"), found.load_parameters, (15, 16, 17), strict=True):
         table.add(name, value, f"ISO 6336-1:2006, 6.4.3, Eq. {equation}")
     for i, value in enumerate(found.coefficients, 1):
@@ -143,7 +143,7 @@ def load_factors(table: FactorTable, conditions: Conditions, computed: Replaceme
     depth = (pair.gears[0].depth, pair.gears[1].depth)
     if computed.K_Fbeta is not None:
         k_fb = computed.K_Fbeta
-        table.add("K_Fbeta", k_fb, "ISO 6336-1, clause 7", remark=f"K_Fbeta: {COMPUTED}")
+        table.add("K_Fbeta", k_fb, "ISO 6336-1, clause 7", f"K_Fbeta: {COMPUTED}")
     else:
         # lightly loaded ends bend no less than the middle (7.6; IACS UR M56, 1.6.4 b)
         light = conditions.alignment.modification in _LIGHT_ENDS and computed.K_Hbeta is None
@@ -161,8 +161,8 @@ def load_factors(table: FactorTable, conditions: Conditions, computed: Replaceme
         k_ha, marks[0] = computed.K_Halpha, f"K_Halpha: {COMPUTED}"
     if computed.K_Falpha is not None:
         k_fa, marks[1] = computed.K_Falpha, f"K_Falpha: {COMPUTED}"
-    table.add("K_Halpha", k_ha, "ISO 6336-1:2006, 8.3.2 and 8.3.3, Eqs. 71 to 73, method B", remark=marks[0])
-    table.add("K_Falpha", k_fa, "ISO 6336-1:2006, 8.3.2 and 8.3.4, Eqs. 71, 72, 74, method B", remark=marks[1])
+    table.add("K_Halpha", k_ha, "ISO 6336-1:2006, 8.3.2 and 8.3.3, Eqs. 71 to 73, method B", marks[0])
+    table.add("K_Falpha", k_fa, "ISO 6336-1:2006, 8.3.2 and 8.3.4, Eqs. 71, 72, 74, method B", marks[1])
     return LoadFactors(k_v, k_hb, k_fb, k_ha, k_fa)
 
 
@@ -171,26 +171,26 @@ def _face_load(
 ) -> float:
     """K_Hbeta: computed, given, or by method C."""
     if computed.K_Hbeta is not None:
-        table.add("K_Hbeta", computed.K_Hbeta, "ISO 6336-1, clause 7", remark=f"K_Hbeta: {COMPUTED}")
+        table.add("K_Hbeta", computed.K_Hbeta, "ISO 6336-1, clause 7", f"K_Hbeta: {COMPUTED}")
         return computed.K_Hbeta
     pair = conditions.geometry
     velocity = pair.pitch_line_velocity(conditions.duty.speed)
     found = misalignment.method_c(
         pair, conditions.alignment, conditions.strength, conditions.quality, line_load, mesh_stiffness, velocity
     )
-    table.add("F_m/b", line_load, "ISO 6336-1:2006, 7.2", "N/m")
+    table.add("F_m/b", line_load, "ISO 6336-1:2006, 7.2")
     if not math.isnan(found.initial):
-        table.add("f_sh", found.deformation, "ISO 6336-1:2006, 7.5.2.4, Eq. 57", "m", found.remark)
-        table.add("f_ma", found.manufacture, "ISO 6336-1:2006, 7.5.2, Eq. 64", "m")
+        table.add("f_sh", found.deformation, "ISO 6336-1:2006, 7.5.2.4, Eq. 57", found.remark)
+        table.add("f_ma", found.manufacture, "ISO 6336-1:2006, 7.5.2, Eq. 64")
         table.add("B_1", found.constants[0], "ISO 6336-1:2006, 7.5.2.2, table 8")
         table.add("B_2", found.constants[1], "ISO 6336-1:2006, 7.5.2.2, table 8")
-        table.add("F_betaxmin", found.least, "ISO 6336-1:2006, 7.5.2, Eqs. 55 and 56", "m")
-        table.add("F_betax", found.initial, "ISO 6336-1:2006, 7.5.2.2, Eqs. 52 and 53", "m")
-        table.add("y_beta", found.run_in, "ISO 6336-1:2006, 7.5.2.1, Eqs. 44 to 48", "m")
-        table.add("F_betay", found.effective, "ISO 6336-1:2006, 7.5.2.1, Eq. 43", "m")
+        table.add("F_betaxmin", found.least, "ISO 6336-1:2006, 7.5.2, Eqs. 55 and 56")
+        table.add("F_betax", found.initial, "ISO 6336-1:2006, 7.5.2.2, Eqs. 52 and 53")
+        table.add("y_beta", found.run_in, "ISO 6336-1:2006, 7.5.2.1, Eqs. 44 to 48")
+        table.add("F_betay", found.effective, "ISO 6336-1:2006, 7.5.2.1, Eq. 43")
         table.add("K_Hbeta", found.K_Hbeta, "ISO 6336-1:2006, 7.5, Eqs. 39 and 41, method C")
     else:
-        table.add("K_Hbeta", found.K_Hbeta, "ISO 6336-1, clause 7", remark=found.remark)
+        table.add("K_Hbeta", found.K_Hbeta, "ISO 6336-1, clause 7", found.remark)
     return found.K_Hbeta
 
 
@@ -204,18 +204,18 @@ def contact_stress(table: FactorTable, conditions: Conditions, loads: LoadFactor
     relief, recalled = _tip_relief(conditions)
     inner, single = contact.single_pair_factors(pair, relief)
     table.add("Z_H", z_h, f"{part}, clause 6")
-    table.add("Z_E", z_e, f"{part}, clause 7", "Pa^0.5")
+    table.add("Z_E", z_e, f"{part}, clause 7")
     table.add("Z_epsilon", z_eps, f"{part}, clause 8")
     table.add("Z_beta", z_beta, f"{part}{'/Cor.1:2008' if edition == 2006 else ''}, clause 9")
     if edition == 2019:
-        table.add("f_ZCa", relief, f"{part}, 6.3", remark=recalled)
+        table.add("f_ZCa", relief, f"{part}, 6.3", recalled)
     table.add("M", inner, f"{part}, 6.2")
     table.add("Z_BD", single, f"{part}, 6.2")
     nominal = contact.nominal_contact_stress(pair, duty.tangential, (z_h, z_e, z_eps, z_beta))
     load = duty.application_factor * duty.mesh_load_factor * loads.K_v * loads.K_Hbeta * loads.K_Halpha
     stress = (single[0] * nominal * math.sqrt(load), single[1] * nominal * math.sqrt(load))
-    table.add("sigma_H0", nominal, f"{part}, 5.2", "Pa")
-    table.add("sigma_H", stress, f"{part}, 5.2", "Pa")
+    table.add("sigma_H0", nominal, f"{part}, 5.2")
+    table.add("sigma_H", stress, f"{part}, 5.2")
     return stress
 
 
@@ -234,25 +234,25 @@ def permissible_contact(table: FactorTable, conditions: Conditions) -> tuple[Fla
     found = flank_strength(conditions.geometry, conditions.strength, conditions.quality, conditions.duty)
     part = f"ISO 6336-2:{conditions.edition}"
     one, two = found
-    table.add("sigma_Hlim", (conditions.strength[0].contact, conditions.strength[1].contact), "ISO 6336-5", "Pa")
+    table.add("sigma_Hlim", (conditions.strength[0].contact, conditions.strength[1].contact), "ISO 6336-5")
     table.add("Z_NT", (one.Z_NT, two.Z_NT), f"{part}, clause 11, table 2")
     table.add("Z_L", (one.Z_L, two.Z_L), f"{part}, clause 12")
     table.add("Z_v", (one.Z_v, two.Z_v), f"{part}, clause 12")
     table.add("Z_R", (one.Z_R, two.Z_R), f"{part}, clause 12")
-    table.add("Z_W", (one.Z_W, two.Z_W), f"{part}, clause 13", remark=one.remark)
+    table.add("Z_W", (one.Z_W, two.Z_W), f"{part}, clause 13", one.remark)
     table.add("Z_X", (one.Z_X, two.Z_X), f"{part}, clause 14")
-    table.add("sigma_HG_static", (one.static, two.static), f"{part}, 5.3", "Pa")
-    table.add("sigma_HG_reference", (one.reference, two.reference), f"{part}, 5.3", "Pa")
+    table.add("sigma_HG_static", (one.static, two.static), f"{part}, 5.3")
+    table.add("sigma_HG_reference", (one.reference, two.reference), f"{part}, 5.3")
     bound = ""
     if one.static_rules or two.static_rules:
         bound = (
             "sigma_HG: Z_L Z_v Z_R Z_W would lift it above the static strength of nitrocarburized flanks (Z_NT = 1.1), "
             "which holds for all load cycles then"
         )
-    table.add("sigma_HG", (one.permissible, two.permissible), f"{part}, 5.3", "Pa", bound)
+    table.add("sigma_HG", (one.permissible, two.permissible), f"{part}, 5.3", bound)
     least = conditions.required[0]
     table.add("S_Hmin", least, f"{part}, 5.1, as given")
-    table.add("sigma_HP", (one.permissible / least, two.permissible / least), f"{part}, 5.3", "Pa")
+    table.add("sigma_HP", (one.permissible / least, two.permissible / least), f"{part}, 5.3")
     return found
 
 
@@ -298,18 +298,18 @@ def root_stress(
 
     table.add("z_n", both("teeth"), f"{part}, 6.2")
     table.add("epsilon_alpha_n", pair.virtual_contact_ratio, f"{part}, 6.2")
-    table.add("d_en", (found[0].load_diameter * pair.module, found[1].load_diameter * pair.module), f"{part}, 6.2", "m")
-    table.add("alpha_Fen", of_form("load_angle"), f"{part}, 6.2", "rad")
-    table.add("h_Fe", of_form("moment_arm", pair.module), f"{part}, 6.2", "m")
-    table.add("s_Fn", of_form("root_chord", pair.module), f"{part}, 6.2", "m")
-    table.add("rho_F", of_form("fillet_radius", pair.module), f"{part}, 6.2", "m")
+    table.add("d_en", (found[0].load_diameter * pair.module, found[1].load_diameter * pair.module), f"{part}, 6.2")
+    table.add("alpha_Fen", of_form("load_angle"), f"{part}, 6.2")
+    table.add("h_Fe", of_form("moment_arm", pair.module), f"{part}, 6.2")
+    table.add("s_Fn", of_form("root_chord", pair.module), f"{part}, 6.2")
+    table.add("rho_F", of_form("fillet_radius", pair.module), f"{part}, 6.2")
     if conditions.edition == 2019:
         table.add("f_epsilon", both("load_distribution"), f"{part}, 6.2")
     y_f = tuple(r.form.Y_F * r.load_distribution for r in found)
     deep = ""
     if pair.virtual_contact_ratio >= 2.0:
         deep = "Y_F: the virtual contact ratio is 2 or more; the load stands where the formula for one pair says"
-    table.add("Y_F", (y_f[0], y_f[1]), f"{part}, clause 6, method B", remark=deep)
+    table.add("Y_F", (y_f[0], y_f[1]), f"{part}, clause 6, method B", deep)
     table.add("q_s", (_notch(found[0]), _notch(found[1])), f"{part}, 7.2")
     table.add("Y_S", of_form("Y_S"), f"{part}, clause 7, method B")
     table.add("Y_beta", both("helix"), f"{part}, clause 8")
@@ -325,8 +325,8 @@ def root_stress(
         nominal[0] * applied * loads.K_Fbeta[0] * loads.K_Falpha[0],
         nominal[1] * applied * loads.K_Fbeta[1] * loads.K_Falpha[1],
     )
-    table.add("sigma_F0", nominal, f"{part}, 5.2", "Pa", remark)
-    table.add("sigma_F", stress, f"{part}, 5.2", "Pa")
+    table.add("sigma_F0", nominal, f"{part}, 5.2", remark)
+    table.add("sigma_F", stress, f"{part}, 5.2")
     return stress, found
 
 
@@ -353,18 +353,18 @@ def permissible_bending(
         for i, form in enumerate(forms)
     )
     remark = "; ".join(dict.fromkeys(r for r in (one.remark, two.remark) if r))
-    table.add("sigma_Flim", (conditions.strength[0].bending, conditions.strength[1].bending), "ISO 6336-5", "Pa")
+    table.add("sigma_Flim", (conditions.strength[0].bending, conditions.strength[1].bending), "ISO 6336-5")
     table.add("Y_ST", STANDARD_GEAR, f"{part}, 5.3")
     table.add("Y_NT", (one.Y_NT, two.Y_NT), f"{part}, clause 12, table 1")
-    table.add("Y_deltarelT", (one.Y_deltarelT, two.Y_deltarelT), f"{part}, clause 13", remark=remark)
+    table.add("Y_deltarelT", (one.Y_deltarelT, two.Y_deltarelT), f"{part}, clause 13", remark)
     table.add("Y_RrelT", (one.Y_RrelT, two.Y_RrelT), f"{part}, clause 14")
     table.add("Y_X", (one.Y_X, two.Y_X), f"{part}, clause 15")
     table.add("Y_M", (one.Y_M, two.Y_M), f"{part}, annex B, endurance")
     table.add("Y_M_static", (one.Y_M_static, two.Y_M_static), f"{part}, annex B, static strength")
-    table.add("sigma_FG_static", (one.static, two.static), f"{part}, 5.3", "Pa")
-    table.add("sigma_FG_reference", (one.reference, two.reference), f"{part}, 5.3", "Pa")
-    table.add("sigma_FG", (one.permissible, two.permissible), f"{part}, 5.3", "Pa")
+    table.add("sigma_FG_static", (one.static, two.static), f"{part}, 5.3")
+    table.add("sigma_FG_reference", (one.reference, two.reference), f"{part}, 5.3")
+    table.add("sigma_FG", (one.permissible, two.permissible), f"{part}, 5.3")
     least = conditions.required[1]
     table.add("S_Fmin", least, f"{part}, 5.1, as given")
-    table.add("sigma_FP", (one.permissible / least, two.permissible / least), f"{part}, 5.3", "Pa")
+    table.add("sigma_FP", (one.permissible / least, two.permissible / least), f"{part}, 5.3")
     return one, two

@@ -70,10 +70,10 @@ def rate_pair(conditions: Conditions, computed: Replacement | None = None) -> Pa
 
 
 def _geometry(table: FactorTable, pair: PairGeometry, duty: Duty) -> None:
-    table.add("F_t", duty.tangential, "ISO 6336-1, 4.2", "N")
-    table.add("v", pair.pitch_line_velocity(duty.speed), "ISO 6336-1, 4.2", "m/s")
+    table.add("F_t", duty.tangential, "ISO 6336-1, 4.2")
+    table.add("v", pair.pitch_line_velocity(duty.speed), "ISO 6336-1, 4.2")
     table.add("u", pair.ratio, "ISO 21771, 5.1")
-    table.add("alpha_wt", pair.working_pressure_angle, "ISO 21771, 5.3", "rad")
+    table.add("alpha_wt", pair.working_pressure_angle, "ISO 21771, 5.3")
     table.add("epsilon_alpha", pair.contact_ratio, "ISO 21771, 5.4")
     table.add("epsilon_beta", pair.overlap_ratio, "ISO 21771, 5.4")
     table.add("epsilon_gamma", pair.total_contact_ratio, "ISO 21771, 5.4")

@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.units import from_si
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
+from fegear.formulas.symbols import AGMA_2101, ISO_6336
 from fegear.geometry.pair import MEMBERS
-from fegear.results.rating.rating_meanings import AGMA_MEANINGS, AGMA_UNITS, MEANINGS, read_as
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from fegear.case.built.rated_pair import PairToRate
     from fegear.formulas.agma.agma2101 import AgmaRating
@@ -40,37 +41,63 @@ if TYPE_CHECKING:
 _STANDS_IN = "computed in place of the formula"
 
 
+def _column(symbol: str, member: Member, si: Sequence[float], ending: str = "", said: str = "") -> Column:
+    """A symbol of ISO 6336 over levels or methods, of one gear."""
+    how = ISO_6336[symbol]
+    said = said or f"{how.meaning}, {member} gear"
+    return Column(f"{symbol}_{member}{ending}", np.array(si), how.unit, said)
+
+
+def _value(owner: str, symbol: str, si: float, said: str = "", error: float | None = None, ending: str = "") -> Value:
+    """A symbol of ISO 6336 as a value, its meaning followed by what was `said` about it."""
+    how = ISO_6336[symbol]
+    return Value(f"{owner}.{symbol}{ending}", float(si), how.unit, error, f"{how.meaning}{said}")
+
+
+def _texts(name: str, texts: Iterable[str], meaning: str) -> Column:
+    return Column(name, np.array(list(texts)), "", meaning)
+
+
+def _of_factors(
+    factors: Sequence[Factor | None], units: Sequence[str], member: Member, i: int, ending: str, said: str
+) -> Column:
+    """Every factor of one gear in its unit; none where there is none."""
+    numbers = [
+        np.nan if one is None else one.values[i] * (from_si(unit) if unit else 1.0)
+        for one, unit in zip(factors, units, strict=True)
+    ]
+    return Column(f"{member}{ending}", np.array(numbers), "", said)
+
+
+def _factor_columns(
+    rows: Sequence[Factor], places: Sequence[int], beside: Sequence[Factor | None] = ()
+) -> list[Column]:
+    """Symbol, numbers of both gears, unit, clause and meaning; `places` are those of driver and driven."""
+    units = [one.shown.unit for one in rows]
+    members = list(zip(MEMBERS, places, strict=True))
+    found = [_of_factors(rows, units, member, i, "", f"of the {member} gear") for member, i in members]
+    if beside:
+        said = "with computed load factors and root stress"
+        found += [_of_factors(beside, units, member, i, "_computed", said) for member, i in members]
+    return [
+        _texts("symbol", (one.symbol for one in rows), "as the standard writes it"),
+        *found,
+        _texts("unit", units, "of the numbers in this row"),
+        _texts("clause", (one.clause for one in rows), "where the standard gives it"),
+        _texts("meaning", (one.shown.meaning for one in rows), "what it is"),
+    ]
+
+
 def factor_table(data: RatingData, asked: PairToRate) -> Table:
     """Every factor of ISO 6336 with its clause, and beside it what it is with computed values."""
     rows = data.formula.factors
     computed = {} if data.by_computed is None else {one.symbol: one for one in data.by_computed.factors}
-    scales = [read_as(one.symbol, one.unit) for one in rows]
-
-    def of(values: Sequence[Factor | None], member: Member) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        i = asked.of(member)
-        return np.array(
-            [np.nan if one is None else one.values[i] * scale for one, (_, scale) in zip(values, scales, strict=True)]
-        )
-
-    columns = [
-        Column("symbol", np.array([one.symbol for one in rows]), "", "as the standard writes it"),
-        *(Column(member, of(rows, member), "", f"of the {member} gear") for member in MEMBERS),
-    ]
-    if computed:
-        beside = [computed.get(one.symbol) for one in rows]
-        columns += [
-            Column(f"{member}_computed", of(beside, member), "", "with computed load factors and root stress")
-            for member in MEMBERS
-        ]
-    columns += [
-        Column("unit", np.array([unit for unit, _ in scales]), "", "of the numbers in this row"),
-        Column("clause", np.array([one.clause for one in rows]), "", "where the standard gives it"),
-        Column("meaning", np.array([MEANINGS.get(one.symbol, "") for one in rows]), "", "what it is"),
-        Column(
-            "remark", np.array([remark_of(one, asked) for one in rows]), "", "what lies outside a range, or was given"
-        ),
-    ]
-    return Table(f"rating_{asked.name}", tuple(columns), f"Rating of pair {asked.name} by ISO 6336, factor by factor")
+    beside = [computed.get(one.symbol) for one in rows] if computed else []
+    columns = (
+        *_factor_columns(rows, [asked.of(member) for member in MEMBERS], beside),
+        _texts("remark", (remark_of(one, asked) for one in rows), "what lies outside a range, or was given"),
+    )
+    return Table(f"rating_{asked.name}", columns, f"Rating of pair {asked.name} by ISO 6336, factor by factor")
 
 
 def remark_of(one: Factor, asked: PairToRate) -> str:
@@ -82,18 +109,20 @@ def remark_of(one: Factor, asked: PairToRate) -> str:
 def safety_table(data: RatingData, asked: PairToRate) -> Table:
     """Stresses and safeties of every method, a row each."""
     rows = methods(data, asked)
-    columns = [Column("method", np.array([row.name for row in rows]), "", "what the stresses come from")]
-    for head, own, unit, meaning in (
-        ("sigma_H", "contact", "MPa", "contact stress"), ("S_H", "s_h", "", "safety against pitting"),
-        ("sigma_F", "bending", "MPa", "root stress"), ("S_F", "s_f", "", "safety against tooth breakage"),
-        ("S_H_error", "s_h_error", "", "estimated relative error of S_H"),
-        ("S_F_error", "s_f_error", "", "estimated relative error of S_F"),
+    columns = [_texts("method", (row.name for row in rows), "what the stresses come from")]
+    for symbol, own, error in (
+        ("sigma_H", "contact", False), ("S_H", "s_h", False), ("sigma_F", "bending", False), ("S_F", "s_f", False),
+        ("S_H", "s_h_error", True), ("S_F", "s_f_error", True),
     ):  # fmt: skip
-        if own.endswith("error") and data.computed is None:
+        if error and data.computed is None:
             continue
         for member in MEMBERS:
-            found = np.array([getattr(row, own)[asked.of(member)] for row in rows])
-            columns.append(Column(f"{head}_{member}", found, unit, f"{meaning}, {member} gear"))
+            found = [getattr(row, own)[asked.of(member)] for row in rows]
+            said = f"estimated relative error of {symbol}, {member} gear"
+            columns.append(
+                Column(f"{symbol}_error_{member}", np.array(found), "", said) if error
+                else _column(symbol, member, found)
+            )  # fmt: skip
     return Table(f"rating_safety_{asked.name}", tuple(columns), f"Safeties of pair {asked.name}", printed=True)
 
 
@@ -112,18 +141,16 @@ def spectrum_table(found: SpectrumRating, asked: PairToRate, computed: SpectrumR
         Column("torque", np.array(torque), "N.m", "of the driver"),
         Column("speed", np.array([level.speed * turn for level in asked.levels]), "rpm", "of the driver"),
         Column("share", np.array([level.share for level in asked.levels]), "", "of the life"),
-        *(Column(one, factor(one), "", MEANINGS[one]) for one in ("K_v", "K_Hbeta", "K_Halpha")),
+        *(Column(one, factor(one), "", ISO_6336[one].meaning) for one in ("K_v", "K_Hbeta", "K_Halpha")),
     ]
     for member in MEMBERS:
         i = asked.of(member)
         columns += [
-            Column(f"cycles_{member}", np.array([one.contact[i].cycles for one in levels]), "", "load cycles"),
-            Column(f"sigma_H_{member}", np.array([one.contact[i].stress for one in levels]), "MPa", "contact stress"),
-            Column(f"damage_H_{member}", np.array([one.contact[i].damage() for one in levels]), "",
-                   "n/N of the flanks at a safety of 1"),
-            Column(f"sigma_F_{member}", np.array([one.bending[i].stress for one in levels]), "MPa", "root stress"),
-            Column(f"damage_F_{member}", np.array([one.bending[i].damage() for one in levels]), "",
-                   "n/N of the roots at a safety of 1"),
+            _column("cycles", member, [one.contact[i].cycles for one in levels]),
+            _column("sigma_H", member, [one.contact[i].stress for one in levels]),
+            _column("damage_H", member, [one.contact[i].damage() for one in levels]),
+            _column("sigma_F", member, [one.bending[i].stress for one in levels]),
+            _column("damage_F", member, [one.bending[i].damage() for one in levels]),
         ]  # fmt: skip
     for head, unit, meaning, of in _computed_levels(computed, asked):
         columns.append(Column(head, of, unit, meaning))
@@ -140,7 +167,7 @@ def _computed_levels(
     wide = asked.width != "plane"
     for one in ("K_Hbeta", "K_Halpha") if wide else ():
         values = [math.nan if level.rating is None else level.rating[one].value for level in found.levels]
-        yield f"{one}_computed", "", f"{MEANINGS[one]}, computed at the load of the level", np.array(values)
+        yield f"{one}_computed", "", f"{ISO_6336[one].meaning}, computed at the load of the level", np.array(values)
     for member in MEMBERS:
         i = asked.of(member)
         if wide:
@@ -158,52 +185,39 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
         i = asked.of(member)
         key = f"{name}.{member}"
         found += [
-            Value(f"{key}.S_H", data.formula.contact_safety[i], "", None, f"safety of flanks, ISO 6336:{edition}"),
-            Value(f"{key}.S_F", data.formula.bending_safety[i], "", None,
-                  f"safety of roots, ISO 6336:{edition}"),
-            Value(f"{key}.sigma_H", data.formula.contact_stress[i], "MPa", None, "contact stress, ISO 6336"),
-            Value(f"{key}.sigma_F", data.formula.bending_stress[i], "MPa", None, "root stress, ISO 6336"),
-        ]  # fmt: skip
+            _value(key, "S_H", data.formula.contact_safety[i], f", ISO 6336:{edition}"),
+            _value(key, "S_F", data.formula.bending_safety[i], f", ISO 6336:{edition}"),
+            _value(key, "sigma_H", data.formula.contact_stress[i], ", ISO 6336"),
+            _value(key, "sigma_F", data.formula.bending_stress[i], ", ISO 6336"),
+        ]
         if data.by_computed is not None and data.computed is not None:
             s_h, s_f = data.by_computed.contact_safety[i], data.by_computed.bending_safety[i]
             if data.computed.replacement.K_Hbeta is not None:
-                found.append(
-                    Value(f"{key}.S_H_computed", s_h, "", s_h * data.computed.contact_error,
-                          "safety against pitting with the computed load distribution")
-                )  # fmt: skip
-            found.append(
-                Value(f"{key}.S_F_computed", s_f, "", s_f * data.computed.bending_error[i],
-                      "safety against tooth breakage with the computed root stress")
-            )  # fmt: skip
+                error, said = s_h * data.computed.contact_error, " with the computed load distribution"
+                found.append(_value(key, "S_H", s_h, said, error, "_computed"))
+            error, said = s_f * data.computed.bending_error[i], " with the computed root stress"
+            found.append(_value(key, "S_F", s_f, said, error, "_computed"))
         if data.agma is not None:
             j = data.agma.members.index(member)
-            found += [
-                Value(f"{key}.S_H_agma", data.agma.S_H[j], "", None, "safety of stress against pitting, AGMA 2101-D04"),
-                Value(f"{key}.S_F_agma", data.agma.S_F[j], "", None, "safety against bending, AGMA 2101-D04"),
-            ]  # fmt: skip
+            for symbol, safety in (("S_H", data.agma.S_H[j]), ("S_F", data.agma.S_F[j])):
+                found.append(
+                    Value(f"{key}.{symbol}_agma", safety, "", None, f"{AGMA_2101[symbol].meaning}, AGMA 2101-D04")
+                )
         if data.spectrum is not None:
             found += _of_spectrum(data, data.spectrum, asked, member)
         if data.spectrum_computed is not None:
+            flanks, roots = data.spectrum_computed.contact_safety[i], data.spectrum_computed.bending_safety[i]
             if asked.width != "plane":
-                found.append(
-                    Value(f"{key}.S_H_spectrum_computed", data.spectrum_computed.contact_safety[i], "", None,
-                          "safety against pitting under the spectrum, loads of all levels computed")
-                )  # fmt: skip
-            found.append(
-                Value(f"{key}.S_F_spectrum_computed", data.spectrum_computed.bending_safety[i], "", None,
-                      "safety against tooth breakage under the spectrum, root stresses computed")
-            )  # fmt: skip
+                said = " under the spectrum, loads of all levels computed"
+                found.append(_value(key, "S_H", flanks, said, ending="_spectrum_computed"))
+            said = " under the spectrum, root stresses computed"
+            found.append(_value(key, "S_F", roots, said, ending="_spectrum_computed"))
     for symbol in ("K_v", "K_Hbeta", "K_Halpha"):
-        found.append(
-            Value(f"{name}.{symbol}_rated", data.formula[symbol].value, "", None, f"{MEANINGS[symbol]}, ISO 6336")
-        )
+        found.append(_value(name, symbol, data.formula[symbol].value, ", ISO 6336", ending="_rated"))
     if data.computed is not None and data.computed.replacement.K_Hbeta is not None:
         for symbol in ("K_Hbeta", "K_Halpha"):
-            value = getattr(data.computed.replacement, symbol)
-            found.append(
-                Value(f"{name}.{symbol}_computed", value, "", None,
-                      f"{MEANINGS[symbol]}, computed at the load with K_A, K_gamma and K_v")
-            )  # fmt: skip
+            value, said = getattr(data.computed.replacement, symbol), ", computed at the load with K_A, K_gamma and K_v"
+            found.append(_value(name, symbol, value, said, ending="_computed"))
         found.append(
             Value(f"{name}.largest_pressure_computed", data.computed.pressure, "MPa", None,
                   "over the computed flanks at the load with K_A, K_gamma and K_v, without tips and form circles")
@@ -213,23 +227,7 @@ def rating_values(data: RatingData, asked: PairToRate) -> tuple[Value, ...]:
 
 def agma_table(found: AgmaRating, asked: PairToRate) -> Table:
     """Every factor of ANSI/AGMA 2101-D04 with its clause."""
-    rows, places = found.factors, [found.members.index(member) for member in MEMBERS]
-    units = [AGMA_UNITS[one.unit] for one in rows]
-    columns = (
-        Column("symbol", np.array([one.symbol for one in rows]), "", "as the standard writes it"),
-        *(
-            Column(
-                member,
-                np.array([one.values[i] * scale for one, (_, scale) in zip(rows, units, strict=True)]),
-                "",
-                f"of the {member} gear",
-            )
-            for member, i in zip(MEMBERS, places, strict=True)
-        ),
-        Column("unit", np.array([unit for unit, _ in units]), "", "of the numbers in this row"),
-        Column("clause", np.array([one.clause for one in rows]), "", "where the standard gives it"),
-        Column("meaning", np.array([AGMA_MEANINGS[one.symbol] for one in rows]), "", "what it is"),
-    )
+    columns = tuple(_factor_columns(found.factors, [found.members.index(member) for member in MEMBERS]))
     title = f"Rating of pair {asked.name} by ANSI/AGMA 2101-D04, factor by factor"
     return Table(f"rating_agma_{asked.name}", columns, title)
 
@@ -246,16 +244,13 @@ def _of_spectrum(data: RatingData, spectrum: SpectrumRating, asked: PairToRate, 
     of_flank = equivalent_torque(torque, cycles, 0.5 * wohler_exponent(flank), flank.cycles[-2])
     of_root = equivalent_torque(torque, cycles, wohler_exponent(root), root.cycles[-2])
     found = [
-        Value(f"{key}.S_H_spectrum", spectrum.contact_safety[i], "", None, "safety against pitting under the spectrum"),
-        Value(f"{key}.S_F_spectrum", spectrum.bending_safety[i], "", None,
-              "safety against tooth breakage under the spectrum"),
-        Value(f"{key}.damage_H", spectrum.contact_damage[i], "", None, "Miner sum of the flanks at a safety of 1"),
-        Value(f"{key}.damage_F", spectrum.bending_damage[i], "", None, "Miner sum of the roots at a safety of 1"),
-        Value(f"{key}.equivalent_torque_H", of_flank, "N.m", None,
-              f"torque of the driver whose {flank.cycles[-2]:g} load cycles hurt the flanks as the spectrum does"),
-        Value(f"{key}.equivalent_torque_F", of_root, "N.m", None,
-              f"torque of the driver whose {root.cycles[-2]:g} load cycles hurt the roots as the spectrum does"),
-    ]  # fmt: skip
+        _value(key, "S_H", spectrum.contact_safety[i], " under the spectrum", ending="_spectrum"),
+        _value(key, "S_F", spectrum.bending_safety[i], " under the spectrum", ending="_spectrum"),
+        _value(key, "damage_H", spectrum.contact_damage[i]),
+        _value(key, "damage_F", spectrum.bending_damage[i]),
+        _value(key, "equivalent_torque_H", of_flank, f", over {flank.cycles[-2]:g} load cycles"),
+        _value(key, "equivalent_torque_F", of_root, f", over {root.cycles[-2]:g} load cycles"),
+    ]
     return [value for value in found if math.isfinite(value.si)]
 
 
@@ -310,23 +305,16 @@ def life_values(data: RatingData, asked: PairToRate) -> list[Value]:
     """Transmittable power of the pair, service life and, without a spectrum, damage of both gears."""
     name, (flank, root) = asked.name, transmittable_power(data, asked)
     found = [
-        Value(f"{name}.transmittable_power", min(flank, root), "kW", None,
-              "at which the required safeties are reached, with the load factors of this load"),
-        Value(f"{name}.transmittable_power_H", flank, "kW", None, "the same of the flanks alone"),
-        Value(f"{name}.transmittable_power_F", root, "kW", None, "the same of the roots alone"),
-    ]  # fmt: skip
+        _value(name, "transmittable_power", min(flank, root)),
+        _value(name, "transmittable_power_H", flank),
+        _value(name, "transmittable_power_F", root),
+    ]
     for member in MEMBERS:
         key, (of_flank, of_root) = f"{name}.{member}", service_life(data, asked, member)
-        found += [
-            Value(f"{key}.life_H", of_flank, "h", None, "service life of the flanks at the required safety"),
-            Value(f"{key}.life_F", of_root, "h", None, "service life of the roots at the required safety"),
-        ]
+        found += [_value(key, "life_H", of_flank), _value(key, "life_F", of_root)]
         if data.spectrum is None:
             harm_flank, harm_root = nominal_damage(data, asked, member)
-            found += [
-                Value(f"{key}.damage_H", harm_flank, "", None, "n/N of the flanks at a safety of 1"),
-                Value(f"{key}.damage_F", harm_root, "", None, "n/N of the roots at a safety of 1"),
-            ]
+            found += [_value(key, "damage_H", harm_flank), _value(key, "damage_F", harm_root)]
     return [value for value in found if math.isfinite(value.si)]
 
 
