@@ -10,6 +10,7 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.contact.unloaded.pair import HelicalPair, Misalignment
 
 if TYPE_CHECKING:
@@ -22,58 +23,33 @@ if TYPE_CHECKING:
 class LineContact(ReadOnlyArrays):
     """Points of lines of contact and their parameters on both flanks; all arrays have one shape.
 
-    Parameters
-    ----------
-    phi_1, phi_2 : ndarray
-        Angles of pinion and gear [rad].
-    z : ndarray
-        Height [m], on both gears.
-    theta_1, theta_2 : ndarray
-        Surface parameters [rad]: where around the base cylinders the line touches them. Constant along a line.
-    t_1, t_2 : ndarray
-        Base tangent lengths [m]: u cos(lambda_b) of the paper.
-    u_1, u_2 : ndarray
-        Surface parameters [m]: lengths along the line from the base helix; infinite for a spur gear, whose line never
-        meets it.
-    r_1, r_2 : ndarray
-        Radii [m].
+    Angles theta are constant along a line; lengths u are infinite for a spur gear, whose line never meets its base
+    helix; t = u cos(lambda_b).
     """
 
-    phi_1: Array
-    phi_2: Array
-    z: Array
-    theta_1: Array
-    theta_2: Array
-    t_1: Array
-    t_2: Array
-    u_1: Array
-    u_2: Array
-    r_1: Array
-    r_2: Array
+    phi_1: Array = shown("deg", "pinion angle of this tooth pair: the first parameter", name="phi1")
+    phi_2: Array = shown("deg", "gear angle", name="phi2")
+    z: Array = shown("mm", "height, on both gears")
+    theta_1: Array = shown("deg", "where around the pinion's base cylinder the line touches it", name="theta1")
+    theta_2: Array = shown("deg", "where around the gear's base cylinder the line touches it", name="theta2")
+    t_1: Array = shown("mm", "base tangent length of the pinion")
+    t_2: Array = shown("mm", "base tangent length of the gear")
+    u_1: Array = shown("mm", "length along the line from the pinion's base helix: the second parameter", name="u1")
+    u_2: Array = shown("mm", "length along the line from the gear's base helix", name="u2")
+    r_1: Array = shown("mm", "radius on the pinion", name="r1")
+    r_2: Array = shown("mm", "radius on the gear", name="r2")
 
 
 @dataclass(frozen=True, slots=True)
 class LineLength(ReadOnlyArrays):
-    """Total length of all lines of contact at a time.
+    """Total length of all lines of contact at a time, arrays of shape (n,) over a pitch; the rest is exact."""
 
-    Parameters
-    ----------
-    phi_1 : ndarray, shape (n,)
-        Pinion angles over a pitch [rad].
-    total : ndarray, shape (n,)
-        [m].
-    lines : ndarray of int, shape (n,)
-        How many tooth pairs touch.
-    least, mean, largest : float
-        Over the cycle [m], exact.
-    """
-
-    phi_1: Array
-    total: Array
-    lines: NDArray[np.int_]
-    least: float
-    mean: float
-    largest: float
+    phi_1: Array = shown("deg", "pinion angle", name="phi1")
+    total: Array = shown("mm", "total length of all lines of contact", name="length")
+    lines: NDArray[np.int_] = shown("", "tooth pairs in contact", name="pairs")
+    least: float = shown("mm", "least over a cycle", name="contact_line_least")
+    mean: float = shown("mm", "mean total length of the contact lines", name="contact_line_mean")
+    largest: float = shown("mm", "largest over a cycle", name="contact_line_largest")
 
 
 def aligned(pair: HelicalPair) -> HelicalPair:

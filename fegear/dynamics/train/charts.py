@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.shown import shown
 from fegear.dynamics.motion.motion_model import MotionModel
 from fegear.dynamics.motion.steady_state import SteadyState, speed_sweep
 from fegear.dynamics.train.excitation import effective_error
@@ -34,38 +35,28 @@ Direction = Literal["up", "down", "static", "rest"]
 class SpeedChart:
     """Dynamic factor of a gear pair against speed, in increasing order of speed.
 
-    Attributes
-    ----------
-    speeds : ndarray, shape (n,)
-        Speeds of the first body [rad/s].
-    dynamic_factor, mesh_force_factor : ndarray, shape (n,)
-        Largest force on one tooth pair, and largest mesh force, over the mean mesh force.
-    apart, behind : ndarray, shape (n,)
-        Share of the time without contact and on the back flanks.
-    periods : ndarray of int, shape (n,)
-        Periods after which the motion repeats, 0 if it does not.
-    kinds : tuple of str
-        Kind of motion at each speed; see `SteadyState`.
-    median, upper : ndarray, shape (n,)
-        What half and 99 % of the periods do not exceed: quantiles of the largest force on one tooth pair in a period,
-        over the mean mesh force. Of a motion that repeats, the dynamic factor itself.
-    measured : ndarray of int, shape (n,)
-        Periods of excitation that the largest forces are taken over.
-    multiplier : ndarray, shape (n,)
-        Growth over one period of excitation of what lies beside the motion; above one, nothing holds it.
+    Arrays of shape (n,). Quantiles are those of the largest force on one tooth pair in a period; of a motion that
+    repeats they are the dynamic factor itself. Kinds are those of `SteadyState`.
     """
 
-    speeds: Array
-    dynamic_factor: Array
-    mesh_force_factor: Array
-    apart: Array
-    behind: Array
-    periods: NDArray[np.int64]
-    kinds: tuple[str, ...]
-    median: Array
-    upper: Array
-    measured: NDArray[np.int64]
-    multiplier: Array
+    speeds: Array = shown("rpm", "speed of the first body", name="speed")
+    dynamic_factor: Array = shown("", "largest force on one tooth pair over the mean mesh force")
+    mesh_force_factor: Array = shown("", "largest mesh force over the mean mesh force")
+    apart: Array = shown("", "share of the time without contact", name="contact_loss_fraction")
+    behind: Array = shown("", "share of the time on the back flanks", name="backside_fraction")
+    periods: NDArray[np.int64] = shown("", "periods of excitation after which the motion repeats; 0 if it does not")
+    kinds: tuple[str, ...] = shown(
+        "", "periodic (and stable), quasi-periodic, chaotic, long-period, unsettled, or growing without bound",
+        name="motion",
+    )  # fmt: skip
+    median: Array = shown("", "dynamic factor that half of the periods do not exceed", name="median_factor")
+    upper: Array = shown("", "dynamic factor that 99 % of the periods do not exceed", name="factor_99_percent")
+    measured: NDArray[np.int64] = shown(
+        "", "periods of excitation that the largest forces come from", name="periods_measured"
+    )
+    multiplier: Array = shown(
+        "", "growth of a small disturbance over one period of excitation; above 1 in a motion that grows"
+    )
 
     @classmethod
     def of(cls, speeds: Array, states: Sequence[SteadyState], mesh: int, mean: float) -> SpeedChart:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown
 from fegear.dynamics.train.charts import SpeedChart
 from fegear.dynamics.train.single_tooth import force_history
 from fegear.dynamics.train.tooth_force import mesh_force_range
@@ -62,24 +63,12 @@ _ALIKE = 1e-6
 
 @dataclass(frozen=True)
 class FactorLine:
-    """A straight line of the dynamic factor over the effective error, by least squares.
+    """A straight line of the dynamic factor over the effective error, by least squares."""
 
-    Parameters
-    ----------
-    constant : float
-        At no effective error.
-    slope : float
-        [1/m].
-    scatter : float
-        Root mean square of what the factors are off it.
-    correlation : float
-        Between both; 1 if the error tells the factor wholly.
-    """
-
-    constant: float
-    slope: float
-    scatter: float
-    correlation: float
+    constant: float = shown("", "dynamic factor at no effective error", name="line_constant")
+    slope: float = shown("1/mm", "of the dynamic factor over A_e", name="line_slope")
+    scatter: float = shown("", "root mean square of what it misses", name="line_scatter")
+    correlation: float = shown("", "of dynamic factor and A_e", name="line_correlation")
 
     def __call__(self, effective_error: ArrayLike) -> Array:
         """Dynamic factor at effective errors [m]."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown
 from fegear.dynamics.train.matrices import damping_matrix, elements
 
 if TYPE_CHECKING:
@@ -23,21 +24,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Modes:
-    """Undamped modes of a train with its mean mesh stiffness, the rigid-body motion first.
+    """Undamped modes of a train with its mean mesh stiffness, the rigid-body motion first, which is exactly zero.
 
     Attributes
     ----------
     frequencies : ndarray, shape (size,)
-        Natural frequencies [Hz], increasing; the rigid-body motion is exactly zero.
+        Increasing.
     shapes : ndarray, shape (size, size)
-        Column k is mode k in rotation angles, with unit modal mass.
+        Column k is mode k.
     mesh_energy : ndarray, shape (size, meshes)
-        Share of each mode's strain energy in each gear pair (zero for the rigid-body motion).
+        Zero for the rigid-body motion.
     """
 
-    frequencies: Array
-    shapes: Array
-    mesh_energy: Array
+    frequencies: Array = shown("Hz", "undamped, with mean mesh stiffnesses", name="frequency")
+    shapes: Array = shown("", "rotation angle for unit modal mass [rad/(kg^0.5 m)]", name="shape")
+    mesh_energy: Array = shown("", "share of the mode's strain energy in this mesh", name="energy")
 
 
 def modes(train: Train) -> Modes:

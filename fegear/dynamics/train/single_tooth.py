@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown
 from fegear.contact.plane.compliance import largest_stress
 from fegear.contact.wide.lines import life_of_contact
 from fegear.dynamics.train.mesh_excitation import tooth_pair_at
@@ -50,25 +51,19 @@ _BESIDE = 1e-7
 class MeshForce:
     """Force in a mesh over one base pitch, all meshes' shares included; arrays of shape (n,).
 
-    Attributes
-    ----------
-    phase : ndarray
-        Of the mesh [its base pitches].
-    time : ndarray
-        [s], zero at phase zero.
-    of_teeth : ndarray
-        Sum of the forces on the tooth pairs in contact [N].
-    by_mean_stiffness : ndarray
-        Mean force and mean stiffness times the increments of the transmission error [N] (3.2 to 3.10).
-    pairs : ndarray of int
-        Tooth pairs in contact.
+    The mean stiffness is that of Mark's equations 3.2 to 3.10; time is zero at phase zero.
     """
 
-    phase: Array
-    time: Array
-    of_teeth: Array
-    by_mean_stiffness: Array
-    pairs: NDArray[np.integer]
+    phase: Array = shown("", "of the mesh, in base pitches")
+    time: Array = shown("s", "from the mesh's phase zero", name="t")
+    of_teeth: Array = shown(
+        "N", "sum of the forces on the tooth pairs in contact, with all meshes", name="force", label="mesh force"
+    )
+    by_mean_stiffness: Array = shown(
+        "N", "mean force and mean stiffness times the increments of the transmission error",
+        name="force_by_mean_stiffness",
+    )  # fmt: skip
+    pairs: NDArray[np.integer] = shown("", "tooth pairs in contact")
 
 
 def summed_harmonics(data: GearTrain, harmonics: int) -> int:
@@ -172,25 +167,14 @@ _FEW = 9
 class ToothRootStress:
     """Largest root tension of one tooth, over the positions of the force on it, shape (n,) [Pa].
 
-    Parameters
-    ----------
-    total : ndarray
-        With all meshes' shares, at the phases given.
-    any_phase : ndarray
-        What it does not exceed, whatever the phases of the other meshes.
-    own : ndarray
-        Without the other meshes' share.
-    static : ndarray
-        Quasi-static.
-    error : ndarray
-        What the source leaves in `own`; NaN where it does not know.
+    `error` is NaN where the source does not know.
     """
 
-    total: Array
-    any_phase: Array
-    own: Array
-    static: Array
-    error: Array
+    total: Array = shown("MPa", "largest root tension, all meshes' shares", name="stress", label="largest root tension")
+    any_phase: Array = shown("MPa", "at most, whatever the phases of the other meshes", name="stress_any_phase")
+    own: Array = shown("MPa", "without the other meshes' share", name="stress_own_mesh")
+    static: Array = shown("MPa", "quasi-static", name="static_stress")
+    error: Array = shown("MPa", "what the source leaves in stress_own_mesh", name="stress_error")
 
 
 def tooth_root_stress(

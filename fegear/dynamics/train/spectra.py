@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.shown import shown, shows
 from fegear.dynamics.train.increments import dynamic_increments
 
 if TYPE_CHECKING:
@@ -25,36 +26,27 @@ if TYPE_CHECKING:
 class MeshForceSpectrum:
     """Line spectra of the mesh forces; the bearings react to the same forces.
 
-    Attributes
-    ----------
-    speeds : ndarray, shape (speeds,)
-        Speeds of the first body [rad/s].
-    orders : ndarray, shape (harmonics,)
-        n = 1, 2, ...; with spacing errors fractions as well, the rotational harmonics.
-    present : ndarray of bool, shape (meshes, harmonics)
-        Whether the static transmission error of mesh j has that harmonic.
-    frequencies : ndarray, shape (meshes, harmonics, speeds)
-        n times the mesh frequency of the mesh that excites [Hz].
-    coefficients : ndarray, shape (meshes, meshes, harmonics, speeds)
-        Complex Fourier coefficient [N] of the force in mesh i that the static transmission error of mesh j excites, in
-        time from the moment that the phases hold for; its amplitude (0-peak) is twice the modulus.
-    static : ndarray, shape (meshes,)
-        Mean mesh forces [N].
+    Shapes: speeds (speeds,), orders (harmonics,), frequencies (meshes, harmonics, speeds), static (meshes,); present
+    (meshes, harmonics) is of the exciting mesh j; coefficients (meshes, meshes, harmonics, speeds) are those of the
+    force in mesh i that the static transmission error of mesh j excites, in time from the moment that the phases hold
+    for. With spacing errors some orders are fractions, the rotational harmonics.
     """
 
-    speeds: Array
-    orders: Array
-    present: NDArray[np.bool_]
-    frequencies: Array
-    coefficients: Complex
-    static: Array
+    speeds: Array = shown("rpm", "speed of the first body", name="speed")
+    orders: Array = shown("", "harmonic of the mesh frequency of from_pair", name="n")
+    present: NDArray[np.bool_] = shown("", "whether the transmission error of the exciting mesh has that harmonic")
+    frequencies: Array = shown("Hz", "n times the mesh frequency", name="frequency", label="frequency")
+    coefficients: Complex = shown("N", "complex Fourier coefficient; its amplitude is twice the modulus")
+    static: Array = shown("N", "mean mesh force")
 
     @property
+    @shows("N", "0-peak", name="force", label="mesh force, 0-peak")
     def amplitudes(self) -> Array:
         """Amplitudes (0-peak) [N], shape (meshes, meshes, harmonics, speeds)."""
         return 2.0 * np.abs(self.coefficients)
 
     @property
+    @shows("N^2", "one-sided power of the line", name="power", label="power of the line")
     def power_lines(self) -> Array:
         """One-sided power of each line [N^2], 2 |alpha|^2 (3.11)."""
         return 2.0 * np.abs(self.coefficients) ** 2

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError
+from fegear.base.shown import shown, shows
 from fegear.contact.plane.compliance import largest_stress
 from fegear.dynamics.train.increments import dynamic_increments
 from fegear.dynamics.train.spectra import mesh_force_spectrum
@@ -37,40 +38,29 @@ _BLOCK = 256
 
 @dataclass(frozen=True)
 class ToothForce:
-    """Force on one tooth pair of a mesh through its engagement.
+    """Force on one tooth pair of a mesh through its engagement, shapes (n,) and (meshes, n) of other meshes' parts.
 
-    Attributes
-    ----------
-    x : ndarray, shape (n,)
-        Position on the line of action [m].
-    time : ndarray, shape (n,)
-        Time [s], zero when the mesh is at phase zero: when tooth pair number 0 is at the pitch point.
-    static : ndarray, shape (n,)
-        Static force [N] (3.30).
-    own : ndarray, shape (n,)
-        Increment from the static transmission error of this mesh [N] (5.14).
-    cross : ndarray, shape (meshes, n)
-        Increments from the other meshes at the phases given [N] (5.15); zero for this mesh itself.
-    cross_reach : ndarray, shape (meshes, n)
-        Largest and
-    cross_least : ndarray, shape (meshes, n)
-        least increment from each other mesh over all relative phases [N].
+    Time is zero when the mesh is at phase zero: when tooth pair number 0 is at the pitch point. Numbers of equations
+    are those of Mark.
     """
 
-    x: Array
-    time: Array
-    static: Array
-    own: Array
-    cross: Array
-    cross_reach: Array
-    cross_least: Array
+    x: Array = shown("mm", "place of the tooth pair on the line of action")
+    time: Array = shown("s", "from the mesh's phase zero", name="t")
+    static: Array = shown("N", "static part")  # (3.30)
+    own: Array = shown("N", "from this mesh's transmission error", name="own_increment", label="increment")  # (5.14)
+    #: At the phases given (5.15); zero for this mesh itself.
+    cross: Array = shown("N", "from the other mesh, at the case's phases", name="increment")
+    cross_reach: Array = shown("N", "largest increment from the other mesh over all relative phases")
+    cross_least: Array = shown("N", "least increment from the other mesh over all relative phases")
 
     @property
+    @shows("N", "on one tooth pair, without the other meshes' share", name="force", label="tooth force")
     def total(self) -> Array:
         """Static force and own increment [N]: what Figs. 22 and 23 of the paper show."""
         return self.static + self.own
 
     @property
+    @shows("N", "with the other meshes' share, at the case's phases", name="force_with_others")
     def with_others(self) -> Array:
         """Static force and the increments from all meshes at the phases given [N]."""
         return self.total + np.asarray(self.cross.sum(axis=0))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_of, columns_of, value_of
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark, Surface, outline, ramp
 from fegear.engine.outcome import Outcome, Value
@@ -77,23 +78,13 @@ def _compute(asked: ContactLinesInputs, _upstream: Upstream, _work: Work) -> Con
 
 def _lines_table(name: str, found: LineContact) -> Table:
     number = np.repeat(np.arange(1, found.phi_1.shape[0] + 1), found.phi_1.shape[1])
-    columns = (
-        ("phi1", found.phi_1, "deg", "pinion angle of this tooth pair: the first parameter"),
-        ("u1", found.u_1, "mm", "length along the line from the pinion's base helix: the second parameter"),
-        ("theta1", found.theta_1, "deg", "where around the pinion's base cylinder the line touches it"),
-        ("u2", found.u_2, "mm", "length along the line from the gear's base helix"),
-        ("theta2", found.theta_2, "deg", "where around the gear's base cylinder the line touches it"),
-        ("phi2", found.phi_2, "deg", "gear angle"),
-        ("z", found.z, "mm", "height, on both gears"),
-        ("r1", found.r_1, "mm", "radius on the pinion"),
-        ("r2", found.r_2, "mm", "radius on the gear"),
-    )
+    given = ("phi_1", "u_1", "theta_1", "u_2", "theta_2", "phi_2", "z", "r_1", "r_2")
+    columns = (column_of(found, key, getattr(found, key).ravel()) for key in given)
     # The line of a spur gear is parallel to its base helix: it has no length from there.
-    given = [Column(key, values.ravel(), unit, about) for key, values, unit, about in columns
-             if np.isfinite(values).all()]  # fmt: skip
+    finite = [column for column in columns if np.isfinite(column.si).all()]
     return Table(
         f"contact_lines_{name}",
-        (Column("line", number, "", "number of the line"), *given),
+        (Column("line", number, "", "number of the line"), *finite),
         f"Contact lines of pair {name}",
     )
 
@@ -104,19 +95,13 @@ def _present(data: ContactLinesData, asked: ContactLinesInputs) -> Outcome:
         _lines_table(name, data.lines),
         Table(
             f"contact_line_length_{name}",
-            (
-                Column("phi1", length.phi_1, "deg", "pinion angle"),
-                Column("length", length.total, "mm", "total length of all lines of contact"),
-                Column("pairs", length.lines, "", "tooth pairs in contact"),
-            ),
+            columns_of(length, "phi_1", "total", "lines"),
             f"Total length of the contact lines of pair {name}",
         ),
     )
     play = float((data.lines.phi_2 - pair.ratio * data.lines.phi_1).mean())
     values = (
-        Value(f"{name}.contact_line_mean", length.mean, "mm", 0.0, "mean total length of the contact lines"),
-        Value(f"{name}.contact_line_least", length.least, "mm", 0.0, "least over a cycle"),
-        Value(f"{name}.contact_line_largest", length.largest, "mm", 0.0, "largest over a cycle"),
+        *(value_of(length, key, name, 0.0) for key in ("mean", "least", "largest")),
         Value(
             f"{name}.aligned_transmission_error", play, "arcsec", 1e-15, "of the aligned pair, the same at all angles"
         ),

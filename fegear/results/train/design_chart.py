@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from fegear.base.errors import FegearError, InputError
+from fegear.base.shown import shown
 from fegear.case.built.pair_inputs import pair_inputs
 from fegear.case.built.tooth_influence import gear_to_solve
 from fegear.case.built.train import assemble, motion_inputs, steady_motions, train_inputs, train_part
@@ -90,69 +91,40 @@ class Trial:
 
 @dataclass(frozen=True)
 class UnequalRelief:
-    """A relief of its own on each gear; nan where there is no result.
+    """A relief of its own on each gear; nan where there is no result, and the reason for that."""
 
-    Parameters
-    ----------
-    driver, driven, length : float
-        Amounts over Delta, and L_n.
-    dynamic_factor, speed, effective_error : float
-        Largest over the speeds, where [rad/s], and A_e [m].
-    between : float
-        Foretold from A_e between those of both amounts on both gears, at the same length (TM-89901, Fig. 11).
-    reason : str
-        Why there is no result.
-    """
-
-    driver: float
-    driven: float
-    length: float
-    dynamic_factor: float
-    speed: float
-    effective_error: float
-    between: float
-    reason: str = ""
+    driver: float = shown("", "amount on the driver over Delta")
+    driven: float = shown("", "amount on the driven gear over Delta")
+    length: float = shown("", "L_n of both")
+    dynamic_factor: float = shown("", "largest over the speeds")
+    speed: float = shown("rpm", "at which the dynamic factor is largest")
+    effective_error: float = shown("um", "A_e of the static transmission error")
+    between: float = shown("", "foretold from A_e between both amounts on both gears (TM-89901, Fig. 11)")
+    reason: str = shown("", "why there is no result", name="failure", default="")
 
 
 @dataclass(frozen=True)
 class DesignChartData:
     """The chart; arrays of shape (amounts, lengths), nan where a point has no result.
 
-    Parameters
-    ----------
-    amounts, lengths : ndarray
-    dynamic_factor, effective_error, speed, contact_loss, unsteady : ndarray
-        Largest factor, A_e [m], speed of the largest [rad/s], share of the time without contact, unsteady speeds.
-    harmonics : ndarray, shape (4, amounts, lengths)
-        A_1 to A_4 of the static transmission error, 0-peak [m].
-    reasons : tuple of str
-        Why a point has no result, the last axis fastest; empty where it has one.
-    unequal : tuple of UnequalRelief
-    line : FactorLine or None
-        Of the dynamic factor over A_e, through all points of the chart.
-    unmodified, unmodified_error : float
-        Largest dynamic factor and A_e [m] of perfect involutes.
-    delta : float
-        Welbourn's Delta [m].
-    speed_of : str
-        Body that speeds refer to.
+    Harmonics A_1 to A_4 have the shape (4, amounts, lengths); reasons have the last axis fastest.
     """
 
-    amounts: Array
-    lengths: Array
-    dynamic_factor: Array
-    effective_error: Array
-    speed: Array
-    contact_loss: Array
-    unsteady: Array
-    harmonics: Array
-    reasons: tuple[str, ...]
-    unequal: tuple[UnequalRelief, ...]
-    line: FactorLine | None
-    unmodified: float
-    unmodified_error: float
-    delta: float
-    speed_of: str
+    amounts: Array = shown("", "of tip relief over Delta", name="amount")
+    lengths: Array = shown("", "L_n, 1 from the tip to the HPSTC", name="length", label="length of relief L_{n}")
+    dynamic_factor: Array = shown("", "largest over the speeds", label="largest dynamic factor")
+    effective_error: Array = shown("um", "A_e of the static transmission error", label="effective error A_{e}")
+    speed: Array = shown("rpm", "at which the dynamic factor is largest")
+    contact_loss: Array = shown("", "largest over the speeds", name="contact_loss_fraction")
+    unsteady: Array = shown("", "how many speeds have no repeating motion", name="unsteady_speeds")
+    harmonics: Array = shown("um", "of the static transmission error, 0-peak", label="amplitude, 0-peak")
+    reasons: tuple[str, ...] = shown("", "why there is no result", name="failure")
+    unequal: tuple[UnequalRelief, ...] = shown("", "reliefs of their own on each gear")
+    line: FactorLine | None = shown("", "of the dynamic factor over A_e, through all points")
+    unmodified: float = shown("", "largest dynamic factor of perfect involutes")
+    unmodified_error: float = shown("um", "A_e of perfect involutes")
+    delta: float = shown("um", "Welbourn's Delta: deflection at the HPSTC under the mean force")
+    speed_of: str = shown("", "body that speeds refer to")
 
     def best_for_all(self) -> tuple[float, float]:
         """Length at which the worst of all amounts is least, and that factor; straight between the chart's lengths.

@@ -5,10 +5,12 @@ Figures of a design chart of tip relief: TM-89901's Figs. 7 to 11.
 
 from __future__ import annotations
 
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.declared import axis_of, column_of, column_over, drawn, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel, View
 from fegear.engine.figure.items import Curve, Mark, Points
 from fegear.engine.outcome import Value
@@ -23,30 +25,31 @@ if TYPE_CHECKING:
 def chart_tables(chart: DesignChartData, mesh: str) -> tuple[Table, ...]:
     """The chart, and reliefs of their own on each gear where there are any."""
     amounts, lengths = chart.amounts, chart.lengths
-    amount, length = np.repeat(amounts, lengths.size), np.tile(lengths, amounts.size)
     tables = [
         Table(
             f"design_chart_{mesh}",
             (
-                Column("amount", amount, "", "of tip relief over Delta"),
-                Column("length", length, "", "L_n, 1 from the tip to the HPSTC"),
-                Column("dynamic_factor", chart.dynamic_factor.ravel(), "", "largest over the speeds"),
-                Column("speed", chart.speed.ravel(), "rpm", f"of {chart.speed_of}, where it is largest"),
-                Column("effective_error", chart.effective_error.ravel(), "um", "A_e of the static transmission error"),
-                Column("contact_loss_fraction", chart.contact_loss.ravel(), "", "largest over the speeds"),
-                Column("unsteady_speeds", chart.unsteady.ravel(), "", "how many speeds have no repeating motion"),
+                column_of(chart, "amounts", np.repeat(amounts, lengths.size)),
+                column_of(chart, "lengths", np.tile(lengths, amounts.size)),
+                column_of(chart, "dynamic_factor", chart.dynamic_factor.ravel()),
+                column_of(chart, "speed", chart.speed.ravel(), further=f", of {chart.speed_of}"),
                 *(
-                    Column(
-                        f"amplitude_{n + 1}", row.ravel(), "um", f"A_{n + 1} of the static transmission error, 0-peak"
+                    column_of(chart, key, getattr(chart, key).ravel())
+                    for key in ("effective_error", "contact_loss", "unsteady")
+                ),
+                *(
+                    column_of(
+                        chart, "harmonics", row.ravel(), name=f"amplitude_{n}",
+                        meaning=f"A_{n} of the static transmission error, 0-peak",
                     )
-                    for n, row in enumerate(chart.harmonics)
+                    for n, row in enumerate(chart.harmonics, 1)
                 ),
                 *_foretold(chart.line, chart.effective_error.ravel()),
-                Column("failure", np.array(chart.reasons, dtype=str), "", "why a point has no result"),
+                column_of(chart, "reasons"),
             ),
             f"Dynamic factor of mesh {mesh} against tip relief",
         )
-    ]
+    ]  # fmt: skip
     if chart.unequal:
         tables.append(_unequal_table(chart, mesh))
     return tuple(tables)
@@ -59,35 +62,21 @@ def _foretold(line: FactorLine | None, error: Array) -> tuple[Column, ...]:
 
 
 def _unequal_table(chart: DesignChartData, mesh: str) -> Table:
-    def column(key: str, unit: str, meaning: str) -> Column:
-        return Column(key, np.array([getattr(one, key) for one in chart.unequal]), unit, meaning)
-
-    found = column("effective_error", "um", "A_e of the static transmission error")
+    driver, driven, length, factor, speed, error, between, reason = (
+        column_over(chart.unequal, field.name) for field in fields(chart.unequal[0])
+    )
+    speed = replace(speed, meaning=f"{speed.meaning}, of {chart.speed_of}")
+    foretold = _foretold(chart.line, np.asarray(error.si))
     return Table(
         f"design_chart_unequal_{mesh}",
-        (
-            column("driver", "", "amount on the driver over Delta"),
-            column("driven", "", "amount on the driven gear over Delta"),
-            column("length", "", "L_n of both"),
-            column("dynamic_factor", "", "largest over the speeds"),
-            column("speed", "rpm", f"of {chart.speed_of}, where it is largest"),
-            found,
-            column("between", "", "foretold from A_e between both amounts on both gears (TM-89901, Fig. 11)"),
-            *_foretold(chart.line, np.asarray(found.si)),
-            Column("failure", np.array([one.reason for one in chart.unequal], dtype=str), "", "why there is no result"),
-        ),
+        (driver, driven, length, factor, speed, error, between, *foretold, reason),
         f"Dynamic factor of mesh {mesh} with a relief of its own on each gear",
     )
 
 
 def chart_values(chart: DesignChartData) -> tuple[Value, ...]:
     """Best lengths and least factors, what A_e tells of the factor, and unequal reliefs."""
-    about = "Welbourn's Delta: deflection at the HPSTC under the mean force"
-    values = [
-        Value("design_chart.delta", chart.delta, "um", None, about),
-        Value("design_chart.unmodified", chart.unmodified, "", None, "largest dynamic factor of perfect involutes"),
-        Value("design_chart.unmodified_error", chart.unmodified_error, "um", None, "A_e of perfect involutes"),
-    ]
+    values = [value_of(chart, key, "design_chart") for key in ("delta", "unmodified", "unmodified_error")]
     for number, (a, row) in enumerate(zip(chart.amounts, chart.dynamic_factor, strict=True)):
         if np.isfinite(row).any():
             k, (start, end) = int(np.nanargmin(row)), chart.flat_range(number)
@@ -107,13 +96,8 @@ def chart_values(chart: DesignChartData) -> tuple[Value, ...]:
             Value("design_chart.least_factor_for_all", factor, "", None, f"that factor, {ends}"),
         ]
     if chart.line is not None:
-        line = chart.line
-        values += [
-            Value("design_chart.line_constant", line.constant, "", None, "dynamic factor at no effective error"),
-            Value("design_chart.line_slope", line.slope, "1/mm", None, "of the dynamic factor over A_e"),
-            Value("design_chart.line_scatter", line.scatter, "", None, "root mean square of what it misses"),
-            Value("design_chart.line_correlation", line.correlation, "", None, "of dynamic factor and A_e"),
-        ]
+        keys = ("constant", "slope", "scatter", "correlation")
+        values += [value_of(chart.line, key, "design_chart") for key in keys]
     values += [
         Value(
             f"design_chart.factor_{one.driver:g}_{one.driven:g}_{one.length:g}", one.dynamic_factor, "", None,
@@ -139,20 +123,16 @@ def line_remark(chart: DesignChartData) -> tuple[str, ...]:
     return (sentence,)
 
 
-_LENGTH = Axis("length of relief L_{n}")
-
-
-_FACTOR = Axis("largest dynamic factor")
-
-
-_ERROR = Axis("effective error A_{e}", "um", zero=True)
-
-
 def design_chart_figures(chart: DesignChartData) -> tuple[Figure, ...]:
     """The chart, harmonics of the transmission error behind it, and how A_e tells the factor; none for one length."""
     if chart.lengths.size < 2:
         return ()
     return (_chart(chart), _harmonics(chart), *_drawn_forecast(chart))
+
+
+def _axes(chart: DesignChartData) -> tuple[Axis, Axis, Axis]:
+    """Length of relief, dynamic factor and effective error."""
+    return axis_of(chart, "lengths"), axis_of(chart, "dynamic_factor"), axis_of(chart, "effective_error", zero=True)
 
 
 def _chart(chart: DesignChartData) -> Figure:
@@ -164,7 +144,8 @@ def _chart(chart: DesignChartData) -> Figure:
             for k, (amount, row) in enumerate(zip(chart.amounts, rows, strict=True))
         ]
 
-    factor, error = curves(chart.dynamic_factor), curves(chart.effective_error * 1e6)
+    factor, error = curves(chart.dynamic_factor), curves(drawn(chart, "effective_error"))
+    length_axis, factor_axis, error_axis = _axes(chart)
     told = ""
     if chart.amounts.size > 1 and np.isfinite(chart.dynamic_factor).all():
         best = np.argmin(chart.dynamic_factor, axis=1)
@@ -179,8 +160,8 @@ def _chart(chart: DesignChartData) -> Figure:
         "Largest dynamic factor over the speeds, and effective error, against the length of tip relief (1 from the "
         f"tip to the highest point of single contact), by amount over Δ = {chart.delta * 1e6:.4g} µm.{told}",
         (
-            Panel(_LENGTH, _FACTOR, tuple(factor), (Mark("y", chart.unmodified, "unmodified"),)),
-            Panel(_LENGTH, _ERROR, tuple(error)),
+            Panel(length_axis, factor_axis, tuple(factor), (Mark("y", chart.unmodified, "unmodified"),)),
+            Panel(length_axis, error_axis, tuple(error)),
         ),
         columns=2,
     )
@@ -189,18 +170,20 @@ def _chart(chart: DesignChartData) -> Figure:
 def _harmonics(chart: DesignChartData) -> Figure:
     """Dynamic factor, and A_1 to A_4 with A_e, over the length of relief."""
     views = []
+    length, factor, _ = _axes(chart)
     for k, amount in enumerate(chart.amounts):
         below = [
-            Curve(chart.lengths, row[k] * 1e6, f"A_{{{n + 1}}}", f"series:{n}", markers=True)
+            Curve(chart.lengths, drawn(chart, "harmonics", row[k]), f"A_{{{n + 1}}}", f"series:{n}", markers=True)
             for n, row in enumerate(chart.harmonics)
         ]
-        below.append(Curve(chart.lengths, chart.effective_error[k] * 1e6, "A_{e}", "ink", markers=True, width=2.6))
+        error = drawn(chart, "effective_error", chart.effective_error[k])
+        below.append(Curve(chart.lengths, error, "A_{e}", "ink", markers=True, width=2.6))
         views.append(
             View(
                 f"{amount:.4g} Δ",
                 (
-                    Panel(_LENGTH, _FACTOR, (Curve(chart.lengths, chart.dynamic_factor[k], "", "blue", markers=True),)),
-                    Panel(_LENGTH, Axis("amplitude, 0-peak", "um", zero=True), tuple(below)),
+                    Panel(length, factor, (Curve(chart.lengths, chart.dynamic_factor[k], "", "blue", markers=True),)),
+                    Panel(length, axis_of(chart, "harmonics", zero=True), tuple(below)),
                 ),
             )
         )
@@ -217,10 +200,11 @@ def _drawn_forecast(chart: DesignChartData) -> tuple[Figure, ...]:
     """Dynamic factor over effective error: the points, their line, and unequal reliefs."""
     if chart.line is None:
         return ()
+    _, factor_axis, error_axis = _axes(chart)
     items: list[Curve | Points] = [
-        Points(error * 1e6, factor, f"{amount:.4g} Δ", f"series:{k}", size=7.0)
+        Points(error, factor, f"{amount:.4g} Δ", f"series:{k}", size=7.0)
         for k, (amount, error, factor) in enumerate(
-            zip(chart.amounts, chart.effective_error, chart.dynamic_factor, strict=True)
+            zip(chart.amounts, drawn(chart, "effective_error"), chart.dynamic_factor, strict=True)
         )
     ]
     items.append(
@@ -239,6 +223,6 @@ def _drawn_forecast(chart: DesignChartData) -> tuple[Figure, ...]:
         "Dynamic factor over effective error",
         "Largest dynamic factor over the speeds against the effective error A_e of the static transmission error, for "
         f"every relief of the chart, and the line of least squares ({chart.line.scatter:.2g} root mean square).",
-        (Panel(Axis("effective error A_{e}", "um", zero=True), _FACTOR, tuple(items)),),
+        (Panel(error_axis, factor_axis, tuple(items)),),
     )
     return (figure,)

@@ -10,11 +10,12 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.train import motion_inputs, train_part
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_of, columns_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Points
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.engine.table import Column, Table
+from fegear.engine.table import Table
 from fegear.results.train.gear_train import carries_nothing, gear_train, meshes, needs_speeds, needs_train, pull_remarks
 
 if TYPE_CHECKING:
@@ -107,40 +108,16 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
         return Outcome(found, remarks=(f"Mesh {name} carries no mean force, so it has no dynamic factor.",))
     parting = motion.contact_loss and found.in_time
     zero = "" if parting else "; zero, for nothing parts without effects.contact_loss"
+    of_body = f"of {found.speed_of}"
     table = Table(
         f"dynamic_factor_{name}",
         (
-            Column("speed", chart.speeds, "rpm", f"of {found.speed_of}"),
-            Column(
-                "dynamic_factor", chart.dynamic_factor, "", "largest force on one tooth pair over the mean mesh force"
-            ),
-            Column("contact_loss_fraction", chart.apart, "", f"share of the time without contact{zero}"),
-            Column("backside_fraction", chart.behind, "", f"share of the time on the back flanks{zero}"),
-            Column(
-                "periods", chart.periods, "", "periods of excitation after which the motion repeats; 0 if it does not"
-            ),
-            Column("mesh_force_factor", chart.mesh_force_factor, "", "largest mesh force over the mean mesh force"),
-            Column(
-                "motion",
-                np.array(chart.kinds, dtype=str),
-                "",
-                "periodic (and stable), quasi-periodic, chaotic, long-period, unsettled, or growing without bound",
-            ),
-            Column("median_factor", chart.median, "", "dynamic factor that half of the periods do not exceed"),
-            Column("factor_99_percent", chart.upper, "", "dynamic factor that 99 % of the periods do not exceed"),
-            Column("periods_measured", chart.measured, "", "periods of excitation that the largest forces come from"),
-            *(
-                (
-                    Column(
-                        "multiplier",
-                        chart.multiplier,
-                        "",
-                        "growth of a small disturbance over one period of excitation; above 1 in a motion that grows",
-                    ),
-                )
-                if found.in_time
-                else ()
-            ),
+            column_of(chart, "speeds", meaning=of_body),
+            column_of(chart, "dynamic_factor"),
+            column_of(chart, "apart", further=zero),
+            column_of(chart, "behind", further=zero),
+            *columns_of(chart, "periods", "mesh_force_factor", "kinds", "median", "upper", "measured"),
+            *(columns_of(chart, "multiplier") if found.in_time else ()),
         ),
         f"Dynamic factor of mesh {name} over speed",
     )
@@ -154,7 +131,7 @@ def _present(found: DynamicFactorData, asked: FactorInputs) -> Outcome:
     over = "over the speeds" if held is chart else "over the speeds at which the motion does not grow without bound"
     values = [
         Value(f"{name}.largest_dynamic_factor", worst, "", error, f"{over}, direction {motion.direction}{sample}"),
-        Value(f"{name}.speed_of_largest", where, "rpm", None, f"of {found.speed_of}"),
+        Value(f"{name}.speed_of_largest", where, "rpm", None, of_body),
     ]
     if parting:
         lost = float(chart.apart.max())
@@ -180,7 +157,7 @@ def _check(scene: Scene, name: str) -> None:
 
 def _figure(name: str, chart: SpeedChart, speed_of: str) -> Figure:
     """Dynamic factor over speed, and the share of the time without contact where there is any."""
-    speed, x = chart.speeds * _RPM, Axis(f"speed of {speed_of}", "rpm")
+    speed, x = drawn(chart, "speeds"), Axis(f"speed of {speed_of}", "rpm")
     items: list[Curve | Points] = [
         Curve(speed, chart.dynamic_factor, "tooth force", "own force", markers=True, width=1.2),
         Curve(speed, chart.mesh_force_factor, "mesh force", "mesh force", markers=True, width=0.9),

@@ -10,12 +10,14 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import FINITE_ELEMENTS, check_formulas, gear_name, root_stress_source
 from fegear.case.built.train import train_part
+from fegear.dynamics.train.single_tooth import ToothRootStress
 from fegear.engine.citation import Citation
-from fegear.engine.figure.figure import Axis, Figure, Panel
+from fegear.engine.declared import axis_of, column_of, columns_of, drawn
+from fegear.engine.figure.figure import Figure, Panel
 from fegear.engine.figure.items import Curve
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage, Task
-from fegear.engine.table import Column, Table
+from fegear.engine.table import Table
 from fegear.geometry.pair import MEMBERS
 from fegear.results import forecasts
 from fegear.results.gear.drawing import path_marks
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from fegear.case.reading import Scene
-    from fegear.dynamics.train.single_tooth import ToothRootStress
     from fegear.dynamics.train.tooth_force import ToothForce
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import Member
@@ -130,20 +131,18 @@ def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
     name, force, tables, values = asked.mesh, made.force.force, [], []
     for member, found in made.stress.items():
         gear = asked.gears[member]
-        columns = [
-            Column("t", force.time, "s", "from the mesh's phase zero"),
-            Column("x", force.x, "mm", "place of the tooth's contact on the line of action"),
-        ]
+        columns = list(columns_of(force, "time", "x"))
         for k, (source, s) in enumerate(found.items()):
             end, by = ending(asked.sources, k), told(source)
             known = not np.isnan(s.error).any()
             columns += [
-                Column(f"stress{end}", s.total, "MPa", f"largest root tension by {by}, all meshes' shares"),
-                Column(f"stress_own_mesh{end}", s.own, "MPa", "without the other meshes' share"),
-                Column(f"static_stress{end}", s.static, "MPa", "quasi-static"),
+                column_of(s, "total", name=f"stress{end}", meaning=f"largest root tension by {by}, all meshes' shares"),
+                column_of(s, "own", name=f"stress_own_mesh{end}"),
+                column_of(s, "static", name=f"static_stress{end}"),
             ]
             if known:
-                columns.append(Column(f"stress_error{end}", s.error, "MPa", f"what {by} leave in stress_own_mesh{end}"))
+                left = f"what {by} leave in stress_own_mesh{end}"
+                columns.append(column_of(s, "error", name=f"stress_error{end}", meaning=left))
             alone = len(made.force.train.names) == 1
             largest = [("", s.total, "" if alone else "with all meshes, at the case's phases, ")]
             if not alone:
@@ -167,20 +166,20 @@ def _present(made: DynamicRootStress, asked: DynamicRootInputs) -> Outcome:
 
 def _figure(data: DynamicRootStress, asked: DynamicRootInputs) -> Figure:
     force, train = data.force.force, data.force.train
-    name, x, panels = asked.mesh, force.x * 1e3, []
+    name, x, panels = asked.mesh, drawn(force, "x"), []
     others = len(train.names) > 1
     for member, found in data.stress.items():
         curves = []
         for k, (source, s) in enumerate(found.items()):
             by = f", {told(source)}" if len(found) > 1 else ""
-            curves.append(Curve(x, s.own * 1e-6, f"static and own increment{by}", f"series:{k}"))
+            curves.append(Curve(x, drawn(s, "own"), f"static and own increment{by}", f"series:{k}"))
             if k == 0:
                 if others:
-                    total = Curve(x, s.total * 1e-6, f"with the other meshes{by}", "with other meshes", width=1.2)
+                    total = Curve(x, drawn(s, "total"), f"with the other meshes{by}", "with other meshes", width=1.2)
                     curves.append(total)
-                curves.append(Curve(x, s.static * 1e-6, f"quasi-static{by}", "static"))
+                curves.append(Curve(x, drawn(s, "static"), f"quasi-static{by}", "static"))
         marks = path_marks(train.meshes[data.force.mesh].pair)
-        stress = Axis("largest root tension", "MPa", zero=True)
+        stress = axis_of(ToothRootStress, "total", zero=True)
         title = f"Gear {asked.gears[member]} as {member}"
         panels.append(Panel(over_time(force), stress, tuple(curves), marks, title))
     return Figure(

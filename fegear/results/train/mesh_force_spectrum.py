@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of, column_of, repeated
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Points, Stems
 from fegear.engine.outcome import Outcome, Value
@@ -93,8 +94,8 @@ def _present(made: SpectrumData, asked: SpectrumInputs) -> Outcome:
     amplitude = found.amplitudes[i, :, :, 0]
     table = Table(
         f"mesh_force_spectrum_{name}",
-        (*_lines(found, data), Column("force", amplitude[found.present], "N", "0-peak"),
-         Column("power", found.power_lines[i, :, :, 0][found.present], "N^2", "one-sided power of the line")),
+        (*_lines(found, data), column_of(found, "amplitudes", amplitude[found.present]),
+         column_of(found, "power_lines", found.power_lines[i, :, :, 0][found.present])),
         f"Spectrum of the force in mesh {name}",
     )  # fmt: skip
     values = tuple(
@@ -118,19 +119,20 @@ def _lines(found: MeshForceSpectrum, data: GearTrain) -> tuple[Column, ...]:
     order = found.orders[line]
     whole = order.astype(int) if np.all(found.orders % 1.0 == 0.0) else order
     return (
-        Column("n", whole, "", "harmonic of the mesh frequency of from_pair"),
+        column_of(found, "orders", whole),
         Column("from_pair", np.array(data.names, dtype=str)[from_pair], "", "whose transmission error excites it"),
-        Column("frequency", found.frequencies[from_pair, line, 0], "Hz", "n times the mesh frequency"),
+        column_of(found, "frequencies", found.frequencies[from_pair, line, 0]),
     )
 
 
 def _waterfall_table(name: str, i: int, found: MeshForceSpectrum, data: GearTrain) -> Table:
     speeds = found.speeds.size
+    every = np.tile(found.speeds * data.speed_ratio, found.present.sum())
     columns = (
-        Column("speed", np.tile(found.speeds * data.speed_ratio, found.present.sum()), "rpm", f"of {data.speed_of}"),
-        *(Column(c.name, np.repeat(c.si, speeds), c.unit, c.meaning) for c in _lines(found, data)[:2]),
-        Column("frequency", found.frequencies[found.present].ravel(), "Hz", "n times the mesh frequency"),
-        Column("force", found.amplitudes[i][found.present].ravel(), "N", "0-peak"),
+        column_of(found, "speeds", every, meaning=f"of {data.speed_of}"),
+        *repeated(_lines(found, data)[:2], speeds),
+        column_of(found, "frequencies", found.frequencies[found.present].ravel()),
+        column_of(found, "amplitudes", found.amplitudes[i][found.present].ravel()),
     )
     return Table(f"mesh_force_waterfall_{name}", columns, f"Spectrum of the force in mesh {name} over speed")
 
@@ -152,7 +154,7 @@ def _spectrum_figures(data: SpectrumData) -> tuple[Figure, ...]:
         )  # fmt: skip
     above = f" Lines above {top * 1e-3:.4g} kHz hold {left:.2g} of the mean square; the table has them."
     beyond = above if left > 0.0 else ""
-    force, rpm = Axis("mesh force, 0-peak", "N", log=True), float(found.speeds[0]) * train.speed_ratio * RPM
+    force, rpm = axis_of(found, "amplitudes", log=True), float(found.speeds[0]) * train.speed_ratio * RPM
     spectrum = Figure(
         f"mesh_force_spectrum_{name}",
         f"Spectrum of the force in mesh {name}",
@@ -199,10 +201,8 @@ def _power_figure(data: SpectrumData, rpm: float) -> Figure:
                       tuple(f"harmonic {n:.6g}" for n in found.orders[shown]))  # fmt: skip
         steady = Points([0.0], [mean], "mean force", "ink", "x", notes=("mean force squared",))
         items = (lines, steady) if j == data.mesh else (lines,)
-        hertz = Axis("frequency", "Hz", limits=ends)
-        panels.append(
-            Panel(hertz, Axis("power of the line", "N^2", log=True), items, title=f"From mesh {train.names[j]}")
-        )
+        hertz = axis_of(found, "frequencies", limits=ends)
+        panels.append(Panel(hertz, axis_of(found, "power_lines", log=True), items, title=f"From mesh {train.names[j]}"))
     return Figure(
         f"mesh_force_power_{name}",
         f"Power of the lines of the force in mesh {name}",

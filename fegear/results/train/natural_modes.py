@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.colours import DASHES
+from fegear.engine.declared import column_of, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve, Mark, Points
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Stage
 from fegear.engine.table import Column, Table
 from fegear.results import forecasts
@@ -73,38 +74,30 @@ def _present_modes(known: ModesData, asked: SpeedsInputs) -> Outcome:
     count = np.arange(found.frequencies.size)
     columns = [
         Column("mode", count, "", "0 is the rigid-body motion"),
-        Column("frequency", found.frequencies, "Hz", "undamped, with mean mesh stiffnesses"),
+        column_of(found, "frequencies"),
+        *(
+            column_of(found, "mesh_energy", found.mesh_energy[:, m], name=f"energy_{mesh.name}")
+            for m, mesh in enumerate(train.meshes)
+        ),
+        *(
+            column_of(found, "shapes", found.shapes[train.dof[body.name]], name=f"shape_{body.name}")
+            for body in train.bodies
+        ),
     ]
-    columns += [
-        Column(f"energy_{mesh.name}", found.mesh_energy[:, m], "", "share of the mode's strain energy in this mesh")
-        for m, mesh in enumerate(train.meshes)
-    ]
-    turned = "rotation angle for unit modal mass [rad/(kg^0.5 m)]"
-    columns += [Column(f"shape_{body.name}", found.shapes[train.dof[body.name]], "", turned) for body in train.bodies]
     tables = [Table("natural_modes", tuple(columns), "Natural frequencies and mode shapes")]
     if diagram is not None:
-        rows = [
-            (mesh, line, mode, diagram.critical[m, line - 1, mode - 1] * data.speed_ratio)
-            for m, mesh in enumerate(data.names)
-            for line in range(1, asked.lines + 1)
-            for mode in range(1, found.frequencies.size)
+        line, mode = (1 + one for one in np.indices(diagram.critical.shape)[1:])
+        mesh = np.repeat(np.array(data.names, dtype=str), line[0].size)
+        columns = [
+            Column("mesh", mesh, "", "whose harmonic it is"),
+            Column("n", line.ravel(), "", "harmonic of the mesh frequency"),
+            Column("mode", mode.ravel(), "", "natural mode that it meets"),
+            Column("speed", diagram.critical.ravel() * data.speed_ratio, "rpm", f"speed of {data.speed_of}"),
         ]
-        tables.append(
-            Table(
-                "critical_speeds",
-                (
-                    Column("mesh", np.array([row[0] for row in rows], dtype=str), "", "whose harmonic it is"),
-                    Column("n", np.array([row[1] for row in rows], dtype=int), "", "harmonic of the mesh frequency"),
-                    Column("mode", np.array([row[2] for row in rows], dtype=int), "", "natural mode that it meets"),
-                    Column(
-                        "speed", np.array([row[3] for row in rows], dtype=float), "rpm", f"speed of {data.speed_of}"
-                    ),
-                ),
-                "Speeds at which mesh harmonics meet natural frequencies",
-            )
-        )
+        title = "Speeds at which mesh harmonics meet natural frequencies"
+        tables.append(Table("critical_speeds", tuple(columns), title))
     values = tuple(
-        Value(f"natural_frequency_{k}", float(found.frequencies[k]), "Hz", None, "undamped") for k in count[1:]
+        value_of(found, "frequencies", "", si=found.frequencies[k], name=f"natural_frequency_{k}") for k in count[1:]
     )
     return Outcome(known, tuple(tables), values, figures=_modes_figures(known, asked.speed))
 

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of, column_of, columns_of, drawn
 from fegear.engine.figure.figure import Axis, Figure, Panel, Scale
 from fegear.engine.figure.items import Curve, Mark
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
-from fegear.engine.table import Column, Table
+from fegear.engine.table import Table
 from fegear.results.gear.drawing import LINE_OF_ACTION, path_marks
 from fegear.results.train.gear_train import RPM, gear_train, needs_one_speed, needs_train, own_meshes, pull_remarks
 
@@ -94,14 +95,9 @@ def _present(made: ToothForceData, asked: ToothForceInputs) -> Outcome:
     table = Table(
         f"tooth_force_{name}",
         (
-            Column("t", force.time, "s", "from the mesh's phase zero"),
-            Column("x", force.x, "mm", "place of the tooth pair on the line of action"),
-            Column("force", force.total, "N", "on one tooth pair, without the other meshes' share"),
-            Column("force_with_others", force.with_others, "N", "with the other meshes' share, at the case's phases"),
-            Column("static", force.static, "N", "static part"),
-            Column("own_increment", force.own, "N", "from this mesh's transmission error"),
+            *columns_of(force, "time", "x", "total", "with_others", "static", "own"),
             *(
-                Column(f"increment_from_{other}", force.cross[j], "N", "from the other mesh, at the case's phases")
+                column_of(force, "cross", force.cross[j], name=f"increment_from_{other}")
                 for j, other in enumerate(data.names)
                 if j != i
             ),
@@ -156,22 +152,15 @@ def _mesh_force_values(name: str, found: MeshForce) -> tuple[Value, ...]:
 def _mesh_force_table(name: str, found: MeshForce) -> Table:
     return Table(
         f"mesh_force_of_teeth_{name}",
-        (
-            Column("t", found.time, "s", "from the mesh's phase zero"),
-            Column("phase", found.phase, "", "of the mesh, in base pitches"),
-            Column("force", found.of_teeth, "N", "sum of the forces on the tooth pairs in contact, with all meshes"),
-            Column("force_by_mean_stiffness", found.by_mean_stiffness, "N", "mean force and mean stiffness times the "
-                   "increments of the transmission error"),
-            Column("pairs", found.pairs, "", "tooth pairs in contact"),
-        ),
+        columns_of(found, "time", "phase", "of_teeth", "by_mean_stiffness", "pairs"),
         f"Force in mesh {name} over one base pitch, by its teeth and by its mean stiffness",
-    )  # fmt: skip
+    )
 
 
 def over_time(force: ToothForce) -> Axis:
     """The line of action as abscissa, with the time on the far side."""
     return replace(
-        LINE_OF_ACTION, second=Scale("time from the mesh's phase zero", "ms", force.x * 1e3, force.time * 1e3)
+        LINE_OF_ACTION, second=Scale("time from the mesh's phase zero", "ms", drawn(force, "x"), force.time * 1e3)
     )
 
 
@@ -184,7 +173,7 @@ def _while(data: ToothForceData) -> str:
 
 def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
     force, names = data.force, data.train.names
-    name, x, marks = names[data.mesh], force.x * 1e3, path_marks(data.train.meshes[data.mesh].pair)
+    name, x, marks = names[data.mesh], drawn(force, "x"), path_marks(data.train.meshes[data.mesh].pair)
     top = [Curve(x, force.static, "static", "static"), Curve(x, force.total, "static and own increment", "own force")]
     if len(names) > 1:
         top.append(Curve(x, force.with_others, "with the other meshes", "with other meshes"))
@@ -197,8 +186,8 @@ def _tooth_force_figure(data: ToothForceData, speed: float) -> Figure:
         f"Mesh {name}: force on one tooth pair {_while(data)}; the level line "
         "is the mean mesh force. Below: what the vibration adds, by the mesh that excites it.",
         (
-            Panel(over_time(force), Axis("tooth force", "N", zero=True), tuple(top), (*marks, mean), height=1.2),
-            Panel(LINE_OF_ACTION, Axis("increment", "N"), tuple(below), marks, height=0.8),
+            Panel(over_time(force), axis_of(force, "total", zero=True), tuple(top), (*marks, mean), height=1.2),
+            Panel(LINE_OF_ACTION, axis_of(force, "own"), tuple(below), marks, height=0.8),
         ),
         under=f"{speed * RPM:.6g} rpm",
     )
@@ -217,7 +206,7 @@ def _mesh_force_figure(data: ToothForceData, speed: float) -> Figure:
         f"Mesh {name}: what the tooth pairs in contact carry together, and the force that the mean stiffness gives. "
         "Both leave the mean force (level line) by the same increment of the transmission error; the teeth answer it "
         "with the stiffness that they have at that moment.",
-        (Panel(Axis("phase", "base pitches"), Axis("mesh force", "N", zero=True), curves, (mean,)),),
+        (Panel(Axis("phase", "base pitches"), axis_of(found, "of_teeth", zero=True), curves, (mean,)),),
         under=f"{speed * RPM:.6g} rpm",
     )
 
