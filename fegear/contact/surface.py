@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown, shows
 from fegear.formulas.flash_temperature import flash_temperature
 from fegear.formulas.iso6336 import part20_flash, part22_micropitting
 
@@ -27,49 +28,32 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FlankSurface:
-    """Flanks over the path and the face; NaN where nothing touches.
+    """Flanks over the path, x of shape (X,), and the face, z of shape (Z,); the rest (Z, X), NaN where nothing touches.
 
-    Parameters
-    ----------
-    x : ndarray, shape (X,)
-        On the line of action [m].
-    z : ndarray, shape (Z,)
-        Along the face, from its middle [m]; one place for a plane section.
-    line_load : ndarray, shape (Z, X)
-        Force in the plane of action per face width, with the load factors [N/m].
-    pressure : ndarray
-        Hertzian [Pa].
-    friction : ndarray
-        Coefficient with which heat was computed.
-    flash, contact : ndarray
-        Flash temperature [K] and contact temperature [degC].
-    film, ratio : ndarray
-        Lubricant film [m] and its ratio to the roughness.
-    bulk, film_bulk : float
-        Temperature of the teeth for scuffing and for the film [degC].
-    mean_flash : float
-        Over path and face [K].
+    A plane section has one z; the film is compared with the roughness.
     """
 
-    x: Array
-    z: Array
-    line_load: Array
-    pressure: Array
-    friction: Array
-    flash: Array
-    contact: Array
-    film: Array
-    ratio: Array
-    bulk: float
-    film_bulk: float
-    mean_flash: float
+    x: Array = shown("mm", "on the line of action, from the pitch point")
+    z: Array = shown("mm", "along the face, from its middle", label="face position z")
+    line_load: Array = shown("N/mm", "with load factors", label="line load")
+    pressure: Array = shown("MPa", "with load factors", name="hertz_pressure", label="Hertzian pressure")
+    friction: Array = shown("", "coefficient with which heat is computed")
+    flash: Array = shown("K", "rise above the teeth", name="flash_temperature", label="flash temperature")
+    contact: Array = shown("degC", name="contact_temperature", label="contact temperature")
+    film: Array = shown("um", name="film_thickness", label="film thickness")
+    ratio: Array = shown("", "lambda_GF", name="film_ratio", label="film ratio λ_{GF}")
+    bulk: float = shown("degC", "of the teeth, computed load, as ISO/TS 6336-20", name="bulk_temperature")
+    film_bulk: float = shown("degC", "of the teeth, for the film")
+    mean_flash: float = shown("K", "mean over path and face")
 
     @property
+    @shows("degC", "computed load", name="largest_contact_temperature")
     def largest(self) -> float:
         """Largest contact temperature [degC]."""
         return max(self.bulk, float(np.nanmax(self.contact)))
 
     @property
+    @shows("", "lambda_GF,min, computed load", name="least_film_ratio")
     def least_ratio(self) -> float:
         """Least film ratio."""
         return float(np.nanmin(self.ratio))

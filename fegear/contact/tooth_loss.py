@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown, shows
 from fegear.formulas.flash_temperature import flank_speeds
 from fegear.formulas.friction import computed
 
@@ -29,36 +30,32 @@ class ToothLoss:
 
     Parameters
     ----------
-    x : ndarray, shape (N,)
-        Places of a tooth pair on the line of action [m].
-    load : ndarray
-        On the tooth pair [N].
-    coefficient : ndarray
-        Friction coefficient, weighted with the load along the contact line.
-    power : ndarray
-        That the tooth pair loses there [W].
+    x, load, coefficient, power : ndarray, shape (N,)
+        The coefficient is weighted with the load along the contact line.
     loss : float
-        Mean over time of all pairs in contact [W].
+        Mean over time of all pairs in contact.
     transmitted : float
-        Power of the pair [W].
+        Of the pair.
     loss_factor : float
-        H_V, that a coefficient of 1 would take over the power transmitted.
+        That a coefficient of 1 would take over the power transmitted.
     """
 
-    x: Array
-    load: Array
-    coefficient: Array
-    power: Array
-    loss: float
-    transmitted: float
-    loss_factor: float
+    x: Array = shown("mm", "of the tooth pair on the line of action, from the pitch point")
+    load: Array = shown("N", "on the tooth pair")
+    coefficient: Array = shown("", "friction coefficient", name="friction_coefficient")
+    power: Array = shown("W", "that this tooth pair takes", name="power_loss")
+    loss: float = shown("W", "mean power that tooth friction takes", name="tooth_loss")
+    transmitted: float = shown("W", "", name="transmitted_power")
+    loss_factor: float = shown("", "H_V by the computed load")
 
     @property
+    @shows("", "coefficient that takes as much everywhere", name="mean_friction")
     def mean_coefficient(self) -> float:
         """Coefficient that would take as much, were it the same everywhere."""
         return self.loss / (self.loss_factor * self.transmitted) if self.loss_factor else 0.0
 
     @property
+    @shows("", "of the teeth alone")
     def efficiency(self) -> float:
         """Of the teeth alone."""
         return 1.0 - self.loss / self.transmitted

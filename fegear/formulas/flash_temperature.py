@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown, shows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -86,26 +87,28 @@ class FlankSpeeds:
     x : ndarray
         Place on the line of action from the pitch point, toward the driver's tip [m].
     radius_driver, radius_driven : ndarray
-        Transverse radii of curvature [m].
+        Transverse.
     relative_radius : ndarray
-        rho_n, relative radius of curvature in the normal section [m]: the transverse one over cos(beta_b).
+        rho_n: the transverse one over cos(beta_b).
     rolling_driver, rolling_driven : ndarray
-        Tangential speeds of the flanks through the contact [m/s].
+        Tangential speeds.
     """
 
     x: Array
-    radius_driver: Array
-    radius_driven: Array
-    relative_radius: Array
-    rolling_driver: Array
-    rolling_driven: Array
+    radius_driver: Array = shown("mm", "radius of curvature of the driver's flank")
+    radius_driven: Array = shown("mm", "of the driven gear's flank")
+    relative_radius: Array = shown("mm", "of both in the normal section")
+    rolling_driver: Array = shown("m/s", "of the driver's flank through the contact")
+    rolling_driven: Array = shown("m/s", "of the driven gear's flank through the contact")
 
     @property
+    @shows("m/s", "of the driver's flank on the driven one", name="sliding_velocity")
     def sliding(self) -> Array:
         """Speed of the driver's flank less that of the driven one [m/s]; negative before the pitch point."""
         return np.asarray(self.rolling_driver - self.rolling_driven)
 
     @property
+    @shows("m/s", "of both flanks through the contact", name="sum_velocity")
     def sum(self) -> Array:
         """v_Sigma, sum of both speeds [m/s]."""
         return np.asarray(self.rolling_driver + self.rolling_driven)

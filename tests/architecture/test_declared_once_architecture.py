@@ -8,8 +8,8 @@ from pathlib import Path
 
 HOUSE = Path(__file__).resolve().parents[2] / "fegear"
 MECHANICS = ("geometry", "formulas", "fem", "contact", "design", "dynamics")
-#: Rooms whose tables take meanings from the mechanics; results/pair follows with the loaded pairs that it shows.
-ROOMS = ("gear", "relief", "helical", "planetary", "train", "rating")
+#: Rooms whose tables take meanings from the mechanics.
+ROOMS = ("gear", "pair", "relief", "helical", "planetary", "train", "rating")
 #: Shorter clauses are ordinary words, as "base circle" is: several quantities may be called so.
 WORDS = 4
 SHOWING = ("Column", "Value", "Axis")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown
 from fegear.contact.wide.over_pitch import Stated
 from fegear.contact.wide.spots import missed_of_spots
 
@@ -39,23 +40,22 @@ class FlankError:
     transmission_error : ndarray, shape (P, L)
         [m].
     share : ndarray, shape (pairs, P, L)
-    mean, peak_to_peak : ndarray, shape (L,)
-        Of the transmission error [m].
-    face_load_factor : ndarray, shape (L,)
-    largest_line_load, largest_pressure : ndarray, shape (L,)
-        [N/m], [Pa].
     coarse : LoadedFlanks
         The coarser solution itself.
+    mean, peak_to_peak, face_load_factor, largest_line_load, largest_pressure : ndarray, shape (L,)
+        Of what is stated of the whole base pitch (`Stated`).
     """
 
     transmission_error: Array
     share: Array
-    mean: Array
-    peak_to_peak: Array
-    face_load_factor: Array
-    largest_line_load: Array
-    largest_pressure: Array
     coarse: LoadedFlanks
+    mean: Array = shown("um", "mean transmission error", name="te_mean")
+    peak_to_peak: Array = shown("um", "over the whole base pitch", name="te_peak_to_peak")
+    face_load_factor: Array = shown("", "largest over mean load per face width", name="K_Hbeta")
+    largest_line_load: Array = shown("N/mm", "on one contact line, without tips and form circles")
+    largest_pressure: Array = shown(
+        "MPa", "smooth flanks, without tips and form circles", name="largest_hertz_pressure"
+    )
 
 
 def flank_error(
@@ -104,7 +104,7 @@ def flank_error(
     sums = Stated(*(sum(parts) + more for *parts, more in zip(*changes, left, strict=True)))
     te = sum(np.abs(two.transmission_error - one.transmission_error) for one, two in pairwise(steps))
     share = sum(_share_changes(found, one, two) for one, two in pairwise(steps))
-    return FlankError(np.asarray(te), _SHARES * np.asarray(share), *sums, coarse=other)
+    return FlankError(np.asarray(te), _SHARES * np.asarray(share), other, *sums)
 
 
 def _changes(found: LoadedFlanks, other: LoadedFlanks) -> Stated:

@@ -31,6 +31,7 @@ import numpy as np
 
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.errors import InputError
+from fegear.base.shown import shown
 from fegear.contact.fourier import Panels
 from fegear.contact.plane.meshing import Meshing
 
@@ -52,15 +53,8 @@ class ContactLines(ReadOnlyArrays):
     Parameters
     ----------
     roll : ndarray, shape (P,)
-        Roll positions: x of pair 0 in the middle of the face [m].
     pair : ndarray of int
         j, the pair that a station belongs to; stations of one line stand together, ascending in z.
-    present : ndarray of bool
-        Whether there is a station.
-    x, z : ndarray
-        In the plane of action: from the pitch point along the line of action, from the middle of the common face [m].
-    low, high : float
-        Ends of the common face [m].
     at_edge : ndarray of bool
         Whether a line ends here at a tip or form circle, or stands on a sharp tip edge.
     weight : ndarray, shape (P,)
@@ -69,14 +63,14 @@ class ContactLines(ReadOnlyArrays):
         What the stations touch where lines go on along the tip edges; None where they end there.
     """
 
-    roll: Array
-    pair: NDArray[np.int64]
-    present: Mask
-    x: Array
-    z: Array
-    low: float
-    high: float
-    at_edge: Mask
+    roll: Array = shown("mm", "roll position: x of pair 0 in the middle of the face")
+    pair: NDArray[np.int64] = shown("", "number of the tooth pair; higher ones are ahead")
+    present: Mask = shown("", "whether there is a station")
+    x: Array = shown("mm", "along the line of action, from the pitch point", label="position on the line of action")
+    z: Array = shown("mm", "along the face, from its middle", label="face position z")
+    low: float = shown("mm", "one end of the common face")
+    high: float = shown("mm", "the other end of the common face")
+    at_edge: Mask = shown("", "1 where the contact line ends at a tip or form circle", name="edge")
     weight: Array = field(default_factory=lambda: np.empty(0))
 
     edges: TipEdges | None = None

@@ -13,6 +13,7 @@ import numpy as np
 from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.errors import InputError
 from fegear.base.one_thread import one_thread
+from fegear.base.shown import shows
 from fegear.base.solution_cache import SolutionCache
 from fegear.contact.wide.compliance import flank_compliance
 from fegear.contact.wide.gaps import FlankGaps
@@ -69,6 +70,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return self.known.lines
 
     @property
+    @shows("um", "loaded transmission error along the line of action", name="te")
     def transmission_error(self) -> Array:
         """zeta [m], shape (P, L)."""
         return self.contact.approach
@@ -79,6 +81,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return self.lines.mean(self.transmission_error)
 
     @cached_property
+    @shows("N/mm", "transverse force per face width", label="line load")
     def line_load(self) -> Array:
         """f at the stations [N/m], transverse force per length along the face, shape (P, M, L)."""
         support = self.lines.support[:, :, None]
@@ -86,6 +89,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return np.divide(force, support, out=np.zeros_like(force), where=support > 0.0)
 
     @cached_property
+    @shows("MPa", "largest pressure of smooth flanks, as of a long contact", name="hertz_pressure", label="pressure")
     def pressure(self) -> Array:
         """Largest Hertzian pressure at the stations [Pa], shape (P, M, L)."""
         return self.known.pressure(self.line_load)
@@ -134,11 +138,13 @@ class LoadedFlanks(ReadOnlyArrays):
         return np.stack([(self.contact.force * here[:, :, None]).sum(axis=1) for here in on])
 
     @property
+    @shows("", "of one tooth pair", name="largest_share")
     def share(self) -> Array:
         """W_j / W, shape (pairs, P, L)."""
         return self.pair_load / self.load
 
     @property
+    @shows("", "sum of all forces less load, over load")
     def equilibrium(self) -> Array:
         """|sum of all forces - load| / load, shape (P, L)."""
         return np.abs(self.contact.force.sum(axis=1) - self.load) / self.load
@@ -154,6 +160,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return np.linspace(lines.low, lines.high, count + 1)
 
     @cached_property
+    @shows("N/mm", "of all roll positions", label="load per face width")
     def over_face(self) -> Array:
         """Load of all lines together per face width, averaged over each of `cells`, shape (P, cells, L) [N/m]."""
         return self.load_between(self.cells)
@@ -173,6 +180,7 @@ class LoadedFlanks(ReadOnlyArrays):
         return np.asarray(swept / np.diff(ends)[:, None])
 
     @cached_property
+    @shows("N/mm", "of all pairs, averaged over a base pitch", name="mean_line_load")
     def mean_over_face(self) -> Array:
         """Load over each of `cells` averaged over a base pitch, shape (cells, L) [N/m]."""
         return self.mean_between(self.cells)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fegear.base.errors import InputError, RangeError
+from fegear.base.shown import shown, shows
 from fegear.base.tally import tallied
 from fegear.dynamics.train.mesh_excitation import FIT
 from fegear.dynamics.train.periodic import Periodic
@@ -221,37 +222,28 @@ class FrictionOverPath:
     Parameters
     ----------
     x : ndarray
-        Position on the line of action, toward the tip of the gear that drives [m]; two beside each jump.
-    load : ndarray
-        Static force on the tooth pair [N].
-    sliding, rolling : ndarray
-        Speed of the driver's flank less that of the driven one, and their sum [m/s].
-    coefficient : ndarray
-    torque_driver, torque_driven : ndarray
-        Of this pair's friction on both gears [N m]; positive turns a gear on, as T_f1 and T_f2 of TM-100180.
-    total_driver, total_driven : ndarray
-        Of all pairs in contact then [N m].
-    loss, loss_error : float
-        Mean power that friction takes [W], and its error: of the integration and of the fitted teeth.
-    mean_coefficient : float
-        That would take as much, were it the same everywhere.
-    power : float
-        That the mesh transmits [W].
+        Toward the tip of the gear that drives; two beside each jump.
     """
 
-    x: Array
-    load: Array
-    sliding: Array
-    rolling: Array
-    coefficient: Array
-    torque_driver: Array
-    torque_driven: Array
-    total_driver: Array
-    total_driven: Array
-    loss: float
-    loss_error: float
-    mean_coefficient: float
-    power: float
+    x: Array = shown("mm", "place of the tooth pair on the line of action")
+    load: Array = shown("N", "static load on the tooth pair")
+    sliding: Array = shown("m/s", "of the driver's flank on the driven one", name="sliding_velocity")
+    rolling: Array = shown("m/s", "sum of both flanks' speeds", name="rolling_velocity")
+    coefficient: Array = shown(name="friction_coefficient", label="friction coefficient")
+    torque_driver: Array = shown("N.m", "of this pair; positive turns the gear on", label="torque on the driver")
+    torque_driven: Array = shown("N.m", "of this pair; positive turns the gear on", label="torque on the driven")
+    total_driver: Array = shown("N.m", "of all pairs in contact then (T_f1)", name="total_torque_driver")
+    total_driven: Array = shown("N.m", "of all pairs in contact then (T_f2)", name="total_torque_driven")
+    loss: float = shown("W", "mean power that tooth friction takes", name="friction_loss")
+    loss_error: float = shown("W", "of the integration and the fitted teeth")
+    mean_coefficient: float = shown("", "friction coefficient that would take as much everywhere")
+    power: float = shown("W", "that the mesh transmits")
+
+    @property
+    @shows("", "of the mesh, by tooth friction alone")
+    def efficiency(self) -> float:
+        """Share of the power that tooth friction leaves."""
+        return 1.0 - self.loss / self.power
 
 
 def friction_over_path(

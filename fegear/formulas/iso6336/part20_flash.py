@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.base.shown import shown
 from fegear.formulas.flash_temperature import flash_temperature
 from fegear.formulas.friction import FASTEST, mean_friction
 
@@ -35,36 +36,18 @@ _POSITIONS = 401
 
 @dataclass(frozen=True)
 class FlashTemperatures:
-    """Temperatures along the path of contact and the safety against scuffing.
-
-    Parameters
-    ----------
-    x : ndarray
-        Places on the path [m].
-    load_sharing, approach : ndarray
-        X_Gamma and X_J.
-    flash, contact : ndarray
-        Flash temperature [K] and contact temperature [degC].
-    friction : float
-        mu_m.
-    mean_flash : float
-        [K].
-    bulk, largest : float
-        Bulk temperature Theta_M and largest contact temperature Theta_Bmax [degC].
-    optimal_relief : float
-        C_eff [m].
-    """
+    """Temperatures at places x [m] along the path of contact, with X_Gamma and X_J there."""
 
     x: Array
     load_sharing: Array
     approach: Array
-    flash: Array
-    contact: Array
-    friction: float
-    mean_flash: float
-    bulk: float
-    largest: float
-    optimal_relief: float
+    flash: Array = shown("K", "ISO/TS 6336-20, rise above the teeth", name="flash_temperature_iso")
+    contact: Array = shown("degC", "ISO/TS 6336-20", name="contact_temperature_iso")
+    friction: float = shown("", "mu_m")
+    mean_flash: float = shown("K", "mean flash temperature")
+    bulk: float = shown("degC", "bulk temperature Theta_M")
+    largest: float = shown("degC", "ISO/TS 6336-20", name="largest_contact_temperature_iso")
+    optimal_relief: float = shown("um", "C_eff")
 
 
 def load_sharing_factor(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown
 from fegear.formulas.flash_temperature import STEEL_HEAT, FlankSpeeds, contact_ratios
 from fegear.formulas.friction import Surface, helical_load_factor, mean_friction
 from fegear.formulas.iso6336.part20_flash import buttressing, spur_sharing
@@ -59,15 +60,15 @@ class Film:
     flash, contact : ndarray
         Local flash temperature [K] and contact temperature [degC] (Formulae 79 and 80).
     thickness : ndarray
-        h_Y [m] (Formula 4).
+        Formula 4.
     ratio : ndarray
-        lambda_GF,Y (Formula 2); infinite where nothing presses.
+        Formula 2; infinite where nothing presses.
     """
 
     flash: Array
     contact: Array
-    thickness: Array
-    ratio: Array
+    thickness: Array = shown("um", "h_Y of ISO/TS 6336-22", name="film_thickness_iso")
+    ratio: Array = shown("", "lambda_GF,Y of ISO/TS 6336-22", name="film_ratio_iso")
 
 
 @dataclass(frozen=True)
@@ -77,20 +78,16 @@ class RatedFilm:
     Parameters
     ----------
     film : Film
-    sharing : ndarray
-        X_Y.
     nominal, dynamic : ndarray
-        p_H,Y and p_dyn,Y, local Hertzian pressure without and with load factors [Pa].
-    friction, bulk : float
-        mu_m and theta_M [degC].
+        Local Hertzian pressure.
     """
 
     film: Film
-    sharing: Array
-    nominal: Array
-    dynamic: Array
-    friction: float
-    bulk: float
+    sharing: Array = shown("", "X_Y of ISO/TS 6336-22", name="load_sharing_iso")
+    nominal: Array = shown("MPa", "p_H,Y of ISO/TS 6336-22, no load factors", name="hertz_pressure_nominal_iso")
+    dynamic: Array = shown("MPa", "p_dyn,Y of ISO/TS 6336-22, all load factors", name="hertz_pressure_iso")
+    friction: float = shown("", "mu_m")
+    bulk: float = shown("degC", "bulk temperature theta_M")
 
 
 def load_sharing(pair: GearPair, x: ArrayLike, grade: int = 6) -> Array:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS
+from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import HeatMap, few
 from fegear.engine.outcome import Outcome, Value
@@ -82,7 +84,7 @@ def _present(data: ContactPatternData, inputs: ContactPatternInputs) -> Outcome:
     z = np.array([_ends(pattern.z, one.any(axis=1)) for one in printed])
     x = np.array([_ends(pattern.x, one.any(axis=0)) for one in printed])
     columns = (
-        Column("load", np.array(data.loads), "N", "along the line of action"),
+        column_of(ErrorOverPitch, "total_load", data.loads, name="load"),
         Column("printed_share", share, "", f"of the flank, by a coat of {inputs.coat * 1e6:.4g} um"),
         Column("z_first", z[:, 0], "mm", "where the pattern begins along the face"),
         Column("z_last", z[:, 1], "mm", "where it ends"),

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fegear.engine.declared import axis_of, column_of, columns_of, drawn, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, HeatMap, Mark, Skin
 from fegear.engine.outcome import Value
@@ -57,29 +58,21 @@ def _path(name: str, data: FlankSurfaceData, asked: PairSurface) -> Table:
     where = "largest over the face" if data.wide else "by the computed load"
     thinnest = "least over the face" if data.wide else "by the computed load"
     columns = [
-        Column("x", x, "mm", "on the line of action, from the pitch point"),
+        column_of(c, "x"),
         *(Column(f"roll_angle_{m}", np.asarray(pair.roll_angle(x, m)), "deg", f"of the {m} gear") for m in MEMBERS),
-        Column("radius_driver", at.radius_driver, "mm", "radius of curvature of the driver's flank"),
-        Column("radius_driven", at.radius_driven, "mm", "of the driven gear's flank"),
-        Column("relative_radius", at.relative_radius, "mm", "of both in the normal section"),
-        Column("sliding_velocity", at.sliding, "m/s", "of the driver's flank on the driven one"),
-        Column("sum_velocity", at.sum, "m/s", "of both flanks through the contact"),
+        *columns_of(at, "radius_driver", "radius_driven", "relative_radius", "sliding", "sum"),
         *(Column(f"specific_sliding_{m}", specific_sliding(pair, x, m), "", f"of the {m} gear") for m in MEMBERS),
-        Column("line_load", over_face(c.line_load), "N/mm", f"with load factors, {where}"),
+        column_of(c, "line_load", over_face(c.line_load), further=f", {where}"),
         Column("line_load_iso", standard, "N/mm", "with X_Gamma of ISO/TS 6336-20 and all load factors"),
-        Column("hertz_pressure", over_face(c.pressure), "MPa", f"with load factors, {where}"),
-        Column("friction", mean_over_face(c.friction), "", "coefficient with which heat is computed"),
-        Column("flash_temperature", over_face(c.flash), "K", f"rise above the teeth, {where}"),
-        Column("contact_temperature", over_face(c.contact), "degC", where),
-        Column("flash_temperature_iso", data.flash.flash, "K", "ISO/TS 6336-20, rise above the teeth"),
-        Column("contact_temperature_iso", data.flash.contact, "degC", "ISO/TS 6336-20"),
-        Column("film_thickness", over_face(c.film, least=True), "um", thinnest),
-        Column("film_ratio", over_face(c.ratio, least=True), "", f"lambda_GF, {thinnest}"),
-        Column("load_sharing_iso", data.film.sharing, "", "X_Y of ISO/TS 6336-22"),
-        Column("hertz_pressure_nominal_iso", data.film.nominal, "MPa", "p_H,Y of ISO/TS 6336-22, no load factors"),
-        Column("hertz_pressure_iso", data.film.dynamic, "MPa", "p_dyn,Y of ISO/TS 6336-22, all load factors"),
-        Column("film_thickness_iso", data.film.film.thickness, "um", "h_Y of ISO/TS 6336-22"),
-        Column("film_ratio_iso", data.film.film.ratio, "", "lambda_GF,Y of ISO/TS 6336-22"),
+        column_of(c, "pressure", over_face(c.pressure), further=f", {where}"),
+        column_of(c, "friction", mean_over_face(c.friction)),
+        column_of(c, "flash", over_face(c.flash), further=f", {where}"),
+        column_of(c, "contact", over_face(c.contact), meaning=where),
+        *columns_of(data.flash, "flash", "contact"),
+        column_of(c, "film", over_face(c.film, least=True), meaning=thinnest),
+        column_of(c, "ratio", over_face(c.ratio, least=True), further=f", {thinnest}"),
+        *columns_of(data.film, "sharing", "nominal", "dynamic"),
+        *columns_of(data.film.film, "thickness", "ratio"),
     ]
     if data.wide:
         columns += [
@@ -93,17 +86,9 @@ def _path(name: str, data: FlankSurfaceData, asked: PairSurface) -> Table:
 def _face(name: str, data: FlankSurfaceData) -> Table:
     c = data.computed
     on = np.isfinite(c.line_load)
-    x, z = np.broadcast_to(c.x, on.shape), np.broadcast_to(c.z[:, None], on.shape)
-    columns = (
-        Column("x", x[on], "mm", "on the line of action, from the pitch point"),
-        Column("z", z[on], "mm", "along the face, from its middle"),
-        Column("line_load", c.line_load[on], "N/mm", "with load factors"),
-        Column("hertz_pressure", c.pressure[on], "MPa", "with load factors"),
-        Column("flash_temperature", c.flash[on], "K", "rise above the teeth"),
-        Column("contact_temperature", c.contact[on], "degC", ""),
-        Column("film_thickness", c.film[on], "um", ""),
-        Column("film_ratio", c.ratio[on], "", "lambda_GF"),
-    )
+    everywhere = {"x": np.broadcast_to(c.x, on.shape), "z": np.broadcast_to(c.z[:, None], on.shape)}
+    everywhere |= {key: getattr(c, key) for key in ("line_load", "pressure", "flash", "contact", "film", "ratio")}
+    columns = tuple(column_of(c, key, values[on]) for key, values in everywhere.items())
     return Table(f"flank_surface_over_face_{name}", columns, f"Flanks of pair {name} over path and face")
 
 
@@ -188,10 +173,10 @@ def surface_values(name: str, data: FlankSurfaceData, asked: PairSurface) -> tup
     found = [
         Value(f"{name}.largest_sliding_velocity", float(np.abs(at.sliding).max()), "m/s", 0.0, "at A or E"),
         Value(f"{name}.least_specific_sliding", least, "", 0.0, "of either flank"),
-        Value(f"{name}.largest_contact_temperature", c.largest, "degC", None, f"computed load, {_at(hot, data)}"),
-        Value(f"{name}.largest_contact_temperature_iso", f.largest, "degC", None, "ISO/TS 6336-20"),
-        Value(f"{name}.bulk_temperature", c.bulk, "degC", None, "of the teeth, computed load, as ISO/TS 6336-20"),
-        Value(f"{name}.least_film_ratio", c.least_ratio, "", None, f"lambda_GF,min, computed load, {_at(thin, data)}"),
+        value_of(c, "largest", name, further=f", {_at(hot, data)}"),
+        value_of(f, "largest", name),
+        value_of(c, "bulk", name),
+        value_of(c, "least_ratio", name, further=f", {_at(thin, data)}"),
         Value(f"{name}.least_film_ratio_iso", data.least_film[0], "", None,
               f"lambda_GF,min of ISO/TS 6336-22, at {data.least_film[1]}"),
     ]  # fmt: skip
@@ -248,26 +233,26 @@ def surface_figures(name: str, data: FlankSurfaceData, asked: PairSurface) -> tu
     return tuple(figures)
 
 
-def _panel(label: str, unit: str, data: FlankSurfaceData, curves: list[Curve], *extra: Mark, zero: bool = False,
-           limits: tuple[float, float] | None = None) -> Panel:  # fmt: skip
-    marks = (*path_marks(data.pair), *extra)
-    return Panel(LINE_OF_ACTION, Axis(label, unit, zero=zero, limits=limits), tuple(curves), marks)
+def _panel(axis: Axis, data: FlankSurfaceData, curves: list[Curve], *extra: Mark) -> Panel:
+    return Panel(LINE_OF_ACTION, axis, tuple(curves), (*path_marks(data.pair), *extra))
 
 
-def _computed(data: FlankSurfaceData, values: Array, *, least: bool = False) -> list[Curve]:
-    """The computed curve: of a plane pair one, of a pair with a width the extreme over the face and the mean."""
-    x = data.computed.x * 1e3
-    if not data.wide:
-        return [Curve(x, values[0], "computed load", "series:0", markers=False, width=2.0)]
-    word = "least over the face" if least else "largest over the face"
-    return [
-        Curve(x, over_face(values, least=least), word, "series:0", markers=False, width=2.0),
-        Curve(x, mean_over_face(values), "mean over the face", "series:0", dash="dot", markers=False),
-    ]
-
-
-def _iso(data: FlankSurfaceData, values: Array, label: str) -> Curve:
-    return Curve(data.computed.x * 1e3, values, label, "series:1", dash="dash", markers=False)
+def _compared(
+    data: FlankSurfaceData, key: str, values: Array, standard: Array, label: str, *extra: Mark, zero: bool = True
+) -> Panel:
+    """The computed curve and the standard's: of a pair with a width the extreme over the face and the mean."""
+    c, least = data.computed, key in ("film", "ratio")
+    x, iso, y = drawn(c, "x"), drawn(c, key, standard), drawn(c, key, values)
+    if data.wide:
+        word = "least over the face" if least else "largest over the face"
+        curves = [
+            Curve(x, over_face(y, least=least), word, "series:0", markers=False, width=2.0),
+            Curve(x, mean_over_face(y), "mean over the face", "series:0", dash="dot", markers=False),
+        ]
+    else:
+        curves = [Curve(x, y[0], "computed load", "series:0", markers=False, width=2.0)]
+    curves.append(Curve(x, iso, label, "series:1", dash="dash", markers=False))
+    return _panel(axis_of(c, key, zero=zero), data, curves, *extra)
 
 
 def _sliding(name: str, data: FlankSurfaceData, asked: PairSurface, under: str) -> Figure:
@@ -295,9 +280,9 @@ def _sliding(name: str, data: FlankSurfaceData, asked: PairSurface, under: str) 
         "(negative where it is dragged; on the base circle it goes to minus infinity), and radii of curvature. At C "
         "nothing slides.",
         (
-            _panel("speed", "m/s", data, speeds),
-            _panel("specific sliding ζ", "", data, shares),
-            _panel("radius of curvature", "mm", data, radii, zero=True),
+            _panel(Axis("speed", "m/s"), data, speeds),
+            _panel(Axis("specific sliding ζ"), data, shares),
+            _panel(Axis("radius of curvature", "mm", zero=True), data, radii),
         ),
         under=under,
     )
@@ -316,20 +301,16 @@ def _pressed(name: str, data: FlankSurfaceData, asked: PairSurface, under: str) 
         f"Pair {name}: load per face width and Hertzian pressure on a tooth pair from A to E with the load factors: by "
         "the computed load, and by the load sharing factor of the standard.",
         (
-            _panel("line load", "N/mm", data,
-                   [*_computed(data, c.line_load * 1e-3), _iso(data, standard * 1e-3, label)], zero=True),
-            _panel("Hertzian pressure", "MPa", data,
-                   [*_computed(data, c.pressure * 1e-6), _iso(data, theirs * 1e-6, label)], zero=True),
+            _compared(data, "line_load", c.line_load, standard, label),
+            _compared(data, "pressure", c.pressure, theirs, label),
         ),
         under=under,
-    )  # fmt: skip
+    )
 
 
 def _temperatures(name: str, data: FlankSurfaceData, under: str) -> Figure:
     c, f = data.computed, data.flash
     limit = () if math.isnan(data.scuffing) else (Mark("y", data.scuffing, f"scuffing at {data.scuffing:.0f} degC"),)
-    contact = [*_computed(data, c.contact), _iso(data, f.contact, "ISO/TS 6336-20")]
-    flash = [*_computed(data, c.flash), _iso(data, f.flash, "ISO/TS 6336-20")]
     return Figure(
         f"surface_temperature_{name}",
         f"Temperature of the flanks of pair {name}",
@@ -337,15 +318,15 @@ def _temperatures(name: str, data: FlankSurfaceData, under: str) -> Figure:
         f"the computed load (teeth {c.bulk:.4g} degC) and by ISO/TS 6336-20 (teeth {f.bulk:.4g} degC). At C nothing "
         "slides.",
         (
-            _panel("flash temperature", "K", data, flash, zero=True),
-            _panel("contact temperature", "degC", data, contact, *limit),
+            _compared(data, "flash", c.flash, f.flash, "ISO/TS 6336-20"),
+            _compared(data, "contact", c.contact, f.contact, "ISO/TS 6336-20", *limit, zero=False),
         ),
         under=under,
     )
 
 
 def _films(name: str, data: FlankSurfaceData, asked: PairSurface, under: str) -> Figure:
-    c = data.computed
+    c, theirs = data.computed, data.film.film
     limit: tuple[Mark, ...] = ()
     if not math.isnan(data.permissible_film):
         limit = (Mark("y", data.permissible_film, f"permissible {data.permissible_film:.3f}"),)
@@ -354,17 +335,12 @@ def _films(name: str, data: FlankSurfaceData, asked: PairSurface, under: str) ->
         top = max(top, 1.2 * data.permissible_film)
     rough = asked.rated.surface.roughness
 
-    def shown(values: Array, highest: float) -> Array:
+    def thin(values: Array, highest: float) -> Array:
         return np.asarray(np.where(values > highest, np.nan, values))
 
-    ratio = [
-        *_computed(data, shown(c.ratio, top), least=True),
-        _iso(data, shown(data.film.film.ratio, top), "ISO/TS 6336-22"),
-    ]
-    thick = [
-        *_computed(data, shown(c.film, top * rough) * 1e6, least=True),
-        _iso(data, shown(data.film.film.thickness, top * rough) * 1e6, "ISO/TS 6336-22"),
-    ]
+    def both(key: str, ours: Array, iso: Array, highest: float, *marks: Mark) -> Panel:
+        return _compared(data, key, thin(ours, highest), thin(iso, highest), "ISO/TS 6336-22", *marks)
+
     return Figure(
         f"surface_film_{name}",
         f"Lubricant film between the flanks of pair {name}",
@@ -372,8 +348,8 @@ def _films(name: str, data: FlankSurfaceData, asked: PairSurface, under: str) ->
         f"A to E: by the computed load (teeth {c.film_bulk:.4g} degC) and by ISO/TS 6336-22 (teeth {data.film.bulk:.4g}"
         " degC). Below 1 the flanks touch through the film.",
         (
-            _panel("film thickness", "um", data, thick, zero=True),
-            _panel("film ratio λ_{GF}", "", data, ratio, *limit, zero=True),
+            both("film", c.film, theirs.thickness, top * rough),
+            both("ratio", c.ratio, theirs.ratio, top, *limit),
         ),
         under=under,
     )
@@ -389,9 +365,7 @@ def _maps(name: str, data: FlankSurfaceData, under: str) -> Figure:
     )
     marks = tuple(Mark("y", mark.at, mark.label) for mark in path_marks(data.pair))
     panels = tuple(
-        Panel(
-            Axis("face position z", "mm"), LINE_OF_ACTION, (HeatMap(face, path, values.T, label, unit),), marks, title
-        )
+        Panel(axis_of(c, "z"), LINE_OF_ACTION, (HeatMap(face, path, values.T, label, unit),), marks, title)
         for label, unit, values, title in maps
     )
     return Figure(

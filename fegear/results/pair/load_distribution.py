@@ -13,7 +13,9 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS
+from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import axis_of, column_of, error_column, value_of
 from fegear.engine.figure.figure import Axis, DeferredFigure, Figure, Panel
 from fegear.engine.figure.items import Curve, HeatMap, few, ramp
 from fegear.engine.outcome import Outcome, Value
@@ -73,15 +75,13 @@ def _stations(name: str, found: LoadedFlanks, i: int) -> Table:
     width = found.known.half_width(found.line_load)[:, :, i]
     columns = (
         Column("position", position[on], "", "number of the roll position"),
-        Column("roll", roll[on], "mm", "roll position: x of pair 0 in the middle of the face"),
-        Column("pair", lines.pair[on], "", "number of the tooth pair; higher ones are ahead"),
-        Column("x", lines.x[on], "mm", "along the line of action, from the pitch point"),
-        Column("z", lines.z[on], "mm", "along the face, from its middle"),
-        Column("line_load", load[on], "N/mm", "transverse force per face width"),
-        Column("hertz_pressure", pressure[on], "MPa", "largest pressure of smooth flanks, as of a long contact"),
+        column_of(lines, "roll", roll[on]),
+        *(column_of(lines, key, getattr(lines, key)[on]) for key in ("pair", "x", "z")),
+        column_of(found, "line_load", load[on]),
+        column_of(found, "pressure", pressure[on]),
         Column("half_width", width[on], "um", "of the contact that goes with it"),
         Column("active", (load > 0.0)[on].astype(float), "", "1 where the flanks touch"),
-        Column("edge", lines.at_edge[on].astype(float), "", "1 where the contact line ends at a tip or form circle"),
+        column_of(lines, "at_edge", lines.at_edge[on].astype(float)),
     )
     return Table(f"load_distribution_{name}", columns, f"Line load and pressure on the flanks of pair {name}")
 
@@ -90,10 +90,10 @@ def _over_face(name: str, found: LoadedFlanks, i: int) -> Table:
     ends, whole = found.cells, found.over_face[:, :, i]
     mean = float(found.load[i] / (ends[-1] - ends[0]))
     columns = (
-        Column("z", 0.5 * (ends[1:] + ends[:-1]), "mm", "along the face, from its middle"),
-        Column("mean_line_load", found.mean_over_face[:, i], "N/mm", "of all pairs, averaged over a base pitch"),
-        Column("least_line_load", whole.min(axis=0), "N/mm", "of all roll positions"),
-        Column("largest_line_load", whole.max(axis=0), "N/mm", "of all roll positions"),
+        column_of(found.lines, "z", 0.5 * (ends[1:] + ends[:-1])),
+        column_of(found, "mean_over_face", load=i),
+        column_of(found, "over_face", whole.min(axis=0), name="least_line_load"),
+        column_of(found, "over_face", whole.max(axis=0), name="largest_line_load"),
         Column("factor", found.mean_over_face[:, i] / mean, "", "mean_line_load over load per face width"),
     )
     return Table(f"load_over_face_{name}", columns, f"Load over the face of pair {name}")
@@ -102,9 +102,9 @@ def _over_face(name: str, found: LoadedFlanks, i: int) -> Table:
 def _positions(name: str, data: LoadedWidePair) -> Table:
     found, i = data.found, data.at
     columns = [
-        Column("roll", found.lines.roll, "mm", "roll position: x of pair 0 in the middle of the face"),
-        Column("te", found.transmission_error[:, i], "um", "loaded transmission error along the line of action"),
-        Column("te_error", data.error.transmission_error[:, i], "um", "estimated error of te"),
+        column_of(found.lines, "roll"),
+        te := column_of(found, "transmission_error", load=i),
+        error_column(te, data.error.transmission_error[:, i]),
         Column("te_unloaded", data.unloaded, "um", "of rigid flanks: what is left of te as the load goes to zero"),
         Column("mesh_stiffness", found.contact.stiffness[:, i], "N/um", "of the stations that touch: tangent"),
     ]
@@ -114,22 +114,16 @@ def _positions(name: str, data: LoadedWidePair) -> Table:
             Column(f"share_{j}", share, "", f"of the load on pair {j}"),
             Column(f"share_{j}_error", error, "", "estimated error"),
         ]
-    columns.append(Column("equilibrium", found.equilibrium[:, i], "", "sum of all forces less load, over load"))
+    columns.append(column_of(found, "equilibrium", load=i))
     return Table(f"load_distribution_roll_{name}", tuple(columns), f"Shares and transmission error of pair {name}")
 
 
 def _loads(name: str, data: LoadedWidePair) -> Table:
-    stated, error = data.stated, data.error
-    columns = (
-        Column("load", data.found.load, "N", "along the line of action"),
-        Column("te_mean", stated.mean, "um", "mean transmission error over a base pitch"),
-        Column("te_mean_error", error.mean, "um", "estimated error"),
-        Column("te_peak_to_peak", stated.peak_to_peak, "um", "over the whole base pitch"),
-        Column("te_peak_to_peak_error", error.peak_to_peak, "um", "estimated error"),
-        Column("K_Hbeta", stated.face_load_factor, "", "largest over mean load per face width"),
-        Column("K_Hbeta_error", error.face_load_factor, "", "estimated error"),
-    )
-    return Table(f"load_distribution_loads_{name}", columns, f"Pair {name} under every load")
+    columns = [column_of(ErrorOverPitch, "total_load", data.found.load, name="load")]
+    for key, further in (("mean", " over a base pitch"), ("peak_to_peak", ""), ("face_load_factor", "")):
+        stated = column_of(data.error, key, getattr(data.stated, key), further=further)
+        columns += [stated, error_column(stated, getattr(data.error, key), "estimated error")]
+    return Table(f"load_distribution_loads_{name}", tuple(columns), f"Pair {name} under every load")
 
 
 def _present(data: LoadedWidePair, inputs: LoadDistributionInputs) -> Outcome:
@@ -137,24 +131,25 @@ def _present(data: LoadedWidePair, inputs: LoadDistributionInputs) -> Outcome:
     stated, lines = data.stated, data.over.found.lines
     inner = np.where(lines.at_edge, 0.0, data.over.found.pressure[:, :, i])
     p, s = np.unravel_index(int(inner.argmax()), inner.shape)
-    k_error, cells = float(data.error.face_load_factor[i]), found.cells.size - 1
-    where = f"at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
+    cells = found.cells.size - 1
+    where = f", at x = {lines.x[p, s] * 1e3:.4g} mm, z = {lines.z[p, s] * 1e3:.4g} mm"
+    averaged = (
+        f"largest load per face width over the mean one, averaged over a base pitch and over 1/{cells} of the "
+        f"face: at most {cells}"
+    )
+
+    def of_pitch(key: str, si: float | None = None, meaning: str = "", further: str = "") -> Value:
+        number, off = getattr(stated, key)[i] if si is None else si, float(getattr(data.error, key)[i])
+        return value_of(data.error, key, name, off, si=number, meaning=meaning, further=further)
+
     values: tuple[Value, ...] = (
-        Value(f"{name}.te_mean", float(stated.mean[i]), "um", float(data.error.mean[i]),
-              "mean transmission error"),
-        Value(f"{name}.te_peak_to_peak", float(stated.peak_to_peak[i]), "um", float(data.error.peak_to_peak[i]),
-              "of the transmission error over the whole base pitch"),
-        Value(f"{name}.K_Hbeta", float(stated.face_load_factor[i]), "", k_error,
-              f"largest load per face width over the mean one, averaged over a base pitch and over 1/{cells} of the "
-              f"face: at most {cells}"),
-        Value(f"{name}.largest_line_load", float(stated.largest_line_load[i]), "N/mm",
-              float(data.error.largest_line_load[i]),
-              "on one contact line, without tips and form circles"),
-        Value(f"{name}.largest_hertz_pressure", float(inner.max()), "MPa", float(data.error.largest_pressure[i]),
-              f"smooth flanks, without tips and form circles, {where}"),
-        Value(f"{name}.largest_share", float(found.share[:, :, i].max()), "",
-              float(data.error.share[:, :, i].max()), "of one tooth pair"),
-    )  # fmt: skip
+        of_pitch("mean"),
+        of_pitch("peak_to_peak", meaning="of the transmission error over the whole base pitch"),
+        of_pitch("face_load_factor", meaning=averaged),
+        of_pitch("largest_line_load"),
+        of_pitch("largest_pressure", float(inner.max()), further=where),
+        value_of(found, "share", name, float(data.error.share[:, :, i].max()), si=found.share[:, :, i].max()),
+    )
     values = tuple(value for value in values if value.name.removeprefix(f"{name}.") not in inputs.elsewhere)
     whole = data.over.found
     tables = (_stations(name, found, i), _over_face(name, whole, i), _positions(name, data), _loads(name, data))
@@ -269,7 +264,7 @@ def _over_plane(name: str, found: LoadedFlanks, case: int) -> Figure:
         f"Pair {name}: line load as the contact line moves from the driver's root (left) to its tip (right), and "
         f"contact lines at {len(set(drawn))} roll positions. The scale of colours ends at {top:.4g} N/mm; tips and "
         "ends of the face may bear more.",
-        (Panel(Axis("position on the line of action", "mm"), Axis("face position z", "mm"), tuple(items), height=1.4),),
+        (Panel(axis_of(lines, "x"), axis_of(lines, "z"), tuple(items), height=1.4),),
         under=f"{found.load[case]:.5g} N",
     )
 
@@ -299,7 +294,7 @@ def _drawn_over_face(name: str, found: LoadedFlanks, case: int) -> Figure:
         f"load_over_face_{name}",
         f"Load over the face of pair {name}",
         f"Pair {name}: load of all contact lines together per face width; K_Hβ = {found.face_load_factor[case]:.4g}.",
-        (Panel(Axis("face position z", "mm"), Axis("load per face width", "N/mm", zero=True), tuple(curves)),),
+        (Panel(axis_of(found.lines, "z"), axis_of(found, "over_face", zero=True), tuple(curves)),),
         under=f"{found.load[case]:.5g} N",
     )
 
@@ -317,7 +312,7 @@ def _over_face_loads(name: str, found: LoadedFlanks, case: int) -> Figure:
         f"load_over_face_loads_{name}",
         f"Load over the face of pair {name} under every load",
         f"Pair {name}: load per face width, averaged over a base pitch, over its mean; the largest of it is K_Hβ.",
-        (Panel(Axis("face position z", "mm"), Axis("load per face width over its mean", zero=True), tuple(curves)),),
+        (Panel(axis_of(found.lines, "z"), Axis("load per face width over its mean", zero=True), tuple(curves)),),
     )
 
 

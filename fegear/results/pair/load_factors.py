@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS
+from fegear.contact.loaded_teeth import ErrorOverPitch
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_of, error_column, value_of
 from fegear.engine.outcome import Outcome, Value
 from fegear.engine.stage import Forecast, Stage
 from fegear.engine.table import Column, Table
@@ -61,7 +64,6 @@ class FlankLoadFactorsData:
     """
 
     loaded: LoadedWidePair
-    transverse: Array
     transverse_error: Array
     root: Mapping[Member, RootFactors]
     coarse: Mapping[Member, RootFactors | None]
@@ -69,6 +71,7 @@ class FlankLoadFactorsData:
     why_not: str
     gap: float
     exponent: float
+    transverse: Array = shown("", "largest load on a tooth pair over that of perfect flanks", name="K_Halpha")
 
 
 def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFactorsData:
@@ -102,8 +105,8 @@ def _compute(inputs: FlankGears, upstream: Upstream, _work: Work) -> FlankLoadFa
     except RangeError as error:
         why_not = str(error)
     return FlankLoadFactorsData(
-        loaded, transverse, _apart(transverse, transverse_load_factor(coarse, perfect_coarse)), root, root_coarse,
-        by_iso, why_not, straight_gap(pair, loaded.gaps), iso_root_exponent(pair),
+        loaded, _apart(transverse, transverse_load_factor(coarse, perfect_coarse)), root, root_coarse,
+        by_iso, why_not, straight_gap(pair, loaded.gaps), iso_root_exponent(pair), transverse,
     )  # fmt: skip
 
 
@@ -115,11 +118,11 @@ def _apart(factor: Array, other: Array) -> Array:
 def _table(name: str, data: FlankLoadFactorsData) -> Table:
     found, error, k = data.loaded.found, data.loaded.error, data.loaded.stated.face_load_factor
     columns = [
-        Column("load", found.load, "N", "along the line of action"),
-        Column("K_Hbeta", k, "", "largest over mean load per face width"),
-        Column("K_Hbeta_error", error.face_load_factor, "", "estimated error"),
-        Column("K_Halpha", data.transverse, "", "largest load on a tooth pair over that of perfect flanks"),
-        Column("K_Halpha_error", data.transverse_error, "", "estimated error"),
+        column_of(ErrorOverPitch, "total_load", found.load, name="load"),
+        both := column_of(error, "face_load_factor", k),
+        error_column(both, error.face_load_factor, "estimated error"),
+        along := column_of(data, "transverse"),
+        error_column(along, data.transverse_error, "estimated error"),
         Column("K_Fbeta_iso", k**data.exponent, "", "K_Hbeta to the power N_F of ISO 6336-1"),
     ]
     if data.by_iso.size:
@@ -131,8 +134,7 @@ def _present(data: FlankLoadFactorsData, inputs: FlankGears) -> Outcome:
     name, i = inputs.name, data.loaded.at
     k = float(data.loaded.stated.face_load_factor[i])
     values = [
-        Value(f"{name}.K_Halpha", float(data.transverse[i]), "", float(data.transverse_error[i]),
-              "largest load on a tooth pair over that of perfect flanks"),
+        value_of(data, "transverse", name, float(data.transverse_error[i]), si=data.transverse[i]),
         Value(f"{name}.K_Fbeta_iso", k**data.exponent, "", None,
               f"K_Hbeta to the power N_F = {data.exponent:.4g} of ISO 6336-1"),
     ]  # fmt: skip

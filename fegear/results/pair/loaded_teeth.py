@@ -15,10 +15,11 @@ from fegear.case.built.loaded_flanks import FLANK_EFFECTS
 from fegear.case.built.loaded_pair import check_relief
 from fegear.case.built.pair_inputs import EFFECTS, gear_name
 from fegear.case.built.solid_influence import flank_pairs
+from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis
 from fegear.engine.figure.items import Mark, few, ramp
 from fegear.engine.stage import Task
-from fegear.engine.table import Column
 from fegear.geometry.pair import MEMBERS
 from fegear.results.gear.drawing import path_marks
 from fegear.results.gear.stiffness import needs_solution
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from fegear.contact.loaded_teeth import LoadedTeeth as LoadedTeeth  # noqa: PLC0414  (for the window)
     from fegear.contact.plane.loaded_pair import LoadedPair
     from fegear.engine.stage import Upstream
+    from fegear.engine.table import Column
     from fegear.geometry.pair import GearPair, Member
 
 #: Abscissa of figures over one base pitch.
@@ -148,7 +150,7 @@ def over_loads(loads: Sequence[float], parts: Sequence[Sequence[Column]]) -> tup
     """Columns of one load each, joined below each other behind a column of the load."""
     rows = [len(part[0]) for part in parts]
     return (
-        Column("total_load", np.repeat(loads, rows), "N", "along the line of action"),
+        column_of(ErrorOverPitch, "total_load", np.repeat(loads, rows)),
         *(replace(same[0], si=np.concatenate([column.si for column in same])) for same in zip(*parts, strict=True)),
     )
 

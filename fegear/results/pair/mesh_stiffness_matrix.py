@@ -13,6 +13,7 @@ import numpy as np
 
 from fegear.case.built.loaded_flanks import FLANK_EFFECTS
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, HeatMap, Mark
 from fegear.engine.outcome import Outcome, Value
@@ -104,7 +105,7 @@ def _over_roll(name: str, data: MeshStiffnessData) -> Table:
     parameters, doubt = found.parameters[:, :, i], np.abs(data.other.parameters - found.parameters)[:, :, i]
     c = math.cos(found.pair.driver.base_helix_angle)
     columns = (
-        Column("roll", data.flanks.found.lines.roll, "mm", "roll position: x of pair 0 in the middle of the face"),
+        column_of(data.flanks.found.lines, "roll"),
         Column("K_M", parameters[0], "N/um", "tangent stiffness along the tooth normal, over all pairs"),
         Column("kappa", parameters[1], "", "lever of the stiffness in the plane of action over half the face width"),
         Column("mu", parameters[2], "", "rotary stiffness over K_M b^2"),

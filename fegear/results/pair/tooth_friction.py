@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.case.built.train import friction_coefficient
+from fegear.contact.plane.pair_history import PairHistory
 from fegear.engine.citation import Citation
+from fegear.engine.declared import axis_of, column_of, column_over, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, few, ramp
-from fegear.engine.outcome import Outcome, Value
+from fegear.engine.outcome import Outcome
 from fegear.engine.stage import Forecast, Need, Stage
 from fegear.engine.table import Column, Table
 from fegear.results.gear.drawing import roll_marks
@@ -117,8 +119,8 @@ def _present(data: FrictionData, asked: FrictionInputs) -> Outcome:
     if not found:
         return Outcome(data, remarks=(f"Mesh {name} carries no mean force, so it has no friction.",))
 
-    def all_speeds(attribute: str) -> Array:
-        return np.concatenate([getattr(one, attribute) for one in found])
+    def all_speeds(key: str, meaning: str = "") -> Column:
+        return column_of(found[0], key, np.concatenate([getattr(one, key) for one in found]), meaning=meaning)
 
     rows = [one.x.size for one in found]
     roll = np.concatenate([data.mesh.pair.roll_angle(one.x, "driver") for one in found])
@@ -126,34 +128,19 @@ def _present(data: FrictionData, asked: FrictionInputs) -> Outcome:
         f"tooth_friction_{name}",
         (
             Column("speed", np.repeat(data.speeds, rows), "rpm", of),
-            Column("x", all_speeds("x"), "mm", "place of the tooth pair on the line of action"),
-            Column("roll_angle", roll, "deg", "of the contact point on the driver"),
-            Column("load", all_speeds("load"), "N", "static load on the tooth pair"),
-            Column("sliding_velocity", all_speeds("sliding"), "m/s", "of the driver's flank on the driven one"),
-            Column("rolling_velocity", all_speeds("rolling"), "m/s", "sum of both flanks' speeds"),
-            Column("friction_coefficient", all_speeds("coefficient"), "", f"law {asked.law.law}"),
-            Column("torque_driver", all_speeds("torque_driver"), "N.m", "of this pair; positive turns the gear on"),
-            Column("torque_driven", all_speeds("torque_driven"), "N.m", "of this pair; positive turns the gear on"),
-            Column("total_torque_driver", all_speeds("total_driver"), "N.m", "of all pairs in contact then (T_f1)"),
-            Column("total_torque_driven", all_speeds("total_driven"), "N.m", "of all pairs in contact then (T_f2)"),
+            all_speeds("x"),
+            column_of(PairHistory, "driver_roll_angle", roll),
+            *map(all_speeds, ("load", "sliding", "rolling")),
+            all_speeds("coefficient", f"law {asked.law.law}"),
+            *map(all_speeds, ("torque_driver", "torque_driven", "total_driver", "total_driven")),
         ),
         f"Tooth friction of mesh {name} over the path of contact",
     )
-    loss, power, mean = (np.array([getattr(o, key) for o in found]) for key in ("loss", "power", "mean_coefficient"))
     losses = Table(
         f"friction_loss_{name}",
         (
             Column("speed", data.speeds, "rpm", of),
-            Column("power", power, "W", "that the mesh transmits"),
-            Column("friction_loss", loss, "W", "mean power that tooth friction takes"),
-            Column("mean_coefficient", mean, "", "friction coefficient that would take as much everywhere"),
-            Column("efficiency", 1.0 - loss / power, "", "of the mesh, by tooth friction alone"),
-            Column(
-                "loss_error",
-                np.array([one.loss_error for one in found]),
-                "W",
-                "of the integration and the fitted teeth",
-            ),
+            *(column_over(found, key) for key in ("power", "loss", "mean_coefficient", "efficiency", "loss_error")),
         ),
         f"Friction loss of mesh {name} over speed",
     )
@@ -161,9 +148,11 @@ def _present(data: FrictionData, asked: FrictionInputs) -> Outcome:
     at = f"at {asked.stated * RPM:.6g} rpm {of}"
     relative = top.loss_error / top.loss if top.loss else 0.0
     values = (
-        Value(f"{name}.friction_loss", top.loss, "W", top.loss_error, at),
-        Value(f"{name}.mean_friction_coefficient", top.mean_coefficient, "", relative * top.mean_coefficient, at),
-        Value(f"{name}.friction_efficiency", 1.0 - top.loss / top.power, "", top.loss_error / top.power, at),
+        value_of(top, "loss", name, top.loss_error, meaning=at),
+        value_of(
+            top, "mean_coefficient", name, relative * top.mean_coefficient, name="mean_friction_coefficient", meaning=at
+        ),
+        value_of(top, "efficiency", name, top.loss_error / top.power, name="friction_efficiency", meaning=at),
     )
     return Outcome(data, (along, losses), values, {"law": asked.law.law}, (), (_figure(name, data, asked),))
 
@@ -175,7 +164,7 @@ def _figure(name: str, data: FrictionData, asked: FrictionInputs) -> Figure:
     looks = list(zip(chosen, ramp(len(chosen)), strict=True))
     roll, marks = Axis("roll angle of the driver", "deg"), roll_marks(pair, "driver")
 
-    def panel(label: str, unit: str, one_pair: str, all_pairs: str = "", *, zero: bool = False) -> Panel:
+    def panel(one_pair: str, all_pairs: str = "", *, zero: bool = False) -> Panel:
         curves = []
         for k, role in looks:
             one = data.found[k]
@@ -184,7 +173,7 @@ def _figure(name: str, data: FrictionData, asked: FrictionInputs) -> Figure:
             if all_pairs:
                 curves.append(Curve(angle, getattr(one, all_pairs), "", role, dash="dot", width=1.0, markers=False))
             curves.append(Curve(angle, getattr(one, one_pair), text, role, dash="solid", markers=False))
-        return Panel(roll, Axis(label, unit, zero=zero), tuple(curves), marks)
+        return Panel(roll, axis_of(data.found[0], one_pair, zero=zero), tuple(curves), marks)
 
     return Figure(
         f"tooth_friction_{name}",
@@ -194,9 +183,9 @@ def _figure(name: str, data: FrictionData, asked: FrictionInputs) -> Figure:
         "at the pitch point C, where Benedict and Kelley's law is cut at 0.2; a positive torque turns a "
         "gear on.",
         (
-            panel("friction coefficient", "", "coefficient", zero=True),
-            panel("torque on the driver", "N.m", "torque_driver", "total_driver"),
-            panel("torque on the driven", "N.m", "torque_driven", "total_driven"),
+            panel("coefficient", zero=True),
+            panel("torque_driver", "total_driver"),
+            panel("torque_driven", "total_driven"),
         ),
         under=f"{data.mesh.force:.5g} N",
     )

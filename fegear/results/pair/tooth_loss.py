@@ -14,7 +14,10 @@ import numpy as np
 from fegear.base.errors import RangeError
 from fegear.case.built.pair_surface import check_speed, pair_friction, pair_speed
 from fegear.case.built.train import build_train, check_train, train_inputs, train_part
+from fegear.contact.loaded_teeth import ErrorOverPitch
+from fegear.contact.tooth_loss import ToothLoss
 from fegear.engine.citation import Citation
+from fegear.engine.declared import column_of, column_over, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Bars, Curve
 from fegear.engine.outcome import Outcome, Value
@@ -38,7 +41,6 @@ if TYPE_CHECKING:
     from fegear.case.built.pair_surface import PairFriction
     from fegear.case.reading import Scene
     from fegear.contact.surface import FrictionLaw
-    from fegear.contact.tooth_loss import ToothLoss
     from fegear.engine.stage import Upstream, Work
     from fegear.geometry.pair import GearPair
 
@@ -158,23 +160,23 @@ def _present(data: ToothLossData, inputs: ToothLossInputs) -> Outcome:
     table = Table(
         f"tooth_loss_{name}",
         (
-            Column("x", found.x, "mm", "of the tooth pair on the line of action, from the pitch point"),
+            column_of(found, "x"),
             Column("roll_angle", np.asarray(data.pair.roll_angle(found.x, "driver")), "deg", "of the driver"),
-            Column("load", found.load, "N", "on the tooth pair"),
-            Column("friction_coefficient", found.coefficient, "", f"law {law}"),
-            Column("power_loss", found.power, "W", "that this tooth pair takes"),
+            column_of(found, "load"),
+            column_of(found, "coefficient", meaning=f"law {law}"),
+            column_of(found, "power"),
         ),
         f"Friction loss of a tooth pair of {name} along the path of contact",
     )
     error, share = data.error, found.loss / found.transmitted
     values = [
-        Value(f"{name}.tooth_loss", found.loss, "W", error * found.loss, "mean power that tooth friction takes"),
-        Value(f"{name}.transmitted_power", found.transmitted, "W", 0.0, "load times speed of the base circle"),
-        Value(f"{name}.tooth_efficiency", found.efficiency, "", error * share, f"of the teeth alone: {_NEGLECTED}"),
-        Value(f"{name}.loss_factor", found.loss_factor, "", error * found.loss_factor, "H_V by the computed load"),
+        value_of(found, "loss", name, error * found.loss),
+        value_of(found, "transmitted", name, 0.0, meaning="load times speed of the base circle"),
+        value_of(found, "efficiency", name, error * share, name="tooth_efficiency", further=f": {_NEGLECTED}"),
+        value_of(found, "loss_factor", name, error * found.loss_factor),
         Value(f"{name}.loss_factor_wimmer", data.wimmer, "", 0.0, "H_V of rigid gears, load even along the lines"),
         Value(f"{name}.loss_factor_ohlendorf", data.ohlendorf, "", 0.0, "H_V, two pairs share alike, spur gears"),
-        Value(f"{name}.mean_friction", found.mean_coefficient, "", None, f"coefficient that takes as much, law {law}"),
+        value_of(found, "mean_coefficient", name, meaning=f"coefficient that takes as much, law {law}"),
     ]
     remarks = [
         f"Pair {name}: loss of sliding teeth only; {_NEGLECTED}. Loads are those without friction."
@@ -200,16 +202,10 @@ def _present(data: ToothLossData, inputs: ToothLossInputs) -> Outcome:
 
 
 def _loads(data: ToothLossData, inputs: ToothLossInputs) -> Table:
-    def column(name: str, attribute: str, unit: str, meaning: str) -> Column:
-        return Column(name, np.array([getattr(one, attribute) for one in data.over_loads]), unit, meaning)
-
+    shown = ("transmitted", "loss", "loss_factor", "mean_coefficient", "efficiency")
     columns = (
-        Column("load", np.array(inputs.loads), "N", "along the line of action"),
-        column("transmitted_power", "transmitted", "W", ""),
-        column("tooth_loss", "loss", "W", "mean power that tooth friction takes"),
-        column("loss_factor", "loss_factor", "", "H_V by the computed load"),
-        column("mean_friction", "mean_coefficient", "", "coefficient that takes as much everywhere"),
-        column("efficiency", "efficiency", "", "of the teeth alone"),
+        column_of(ErrorOverPitch, "total_load", inputs.loads, name="load"),
+        *(column_over(data.over_loads, key) for key in shown),
     )
     return Table(f"tooth_loss_loads_{inputs.name}", columns, f"Tooth loss of pair {inputs.name} under every load")
 
@@ -385,8 +381,8 @@ def _present_train(data: TrainLossData, asked: TrainLossInputs) -> Outcome:
             Column("mesh", np.array(asked.meshes), "", "mesh of the train"),
             Column("power", data.power, "W", "that it transmits"),
             Column("tooth_loss", data.loss, "W", "that its teeth lose"),
-            Column("loss_factor", data.factor, "", "H_V by the computed load"),
-            Column("mean_friction", data.friction, "", "coefficient that takes as much everywhere"),
+            column_of(ToothLoss, "loss_factor", data.factor),
+            column_of(ToothLoss, "mean_coefficient", data.friction),
             Column("efficiency", efficiency, "", "of its teeth"),
         ),
         "Tooth loss of every mesh of the train",

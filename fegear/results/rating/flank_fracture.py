@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.shown import shown
 from fegear.case.part import at
 from fegear.engine.citation import Citation, citing
+from fegear.engine.declared import column_of, column_over, columns_of, value_of
 from fegear.engine.figure.figure import Axis, Figure, Panel
 from fegear.engine.figure.items import Curve, Mark
 from fegear.engine.outcome import Outcome, Value
@@ -81,10 +83,7 @@ class GearExposure:
 
     Parameters
     ----------
-    depth : ndarray, shape (M,)
-        [m].
-    hardness, residual : ndarray, shape (M,)
-        [HV], [Pa].
+    depth, hardness, residual : ndarray, shape (M,)
     found : Exposure
     most : float
         A_FF,max from the depth of the half-width on.
@@ -93,19 +92,19 @@ class GearExposure:
     place, at_depth : float
         Where it is: on the path of contact, and how deep [m].
     crushing, least_agma : float
-        Eht_c of ISO 6336-5 and h_e,min of AGMA 2101 [m]; NaN where there is none for the material.
+        NaN where there is none for the material.
     """
 
-    depth: Array
-    hardness: Array
-    residual: Array
     found: Exposure
-    most: float
-    most_load: float
     place: float
-    at_depth: float
-    crushing: float
-    least_agma: float
+    depth: Array = shown("mm", "y, below the flank", label="depth below the flank")
+    hardness: Array = shown("", "HV(y), Vickers")
+    residual: Array = shown("MPa", "sigma_RS(y) along profile and face", name="residual_stress")
+    most: float = shown("", f"largest material exposure, {PERMISSIBLE:g} at most", name="A_FF")
+    most_load: float = shown("", "largest exposure without residual stress, its bound", name="A_FF_load")
+    at_depth: float = shown("mm", "how deep the largest exposure is", name="A_FF_depth")
+    crushing: float = shown("mm", "Eht_c of ISO 6336-5, least against crushing")
+    least_agma: float = shown("mm", "h_e,min of AGMA 2101 with ISO's sigma_H")
 
 
 @dataclass(frozen=True)
@@ -114,25 +113,22 @@ class FlankFractureData:
 
     Parameters
     ----------
-    x : ndarray, shape (N,)
-        Places on the path of contact [m].
+    x, sharing, pressure, half_width, radius : ndarray, shape (N,)
     points : mapping of str to int
-        Named points A to E among these.
-    sharing, pressure, half_width, radius : ndarray, shape (N,)
-        X_CP, p_dyn,CP [Pa], b_H and relative radius [m].
+        Named points A to E among the places.
     gears : mapping of Member to GearExposure
     load : float
         Along the line of action, of the spectrum's largest level where there is one [N].
     """
 
-    x: Array
     points: dict[str, int]
-    sharing: Array
-    pressure: Array
-    half_width: Array
-    radius: Array
     gears: dict[Member, GearExposure]
     load: float
+    x: Array = shown("mm", "on the line of action, from the pitch point")
+    sharing: Array = shown("", "X_CP, that of ISO/TS 6336-22 without relief", name="load_sharing")
+    pressure: Array = shown("MPa", "p_dyn,CP with all load factors", name="hertz_pressure")
+    half_width: Array = shown("mm", "b_H of the contact")
+    radius: Array = shown("mm", "rho_red,CP in the normal section", name="relative_radius")
 
 
 def _inputs(scene: Scene, name: str) -> FlankFractureInputs:
@@ -186,8 +182,8 @@ def _compute(inputs: FlankFractureInputs, upstream: Upstream, _work: Work) -> Fl
     stress = [rating.contact_stress[asked.of(member)] for member in MEMBERS]
     gears = {member: _below(inputs, member, x, pressed, width, stress[i]) for i, member in enumerate(MEMBERS)}
     return FlankFractureData(
-        x, {letter: int(np.searchsorted(x, place)) for letter, place in named.items()}, sharing, pressed, width,
-        speeds.relative_radius, gears, load,
+        {letter: int(np.searchsorted(x, place)) for letter, place in named.items()}, gears, load, x, sharing, pressed,
+        width, speeds.relative_radius,
     )  # fmt: skip
 
 
@@ -212,7 +208,7 @@ def _below(
     hardening = AGMA_CRUSHING.get(treatment.get(inputs.materials[i], ""), np.nan)
     iso = ISO_CRUSHING[inputs.qualities[i]] if inputs.materials[i] == "case-hardened-steel" else np.nan
     return GearExposure(
-        depth, hardness, residual, found, float(counted[place, deep]), float(load.max()), float(x[place]),
+        found, float(x[place]), depth, hardness, residual, float(counted[place, deep]), float(load.max()),
         float(depth[deep]), crushing_depth(pair, stress, iso), crushing_depth(pair, stress, hardening),
     )  # fmt: skip
 
@@ -239,13 +235,7 @@ def fracture_tables(data: FlankFractureData, inputs: FlankFractureInputs) -> tup
 
 def _path(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
     name = inputs.asked.name
-    columns = [
-        Column("x", data.x, "mm", "on the line of action, from the pitch point"),
-        Column("load_sharing", data.sharing, "", "X_CP, that of ISO/TS 6336-22 without relief"),
-        Column("relative_radius", data.radius, "mm", "rho_red,CP in the normal section"),
-        Column("hertz_pressure", data.pressure, "MPa", "p_dyn,CP with all load factors"),
-        Column("half_width", data.half_width, "mm", "b_H of the contact"),
-    ]
+    columns = [*columns_of(data, "x", "sharing", "radius", "pressure", "half_width")]
     for member in MEMBERS:
         gear = data.gears[member]
         counted = np.where(gear.depth >= data.half_width[:, None], gear.found.exposure, -np.inf)
@@ -256,19 +246,17 @@ def _path(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
 def _table_below(data: FlankFractureData, inputs: FlankFractureInputs) -> Iterator[Table]:
     for member, gear_name in zip(MEMBERS, inputs.asked.gears, strict=True):
         gear = data.gears[member]
-        shown = slice(0, None, _EVERY)
+        every = slice(0, None, _EVERY)
         columns = [
-            Column("depth", gear.depth[shown], "mm", "y, below the flank"),
-            Column("hardness", gear.hardness[shown], "", "HV(y), Vickers"),
-            Column("residual_stress", gear.residual[shown], "MPa", "sigma_RS(y) along profile and face"),
-            Column("strength", gear.found.strength[shown], "MPa", "tau_per(y)"),
+            *(column_of(gear, key, getattr(gear, key)[every]) for key in ("depth", "hardness", "residual")),
+            Column("strength", gear.found.strength[every], "MPa", "tau_per(y)"),
         ]
         for letter, i in data.points.items():
             key = letter.translate(str.maketrans("", "", "_{}"))
             columns += [
-                Column(f"load_stress_{key}", gear.found.load_stress[i, shown], "MPa", f"tau_eff,L below {letter}"),
-                Column(f"stress_{key}", gear.found.stress[i, shown], "MPa", f"tau_eff below {letter}"),
-                Column(f"exposure_{key}", gear.found.exposure[i, shown], "", f"A_FF below {letter}"),
+                Column(f"load_stress_{key}", gear.found.load_stress[i, every], "MPa", f"tau_eff,L below {letter}"),
+                Column(f"stress_{key}", gear.found.stress[i, every], "MPa", f"tau_eff below {letter}"),
+                Column(f"exposure_{key}", gear.found.exposure[i, every], "", f"A_FF below {letter}"),
             ]
         title = f"Below the flanks of gear {gear_name} ({member}) of pair {inputs.asked.name}"
         yield Table(f"flank_fracture_{inputs.asked.name}_{member}", tuple(columns), title)
@@ -285,12 +273,8 @@ def _depths(data: FlankFractureData, inputs: FlankFractureInputs) -> Table:
         Column("usual_from", least, "mm", "least usual one, .15 normal modules"),
         Column("usual_to", most, "mm", "largest usual one, .25 normal modules"),
         Column("largest", largest, "mm", "not to exceed: .4 normal modules, at most 6 mm"),
-        Column(
-            "crushing", np.array([one.crushing for one in gears]), "mm", "Eht_c of ISO 6336-5, least against crushing"
-        ),
-        Column(
-            "least_agma", np.array([one.least_agma for one in gears]), "mm", "h_e,min of AGMA 2101 with ISO's sigma_H"
-        ),
+        column_over(gears, "crushing"),
+        column_over(gears, "least_agma"),
     )
     return Table(f"case_depth_{name}", columns, f"Case depths of pair {name} and their limits", printed=True)
 
@@ -301,10 +285,10 @@ def fracture_values(data: FlankFractureData, inputs: FlankFractureInputs) -> tup
     for member, case in zip(MEMBERS, inputs.cases, strict=True):
         key, gear = f"{inputs.asked.name}.{member}", data.gears[member]
         found += [
-            Value(f"{key}.A_FF", gear.most, "", None, f"largest material exposure, {PERMISSIBLE:g} at most"),
+            value_of(gear, "most", key),
             Value(f"{key}.S_FF", 1.0 / gear.most, "", None, f"its inverse, {1.0 / PERMISSIBLE:g} at least"),
-            Value(f"{key}.A_FF_load", gear.most_load, "", None, "largest exposure without residual stress, its bound"),
-            Value(f"{key}.A_FF_depth", gear.at_depth, "mm", None, "how deep the largest exposure is"),
+            value_of(gear, "most_load", key),
+            value_of(gear, "at_depth", key),
             Value(f"{key}.case_depth", case.case_depth, "mm", None, "at 550 HV, of the case"),
             Value(f"{key}.case_depth_crushing", gear.crushing, "mm", None, "least against crushing, ISO 6336-5"),
             Value(f"{key}.case_depth_agma", gear.least_agma, "mm", None, "least of AGMA 2101, with sigma_H of ISO"),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import declared
+from fegear.contact.wide.lines import ContactLines
 from fegear.engine.declared import column_of, column_over, error_column, value_of
 from fegear.engine.outcome import Value
 from fegear.engine.table import Column, Table
@@ -94,7 +95,7 @@ def map_table(name: str, design: FlankDesign) -> Table:
 
 def roll_table(name: str, design: FlankDesign) -> Table:
     """Transmission error at the design load over the roll positions."""
-    columns = [Column("roll", design.roll, "mm", "roll position: x of pair 0 in the middle of the face")]
+    columns = [column_of(ContactLines, "roll", design.roll)]
     columns += [
         Column(f"te_{state.label.replace('-', '_').replace(' ', '_')}", state.te, "um", f"with {state.label}")
         for state in design.states
