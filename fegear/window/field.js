@@ -48,7 +48,7 @@ const fegearField = (() => {
     const gear = field.gears[member], { sum: [a, b, c], value, count, data, roll } = gear, driver = member === "driver";
     let acts = false;
     a.fill(0); b.fill(0); c.fill(0);
-    const touches = Math.sqrt(d[`${member}_radius`] ** 2 - d[`${member}_base`] ** 2);
+    const touches = d[`${member}_base`] * Math.tan(d.pressure_angle); // negative on the hollow flank of a ring gear
     for (const [number, x, load] of loads) {
       const k = driver ? pair - number : number - pair; // counted clockwise from the loaded tooth
       if (Math.abs(k) > gear.reach) continue;

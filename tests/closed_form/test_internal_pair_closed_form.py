@@ -16,6 +16,7 @@ from fegear.contact.plane.corner import corner_contact
 from fegear.contact.plane.engagement import Engagement
 from fegear.contact.plane.fe_compliance import finite_element_compliance
 from fegear.contact.plane.pair_compliance import PairCompliance
+from fegear.contact.plane.root_stress_history import root_stress_history
 from fegear.fem.plane.settings import settings_at
 from fegear.fem.plane.solution import solve_gear
 from fegear.geometry.gear import Gear
@@ -268,3 +269,34 @@ def test_load_sharing_is_that_of_the_issue_s_equations_by_enumeration(share, rev
     found = sorted(one for one in loads if one > 0.0)
     assert found == pytest.approx(sorted(w.values()), rel=2e-5)
     assert got.transmission_error[0, 0] == pytest.approx(u, rel=2e-5)
+
+
+@pytest.mark.parametrize("member", ["driver", "driven"])
+def test_root_stress_of_a_lone_tooth_is_that_of_its_gear(member):
+    """Where one pair bears and neighbours are uncoupled, the history has the stress of a gear under that load."""
+    pair, load = the_pair(), 250e3 * the_pair().face_width
+    engagement = Engagement(PairCompliance(pair, *(finite_element_compliance(one) for one in solved()), coupling=False))
+    x = np.linspace(pair.x_end - pair.base_pitch, pair.x_start + pair.base_pitch, 9)[1:-1]
+    state = engagement.solve(engagement.grid(x), [load])
+    assert (state.shared.pairs_in_contact == 1).all()
+    gear = solved()[0 if member == "driver" else 1]
+    for side in ("tension", "compression"):
+        found = root_stress_history(engagement, state, member, side).stress[:, :, 0]
+        lone = gear.largest_root_stress(0, side, pair.radius(x, member))[0] * load / pair.face_width
+        assert (found.max(axis=0) if side == "tension" else found.min(axis=0)) == pytest.approx(lone, rel=1e-8)
+
+
+def test_neighbours_loads_belong_in_the_root_stress_of_a_ring():
+    """A thin held rim: what the teeth beside it carry changes the largest root tension by several percent."""
+    pair, load = the_pair(), 250e3 * the_pair().face_width
+    engagement = Engagement(PairCompliance(pair, *(finite_element_compliance(one) for one in solved())))
+    x = pair.x_start + np.linspace(0.05, 0.45, 5) * pair.base_pitch
+    state = engagement.solve(engagement.grid(x), [load])
+    whole = root_stress_history(engagement, state, "driven").stress[:, :, 0]
+    ring = solved()[1]
+    for row, number in enumerate(state.grid.contacts.number):
+        w = state.loads[row, :, 0] / pair.face_width
+        if (w > 0.0).all():
+            own = ring.largest_root_stress(0, "tension", pair.radius(x + number * pair.base_pitch, "driven"))[0] * w
+            assert (np.abs(whole[row] / own - 1.0) > 0.02).any()
+            assert np.abs(whole[row] / own - 1.0).max() < 0.5

@@ -83,7 +83,7 @@ def inner_stress(influence: Influence, reach: int) -> InnerStress:
     arc = np.clip(arc, flank.flank_start + least, flank.flank_end - least)
     room = np.minimum(arc - flank.flank_start, flank.flank_end - arc)
     forces = flank.patches(arc, np.clip(room, least, _WIDTH))
-    points, triangles = _shown(mesh)
+    points, triangles = _shown(mesh, influence.tooth.side)
     with one_thread():
         elasticity = assemble(mesh, influence.poisson_ratio, influence.plane, flank.order)
         ring = close_ring(mesh, elasticity, flank.dofs, reach, expandable=True)
@@ -118,13 +118,13 @@ def _nodal(influence: Influence, displacement: Array, points: Index) -> Array:
     return found
 
 
-def _shown(mesh: SectorMesh) -> tuple[Index, Index]:
+def _shown(mesh: SectorMesh, side: int) -> tuple[Index, Index]:
     """Points that are shown and the triangles between them, numbered among these; those that crowd are thinned out.
 
     Elements crowd in corners of the outline, where a picture shows nothing of them: their points go to the nearest
     that stays, and triangles that lose a side vanish.
     """
-    radius = np.hypot(*mesh.points)
+    radius = side * np.hypot(*mesh.points)  # rising from the body to the tip
     root = radius[np.unique(mesh.edges["fillet"][:2])].min()
     t = mesh.triangles[:, (radius[mesh.triangles] > root - _BODY).any(axis=0)]
     quarters = np.hstack([t[[a, b, c]] for a, b, c in ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))])

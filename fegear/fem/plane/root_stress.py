@@ -119,7 +119,8 @@ class FilletCurve:
     base_radius : float
         [modules].
     flank : tuple of float
-        Squares of the involute's roll angles at the ends of the loaded flank.
+        Squares of the involute's roll angles at the ends of the loaded flank, that at the fillet first: the larger one
+        of an internal tooth.
     module : float
         In the unit of radii and places.
     """
@@ -145,10 +146,12 @@ class FilletCurve:
         half_width : float
             Of those contacts [modules].
         """
-        roll_squared = (np.asarray(radius, dtype=float) / (self.module * self.base_radius)) ** 2 - 1.0
+        touched, side = np.asarray(radius, dtype=float), 1.0 if self.flank[1] >= self.flank[0] else -1.0
+        roll_squared = (touched / (self.module * self.base_radius)) ** 2 - 1.0
         above, room = (
-            0.5 * self.base_radius * off for off in (roll_squared - self.flank[0], self.flank[1] - roll_squared)
+            0.5 * self.base_radius * side * off for off in (roll_squared - self.flank[0], self.flank[1] - roll_squared)
         )
+        above = np.where(np.isinf(touched), np.inf, above)
         value, place = self.largest_below(stress, above, contact_width(half_width, above, room))
         return value, place * self.module
 

@@ -118,7 +118,7 @@ def _inside(asked: PairInputs, upstream: Upstream, _work: Work) -> StressInsideD
     for member in MEMBERS:
         gear = asked.pair.gear(member)
         table = cast("InnerStress", upstream[Task("inner-stress", asked.gears[member])])
-        roll = np.sqrt(np.maximum((table.radius * gear.module) ** 2 - gear.base_radius**2, 0.0))
+        roll = gear.tooth.side * np.sqrt(np.maximum((table.radius * gear.module) ** 2 - gear.base_radius**2, 0.0))
         places = placed_in_mesh(asked.pair, member, table.points * gear.module, 0)
         gears[member] = ToothStress(table, places, roll, 1.0 / (asked.face_width * gear.module))
     return StressInsideData(asked.pair, gears)
