@@ -131,6 +131,11 @@ class PlanetaryPart(Part):
     speeds: SpeedsPart | None = Field(
         default=None, description="Speeds of the driving member over which vibration is computed."
     )
+    backlash: PositiveLength | None = Field(
+        default=None,
+        description="Backlash of every mesh along the line of action, for `planet-motion`; without it back flanks "
+        "never touch.",
+    )
     mesh_efficiency: Annotated[Number, Field(gt=0.0, le=1.0)] = Field(
         default=1.0, description="Efficiency of both meshes one after the other with the carrier at rest."
     )

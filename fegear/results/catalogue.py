@@ -122,6 +122,9 @@ SUBJECTS: Mapping[str, tuple[Entry, ...]] = MappingProxyType({
         Entry("planet-vibration", "planetary.planet_vibration.PLANET_VIBRATION",
               "Vibration of a planetary set", ("planet-vibration",),
               "dynamic forces in the meshes of a planetary set over speed, excited with their phases"),
+        Entry("planet-motion", "planetary.planet_motion.PLANET_MOTION",
+              "Motion of a planetary set with contact loss", ("planet-motion",),
+              "steady motions of a planetary set over speed in which teeth part and meet again"),
     ),
     "Gear trains in motion": (
         Entry("gear-train", "train.gear_train.GEAR_TRAIN", "Gear train", ("gear-train",),

@@ -150,3 +150,33 @@ def test_the_pair_of_a_set_turns_as_relative_to_the_carrier():
         assert pair.speed == pytest.approx(188.49555921538757 * share * 25 / teeth)
         assert pair.speed * teeth == pytest.approx(abs(run.sun_turns) * 25)
         assert pair.operation.contacts == ([4, 1] if pair.driver == "s" else [1, 4])
+
+
+def motion(results=("planet-motion",), dynamics=None, **keys):
+    three = {"planets": 3, "pin_errors": {}} | keys
+    results = run(changed(**three) | {"results": list(results), "dynamics": dynamics or {}})
+    found = next((one for one in results.tables if one.name == "planet_motion_P"), None)
+    return results, {} if found is None else {column.name: column.values for column in found.columns}
+
+
+def test_a_set_of_constant_stiffness_runs_as_it_stands():
+    """Nothing excites it: the motion is the equilibrium, with its shares of the load."""
+    pins = CASE["planetary"]["P"]["pin_errors"]
+    results, found = motion(
+        ("planet-motion", "planet-load-sharing"), speeds=["1500 rpm"], planets=4, pin_errors=pins
+    )  # fmt: skip
+    for mesh in ("sun", "ring"):
+        assert found[f"{mesh}_factor"] == pytest.approx(values(results)["P.largest_share"], abs=1e-6)
+        assert found[f"apart_{mesh}"] == 0.0
+
+
+def test_teeth_part_at_a_resonance_and_the_stated_error_holds():
+    stiff = CASE["planetary"]["P"]["stiffness"] | {"sun_mesh": ["180 N/um", "420 N/um", "420 N/um", "180 N/um"]}
+    speed = [f"{4299.0 * 60.0 / 25.0 * 108.0 / 83.0:.6g} rpm"]  # of a mode in which the members move across the axis
+    results, rough = motion(stiffness=stiff, speeds=speed, damping_ratio=0.02)
+    assert rough["apart_sun"][0] > 0.05
+    assert rough["sun_factor"][0] > 2.0
+    assert any("teeth part at 1 of 1 speeds" in one for one in results.remarks)
+    assert rough["motion"][0] == "periodic"
+    _, fine = motion(stiffness=stiff, speeds=speed, damping_ratio=0.02, dynamics={"tolerance": 1e-8})
+    assert abs(rough["sun_factor"] - fine["sun_factor"])[0] <= rough["error"][0]

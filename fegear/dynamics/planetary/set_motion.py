@@ -8,15 +8,22 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.base.shown import shows
 from fegear.dynamics.motion.motion_model import MotionParts
+from fegear.dynamics.motion.steady_state import steady_state
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
     from fegear.base.arrays import Array
+    from fegear.dynamics.motion.steady_state import SteadyState
     from fegear.dynamics.planetary.set_response import LinearSet
 
 
@@ -113,3 +120,117 @@ class SetMotion:
             frequency=np.full(count, self.mesh_frequency),
             momentary=np.zeros(count, dtype=bool),
         )
+
+
+@dataclass(frozen=True)
+class SetSweep:
+    """Steady motions of a set over speed, and what they do to its meshes.
+
+    Parameters
+    ----------
+    states : tuple of SteadyState
+        In increasing order of speed.
+    mean_force : float
+        In every mesh where all planets carry alike [N].
+    tolerance : float
+        Of the largest forces of motions that repeat, over the mean force.
+    """
+
+    states: tuple[SteadyState, ...]
+    mean_force: float
+    tolerance: float
+
+    def _of(self, values: str, mesh: int) -> Array:
+        """Values of the meshes with sun (0) or ring (1), shape (speeds, planets)."""
+        found = np.array([getattr(state, values) for state in self.states])
+        return np.asarray(found.reshape(len(self.states), 2, -1)[:, mesh])
+
+    @property
+    @shows("Hz", "mesh frequency at which the set runs")
+    def mesh_frequency(self) -> Array:
+        """Shape (speeds,)."""
+        return np.array([state.model.speed for state in self.states]) / (2.0 * math.pi)
+
+    @property
+    @shows("", "largest force in a mesh with the sun over that of an equal share", label="mesh with the sun")
+    def sun_factor(self) -> Array:
+        """Shape (speeds,)."""
+        return np.asarray(self._of("largest", 0).max(axis=1) / self.mean_force)
+
+    @property
+    @shows("", "largest force in a mesh with the ring over that of an equal share", label="mesh with the ring")
+    def ring_factor(self) -> Array:
+        """Shape (speeds,)."""
+        return np.asarray(self._of("largest", 1).max(axis=1) / self.mean_force)
+
+    @property
+    @shows("", "largest force on one tooth pair, at sun or ring, over that of an equal share")
+    def tooth_factor(self) -> Array:
+        """Shape (speeds,)."""
+        both = [self._of("tooth_force", mesh).max(axis=1) for mesh in (0, 1)]
+        return np.asarray(np.maximum(*both) / self.mean_force)
+
+    @property
+    @shows("", "longest share of the time in which a mesh with the sun is apart")
+    def apart_sun(self) -> Array:
+        """Shape (speeds,)."""
+        return np.asarray(self._of("apart", 0).max(axis=1))
+
+    @property
+    @shows("", "longest share of the time in which a mesh with the ring is apart")
+    def apart_ring(self) -> Array:
+        """Shape (speeds,)."""
+        return np.asarray(self._of("apart", 1).max(axis=1))
+
+    @property
+    @shows("", "longest share of the time in which a mesh touches on its back flanks")
+    def behind(self) -> Array:
+        """Shape (speeds,)."""
+        return np.asarray(np.maximum(*(self._of("behind", mesh).max(axis=1) for mesh in (0, 1))))
+
+    @property
+    @shows("", "periods of the mesh after which the motion repeats; 0 if it does not")
+    def periods(self) -> NDArray[np.intp]:
+        """Shape (speeds,)."""
+        return np.array([state.periods for state in self.states], dtype=np.intp)
+
+    @property
+    @shows("", "estimated error of the factors of motions that repeat; nan of others, of which they are a sample")
+    def error(self) -> Array:
+        """Shape (speeds,)."""
+        return np.array([self.tolerance if state.repeats else math.nan for state in self.states])
+
+
+def set_sweep(
+    run: SetMotion,
+    mesh_frequency: Array,
+    tolerance: float = 5e-4,
+    direction: Literal["up", "down", "static", "rest"] = "down",
+    progress: Callable[[float], None] | None = None,
+) -> SetSweep:
+    """Steady motions over the mesh frequencies, with contact loss.
+
+    Parameters
+    ----------
+    run : SetMotion
+        At any speed.
+    mesh_frequency : ndarray, shape (speeds,)
+        Increasing [Hz].
+    tolerance : float
+        Of the largest forces of motions that repeat, over the mean force.
+    direction : {"up", "down", "static", "rest"}
+        Whether each speed starts from the motion of the one before, or afresh.
+    progress : callable, optional
+    """
+    order = mesh_frequency[::-1] if direction == "down" else mesh_frequency
+    start: str | tuple[Array, Array] = direction if direction in ("static", "rest") else "static"
+    states: list[SteadyState] = []
+    for number, frequency in enumerate(order):
+        state = steady_state(replace(run, mesh_frequency=float(frequency)), start=start, tolerance=tolerance)
+        states.append(state)
+        if direction in ("up", "down"):
+            start = (state.x, state.v)
+        if progress is not None:
+            progress((number + 1) / order.size)
+    found = tuple(states[::-1] if direction == "down" else states)
+    return SetSweep(found, run.linear.meshed.mean_force, tolerance)

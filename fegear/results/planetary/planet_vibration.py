@@ -126,7 +126,8 @@ PLANET_MODES = Stage(
 )
 
 
-def _check(scene: Scene, name: str) -> None:
+def check_vibration(scene: Scene, name: str) -> None:
+    """Refuse vibration without masses or speeds."""
     check_masses(scene, name)
     if planetary_part(scene, name).speeds is None:
         raise InputError(
@@ -162,8 +163,7 @@ def _present_vibration(data: ForcedResponse, inputs: VibrationInputs) -> Outcome
     if data.least_share[low] < 0.0:
         said.append(
             f"Set {name}: at {inputs.speeds[low] * 30.0 / math.pi:.5g} rpm the linear mesh force falls to "
-            f"{data.least_share[low]:.3g} of its mean, so teeth part, which this result neglects; "
-            "fegear.dynamics.planetary.set_motion integrates it."
+            f"{data.least_share[low]:.3g} of its mean, so teeth part, which this result neglects; planet-motion has it."
         )
     table = Table(f"planet_vibration_{name}", columns, f"Vibration of set {name} over speed")
     return Outcome(data, (table,), values, {}, tuple(said), (_figure(name, data, inputs),))
@@ -202,7 +202,7 @@ PLANET_VIBRATION = Stage(
     inputs=_inputs,
     compute=_vibration,
     present=_present_vibration,
-    check=_check,
+    check=check_vibration,
     cites=citing(
         Citation("lin-parker", "model of the set"), Citation("mark", "linear train with transmission errors", "2.9b")
     ),
