@@ -202,7 +202,7 @@ def _apart(kept, found):
     pairs = [(kept, found)] if not isinstance(kept, list) else list(zip(kept, found, strict=False))
     if not pairs or isinstance(kept, list) != isinstance(found, list) or isinstance(kept, list) > (kept != []):
         return None
-    if any(isinstance(one, (str, type(None))) for pair in pairs for one in pair):
+    if not all(isinstance(one, (int, float)) for pair in pairs for one in pair):
         return None
     size = max(abs(one) for pair in pairs for one in pair)
     return max(abs(one - other) for one, other in pairs) / size if size else 0.0

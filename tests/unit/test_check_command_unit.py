@@ -47,7 +47,7 @@ def test_the_whole_gear_by_scikit_fem_agrees_within_the_stated_errors(case, caps
     found = json.loads(out)
     rows = found["gears"]["a"]["compared"]
     assert code == 0
-    assert len(solved) == 2  # the solution and the coarser one of its estimate
+    assert len(solved) == 2  # the solution and that of its estimate, one order lower
     assert (found["compared"], found["covered"]) == (10, 10)
     assert [row["quantity"] for row in rows[::2]] == ["c_self", "c_next", "c_prev", "root_tension", "root_compression"]
     for row in rows:

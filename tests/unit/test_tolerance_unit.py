@@ -42,26 +42,35 @@ def run(folder, **accuracy):
 def test_finer_tolerances_start_with_finer_settings_of_one_ladder():
     edges = [settings_for(10.0**-k).root_edge_length for k in (2, 3, 4, 5, 6)]
     assert all(coarser > finer for coarser, finer in itertools.pairwise(edges))
-    assert settings_for(0.1) == settings_for(1e-2)  # coarser meshes do not know their own error
+    assert settings_for(0.1) == settings_for(1e-2)  # a coarser mesh saves next to nothing
     assert settings_for(1e-4) == settings_at(0) == MeshSettings()
     assert settings_for(1e-3).root_edge_length == pytest.approx(2.0 * MeshSettings().root_edge_length)
-    # Between the tolerances that were learned the finer level is taken, and beyond them the last.
-    assert [level_for(t) for t in (0.5, 0.05, 1e-2, 3e-3, 2e-3, 1e-3, 5e-4, 1e-4)] == [-3, -3, -3, -2, -2, -2, -1, 0]
+    # Between the tolerances that were learned the finer half of a level is taken, and beyond them the last.
+    assert [level_for(t) for t in (0.5, 0.05, 1e-2, 3e-3, 2e-3, 1e-3, 5e-4, 1e-4)] == [
+        -4.5,
+        -4.5,
+        -4.5,
+        -3,
+        -2.5,
+        -2,
+        -1,
+        0,
+    ]
 
 
-def test_a_missed_tolerance_is_refined_and_no_solution_is_wasted(monkeypatch):
+def test_a_missed_tolerance_is_refined_and_its_error_estimated_on_the_same_mesh(monkeypatch):
     monkeypatch.setattr(solution, "level_for", lambda _tolerance: -3)
     cache = SolutionCache()
     known = solve_to_tolerance(steel_gear(), 2e-4, cache=cache)
     assert len(known.rounds) > 1
-    assert cache.shapes.computed == len(known.rounds) + 1
+    assert cache.shapes.computed == len(known.rounds)
     assert [one.error <= 2e-4 for one in known.rounds] == [False] * (len(known.rounds) - 1) + [True]
     assert known.rounds[-1].errors == pytest.approx(known.largest_errors(), rel=1e-6)
     level = -3 + len(known.rounds) - 1
     assert known.settings == settings_at(level)
-    assert known.coarse is solution.influence_of_shape(
-        known.gear.tooth, 5.0, 0.3, "strain", settings_at(level - 1), 1, cache
-    )
+    assert known.coarse.mesh is known.fine.mesh
+    assert known.coarse.flank.order == known.fine.flank.order - 1
+    assert known.coarse.corner_distance > known.fine.corner_distance
     sizes = [one.unknowns for one in known.rounds]
     assert sizes == sorted(sizes)
     assert known.seconds["total"] == pytest.approx(sum(one.seconds for one in known.rounds))

@@ -186,19 +186,23 @@ def _smallest_parts(matrices: Array, number: Index, leaf: Index, depth: int, fre
 
 def joined(one: tuple[Index, Array], other: tuple[Index, Array]) -> tuple[Index, Array]:
     """Unknowns of two parts and the sum of their stiffness, of which only the lower triangle is sure to be there."""
-    every = np.union1d(one[0], other[0])
+    if not (one[0].size and other[0].size):
+        return one if one[0].size else other
+    low, high = min(one[0][0], other[0][0]), max(one[0][-1], other[0][-1])
+    there = np.zeros(high - low + 1, dtype=bool)
+    there[one[0] - low] = there[other[0] - low] = True
+    every, place = np.flatnonzero(there) + low, np.cumsum(there) - 1
     n = every.size
     entries = np.zeros((n, n))
     for ids, block in (one, other):
-        at = np.searchsorted(every, ids)
-        starts = np.flatnonzero(np.diff(at, prepend=-2) != 1)
-        if starts.size * _SHORTEST_RUN > at.size:
+        at = place[ids - low]
+        breaks = (np.flatnonzero(at[1:] - at[:-1] != 1) + 1).tolist()
+        if (len(breaks) + 1) * _SHORTEST_RUN > at.size:
             entries.reshape(-1)[(at[:, None] * n + at).reshape(-1)] += block.reshape(-1)  # quicker than two indices
             continue
-        ends = np.flatnonzero(np.diff(at, append=-2) != 1) + 1
         runs = [
             (first, slice(int(at[first]), int(at[first]) + end - first), end)
-            for first, end in zip(starts.tolist(), ends.tolist(), strict=True)
+            for first, end in itertools.pairwise([0, *breaks, at.size])
         ]
         for i, (first, rows, end) in enumerate(runs):
             for begin, columns, stop in runs[: i + 1]:

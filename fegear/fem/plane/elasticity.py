@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fegear.fem.plane.elements import sector_elements
+from fegear.fem.plane.elements import one_order_higher, sector_elements
 
 if TYPE_CHECKING:
     from fegear.base.arrays import Array, Index
@@ -82,11 +82,27 @@ def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -
     SectorElasticity
     """
     elements = sector_elements(mesh, order)
+    return _elasticity(mesh, elements, _stiffness(elements, *lame(poisson_ratio, plane)))
+
+
+def assemble_two_orders(
+    mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int
+) -> tuple[SectorElasticity, SectorElasticity]:
+    """As `assemble`, and the same elements with displacements one order lower.
+
+    These are among the displacements of the higher order, whose integrals therefore serve both.
+    """
+    elements = sector_elements(mesh, order)
+    higher = _elasticity(mesh, elements, _stiffness(elements, *lame(poisson_ratio, plane)))
+    lower = np.kron(one_order_higher(order - 1), np.eye(2))
+    return higher, _elasticity(mesh, elements.one_order_lower(), np.asarray(lower.T @ (higher.stiffness @ lower)))
+
+
+def _elasticity(mesh: SectorMesh, elements: SectorElements, stiffness: Array) -> SectorElasticity:
     nodes, points = elements.element_nodes, elements.point_nodes
-    count = nodes.shape[0]
     return SectorElasticity(
-        stiffness=_stiffness(elements, *lame(poisson_ratio, plane)),
-        element_dofs=(2 * nodes[:, :, None] + np.array([0, 1])).reshape(count, -1),
+        stiffness=stiffness,
+        element_dofs=(2 * nodes[:, :, None] + np.array([0, 1])).reshape(nodes.shape[0], -1),
         inside=2 * int(elements.dofs.interior_dofs.shape[0]),
         centres=mesh.points[:, mesh.triangles[:3]].mean(axis=1),
         edge_dofs={
@@ -95,7 +111,7 @@ def assemble(mesh: SectorMesh, poisson_ratio: float, plane: Plane, order: int) -
         },
         edge_places={name: elements.places_along(edges) + elements.tip for name, edges in mesh.edges.items()},
         node_dofs=np.where(points < 0, -1, 2 * points + np.array([[0], [1]])),
-        order=order,
+        order=elements.order,
         size=2 * int(elements.dofs.N),
     )
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,6 +55,13 @@ class SectorElements:
     tip: Array
     origin: str
 
+    def one_order_lower(self) -> SectorElements:
+        """Elements of the same shape whose displacements are one order lower."""
+        from skfem import Dofs
+
+        order = self.order - 1
+        return replace(self, order=order, dofs=Dofs(self.grid, _element(order)))
+
     @property
     def element_nodes(self) -> Index:
         """Nodes of each element, those inside it last, shape (M, n)."""
@@ -77,6 +85,8 @@ class SectorElements:
 
     def _along(self, dofs: Any, edges: Index) -> Index:
         first, second, middle = edges
+        if not dofs.facet_dofs.size:  # linear elements have no nodes inside their edges
+            return np.stack([first, second])
         inside = dofs.facet_dofs[:, self.edge_of_point[middle]]
         return np.concatenate([first[None], np.where(first < second, inside, inside[::-1]), second[None]])
 
@@ -246,9 +256,16 @@ def line_functions(degree: int, places: Array) -> tuple[Array, Array]:
 
 
 def _element(order: int) -> Any:
-    from skfem import ElementTriP2, ElementTriP3, ElementTriP4
+    from skfem import ElementTriP1, ElementTriP2, ElementTriP3, ElementTriP4
 
-    return {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}[order]()
+    return {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}[order]()
+
+
+@lru_cache
+def one_order_higher(order: int) -> Array:
+    """Shape functions of an order at the nodes of the next, which has them all, shape (its nodes, functions)."""
+    element, places = _element(order), _element(order + 1).doflocs.T
+    return np.stack([element.lbasis(places, i)[0] for i in range(element.doflocs.shape[0])], axis=1)
 
 
 def _bends(

@@ -15,20 +15,17 @@ from fegear.fem.plane.influence import SIDES, Influence, Side
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
     from fegear.base.arrays import Array
 
 #: What errors are estimated of.
 QUANTITIES = ("c_self", "c_neighbour", "root_tension", "root_compression")
-#: Part of the difference from the coarser solution of the error estimate that is taken for the error of the finer one:
-#: of c_0, of neighbours, of stresses, learned from random gears (docs/numerics.md). Smooth errors of order four
-#: leave a third; but gmsh draws every mesh anew, positions differ, pressures narrow less than edges, and a neighbour's
-#: deflection, a small error anyway, differs least regularly.
-_SHARE, _NEIGHBOUR_SHARE, _STRESS_SHARE = 2.1, 2.4, 1.0
-#: What is modelled nearer to an end of the flank than the mesh resolves is wrong by the first power of the edges'
-#: length, of which neighbouring levels differ by two fifths.
-_END_SHARE = 3.0
+#: Part of the difference from elements one order lower, on the same mesh with wider pressures, that is taken for the
+#: error: of c_0 and of neighbours (to whose small errors wider pressures add what meshes do not), for elements of each
+#: order; learned from random gears and rings (docs/numerics.md).
+_SHARE, _NEIGHBOUR_SHARE = {2: 0.1, 3: 0.25, 4: 1.3}, {2: 0.5, 3: 2.0, 4: 5.0}
+#: Root stress of the lower order lags behind the more, the shorter the edges: the part is this over the number of edges
+#: along the fillet, and no more than all of it.
+_STRESS_SHARE = 5.0
 #: A difference between two solutions may vanish by chance at one position: the estimate is no smaller than so many
 #: times what the difference usually is over the flank.
 _USUAL = 1.5
@@ -47,7 +44,7 @@ class Estimate:
     fine : Influence
         The solution that every number comes from.
     coarse : Influence
-        A cheaper (or, on a user's own mesh, a higher-order) one.
+        On the same mesh, of elements one order lower.
     patch, coarse_patch : float
         Half-width of the wider pressure that loads each of them [modules].
 
@@ -65,12 +62,12 @@ class Estimate:
         """c_0, its error, and how much less a true contact gives way (`Influence.contact`), shape (P,) each."""
         value, shift = self.fine.contact(radius, self.patch, half_width)
         difference = self._self_difference(value, radius, half_width)
-        return value, self._self_estimate(radius, half_width, difference), shift
+        return value, self._self_estimate(difference), shift
 
     def self_error(self, radius: Array, half_width: Array) -> Array:
         """Error of c_0, shape (P,)."""
         value = self.fine.self_compliance(radius, self.patch, half_width)
-        return self._self_estimate(radius, half_width, self._self_difference(value, radius, half_width))
+        return self._self_estimate(self._self_difference(value, radius, half_width))
 
     def neighbour(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
         """c_k(p, q) and its error, shape (P, Q) each."""
@@ -82,7 +79,7 @@ class Estimate:
         """Largest root stress, where it sits, and its error, shape (P,) each."""
         self._stress_at_samples(k)  # first: at the same positions side after side is asked for
         value, place, difference = self._stress_difference(k, side, radius, half_width)
-        return value, place, self._stress_estimate(k, side, radius, half_width, value, difference)
+        return value, place, self._stress_estimate(k, side, value, difference)
 
     @cached_property
     def largest(self) -> Mapping[str, float]:
@@ -90,15 +87,14 @@ class Estimate:
 
         Of contacts .02 modules wide to either side.
         """
-        r, b = self._samples, np.asarray(REFERENCE_HALF_WIDTH)
         own, difference = self._self_at_samples
-        errors = {"c_self": self._self_estimate(r, b, difference) / own}
+        errors = {"c_self": self._self_estimate(difference) / own}
         if self.fine.reach:
             difference = np.diagonal(self._neighbour_at_samples(1))
             errors["c_neighbour"] = self._neighbour_estimate(1, difference) / own
         for side in SIDES:
             value, difference = self._stress_at_samples(0)[side]
-            errors[f"root_{side}"] = self._stress_estimate(0, side, r, b, value, difference) / np.abs(value)
+            errors[f"root_{side}"] = self._stress_estimate(0, side, value, difference) / np.abs(value)
         return read_only({key: float(np.max(values)) for key, values in errors.items()})
 
     def _self_difference(self, value: Array, radius: Array, half_width: Array) -> Array:
@@ -111,10 +107,9 @@ class Estimate:
         value = self.fine.self_compliance(r, self.patch, b)
         return value, self._self_difference(value, r, b)
 
-    def _self_estimate(self, radius: Array, half_width: Array, difference: Array) -> Array:
-        share = np.where(self._at_an_end(radius, half_width), _END_SHARE, _SHARE)
+    def _self_estimate(self, difference: Array) -> Array:
         usual = _root_mean_square(self._self_at_samples[1][:_SAMPLES])
-        return np.maximum(share * difference, _SHARE * _USUAL * usual)
+        return _SHARE[self.fine.flank.order] * np.maximum(difference, _USUAL * usual)
 
     def _neighbour_difference(self, k: int, p: Array, q: Array) -> tuple[Array, Array]:
         value = self.fine.neighbour(k, p, q, self.patch)
@@ -127,7 +122,7 @@ class Estimate:
 
     def _neighbour_estimate(self, k: int, difference: Array) -> Array:
         usual = _root_mean_square(self._neighbour_at_samples(k)[:_SAMPLES, :_SAMPLES])
-        return _NEIGHBOUR_SHARE * np.maximum(difference, _USUAL * usual)
+        return _NEIGHBOUR_SHARE[self.fine.flank.order] * np.maximum(difference, _USUAL * usual)
 
     def _stress_difference(self, k: int, side: Side, radius: Array, half_width: Array) -> tuple[Array, Array, Array]:
         value, place = self.fine.largest_root_stress(k, side, radius, half_width)
@@ -140,9 +135,7 @@ class Estimate:
             self._stresses[k] = {side: self._stress_difference(k, side, r, b)[::2] for side in SIDES}
         return self._stresses[k]
 
-    def _stress_estimate(
-        self, k: int, side: Side, radius: Array, half_width: Array, value: Array, difference: Array
-    ) -> Array:
+    def _stress_estimate(self, k: int, side: Side, value: Array, difference: Array) -> Array:
         usual = {
             at: _root_mean_square((off / largest)[:_SAMPLES])
             for at, (largest, off) in self._stress_at_samples(k).items()
@@ -150,10 +143,8 @@ class Estimate:
         # The back fillet has the loaded one's shape and no shorter edges: it errs no less, should
         # its difference vanish by chance.
         least = _USUAL * (max(usual.values()) if side == "compression" else usual[side])
-        # The loaded fillet feels a contact at its upper end; the back one is as far from it as from any.
-        near = self._at_an_end(radius, half_width) & (k == 0 and side == "tension")
-        share = np.where(near, _END_SHARE, _STRESS_SHARE)
-        return np.maximum(share * difference, _STRESS_SHARE * least * np.abs(value))
+        edges = self.fine.fillets["tension"].arc.size / self.fine.flank.order
+        return min(_STRESS_SHARE / edges, 1.0) * np.maximum(difference, least * np.abs(value))
 
     @cached_property
     def _neighbours(self) -> dict[int, Array]:
@@ -162,13 +153,6 @@ class Estimate:
     @cached_property
     def _stresses(self) -> dict[int, dict[Side, tuple[Array, Array]]]:
         return {}
-
-    def _at_an_end(self, radius: Array, half_width: Array) -> NDArray[np.bool_]:
-        """Whether contacts are narrower than pressures that the mesh resolves, and have no room for these."""
-        flank = self.fine.flank
-        arc, resolved = flank.arc_of_radius(radius), 2.0 * max(self.fine.corner_distance, self.coarse.corner_distance)
-        room = np.minimum(arc - flank.flank_start, flank.flank_end - arc)
-        return np.asarray((room < resolved) & (half_width < resolved))
 
     @cached_property
     def _samples(self) -> Array:

@@ -147,7 +147,7 @@ class GearInfluence:
         return value / self.gear.material.young_modulus, error / self.gear.material.young_modulus
 
     def self_error(self, radius: ArrayLike, half_width: ArrayLike) -> Array:
-        """Estimated error of `self_compliance` [m^2/N]: what a coarser mesh with wider pressures changes."""
+        """Estimated error of `self_compliance` [m^2/N]: what the elements' last order and wider pressures change."""
         r, b = self._modules(radius), np.asarray(half_width, dtype=float) / self.gear.module
         if self.estimate is None:
             return np.full(np.broadcast_shapes(r.shape, b.shape), np.nan)

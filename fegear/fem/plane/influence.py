@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
 from fegear.base.one_thread import one_thread
 from fegear.base.tally import tallied
 from fegear.fem.plane.contact_width import POINT, REFERENCE_HALF_WIDTH, check_half_widths, corner_angles, wedge_slope
-from fegear.fem.plane.elasticity import assemble
+from fegear.fem.plane.elasticity import assemble, assemble_two_orders
 from fegear.fem.plane.ring import close_ring
 from fegear.fem.plane.root_stress import FilletCurve, FilletStrain, contact_width, fillet_strain
 from fegear.fem.plane.trace import LoadedFlank, loaded_flank
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from fegear.base.arrays import Array
+    from fegear.fem.plane.elasticity import SectorElasticity
     from fegear.fem.plane.mesh import SectorMesh
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth
@@ -90,6 +91,8 @@ class Influence:
     unknowns : int
         Size of the sector's system.
     seconds : mapping of str to float
+    lower : Influence, optional
+        The same on the same mesh with elements one order lower, which shows the error.
     """
 
     tooth: InvoluteTooth
@@ -104,6 +107,7 @@ class Influence:
     reach: int
     unknowns: int
     seconds: Mapping[str, float]
+    lower: Influence | None = None
 
     @property
     def log_slope(self) -> float:
@@ -349,6 +353,7 @@ def solve_influence(
     corner_distance: float = 0.006,
     margin: float = 0.15,
     sector_teeth: int = 0,
+    two_orders: bool = False,
 ) -> Influence:
     """Solve one ring for all that can be asked of its teeth.
 
@@ -369,29 +374,38 @@ def solve_influence(
     sector_teeth : int
         Solve a sector of so many teeth with free sides, loaded in the middle, instead of the ring; the reach is then
         at most (sector_teeth - 1) // 2.
+    two_orders : bool
+        Whether to solve with elements one order lower as well (`Influence.lower`), which takes .4 of the time again.
 
     Returns
     -------
     Influence
     """
+    what = _Asked(tooth, mesh, poisson_ratio, plane, reach, corner_distance, margin, sector_teeth)
     with one_thread():
-        return _solve(tooth, mesh, poisson_ratio, plane, order, reach, corner_distance, margin, sector_teeth)
+        started = time.perf_counter()
+        if not two_orders:
+            return _solve(what, assemble(mesh, poisson_ratio, plane, order), started)
+        elasticity, lower = assemble_two_orders(mesh, poisson_ratio, plane, order)
+        return replace(_solve(what, elasticity, started), lower=_solve(what, lower, time.perf_counter()))
 
 
-def _solve(
-    tooth: InvoluteTooth,
-    mesh: SectorMesh,
-    poisson_ratio: float,
-    plane: Plane,
-    order: int,
-    reach: int,
-    corner_distance: float,
-    margin: float,
-    sector_teeth: int,
-) -> Influence:
-    started = time.perf_counter()
+class _Asked(NamedTuple):
+    """What a ring is solved for, whatever its elements; as of `solve_influence`."""
+
+    tooth: InvoluteTooth
+    mesh: SectorMesh
+    poisson_ratio: float
+    plane: Plane
+    reach: int
+    corner_distance: float
+    margin: float
+    sector_teeth: int
+
+
+def _solve(what: _Asked, elasticity: SectorElasticity, started: float) -> Influence:
+    tooth, mesh, poisson_ratio, plane, reach, corner_distance, margin, sector_teeth = what
     reach = min(reach, ((sector_teeth or tooth.teeth) - 1) // 2)
-    elasticity = assemble(mesh, poisson_ratio, plane, order)
     flank = loaded_flank(mesh, elasticity, tooth, margin)
     fillets: dict[Side, FilletStrain] = {
         "tension": fillet_strain(mesh, elasticity, "fillet", tooth.side),

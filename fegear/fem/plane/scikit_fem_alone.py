@@ -33,7 +33,7 @@ from fegear.fem.plane.elements import sector_elements
 from fegear.fem.plane.mesh import SectorMesh
 from fegear.fem.plane.root_stress import CLEARANCE, search_end
 from fegear.fem.plane.sector import mesh_inside, mesh_sector
-from fegear.fem.plane.settings import COARSEST_LEVEL, settings_at
+from fegear.fem.plane.settings import settings_at
 from fegear.geometry.outline import turned
 
 if TYPE_CHECKING:
@@ -44,8 +44,9 @@ if TYPE_CHECKING:
     from fegear.geometry.gear import Plane
     from fegear.geometry.involute_tooth import InvoluteTooth
 
-#: Edges of tooth 0, as a share of those that the gear was solved with; those of other teeth are longer by as much.
-_FINER = 0.5
+#: Edges of tooth 0, as a share of those that the gear was solved with; those of other teeth are longer by as much, but
+#: no longer than those of this level.
+_FINER, _BODY = 0.5, -3
 #: Degrees of the quadrature on straight elements of fourth order and on curved ones, whose integrands are rational.
 _STRAIGHT_DEGREE, _CURVED_DEGREE = 6, 12
 #: The reference triangle's edges: a point on each, and the direction along it.
@@ -142,7 +143,7 @@ def _whole_gear(
     tooth: InvoluteTooth, bore_radius: float, settings: MeshSettings, contacts: Sequence[tuple[float, float]]
 ) -> SectorMesh:
     """All sectors joined, boundaries by name and tooth: ``flank:1`` is that of the tooth clockwise of tooth 0."""
-    coarse = min(settings_at(COARSEST_LEVEL), settings.refined(_FINER**-2), key=lambda s: s.root_edge_length)
+    coarse = min(settings_at(_BODY), settings.refined(_FINER**-2), key=lambda s: s.root_edge_length)
     plain = mesh_sector(tooth, bore_radius, coarse)
     body = {c.name: c for c in sector_boundary(tooth, bore_radius, coarse) if c.name in ("bore", "side_a", "side_b")}
     chains = [body.get(c.name, c) for c in sector_boundary(tooth, bore_radius, settings, contacts)]

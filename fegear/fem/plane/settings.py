@@ -132,10 +132,10 @@ class MeshSettings:
 
 #: Edge lengths of neighbouring levels differ by this factor.
 LEVEL_RATIO = math.sqrt(2.0)
-#: Levels that can be asked for: edge lengths 2.8 to 0.25 times the default.
-COARSEST_LEVEL, FINEST_LEVEL = -3, 4
+#: Levels that can be asked for: edge lengths 4.8 to 0.25 times the default.
+COARSEST_LEVEL, FINEST_LEVEL = -4.5, 4.0
 
 
-def settings_at(level: int) -> MeshSettings:
+def settings_at(level: float) -> MeshSettings:
     """Settings of a level: 0 the default, every further one with edges shorter by the square root of two."""
     return MeshSettings().refined(LEVEL_RATIO**-level)

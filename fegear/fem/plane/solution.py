@@ -37,11 +37,8 @@ if TYPE_CHECKING:
     Progress = Callable[[str], None]
 
 
-_HIGHEST_ORDER = 4
-
-
 #: Levels that hold a relative tolerance with their own estimate, from random gears (docs/numerics.md).
-_LEVELS = ((1e-2, -3), (1e-3, -2), (1e-4, 0), (1e-5, 2), (1e-6, 4))
+_LEVELS = ((1e-2, -4.5), (1e-3, -2.0), (1e-4, 0.0), (1e-5, 2.0), (1e-6, 4.0))
 
 
 #: How many solutions are tried at most.
@@ -82,6 +79,8 @@ def influence_of_shape(
     settings: MeshSettings,
     reach: int,
     cache: SolutionCache | None = None,
+    *,
+    two_orders: bool = False,
 ) -> Influence:
     """Solve one gear shape (lengths in modules), or recall it from a cache."""
 
@@ -94,9 +93,10 @@ def influence_of_shape(
             order=settings.order,
             reach=reach,
             corner_distance=settings.corner_distance,
+            two_orders=two_orders,
         )
 
-    what = (bore_radius, poisson_ratio, plane, settings, reach)
+    what = (bore_radius, poisson_ratio, plane, settings, reach, two_orders)
     return solve() if cache is None else known_or_solved(cache, tooth, what, solve)
 
 
@@ -122,12 +122,11 @@ def solve_gear(
     reach : int
         K: neighbours -K..K.
     estimate_error : bool
-        Whether to spend about half as much again on a second solution.
+        Whether to spend some .4 of the time again on a second solution: the same mesh, elements one order lower.
     coarser : MeshSettings, optional
-        Settings of that one, by default edges longer by the square root of two.
+        Whose corner distance and pressures that one takes, by default of edges longer by the square root of two.
     mesh : SectorMesh, optional
-        A user's own sector mesh (in modules) instead of the generated one; its error is estimated with elements one
-        order higher.
+        A user's own sector mesh (in modules) instead of the generated one.
     progress : callable, optional
         Called with the name of each stage as it starts.
     cache : SolutionCache, optional
@@ -146,35 +145,29 @@ def solve_gear(
     settings = settings or MeshSettings()
     say = progress or (lambda _stage: None)
     shape = _shape(gear)
-    coarse: Influence | None = None
     coarser = coarser or settings.refined(LEVEL_RATIO)
     if mesh is not None:
         say("influence functions on the given mesh")
         _, _, nu, plane = shape
         order, closest = settings.order, settings.corner_distance
-
-        def solve(order: int) -> Influence:
-            return known_or_solved(
-                cache or SolutionCache(),
-                gear.tooth,
-                (mesh, nu, plane, order, reach, closest),
-                lambda: solve_influence(gear.tooth, mesh, nu, plane, order=order, reach=reach, corner_distance=closest),
-            )
-
-        fine = solve(order)
-        if estimate_error:
-            coarse = solve(order + 1 if order < _HIGHEST_ORDER else order - 1)
+        fine = known_or_solved(
+            cache or SolutionCache(),
+            gear.tooth,
+            (mesh, nu, plane, order, reach, closest, estimate_error),
+            lambda: solve_influence(
+                gear.tooth, mesh, nu, plane,
+                order=order, reach=reach, corner_distance=closest, two_orders=estimate_error,
+            ),
+        )  # fmt: skip
     else:
         check_bore(gear.tooth, gear.bore_radius / gear.module, gear.module)
         say("influence functions")
-        fine = influence_of_shape(*shape, settings, reach, cache)
-        if estimate_error:
-            say("influence functions on a coarser mesh, for the error")
-            coarse = influence_of_shape(*shape, coarser, reach, cache)
+        fine = influence_of_shape(*shape, settings, reach, cache, two_orders=estimate_error)
     seconds = {**fine.seconds, "total": time.perf_counter() - started}
     estimate: Estimate | None = None
-    if coarse is not None:
-        estimate = Estimate(fine, coarse, settings.patch_half_width, coarser.patch_half_width)
+    if fine.lower is not None:
+        lower = replace(fine.lower, corner_distance=coarser.corner_distance)
+        estimate = Estimate(fine, lower, settings.patch_half_width, coarser.patch_half_width)
     return GearInfluence(gear, fine, estimate, replace(settings), seconds)
 
 
@@ -189,7 +182,7 @@ def solve_to_tolerance(
     """Solve a gear as cheaply as a relative tolerance allows.
 
     The first settings are those that usually meet the tolerance (`level_for`). While the error estimate misses it,
-    edges are shortened by the square root of two: the solution before serves as the coarser one of the next estimate.
+    edges are shortened by the square root of two.
 
     Parameters
     ----------
@@ -207,18 +200,18 @@ def solve_to_tolerance(
         round.
     """
     level, rounds = level_for(tolerance), []
-    cache = SolutionCache() if cache is None else cache  # each round's solution is the coarser one of the next
+    cache = SolutionCache() if cache is None else cache
     while True:
         started = time.perf_counter()
-        settings, coarser = settings_at(level), settings_at(level - 1)
-        known = solve_gear(gear, settings, reach=reach, coarser=coarser, progress=progress, cache=cache)
-        known = _with_errors(known, content_key("largest errors", _shape(gear), settings, coarser, reach), cache)
+        settings = settings_at(level)
+        known = solve_gear(gear, settings, reach=reach, progress=progress, cache=cache)
+        known = _with_errors(known, content_key("largest errors", _shape(gear), settings, reach), cache)
         errors = known.largest_errors()
         rounds.append(Round(settings, known.fine.unknowns, errors, time.perf_counter() - started))
         if rounds[-1].error <= tolerance or level >= FINEST_LEVEL or len(rounds) == _MOST_ROUNDS:
             seconds = {**known.seconds, "total": sum(one.seconds for one in rounds)}
             return replace(known, rounds=tuple(rounds), seconds=seconds)
-        level += 1
+        level += 1.0
 
 
 def _with_errors(known: GearInfluence, key: str, cache: SolutionCache) -> GearInfluence:
@@ -235,11 +228,11 @@ def _shape(gear: Gear) -> tuple[InvoluteTooth, float, float, Plane]:
     return gear.tooth, gear.bore_radius / gear.module, gear.material.poisson_ratio, gear.plane_assumption
 
 
-def level_for(tolerance: float) -> int:
-    """Level of `settings_at` that usually meets a relative tolerance: -2 for 1e-3, 0 for 1e-4."""
+def level_for(tolerance: float) -> float:
+    """Level of `settings_at` that usually meets a relative tolerance, a multiple of a half: -2 for 1e-3, 0 for 1e-4."""
     decades, levels = zip(*((-math.log10(known), level) for known, level in _LEVELS), strict=True)
     between = float(np.interp(-math.log10(tolerance), decades, levels))
-    return min(max(math.ceil(between - 1e-9), COARSEST_LEVEL), FINEST_LEVEL)
+    return min(max(0.5 * math.ceil(2.0 * between - 1e-9), COARSEST_LEVEL), FINEST_LEVEL)
 
 
 Shape = TypeVar("Shape")
