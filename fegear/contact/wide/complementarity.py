@@ -172,13 +172,29 @@ def deflection(known: FlankCompliance, force: Array) -> Array:
     return np.asarray(np.einsum("pij,pj->pi", matrix, force) + constant)
 
 
-def approach_by_gap(known: FlankCompliance, force: Array) -> Array:
-    """Growth of the approach by that of the averaged gaps, solved forces of shape (P, M) given, shape (P, M).
+def growth_by_gaps(known: FlankCompliance, force: Array, gaps: Array) -> tuple[Array, Array]:
+    """Growth of approach and forces with growing averaged gaps, solved forces of shape (P, M) given.
 
-    None where apart; the sum at every roll position is one.
+    Parameters
+    ----------
+    known : FlankCompliance
+    force : ndarray, shape (P, M)
+        Solved forces; where they vanish, flanks stay apart [N].
+    gaps : ndarray, shape (K, P, M)
+        K ways in which the gaps grow [m].
+
+    Returns
+    -------
+    approach : ndarray, shape (K, P)
+        Of an even gap its own growth.
+    force : ndarray, shape (K, P, M)
+        Nothing in sum at every roll position [N].
     """
+    on = (force > 0.0).astype(float)
     matrix = tangent_compliance(known, np.arange(force.shape[0]), force)
-    return _bordered(matrix, np.zeros_like(force), force > 0.0, np.ones(force.shape[0]))[0]
+    y = np.moveaxis(_solved(matrix, on, np.moveaxis(np.concatenate([on[None], on * gaps]), 0, 2)), 2, 0)
+    approach = y[1:].sum(axis=2) / y[0].sum(axis=1)
+    return approach, approach[:, :, None] * y[0] - y[1:]
 
 
 def _tangent(known: FlankCompliance, place: Index, force: Array, own: float = 1.0) -> tuple[Array, Array]:
@@ -229,17 +245,21 @@ def _at_edges(known: FlankCompliance, place: Index, share: tuple[float, float], 
 def _bordered(matrix: Array, gap: Array, active: Mask, total: Array) -> tuple[Array, Array, Array]:
     """Forces on the active stations, approach and dW/dzeta, the tangent compliances given."""
     on = active.astype(float)
+    y = _solved(matrix, on, np.stack([on, on * gap], axis=2))
+    rate = y[:, :, 0].sum(axis=1)
+    z = (total + y[:, :, 1].sum(axis=1)) / rate
+    return z[:, None] * y[:, :, 0] - y[:, :, 1], z, rate
+
+
+def _solved(matrix: Array, on: Array, right: Array) -> Array:
+    """Forces that deflect the active stations as said, both of shape (B, M, K)."""
     system = matrix * on[:, :, None] * on[:, None, :]
     at = np.arange(on.shape[1])
     system[:, at, at] += 1.0 - on
     # In units of each station's own compliance, so that inactive rows weigh no more than others.
     root = np.sqrt(np.abs(system[:, at, at]))
     system /= root[:, :, None] * root[:, None, :]
-    right = np.stack([on, on * gap], axis=2) / root[:, :, None]
-    y = np.linalg.solve(system, right) / root[:, :, None]
-    rate = y[:, :, 0].sum(axis=1)
-    z = (total + y[:, :, 1].sum(axis=1)) / rate
-    return z[:, None] * y[:, :, 0] - y[:, :, 1], z, rate
+    return np.asarray(np.linalg.solve(system, right / root[:, :, None]) / root[:, :, None])
 
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)

@@ -13,21 +13,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.errors import RangeError
+from fegear.design.flanks.descent import descend
 from fegear.design.flanks.forms import FAMILIES, GROUPS, GroundRelief
 from fegear.design.flanks.trials import quick_flanks
-from fegear.design.tip_relief.cutting_planes import least_in_box
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fegear.base.arrays import Array, Floats
+    from fegear.base.arrays import Array
     from fegear.design.flanks.forms import Family, ReliefGrid
     from fegear.design.flanks.trials import FlankTrials, QuickFlanks, Tried
 
 #: Candidates loaded exactly, at least and at most; those from which a descent starts; coarse panels over the face.
 _LEAST_EXACT, _MOST_EXACT, _STARTS, _PANELS = 24, 240, 6, 5
-#: Extent of the first region of trust over the box, its growth and its shrinking; rounds; gain that ends a descent.
-_TRUST, _GROWS, _SHRINKS, _ROUNDS, _ENDED = 0.1, 1.6, 0.35, 24, 2e-3
+#: Promised gain, over the value, that ends descents from the grid: they tell valleys apart, the best is led on.
+_SCOUTED = 2e-3
 #: Combinations whose gaps are held at a time; K_Hbeta of the quick way may err by this much.
 _HELD, _FACTOR_SLACK = 4096, 1.05
 
@@ -159,7 +159,7 @@ def best_of_family(
     on_grid = seen[0]
     proven = exact == len(order) or float(rough[order[exact]]) - error > on_grid[0]
     low, high = grid.limits(family)
-    reached = [_descend(trials, numbers[i], value, (low, high), most_factor) for value, i in seen]
+    reached = [descend(trials, numbers[i], value, (low, high), most_factor, _SCOUTED) for value, i in seen]
     value, at = min(reached, key=lambda found: found[0])
     best = FamilyBest(
         family, GroundRelief.of(numbers[on_grid[1]]), on_grid[0], GroundRelief.of(at), value, len(numbers), exact,
@@ -179,7 +179,7 @@ def led_on(
     tried = trials.of_numbers(at)
     if not _keeps(tried, most_factor):
         return best
-    value, at = _descend(trials, at, trials.value(tried.peak_to_peak), (low, high), most_factor)
+    value, at = descend(trials, at, trials.value(tried.peak_to_peak), (low, high), most_factor)
     return replace(best, relief=GroundRelief.of(at), value=value) if value < best.value else best
 
 
@@ -207,42 +207,3 @@ def settled(
 
 def _keeps(tried: Tried, most_factor: float) -> bool:
     return most_factor == np.inf or float(tried.face_load_factor.max()) <= most_factor
-
-
-def _descend(
-    trials: FlankTrials, start: Array, value: float, box: tuple[Array, Array], most_factor: float
-) -> tuple[float, Array]:
-    """Lead one start to a minimum nearby within a box: linear problems within a region of trust."""
-    low, high = box
-    free = np.flatnonzero(high > low)
-    if not free.size or value == 0.0:
-        return value, start
-    span = (high - low)[free]
-    # Lengths of what has no amount are those of the box, so that an amount can grow.
-    p = np.where((start == 0.0) & (low > 0.0), 0.5 * (low + high), start)
-    trust, tried = _TRUST, trials.of_numbers(p, slope=True)
-    for _ in range(_ROUNDS):
-        reach = trust * span
-        below, above = np.maximum((low - p)[free] / reach, -1.0), np.minimum((high - p)[free] / reach, 1.0)
-
-        def tangent(x: Floats, tried: Tried = tried, reach: Array = reach) -> tuple[Floats, Floats]:
-            step = np.zeros(low.size)
-            step[free] = x[0] * reach
-            ahead, gradient = trials.tangent(tried, step)
-            return np.array([ahead]), (gradient[free] * reach)[None]
-
-        x, least, _ = least_in_box(tangent, np.minimum(below, 0.0)[None], np.maximum(above, 0.0)[None], 0.01)
-        if value - float(least[0]) < _ENDED * value:
-            break
-        new = p.copy()
-        new[free] = np.clip(p[free] + x[0] * reach, low[free], high[free])
-        again = trials.of_numbers(new, slope=True)
-        found = trials.value(again.peak_to_peak)
-        if found < value and _keeps(again, most_factor):
-            trust *= _GROWS if value - found > 0.6 * (value - float(least[0])) else 1.0
-            p, value, tried = new, found, again
-        else:
-            trust *= _SHRINKS
-            if trust < 1e-4:
-                break
-    return value, p

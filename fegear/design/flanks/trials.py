@@ -21,8 +21,8 @@ from fegear.base.arrays import ReadOnlyArrays
 from fegear.base.errors import ConvergenceError
 from fegear.base.shown import shows
 from fegear.contact.wide.complementarity import (
-    approach_by_gap,
     deflection,
+    growth_by_gaps,
     hat_averages,
     solve_contact,
     tangent_compliance,
@@ -48,10 +48,13 @@ class Tried(ReadOnlyArrays):
         One for each misalignment.
     slope : ndarray, shape (S, 9, P, L)
         Growth of `te` by each number of a ground relief; empty, (S, 0, P, L), where it was not asked for.
+    force_slope : ndarray, shape (S, 9, P, M, L)
+        And of the forces at the stations [N].
     """
 
     found: tuple[LoadedFlanks, ...]
     slope: Array
+    force_slope: Array
 
     @cached_property
     def te(self) -> Array:
@@ -65,14 +68,32 @@ class Tried(ReadOnlyArrays):
         return np.asarray(np.ptp(self.te, axis=1))
 
     @cached_property
+    def over_face(self) -> Array:
+        """Load over each cell of the face, over the mean, shape (S, cells, L)."""
+        found = self._swept(np.concatenate([one.line_load for one in self.found], axis=2))
+        return np.moveaxis(found.reshape(found.shape[0], len(self.found), -1), 1, 0)
+
+    @cached_property
+    def over_face_slope(self) -> Array:
+        """Growth of `over_face` by each number of a ground relief, shape (S, 9, cells, L)."""
+        scatters, numbers, p, m, loads = self.force_slope.shape
+        support = self.found[0].lines.support[:, :, None]
+        force = np.moveaxis(self.force_slope, (2, 3), (0, 1)).reshape(p, m, -1)
+        found = self._swept(np.divide(force, support, out=np.zeros_like(force), where=support > 0.0))
+        return np.moveaxis(found.reshape(-1, scatters, numbers, loads), 0, 2)
+
+    def _swept(self, line_load: Array) -> Array:
+        """Line loads of shape (P, M, N L) swept over the cells of the face, over their means, shape (cells, N L)."""
+        first = self.found[0]
+        swept = swept_mean(first.lines, line_load, first.cells, first.pair.base_pitch) / np.diff(first.cells)[:, None]
+        mean = first.load / (first.lines.high - first.lines.low)
+        return np.asarray(swept / np.tile(mean, line_load.shape[2] // mean.size))
+
+    @property
     @shows("", "largest over mean load per face width", name="K_Hbeta", label="K_{Hβ}")
     def face_load_factor(self) -> Array:
         """K_Hbeta, shape (S, L); all misalignments are swept over the face in one go."""
-        first = self.found[0]
-        loads = np.concatenate([one.line_load for one in self.found], axis=2)
-        over_face = swept_mean(first.lines, loads, first.cells, first.pair.base_pitch) / np.diff(first.cells)[:, None]
-        largest = over_face.max(axis=0).reshape(len(self.found), -1)
-        return np.asarray(largest / (first.load / (first.lines.high - first.lines.low)))
+        return np.asarray(self.over_face.max(axis=1))
 
     @cached_property
     @shows("MPa", "largest, without tips and form circles", name="hertz_pressure")
@@ -160,15 +181,17 @@ class FlankTrials:
         return self._tried(self.gap(numbers), np.array(forms).reshape(-1, *lines.x.shape))
 
     def _tried(self, gap: Array, forms: Array) -> Tried:
-        found, slopes = [], []
+        found, slopes, forces = [], [], []
         for deviation in self.deviations:
             contact = solve_contact(self.known, self.apart + deviation + gap, self.loads)
             found.append(LoadedFlanks(self.pair, self.known, contact, self.loads, {}))
             slope = np.empty((len(forms), *contact.approach.shape))
+            moved = np.empty((len(forms), *contact.force.shape))
             for i in range(self.loads.size if len(forms) else 0):
-                slope[:, :, i] = np.einsum("pm,kpm->kp", approach_by_gap(self.known, contact.force[:, :, i]), forms)
+                slope[..., i], moved[..., i] = growth_by_gaps(self.known, contact.force[:, :, i], forms)
             slopes.append(slope)
-        return Tried(tuple(found), np.stack(slopes))
+            forces.append(moved)
+        return Tried(tuple(found), np.stack(slopes), np.stack(forces))
 
     @property
     def proportion(self) -> Array:
@@ -178,18 +201,6 @@ class FlankTrials:
     def value(self, peak_to_peak: Array) -> float:
         """What is to be least, of values of shape (S, L): means over the misalignments, of the worst load [m]."""
         return float((self.scatter.weights @ peak_to_peak * self.proportion).max())
-
-    def tangent(self, tried: Tried, step: Array) -> tuple[float, Array]:
-        """The same a step of the nine numbers ahead, transmission errors taken as straight, and its gradient (9,)."""
-        te = tried.te + np.einsum("skpl,k->spl", tried.slope, step)
-        high, low = te.argmax(axis=1), te.argmin(axis=1)
-        values = self.scatter.weights @ np.ptp(te, axis=1) * self.proportion
-        worst = int(values.argmax())
-        gradient = np.zeros(tried.slope.shape[1])
-        for s, weight in enumerate(self.scatter.weights):
-            slope = tried.slope[s, :, :, worst]
-            gradient += weight * (slope[:, high[s, worst]] - slope[:, low[s, worst]])
-        return float(values[worst]), gradient * self.proportion[worst]
 
 
 #: Problems solved at a time, times the square of their size; steps after which one station changes at a time, in all.
