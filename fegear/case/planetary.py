@@ -1,11 +1,12 @@
 """``[planetary.NAME]``: sun, planets, ring and carrier, what holds and drives them, and where their pins stand.
 
-The meshes of a set are pairs of the case: `NAME_sun`, made here unless the case has one of that name.
+The meshes of a set are pairs of the case, `NAME_sun` and `NAME_ring`, made here unless the case has them.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -32,8 +33,11 @@ from fegear.case.part import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fegear.case.model import Case
     from fegear.case.operation import OperationPart
+    from fegear.geometry.gear import Gear
 
 CentralName = Literal["sun", "ring", "carrier"]
 
@@ -60,7 +64,9 @@ class SetStiffnessPart(Part):
         "point on; without it that of the teeth of pair NAME_sun.",
     )
     ring_mesh: MeshStiffness | None = Field(
-        default=None, description="Mesh stiffness of planet and ring: one value, or several evenly over the base pitch."
+        default=None,
+        description="Mesh stiffness of planet and ring: one value, or several evenly over the base pitch; without it "
+        "that of the teeth of pair NAME_ring, where the ring is a gear.",
     )
     pin: PositiveStiffness | None = Field(
         default=None,
@@ -112,7 +118,15 @@ class PlanetaryPart(Part):
 
     sun: str = Field(description="Name of the gear that is the sun.")
     planet: str = Field(description="Name of the gear that each planet is.")
-    ring_teeth: Annotated[int, Field(ge=5, le=2000)] = Field(description="Number of teeth of the ring, positive.")
+    ring: str | None = Field(
+        default=None,
+        description="Name of the internal gear that is the ring, whose teeth are then solved in its mesh; give this or "
+        "`ring_teeth`.",
+    )
+    ring_teeth: Annotated[int, Field(ge=5, le=2000)] | None = Field(
+        default=None,
+        description="Number of teeth of a ring that is no gear of the case, positive; its mesh has a given stiffness.",
+    )
     planets: Annotated[int, Field(ge=1, le=100)] | None = Field(
         default=None, description="Number of evenly spaced planets; give this or `angles`."
     )
@@ -161,6 +175,12 @@ class PlanetaryPart(Part):
                 "must be given in one way", 'write planets = 3, or angles = ["0 deg", "117 deg", ...]', key="planets",
                 value="(not given)" if self.planets is None else f"{self.planets}, with angles",
             )  # fmt: skip
+        if (self.ring is None) == (self.ring_teeth is None):
+            raise refuse(
+                "must be given, or ring_teeth" if self.ring is None else "contradicts ring_teeth",
+                "name the internal gear that is the ring, or give the number of teeth alone", key="ring",
+                value="(not given)" if self.ring is None else self.ring,
+            )  # fmt: skip
         if self.fixed == self.input:
             raise refuse("is fixed as well", "fix another member, or drive another one", key="input")
         for key in ("tangential", "radial"):
@@ -183,37 +203,55 @@ class PlanetaryPart(Part):
         """Number of planets."""
         return len(self.angles) if self.angles is not None else self.planets or 0
 
-    def sun_torque(self, sun_teeth: int) -> float:
-        """Size of the torque on the sun without losses [N m]."""
-        share = {"sun": sun_teeth, "ring": self.ring_teeth, "carrier": sun_teeth + self.ring_teeth}
-        return self.torque * sun_teeth / share[self.input]
-
     def sun_drives(self) -> bool:
         """Whether power rolls from the sun over the planets to the ring, in the motion relative to the carrier."""
         return self.input == "sun" or (self.input == "carrier" and self.fixed == "sun")
 
-    def sun_speed(self, sun_teeth: int) -> float | None:
+
+@dataclass(frozen=True)
+class SetTeeth:
+    """Numbers of teeth of a set, and what they make of torque and speed of the driving member."""
+
+    sun: int
+    planet: int
+    ring: int
+
+    def sun_torque(self, part: PlanetaryPart) -> float:
+        """Size of the torque on the sun without losses [N m]."""
+        share = {"sun": self.sun, "ring": self.ring, "carrier": self.sun + self.ring}
+        return part.torque * self.sun / share[part.input]
+
+    def sun_speed(self, part: PlanetaryPart) -> float | None:
         """Speed of the sun relative to the carrier [rad/s], without its sign; None where none is given."""
-        if self.speed is None:
+        if part.speed is None:
             return None
-        teeth = sun_teeth + self.ring_teeth
+        of_both, of_ring = self.ring / (self.sun + self.ring), self.ring / self.sun
         share = {
             ("carrier", "sun"): 1.0,
-            ("carrier", "ring"): self.ring_teeth / sun_teeth,
-            ("ring", "sun"): self.ring_teeth / teeth,
-            ("ring", "carrier"): self.ring_teeth / sun_teeth,
-            ("sun", "ring"): self.ring_teeth / teeth,
+            ("carrier", "ring"): of_ring,
+            ("ring", "sun"): of_both,
+            ("ring", "carrier"): of_ring,
+            ("sun", "ring"): of_both,
             ("sun", "carrier"): 1.0,
         }
-        return self.speed * share[self.fixed, self.input]
+        return part.speed * share[part.fixed, part.input]
 
 
-def sun_pair(name: str) -> str:
-    """Name of the pair of sun and planet of a set."""
-    return f"{name}_sun"
+def set_teeth(case: Case, part: PlanetaryPart) -> SetTeeth:
+    """Numbers of teeth of a set whose gears are those of the case."""
+    ring = part.ring_teeth if part.ring is None else case.gear[part.ring].teeth
+    return SetTeeth(case.gear[part.sun].teeth, case.gear[part.planet].teeth, ring or 0)
 
 
-def with_set_pairs(case: Case) -> Case:
+Mesh = Literal["sun", "ring"]
+
+
+def set_pair(name: str, mesh: Mesh) -> str:
+    """Name of the pair of a planet with the sun, or with the ring, of a set."""
+    return f"{name}_{mesh}"
+
+
+def with_set_pairs(case: Case, gears: Mapping[str, Gear]) -> Case:
     """The case with the pairs of its planetary sets, each with the load of equal shares and as it runs in the set.
 
     Raises
@@ -223,52 +261,70 @@ def with_set_pairs(case: Case) -> Case:
     """
     pairs = dict(case.pair)
     for name, part in case.planetary.items():
-        for role in ("sun", "planet"):
-            if (gear := getattr(part, role)) not in case.gear:
+        for role in ("sun", "planet", "ring"):
+            gear = getattr(part, role)
+            if gear is None:
+                continue
+            if gear not in gears:
                 raise InputError(f"planetary.{name}.{role}", f'"{gear}"', "is no gear of this case",
                                  nearest(gear, case.gear))  # fmt: skip
-        own = sun_pair(name)
-        drives = part.sun_drives()
-        roles = (part.sun, part.planet) if drives else (part.planet, part.sun)
-        teeth = case.gear[part.sun].teeth
-        torque = part.sun_torque(teeth) / part.count * (1.0 if drives else case.gear[part.planet].teeth / teeth)
-        given = pairs.get(own)
-        if given is None:
-            given = PairPart(driver=roles[0], driven=roles[1])
-        elif (given.driver, given.driven) != roles:
-            raise InputError(
-                f"pair.{own}.driver", f'"{given.driver}"',
-                f"is the mesh of sun and planet of planetary.{name}, in which {roles[0]} drives {roles[1]}",
-                "name the gears so, or give the pair another name",
-            )  # fmt: skip
-        filled: dict[str, Any] = {} if given.load or given.torque else {"torque": torque}
-        if given.centre_distance is None and part.centre_distance is not None:
-            filled["centre_distance"] = part.centre_distance
-        speed = part.sun_speed(teeth)
-        if given.speed is None and speed is not None:
-            filled["speed"] = speed * (1.0 if drives else teeth / case.gear[part.planet].teeth)
-        filled["operation"] = _operation(part, given)
-        pairs[own] = given.model_copy(update=filled)
+            if gears[gear].tooth.internal != (role == "ring"):
+                rule = "must be an internal gear" if role == "ring" else "is an internal gear"
+                raise InputError(f"planetary.{name}.{role}", f'"{gear}"', rule, "name another gear, or change internal")
+        sun = set_pair(name, "sun")
+        pairs[sun] = _set_pair(case, name, "sun", part.centre_distance)
+        if part.ring is not None:
+            distance = pairs[sun].build(dict(gears), f"pair.{sun}").centre_distance
+            pairs[set_pair(name, "ring")] = _set_pair(case, name, "ring", distance)
     return case.model_copy(update={"pair": pairs}) if case.planetary else case
 
 
-def _operation(part: PlanetaryPart, given: PairPart) -> OperationPart:
-    """How the mesh of sun and planet runs, where its pair does not say: a sun's flank meets every planet in a turn.
+def _set_pair(case: Case, name: str, mesh: Mesh, distance: float | None) -> PairPart:
+    """The pair of a planet with sun or ring: its own of the case, completed, or a new one."""
+    part, teeth = case.planetary[name], set_teeth(case, case.planetary[name])
+    planet_drives = part.sun_drives() == (mesh == "ring")
+    central: str = getattr(part, mesh)
+    roles = (part.planet, central) if planet_drives else (central, part.planet)
+    driving = teeth.planet if planet_drives else getattr(teeth, mesh)
+    own = set_pair(name, mesh)
+    given = case.pair.get(own)
+    if given is None:
+        given = PairPart(driver=roles[0], driven=roles[1])
+    elif (given.driver, given.driven) != roles:
+        raise InputError(
+            f"pair.{own}.driver", f'"{given.driver}"',
+            f"is the mesh of {mesh} and planet of planetary.{name}, in which {roles[0]} drives {roles[1]}",
+            "name the gears so, or give the pair another name",
+        )  # fmt: skip
+    filled: dict[str, Any] = {}
+    if not (given.load or given.torque):
+        filled["torque"] = teeth.sun_torque(part) / part.count * driving / teeth.sun
+    if given.centre_distance is None and distance is not None:
+        filled["centre_distance"] = distance
+    speed = teeth.sun_speed(part)
+    if given.speed is None and speed is not None:
+        filled["speed"] = speed * teeth.sun / driving
+    filled["operation"] = _operation(part, given, planet_drives)
+    return given.model_copy(update=filled)
+
+
+def _operation(part: PlanetaryPart, given: PairPart, planet_drives: bool) -> OperationPart:
+    """How a mesh runs, where its pair does not say: a flank of sun or ring meets every planet in a turn.
 
     A planet's teeth are bent to either side, by sun and ring.
     """
-    drives, said = part.sun_drives(), given.operation.model_fields_set
+    said = given.operation.model_fields_set
     filled: dict[str, Any] = {}
     if "contacts" not in said:
-        filled["contacts"] = [part.count, 1] if drives else [1, part.count]
+        filled["contacts"] = [1, part.count] if planet_drives else [part.count, 1]
     if not said & {"idler", "reversed_load", "mean_stress_factor"}:
-        filled["idler"] = "driven" if drives else "driver"
+        filled["idler"] = "driver" if planet_drives else "driven"
     return given.operation.model_copy(update=filled)
 
 
 def set_of_pair(case: Case, pair: str) -> str | None:
     """The planetary set to which a pair belongs; None where it belongs to none."""
-    return next((name for name in case.planetary if sun_pair(name) == pair), None)
+    return next((name for name in case.planetary if pair in (set_pair(name, "sun"), set_pair(name, "ring"))), None)
 
 
 def set_that_shares(case: Case, pair: str) -> str | None:
@@ -276,7 +332,8 @@ def set_that_shares(case: Case, pair: str) -> str | None:
     name = set_of_pair(case, pair)
     if name is None or "mesh_load_factor" in case.pair[pair].operation.model_fields_set:
         return None
-    return name if case.planetary[name].stiffness.ring_mesh is not None else None
+    part = case.planetary[name]
+    return None if part.ring is None and part.stiffness.ring_mesh is None else name
 
 
 def angles_of(part: PlanetaryPart) -> list[float]:

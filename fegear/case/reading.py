@@ -184,8 +184,8 @@ def build_scene(document: Mapping[str, object], name: str, folder: Path, *, bare
         case = Case.model_validate(document, context={BARE_SI: bare_si})
     except ValidationError as error:
         raise refusal(error) from None
-    case = with_set_pairs(case)
     gears = {key: part.build(f"gear.{key}") for key, part in case.gear.items()}
+    case = with_set_pairs(case, gears)
     for key, pair in case.pair.items():
         for role in ("driver", "driven"):
             if (gear := getattr(pair, role)) not in case.gear:

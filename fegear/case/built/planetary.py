@@ -10,7 +10,7 @@ import numpy as np
 
 from fegear.base.errors import InputError
 from fegear.case.part import at
-from fegear.case.planetary import angles_of, sun_pair
+from fegear.case.planetary import angles_of, set_pair, set_teeth
 from fegear.dynamics.planetary.kinematics import Running, running
 from fegear.dynamics.planetary.phases import Phases, mesh_phases
 from fegear.dynamics.planetary.planet_set import CENTRALS, PlanetarySet
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.planetary.planet_set import Central
     from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.geometry.gear import Gear
+    from fegear.geometry.internal_interference import InternalCheck
 
 #: Speed of sets of which nobody gave one [rad/s]: ratios, torques and phases do not depend on it.
 _ANY_SPEED = 1.0
@@ -76,33 +77,34 @@ def set_inputs(scene: Scene, name: str) -> SetInputs:
         If it cannot be assembled; the key is the one of the case file.
     """
     part = planetary_part(scene, name)
-    sun, planet, pair = scene.gears[part.sun], scene.gears[part.planet], scene.pairs[sun_pair(name)]
+    sun, planet, pair = scene.gears[part.sun], scene.gears[part.planet], scene.pairs[set_pair(name, "sun")]
     if sun.helix_angle:
         raise InputError(
             f"planetary.{name}.sun", f'"{part.sun}"', "is helical, and sets of helical gears are not known yet",
             "give spur gears",
         )  # fmt: skip
-    tooth = planet.tooth
+    tooth, teeth = planet.tooth, set_teeth(scene.case, part)
     at_pitch = planet.base_radius / math.cos(pair.working_pressure_angle) / planet.module
     half = float(tooth.half_thickness_angle(at_pitch)) + float(inv(pair.working_pressure_angle))
     try:
         found = PlanetarySet(
-            sun.teeth, planet.teeth, part.ring_teeth, pair.base_pitch, pair.centre_distance,
+            sun.teeth, planet.teeth, teeth.ring, pair.base_pitch, pair.centre_distance,
             np.array(angles_of(part)), half, planet.tip_radius,
         )  # fmt: skip
     except InputError as error:
-        raise at(f"planetary.{name}", error, {"ring": "ring_teeth"}) from None
+        raise at(f"planetary.{name}", error, {"ring": "ring_teeth"} if part.ring is None else {}) from None
+    ring = None if part.ring is None else scene.gears[part.ring]
     speed = (part.speed or _ANY_SPEED) * (-1.0 if part.clockwise else 1.0)
     run = running(found, part.fixed, part.input, speed, part.torque, part.mesh_efficiency)
     phases = mesh_phases(found, clockwise=run.sun_turns < 0.0, sun_drives=run.sun_drives)
     model = SetModel(
-        found, _central(part, "sun", sun), _central(part, "ring"), _central(part, "carrier"),
+        found, _central(part, "sun", sun), _central(part, "ring", ring), _central(part, "carrier"),
         PlanetBody(*_mass(part.body.planet, planet), pin=part.stiffness.pin or math.inf), run.mirrored,
     )  # fmt: skip
     meshes = {"sun": part.stiffness.sun_mesh, "ring": part.stiffness.ring_mesh}
     given = {mesh: None if one is None else tuple(one) for mesh, one in meshes.items()}
     return SetInputs(
-        found, run, phases, model, part.sun_torque(sun.teeth), given, part.speed is not None, name
+        found, run, phases, model, teeth.sun_torque(part), given, part.speed is not None, name
     )  # fmt: skip
 
 
@@ -113,8 +115,15 @@ def _mass(body: SetBodyPart | None, gear: Gear | None) -> tuple[float, float]:
     if gear is None:
         return math.nan, math.nan
     density, width = gear.material.density, gear.face_width
-    mass = math.pi * density * width * (gear.pitch_radius**2 - gear.bore_radius**2)
-    return mass, disc_inertia(gear.pitch_radius, width, density, gear.bore_radius)
+    inner, outer = sorted((gear.pitch_radius, gear.bore_radius))
+    mass = math.pi * density * width * (outer**2 - inner**2)
+    return mass, disc_inertia(outer, width, density, inner)
+
+
+def ring_checks(scene: Scene, name: str) -> tuple[InternalCheck, ...]:
+    """What planet and ring may foul each other in; nothing where the ring is no gear of the case."""
+    pair = scene.pairs.get(set_pair(name, "ring"))
+    return () if pair is None else pair.internal_checks
 
 
 def _central(part: PlanetaryPart, member: Central, gear: Gear | None = None) -> CentralBody:

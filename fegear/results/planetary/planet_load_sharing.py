@@ -10,7 +10,7 @@ import numpy as np
 from fegear.base.errors import InputError
 from fegear.case.built.pair_inputs import EFFECTS
 from fegear.case.built.planetary import given_teeth, pin_errors, planetary_part, set_inputs
-from fegear.case.planetary import sun_pair
+from fegear.case.planetary import set_pair
 from fegear.dynamics.planetary.planet_loads import MeshedSet, force_on, planet_loads
 from fegear.dynamics.planetary.planet_set import CENTRALS
 from fegear.engine.citation import Citation, citing
@@ -27,8 +27,10 @@ from fegear.results.planetary.planet_set import planetary_sets
 if TYPE_CHECKING:
     from fegear.base.arrays import Array
     from fegear.case.built.planetary import SetInputs
+    from fegear.case.planetary import Mesh
     from fegear.case.reading import Scene
     from fegear.dynamics.planetary.planet_loads import PlanetLoads
+    from fegear.dynamics.train.excitation import MeshExcitation
     from fegear.engine.stage import Upstream, Work
 
 #: Springs of the sun's mesh [s], and the equilibrium over the cycle.
@@ -47,39 +49,51 @@ def meshed_set(upstream: Upstream, name: str) -> MeshedSet:
     return cast("MeshedSet", upstream[Task("meshed-set", name)])
 
 
+def _solved(scene: Scene, name: str) -> tuple[Mesh, ...]:
+    """Meshes of a set whose teeth are solved: those of gears of the case without a given stiffness."""
+    part = planetary_part(scene, name)
+    meshes: tuple[Mesh, ...] = ("sun", "ring") if part.ring is not None else ("sun",)
+    return tuple(mesh for mesh in meshes if getattr(part.stiffness, f"{mesh}_mesh") is None)
+
+
 def _needs(scene: Scene, name: str) -> tuple[Task, ...]:
-    given = planetary_part(scene, name).stiffness.sun_mesh
-    return () if given is not None else (Task("loaded-pair", sun_pair(name)),)
+    return tuple(Task("loaded-pair", set_pair(name, mesh)) for mesh in _solved(scene, name))
 
 
 def _check(scene: Scene, name: str) -> None:
     set_inputs(scene, name)
     part = planetary_part(scene, name)
-    if part.stiffness.ring_mesh is None:
+    if part.ring is None and part.stiffness.ring_mesh is None:
         raise InputError(
-            f"planetary.{name}.stiffness.ring_mesh", "(not given)", "is needed: teeth of a ring are not loaded by "
-            "finite elements in a set yet", 'write stiffness = { ring_mesh = "700 N/um" }',
+            f"planetary.{name}.stiffness.ring_mesh", "(not given)", "is needed, for the ring is no gear of the case",
+            'write stiffness = { ring_mesh = "700 N/um" }, or describe the ring and write ring = "its name"',
         )  # fmt: skip
-    if part.stiffness.sun_mesh is None and sun_pair(name) in scene.wide_pairs:
-        raise InputError(
-            f"pair.{sun_pair(name)}.width", f'"{scene.width_of(sun_pair(name))}"',
-            "is not known to a set: its teeth are plane", 'write width = "plane"',
-        )  # fmt: skip
+    for pair in (set_pair(name, mesh) for mesh in _solved(scene, name)):
+        if pair in scene.wide_pairs:
+            raise InputError(
+                f"pair.{pair}.width", f'"{scene.width_of(pair)}"', "is not known to a set: its teeth are plane",
+                'write width = "plane"',
+            )  # fmt: skip
 
 
 def _meshed(asked: SetInputs, upstream: Upstream, _work: Work) -> MeshedSet:
     from fegear.dynamics.train.mesh_excitation import mesh_excitation
 
-    made = {mesh: given_teeth(one) for mesh, one in asked.given.items() if one is not None}
-    if "sun" not in made:
-        force = asked.sun_torque / (asked.found.base_radius("sun") * asked.found.count)
-        made["sun"] = mesh_excitation(loaded_pair(upstream, sun_pair(asked.name)).engagement, force)
-    return MeshedSet(asked.model, made["sun"], made["ring"], asked.phases, asked.sun_torque, asked.run.input)
+    force = asked.sun_torque / (asked.found.base_radius("sun") * asked.found.count)
+
+    def teeth(mesh: Mesh) -> MeshExcitation:
+        given = asked.given[mesh]
+        if given is not None:
+            return given_teeth(given)
+        return mesh_excitation(loaded_pair(upstream, set_pair(asked.name, mesh)).engagement, force)
+
+    return MeshedSet(asked.model, teeth("sun"), teeth("ring"), asked.phases, asked.sun_torque, asked.run.input)
 
 
 def _present_meshed(data: MeshedSet, asked: SetInputs) -> Outcome:
     said = []
-    if asked.given["sun"] is None and not data.sun.slotted:
+    solved = [one for mesh, one in zip(("sun", "ring"), data.teeth, strict=True) if asked.given[mesh] is None]
+    if any(not one.slotted for one in solved):
         said.append(f"Set {asked.name}: coupled teeth and contacts off the path are linear about an equal share.")
     if asked.given["ring"] is not None:
         said.append(f"Set {asked.name}: the mesh stiffness of planet and ring is the given one.")

@@ -158,4 +158,5 @@ PLANET_MOTION = Stage(
         Citation("lin-huston-coy", "contact, its loss, and contact on the back flanks", "Eqs. 19 to 24"),
     ),
     forecast=_forecast,
+    internal=True,
 )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fegear.base.shown import declared
-from fegear.case.built.planetary import planetary_part, set_inputs
+from fegear.case.built.planetary import planetary_part, ring_checks, set_inputs
 from fegear.dynamics.planetary.kinematics import passing, sidebands
 from fegear.dynamics.planetary.phases import phasing
 from fegear.dynamics.planetary.planet_set import CENTRALS
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from fegear.dynamics.planetary.kinematics import Passing, Sidebands
     from fegear.dynamics.planetary.phases import Phasing
     from fegear.engine.stage import Upstream, Work
+    from fegear.geometry.internal_interference import InternalCheck
 
 
 @dataclass(frozen=True)
@@ -41,10 +42,12 @@ class PlanetSetData:
 
 @dataclass(frozen=True)
 class PlanetSetInputs:
-    """The set, and how many harmonics are looked at."""
+    """The set, how many harmonics are looked at, what planet and ring may foul each other in, and their module [m]."""
 
     asked: SetInputs
     harmonics: int
+    checks: tuple[InternalCheck, ...]
+    module: float
 
 
 def planetary_sets(scene: Scene) -> tuple[str, ...]:
@@ -53,7 +56,10 @@ def planetary_sets(scene: Scene) -> tuple[str, ...]:
 
 
 def _inputs(scene: Scene, name: str) -> PlanetSetInputs:
-    return PlanetSetInputs(set_inputs(scene, name), planetary_part(scene, name).harmonics)
+    part = planetary_part(scene, name)
+    return PlanetSetInputs(
+        set_inputs(scene, name), part.harmonics, ring_checks(scene, name), scene.gears[part.planet].module
+    )  # fmt: skip
 
 
 def _compute(inputs: PlanetSetInputs, _upstream: Upstream, _work: Work) -> PlanetSetData:
@@ -96,6 +102,8 @@ def _present(data: PlanetSetData, inputs: PlanetSetInputs) -> Outcome:
          *columns_of(phases, "angle", "sun", "ring")),
         f"Phases of the meshes of set {name}",
     ))  # fmt: skip
+    if inputs.checks:
+        tables.append(_ring_table(inputs))
     excites = declared(type(rule), "excites")
     tables.append(Table(
         f"planet_phasing_{name}",
@@ -114,16 +122,30 @@ def _present(data: PlanetSetData, inputs: PlanetSetInputs) -> Outcome:
         values.append(value_of(found, "neighbour_clearance", name))
     if asked.at_speed:
         values += [value_of(run, "mesh_frequency", name), value_of(run, "planet_speed", name)]
-    return Outcome(data, tuple(tables), tuple(values), {"mirrored": run.mirrored}, _remarks(asked),
+    return Outcome(data, tuple(tables), tuple(values), {"mirrored": run.mirrored}, _remarks(inputs),
                    (_drawing(asked), _phasing_figure(name, rule)))  # fmt: skip
 
 
-def _remarks(asked: SetInputs) -> tuple[str, ...]:
+def _ring_table(inputs: PlanetSetInputs) -> Table:
+    margins = np.array([one.margin for one in inputs.checks]) * inputs.module
+    return Table(
+        f"planet_in_ring_{inputs.asked.name}",
+        (
+            Column("check", np.array([one.name for one in inputs.checks]), "", "what may meet"),
+            Column("margin", margins, "mm", "room that is left; negative where material meets, inf where none can"),
+        ),
+        f"What planets and ring of set {inputs.asked.name} may foul each other in",
+    )
+
+
+def _remarks(inputs: PlanetSetInputs) -> tuple[str, ...]:
+    asked = inputs.asked
     name, found = asked.name, asked.found
     teeth = found.sun_teeth + found.ring_teeth
     said = [f"Set {name}: teeth fit between sun and ring at whole multiples of 360/{teeth} deg."]
     if found.count > 1:
         said[0] += f" Neighbours clear each other by {found.neighbour_clearance * 1e3:.4g} mm."
+    said += [f"Set {name}: {one.sentence(inputs.module)}." for one in inputs.checks if one.margin < 0.0]
     if not asked.at_speed:
         said.append(f"Set {name}: no speed is given; frequencies need planetary.{name}.speed, and speeds of "
                     "the table of members are those at 1 rad/s of the input.")  # fmt: skip
