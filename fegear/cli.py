@@ -100,7 +100,7 @@ def main() -> None:
                 leave("the folder that it was started in does not exist any more; change into another one.", 2)
             raise
         where = f" to {error.filename}" if error.filename else ""
-        leave(f"cannot write{where} ({error.strerror}); what stands in output folders is whole.", 2)
+        leave(f"cannot write{where} ({error.strerror}); existing output folders are intact.", 2)
 
 
 def _nowhere() -> bool:

@@ -25,7 +25,7 @@ class EffectsPart(Part):
         default=False, description="Whether deflected teeth meet before and after the nominal path of contact."
     )
     contact_loss: bool = Field(default=False, description="Loss of contact and impacts in motion.")
-    friction: bool = Field(default=False, description="Whether teeth rub.")
+    friction: bool = Field(default=False, description="Sliding friction between the teeth.")
     parametric: bool = Field(default=False, description="Whether the mesh stiffness varies in time.")
     misalignment: bool = Field(default=False, description="Whether misalignment and line errors of a pair count.")
 

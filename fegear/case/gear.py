@@ -230,7 +230,9 @@ class GearPart(Part):
         default_factory=MaterialPart, description="Elasticity and density of the gear; without it steel."
     )
     strength: StrengthPart | None = Field(
-        default=None, description="What the material bears, for the result rating: kind, quality and hardness."
+        default=None,
+        description="Strength of the material (allowable stress numbers), for the result rating: kind, quality and "
+        "hardness.",
     )
     tooth_mesh: str | None = Field(
         default=None,

@@ -14,7 +14,7 @@ Coordinate = Literal["y", "z", "theta_x", "theta_y", "theta_z"]
 
 
 class MeshErrorPart(Part):
-    """``transmission_error``: harmonics of a pair of the case, of a table, or one amplitude; along y unless told.
+    """``transmission_error``: harmonics of a pair of the case, of a table, or one amplitude; along y by default.
 
     ``flanks`` says which of a pair with a width: rigid or loaded ones; loaded by default where the mesh is that pair's.
     ``shuttling`` adds the moment about x of a force that wanders over the face.

@@ -152,7 +152,7 @@ class LubricantPart(Part):
             raise refuse("must be below viscosity_40: oil thins as it warms", "check both", key="viscosity_100")
         if self.viscosity_100 is None and self.viscosity_40 < _THIN:
             raise refuse(
-                "is needed for so thin an oil: no usual gear oil tells how it thins", "give viscosity_100",
+                "is needed for so thin an oil: no usual gear oil says how it thins", "give viscosity_100",
                 key="viscosity_100", value="(not given)",
             )  # fmt: skip
         if self.viscosity_40 < 2e-6 or (self.viscosity_100 or 2e-6) < 2e-6:

@@ -168,13 +168,13 @@ class TransmissibilityPart(Part):
     )
     driver: RigidGearPart | None = Field(
         default=None,
-        description="The driver as a rigid gear on its bearing; where the mesh is a pair's, what is left out is that "
-        "of its gear.",
+        description="The driver as a rigid gear on its bearing; where the mesh is a pair's, what is not given is "
+        "that of its gear.",
     )
     driven: RigidGearPart | None = Field(
         default=None,
-        description="The driven gear as a rigid one on its bearing; where the mesh is a pair's, what is left out is "
-        "that of its gear.",
+        description="The driven gear as a rigid one on its bearing; where the mesh is a pair's, what is not "
+        "given is that of its gear.",
     )
     unity_ratio: UnityRatioPart | None = Field(
         default=None,

@@ -141,7 +141,7 @@ def _asked() -> Answers:
 
     for line in two_columns([(name, kind.about) for name, kind in KINDS.items()], max(map(len, KINDS))):
         typer.echo(line)
-    typer.echo("An empty answer takes what stands in brackets.")
+    typer.echo("An empty answer takes the value in brackets.")
     try:
         kind = ask("Kind", "pair", lambda text: Answers(text, {})) or "pair"
         told: dict[str, str] = {}

@@ -6,7 +6,7 @@
 
 ``fegear check``: gears solved a second time, whole and by scikit-fem alone.
 
-``fegear compare``: two runs held against each other.
+``fegear compare``: compare two runs or cases.
 """
 
 from __future__ import annotations

@@ -113,7 +113,7 @@ class LoadedTeeth(Protocol):
         """What the effects that are off would change."""
 
     def history(self) -> LoadHistory:
-        """One tooth pair from first to last contact under every load."""
+        """One tooth pair over the path of contact under every load."""
 
     def transmission_error(self, progress: Callable[[float], None]) -> ErrorOverPitch:
         """Transmission error and mesh stiffness over one base pitch under every load.
@@ -210,7 +210,7 @@ class FlankLoad:
 
 @dataclass(frozen=True)
 class LoadHistory:
-    """One tooth pair followed from first to last contact, at P positions under L loads.
+    """One tooth pair followed over the path of contact, at P positions under L loads.
 
     Parameters
     ----------
@@ -343,7 +343,7 @@ class ErrorOverPitch:
     pairs_in_contact: Array = shown("", "tooth pairs that carry load")
     local_stiffness: Array = shown("N/um", "slope of load over transmission error")
     te_mean: Array = shown("um", "mean transmission error over the base pitch", label="mean")
-    te_peak_to_peak: Array = shown("um", "largest less smallest", label="peak to peak")
+    te_peak_to_peak: Array = shown("um", "peak to peak", label="peak to peak")
     te_effective: Array = shown("um", "A_e of NASA TM-89901, 0-peak")
     local_stiffness_mean: Array = shown("N/um", "slope of load, mean over the base pitch")
     mesh_stiffness_mean: float = shown("N/um", "secant stiffness, mean")

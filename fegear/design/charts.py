@@ -68,7 +68,7 @@ class ReliefChart:
     effective_error: Array = shown(
         "um", "A_e of NASA TM-89901, 0-peak", name="te_effective", label="effective transmission error A_{e}"
     )
-    peak_to_peak: Array = shown("um", "largest less smallest", name="te_peak_to_peak")
+    peak_to_peak: Array = shown("um", "peak to peak", name="te_peak_to_peak")
 
     def optimum_lengths(self, metric: Metric = "effective_error") -> Array:
         """Length with the least excitation for each amount and load, shape (A, L); parabola through the lowest three.

@@ -137,10 +137,7 @@ class Results(Alike):
         said = []
         if recalled:
             spared = sum(timing.when_computed for timing in recalled.values())
-            said.append(
-                f"Recalled, not computed again: {', '.join(map(str, recalled))}; "
-                f"computing them took {spared:.2f} s then."
-            )
+            said.append(f"From cache: {', '.join(map(str, recalled))}; computing them took {spared:.2f} s then.")
         said += [
             f"{task}: {timing.from_disk} solved tooth shapes came from the disk cache; solving them took "
             f"{timing.spared:.2f} s then, which the seconds given here do not contain."

@@ -1,4 +1,4 @@
-"""Rules of thumb that a drawing is held against before anything is computed: tips, roots, clearances, contact ratio."""
+"""Rules of thumb that a drawing is compared with first: tips, roots, clearances, contact ratio."""
 
 from __future__ import annotations
 

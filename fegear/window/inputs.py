@@ -125,7 +125,7 @@ class Inputs:
                     self._places[field.path] = more
                     self._held[field.path] = field
                 if marked := [field.label for field in left if field.path in self._warned]:
-                    more.props["caption"] = f"assumed or left out: {', '.join(marked)}"
+                    more.props["caption"] = f"assumed or not given: {', '.join(marked)}"
 
     def _field(self, field: Field) -> None:
         commit = partial(self._typed, field)
@@ -178,7 +178,7 @@ class Inputs:
             self._tell(path)
         for fold in set(self._places.values()):
             inside = [path[-1].replace("_", " ") for path in told if self._places.get(path) is fold]
-            fold.props["caption"] = f"assumed or left out: {', '.join(inside)}" if inside else ""
+            fold.props["caption"] = f"assumed or not given: {', '.join(inside)}" if inside else ""
             fold.update()
 
     # ---- changes -------------------------------------------------------------------------------------------------

@@ -256,7 +256,7 @@ def load_sharing(
     progress: bool | None = None,
     cache: SolutionCache | None = None,
 ) -> Results:
-    """Load, deflection and contact pressure of one tooth pair from first to last contact, spur or helical.
+    """Load, deflection and contact pressure of one tooth pair over the path of contact, spur or helical.
 
     Parameters
     ----------

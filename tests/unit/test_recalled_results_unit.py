@@ -48,7 +48,7 @@ def test_a_second_run_recalls_everything_and_says_so(first):
     assert recalled(before) == set()
     assert recalled(after) == {str(task) for task in after.outcomes}
     assert {timing.origin for timing in after.timings.values()} == {"recalled"}
-    assert any("Recalled, not computed again" in remark for remark in after.cache_remarks)
+    assert any("From cache" in remark for remark in after.cache_remarks)
     for one, two in zip(before.tables, after.tables, strict=True):
         assert one.name == two.name
         for a, b in zip(one.columns, two.columns, strict=True):

@@ -70,12 +70,12 @@ def agma_inputs(scene: Scene, asked: PairToRate) -> tuple[AgmaInputs | None, tup
         try:
             found = _allowed(strength, gear, said)
         except InputError as error:
-            return None, (f"Pair {asked.name}: AGMA 2101 is not asked: gear {gear}: {error}",)
+            return None, (f"Pair {asked.name}: AGMA 2101 is not evaluated: gear {gear}: {error}",)
         if found is None:
             why = (
                 "own stress numbers are those of ISO" if strength.material in _TREATMENTS else "it has no such material"
             )
-            return None, (f"Pair {asked.name}: AGMA 2101 is not asked: {why} (gear {gear}, {strength.material}).",)
+            return None, (f"Pair {asked.name}: AGMA 2101 is not evaluated: {why} (gear {gear}, {strength.material}).",)
         allowed.append(found.reversed_bending if asked.stress_ratio[i] < 0.0 else found)
     if allowed[1].treatment == "through-hardened" and allowed[0].treatment in HARD_CASES:
         said.append(f"Pair {asked.name}: Z_W of AGMA 2101 of a through-hardened wheel on a hard pinion is recalled.")

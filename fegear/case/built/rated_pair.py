@@ -119,7 +119,11 @@ def check_pair_to_rate(scene: Scene, name: str) -> None:
     part = scene.case.pair[name]
     for gear in dict.fromkeys((part.driver, part.driven)):
         for key, why, example in (
-            ("strength", "a rating asks what the material bears", 'strength = { material = "case-hardened-steel" }'),
+            (
+                "strength",
+                "a rating needs the allowable stress numbers of the material",
+                'strength = { material = "case-hardened-steel" }',
+            ),
             ("face_width", "a rating is for a face", 'face_width = "20 mm"'),
         ):
             if getattr(scene.case.gear[gear], key) is None:

@@ -1,4 +1,4 @@
-"""One tooth pair followed from first to last contact: what the load-sharing table shows.
+"""One tooth pair followed over the path of contact: what the load-sharing table shows.
 
 Where curves over a base pitch are largest, found closer than the samples that they were looked at.
 """

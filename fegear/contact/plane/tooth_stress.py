@@ -80,7 +80,7 @@ class ToothStress:
         return None if self.compression is None else np.asarray(self.compression.min(axis=0))
 
     @property
-    @shows("MPa", "largest less smallest stress below the loaded flank over the mesh", name="root_stress_range")
+    @shows("MPa", "peak to peak of the stress below the loaded flank over the mesh", name="root_stress_range")
     def tension_range(self) -> Array:
         """Under each load, shape (L,) [Pa]."""
         return np.asarray(np.ptp(self.tension, axis=0))

@@ -62,7 +62,7 @@ class TransmissionError:
         return float(self.series.mean)
 
     @property
-    @shows("um", "largest less smallest", name="te_peak_to_peak")
+    @shows("um", "peak to peak", name="te_peak_to_peak")
     def peak_to_peak(self) -> float:
         """Largest less smallest value [m]."""
         return float(np.ptp(self.values))

@@ -1,4 +1,4 @@
-"""One tooth pair with a width followed from first to last contact.
+"""One tooth pair with a width followed over the path of contact.
 
 Contact pattern as marking compound prints it: where loaded flanks come nearer than the thickness of its coat.
 

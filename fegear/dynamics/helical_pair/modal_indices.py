@@ -70,7 +70,7 @@ class ModeTable:
         near = np.flatnonzero((self.frequency > 0.0) & (self.shape_doubt > HALF_THE_DIGITS)) + 1
         if soft.size:
             remarks.append(
-                f"modes {_listed(soft)} are so soft beside the stiffest that round-off leaves their frequencies "
+                f"modes {_listed(soft)} are so soft compared with the stiffest that round-off leaves their frequencies "
                 f"{float(self.frequency_doubt[soft - 1].max()):.0e} of doubt"
             )
         if near.size:

@@ -84,7 +84,7 @@ class FactorTable:
 
 @dataclass(frozen=True, slots=True)
 class Replacement:
-    """Values computed by other means that stand in for those of the formulas; None leaves a formula in place.
+    """Values computed by other means, used instead of those of the formulas; None leaves a formula in place.
 
     Parameters
     ----------

@@ -156,7 +156,7 @@ def rate_spectrum(
     levels : sequence of (Duty or None, (float, float))
         Load and speed of each level (None without load) and its load cycles of pinion and wheel.
     computed : Replacement or sequence of Replacement, optional
-        Values that stand in for those of the formulas: the same at every level, or those of each.
+        Values used instead of those of the formulas: the same at every level, or those of each.
 
     Raises
     ------

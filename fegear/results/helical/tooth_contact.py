@@ -208,7 +208,7 @@ def _kinds_table(name: str, t: ToothContact) -> Table:
             Column("share", np.array([s.size / t.phi_1.size for s in slopes]), "", "of the cycle's positions"),
             Column("slope", mean, "", "mean slope of the transmission error"),
             Column("rise", mean * pitch, "arcsec", "mean slope times the pitch"),
-            Column("rise_spread", spread * pitch, "arcsec", "largest less smallest slope, times the pitch"),
+            Column("rise_spread", spread * pitch, "arcsec", "peak to peak of the slope, times the pitch"),
         ),
         f"Kinds of contact of pair {name}",
     )

@@ -402,7 +402,7 @@ def response_figures(name: str, stiffness: float, response: Response, undamped: 
             f"dynamic_load_factor_{name}",
             f"Conventional frequency response of pair {name}",
             f"Pair {name}: torsional response to a transmission error along the line of action, G - a_M over K_M (the "
-            "dynamic load factor), beside the mesh force transmissibility along the line of action and in torsion.",
+            "dynamic load factor), and the mesh force transmissibility along the line of action and in torsion.",
             (
                 panel("amplitude", (
                     ("(G − a_{M})_{θz,y} / K_{M}", dynamic),

@@ -184,13 +184,13 @@ def _remarks(name: str, data: FlankSurfaceData, asked: PairSurface) -> list[str]
     if pair.contact_ratio >= 2.0 and pair.driver.helix_angle == 0.0:
         told.append(
             f"Pair {name}: the load sharing factors of ISO/TS 6336-20 and -22 are for contact ratios below 2; theirs "
-            "is 1 everywhere here, and the computed load sharing tells more."
+            "is 1 everywhere here, and the computed load sharing says more."
         )
     told += _recalled(name, asked)
     if data.share_outside > 0.0:
         told.append(
-            f"Pair {name}: tip corners bear up to {data.share_outside:.1%} of the load off the path of contact, where "
-            "no temperature and no film is told."
+            f"Pair {name}: tip corners carry up to {data.share_outside:.1%} of the load off the path of contact, where "
+            "no temperature and no film is given."
         )
     if asked.rated.factors.product != 1.0:
         told.append(

@@ -167,7 +167,7 @@ def _remarks(name: str, data: LoadedWidePair) -> list[str]:
         remarks.append(
             f"Pair {name}: "
             + ("sharp tip edges carry" if tips else "contact lines end at tips or form circles under")
-            + f" up to {edge * 1e-3:.4g} N/mm. A sharp edge has no largest pressure: the number beside it grows with "
+            + f" up to {edge * 1e-3:.4g} N/mm. A sharp edge has no largest pressure: the value next to it grows with "
             "the number of panels, and largest_hertz_pressure excludes it. "
             + (
                 "Round the tips (tip_radius_rounding) to give it one."

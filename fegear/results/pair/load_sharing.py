@@ -1,4 +1,4 @@
-"""Stage ``load-sharing``: one tooth pair followed from first to last contact, plane or with its width."""
+"""Stage ``load-sharing``: one tooth pair followed over the path of contact, plane or with its width."""
 
 from __future__ import annotations
 

@@ -179,7 +179,7 @@ def _figure(name: str, data: FrictionData, asked: FrictionInputs) -> Figure:
         f"tooth_friction_{name}",
         f"Tooth friction of mesh {name}",
         f"Mesh {name}: friction coefficient by the law {asked.law.law}, and friction torque of one tooth pair on both "
-        "gears from first to last contact under the static load (dotted: of all pairs in contact then). Sliding turns "
+        "gears over the path of contact under the static load (dotted: of all pairs in contact then). Sliding turns "
         "at the pitch point C, where Benedict and Kelley's law is cut at 0.2; a positive torque turns a "
         "gear on.",
         (

@@ -187,7 +187,7 @@ def _present(data: ToothLossData, inputs: ToothLossInputs) -> Outcome:
     if data.pair.driver.helix_angle == 0.0 and (found.load[outside] > 0.0).any():
         most = found.load[outside].max()
         remarks.append(
-            f"Pair {name}: tip corners bear up to {most:.4g} N off the path of contact; they slide "
+            f"Pair {name}: tip corners carry up to {most:.4g} N off the path of contact; they slide "
             "as if the line of action went on there."
         )
     if math.isnan(data.ohlendorf):

@@ -55,7 +55,7 @@ class ReliefCurve:
     length : float
         L_n of TM-89901.
     history : PairHistory
-        One tooth pair from first to last contact.
+        One tooth pair over the path of contact.
     error : TransmissionError
         Over the base pitch.
     """

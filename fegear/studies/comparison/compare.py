@@ -77,7 +77,7 @@ class Comparison:
         """What the terminal shows."""
         lines = [f"A: {self.first.label}", f"B: {self.second.label}"]
         if self.inputs is None:
-            lines.append("Inputs: not known of both; folders tell them that were written by this version.")
+            lines.append("Inputs: not known of both; only folders written by this version state them.")
         elif not self.inputs:
             lines.append("Inputs: the same.")
         else:
@@ -153,7 +153,7 @@ def table_lines(one: Joined, tolerance: float) -> list[str]:
     if len(moving) > _COLUMNS:
         lines.append(f"  {one.table.name}: {len(moving) - _COLUMNS} more columns")
     if one.only_first or one.only_second:
-        lines.append(f"  {one.table.name}: {one.only_first} rows stand in A alone, {one.only_second} in B alone")
+        lines.append(f"  {one.table.name}: {one.only_first} rows are in A alone, {one.only_second} in B alone")
     for label in "AB":
         names = [name for name, side in one.alone if side == label]
         if names:
