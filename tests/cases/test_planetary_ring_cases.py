@@ -97,3 +97,21 @@ def test_room_of_the_planets_in_their_ring_is_said_and_its_lack_refused():
 def test_rings_that_are_none_are_refused(keys, said):
     with pytest.raises(FegearError, match=said):
         run("planet-set", **keys)
+
+
+def test_a_set_with_its_ring_as_a_gear_is_rated_at_the_sun():
+    strong = {"material": "case-hardened-steel"}
+    case = copy.deepcopy(CASE) | {"results": ["rating", "planet-load-sharing"]}
+    for gear in ("s", "p"):
+        case["gear"][gear]["strength"] = strong
+    pins = {"tangential": ["20 um", "0 um", "-10 um", "0 um"]}
+    case["planetary"]["P"] |= {
+        "planets": 4, "speed": "1000 rpm", "pin_errors": pins, "stiffness": {"pin": "250 N/um"}, "floating": ["sun"],
+    }  # fmt: skip
+    scene = build_scene(case, "case", None)
+    results = run_plan(scene, make_plan(scene, STAGES), cache=CACHE)
+    table = of(results, "rating_P_sun")
+    factor = dict(zip(table["symbol"], table["driver"], strict=True))["K_gamma"]
+    assert factor == next(one.si for one in results.values if one.name == "P.K_gamma")
+    assert factor > 1.02
+    assert "Pair P_ring is not rated: ISO 6336 of internal teeth is not computed." in results.remarks

@@ -20,7 +20,7 @@ from fegear.case.built.flank_errors import gear_deviations
 from fegear.case.built.pair_inputs import gear_name
 from fegear.case.built.rated_duty import assumed_of_pair, in_order, load_cycles, mates_of, refuse_fast, spectrum_levels
 from fegear.case.part import at
-from fegear.case.planetary import set_of_pair, set_that_shares
+from fegear.case.planetary import set_of_pair, set_pair, set_that_shares
 from fegear.formulas.iso1328 import flank_tolerances
 from fegear.formulas.iso6336.conditions import Conditions
 from fegear.formulas.iso6336.pair_geometry import Body, of_pair
@@ -198,15 +198,18 @@ def _of_its_set(scene: Scene, name: str) -> list[str]:
     found = set_of_pair(scene.case, name)
     if found is None:
         return []
-    count, operation = scene.case.planetary[found].count, scene.case.pair[name].operation
+    part, operation = scene.case.planetary[found], scene.case.pair[name].operation
     told = f"Pair {name} belongs to planetary set {found}"
     if operation.idler is not None:
         told += f": the planet's teeth count as bent to either side, and contacts as {operation.contacts}"
     if set_that_shares(scene.case, name):
-        return [f"{told}; K_gamma is that of its planet-load-sharing."]
-    if "mesh_load_factor" in operation.model_fields_set or count == 1:
-        return [f"{told}."]
-    return [f"{told}; K_gamma counts as 1, for planetary.{found}.stiffness.ring_mesh is not given."]
+        told += "; K_gamma is that of its planet-load-sharing"
+    elif "mesh_load_factor" not in operation.model_fields_set and part.count > 1:
+        told += f"; K_gamma counts as 1, for planetary.{found}.stiffness.ring_mesh is not given"
+    said = [f"{told}."]
+    if part.ring is not None:
+        said.append(f"Pair {set_pair(found, 'ring')} is not rated: ISO 6336 of internal teeth is not computed.")
+    return said
 
 
 #: The class whose helix slope a favourable contact pattern takes off.

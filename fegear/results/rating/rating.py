@@ -34,7 +34,7 @@ from fegear.results.rating.rating_tables import (
     safety_table,
     spectrum_table,
 )
-from fegear.results.rating.shared_load import inputs_with_shares, needs_shares
+from fegear.results.rating.shared_load import inputs_with_shares, needs_shares, rated_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -484,7 +484,7 @@ def _shown(one: Factor, asked: PairToRate) -> bool:
 
 
 RATING = Stage(
-    subjects=lambda scene: tuple(scene.pairs),
+    subjects=rated_pairs,
     inputs=_inputs,
     compute=_compute,
     present=_present,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-from fegear.case.planetary import set_that_shares
+from fegear.case.planetary import set_of_pair, set_that_shares
 from fegear.engine.stage import Task
 
 if TYPE_CHECKING:
@@ -14,6 +14,13 @@ if TYPE_CHECKING:
     from fegear.dynamics.planetary.planet_loads import PlanetLoads
     from fegear.engine.stage import Upstream
     from fegear.results.rating.rating import RatingInputs
+
+
+def rated_pairs(scene: Scene) -> tuple[str, ...]:
+    """All pairs but those of planets and ring of a set, of which the mesh with the sun is rated and says so."""
+    return tuple(
+        name for name, pair in scene.pairs.items() if not (pair.internal and set_of_pair(scene.case, name) is not None)
+    )
 
 
 def needs_shares(scene: Scene, name: str) -> tuple[Task, ...]:
